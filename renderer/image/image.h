@@ -1,0 +1,36 @@
+// A float image: row 0 on top, texel (x, y) covers [x, x+1) x [y, y+1).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// Channels are interleaved. An image that holds colour has its first three channels R G B.
+struct Image {
+  int width = 0, height = 0, channels = 0;
+  std::vector<float> texels;
+
+  Image() = default;
+  Image(int w, int h, int c)
+      : width(w), height(h), channels(c), texels(size_t(w) * h * c) {}
+
+  bool empty() const { return texels.empty(); }
+  float* at(int x, int y) { return &texels[(size_t(y) * width + x) * channels]; }
+  const float* at(int x, int y) const { return &texels[(size_t(y) * width + x) * channels]; }
+
+  // Colour access; asks for at least three channels.
+  Rgb rgb(int x, int y) const {
+    const float* t = at(x, y);
+    return {t[0], t[1], t[2]};
+  }
+  void setRgb(int x, int y, const Rgb& c) {
+    float* t = at(x, y);
+    t[0] = c.x, t[1] = c.y, t[2] = c.z;
+  }
+};
+
+}  // namespace chromeball

@@ -1,0 +1,19 @@
+// Reads glTF 2.0 (.gltf, .glb) into a Scene.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace chromeball {
+
+// Takes one line of warning ("FILE: what was ignored"), each said once per file.
+using Warn = std::function<void(const std::string&)>;
+
+// Reads the default scene of the file (the first where none is named), with `placement` applied to
+// its roots. Throws InputError (file and reason) for whatever is not well-formed, refers outside
+// its buffers, or requires an extension that is not supported.
+Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn);
+
+}  // namespace chromeball

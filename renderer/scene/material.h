@@ -1,0 +1,34 @@
+// glTF 2.0 metallic-roughness material, as the file states it.
+#pragma once
+
+#include <string>
+
+#include "scene/texture.h"
+
+namespace chromeball {
+
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+
+struct Material {
+  std::string name;
+  vec4 baseColor{1};                // linear RGB and alpha; times texture, times vertex colour
+  float metallic = 1, roughness = 1;  // perceptual roughness; alpha of GGX is its square
+  Rgb emission{0};                  // emissiveFactor * emissiveStrength, radiance
+  float ior = 1.5f;                 // KHR_materials_ior; 0 means infinite (F0 = 1)
+  float specular = 1;               // KHR_materials_specular: weight of the dielectric lobe
+  Rgb specularColor{1};
+  float normalScale = 1;
+  AlphaMode alphaMode = AlphaMode::Opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+  bool unlit = false;               // KHR_materials_unlit: emits its base colour, reflects nothing
+
+  TextureSlot baseColorTexture;      // sRGB
+  TextureSlot metallicRoughnessTexture;  // G roughness, B metallic
+  TextureSlot normalTexture;
+  TextureSlot emissiveTexture;       // sRGB
+  TextureSlot specularTexture;       // A
+  TextureSlot specularColorTexture;  // sRGB
+};
+
+}  // namespace chromeball

@@ -1,0 +1,68 @@
+// The scene as the tracer wants it: meshes, where they stand, what they are made of.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/material.h"
+
+namespace chromeball {
+
+using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the front
+
+// One glTF primitive: an indexed triangle soup with a single material.
+// Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
+// the bitangent in w (bitangent = w * cross(normal, tangent)).
+struct Mesh {
+  std::vector<Triangle> triangles;
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;               // empty: flat, the triangle's own normal
+  std::vector<vec4> tangents;              // filled only where the material has a normal map
+  std::vector<vec4> colors;                // linear RGBA; empty: white
+  std::vector<std::vector<vec2>> uvs;      // by UV set; only those the material reads are kept
+  int material = 0;                        // always valid
+};
+
+// Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
+struct Transform {
+  glm::mat3 linear{1};
+  vec3 translation{0};
+
+  vec3 point(vec3 p) const { return linear * p + translation; }
+};
+
+// A mesh standing somewhere. A mesh with one instance is stored in world space (identity here).
+struct Instance {
+  int mesh = 0;
+  int node = 0;  // index into Scene::nodeNames
+  Transform toWorld;
+};
+
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  // never empty where there is a mesh
+  std::vector<Texture> textures;
+  std::vector<std::unique_ptr<TexelGrid>> grids;  // owns the texels that textures point to
+  std::vector<Camera> cameras;
+  std::vector<std::string> nodeNames;
+
+  size_t triangleCount() const;  // instanced triangles count once per instance
+  size_t byteCount() const;      // of geometry and texels, for the statistics
+};
+
+struct Bounds {
+  vec3 min{INFINITY}, max{-INFINITY};
+  bool empty() const { return !(min.x <= max.x); }
+};
+Bounds bounds(const Scene& scene);
+
+// A camera that frames the whole scene from the front, slightly above and to the right.
+Camera framingCamera(const Bounds& bounds, float aspectRatio);
+
+// Puts `other` into `scene` (a scene file may name several models).
+void append(Scene& scene, Scene&& other);
+
+}  // namespace chromeball

@@ -1,0 +1,48 @@
+// A 2D texture: texels as the file stored them (8 bits stay 8 bits), decoded when looked up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// The texels of one image file, shared by every texture that names it. Always four channels;
+// exactly one of the two arrays is filled.
+struct TexelGrid {
+  int width = 0, height = 0;
+  std::vector<std::array<uint8_t, 4>> texels8;  // 8-bit sources
+  std::vector<vec4> texelsFloat;                // everything deeper, 0..1 for integer files
+};
+
+enum class Wrap : uint8_t { Repeat, ClampToEdge, MirroredRepeat };
+enum class Filter : uint8_t { Linear, Nearest };
+
+// An image with a sampler (glTF 2.0, 3.8). `srgb`: RGB is sRGB-encoded and decoded on lookup;
+// alpha is always linear.
+struct Texture {
+  const TexelGrid* grid = nullptr;
+  Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
+  Filter filter = Filter::Linear;
+  bool srgb = false;
+
+  // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
+  vec4 lookup(vec2 uv) const;
+};
+
+// A material's use of a texture: which one, by which UV set, after which transform
+// (KHR_texture_transform: uv' = offset + R(rotation) S(scale) uv).
+struct TextureSlot {
+  int texture = -1;  // index into Scene::textures; -1: none
+  int uvSet = 0;
+  vec2 uvRow0{1, 0}, uvRow1{0, 1}, uvOffset{0};  // uv' = (dot(row0,uv), dot(row1,uv)) + offset
+
+  explicit operator bool() const { return texture >= 0; }
+  vec2 transform(vec2 uv) const {
+    return vec2(glm::dot(uvRow0, uv), glm::dot(uvRow1, uv)) + uvOffset;
+  }
+};
+
+}  // namespace chromeball
