@@ -15,8 +15,7 @@ struct Image {
   std::vector<float> texels;
 
   Image() = default;
-  Image(int w, int h, int c)
-      : width(w), height(h), channels(c), texels(size_t(w) * h * c) {}
+  Image(int w, int h, int c) : width(w), height(h), channels(c), texels(size_t(w) * h * c) {}
 
   bool empty() const { return texels.empty(); }
   float* at(int x, int y) { return &texels[(size_t(y) * width + x) * channels]; }

@@ -1,4 +1,4 @@
-// The two ways a run can fail. The command turns each into one line and an exit status.
+// The ways a run can end before its time. The command turns each into one line and an exit status.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,6 +16,11 @@ struct InputError : std::runtime_error {
 
 // Something failed while running, a full disk say (exit status 1).
 struct RunError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The user stopped the run, and what was to be saved is saved (exit status 130).
+struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

@@ -4,24 +4,100 @@
 #include <vector>
 
 #include "image/image.h"
+#include "math/trig.h"
 #include "math/vec.h"
 
 namespace chromeball {
 
 // Bilinear interpolation of a lat-long image's texels: wraps at the seam, and reaches at each pole
 // the mean of the row beside it, so it is continuous on the whole sphere.
+//
+// Interpolation runs over cells whose corners are texel centres. Column c has its centre at
+// u = (c + 1/2)/W; row 0 is the north pole, rows 1 to H are the image's, row H + 1 is the south
+// pole. So there are H + 1 rows of W cells; the first and the last row of cells are half as high.
 class Probe {
  public:
   // `latLong` has at least three channels and no invalid texel (repair.h). `rotationDegrees` turns
   // the environment about +Y, counter-clockwise seen from above. Throws InputError where a texel
-  // times `scale` is not finite.
+  // times `scale` is not finite, or scale is negative.
   explicit Probe(const Image& latLong, float rotationDegrees = 0, float scale = 1);
-
-  // Radiance arriving from `direction` (unit, pointing away from the scene).
-  Rgb radiance(const vec3& direction) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
+  int cellRows() const { return height_ + 1; }
+
+  // A point of the map: the cell, the position inside it in [0, 1], and the sine of the angle to
+  // the pole there.
+  struct Position {
+    int column, row;
+    float s, t;
+    float sinTheta;
+  };
+  Position locate(const vec3& direction) const;
+  vec3 direction(Position& position) const;  // sets position.sinTheta
+
+  // Radiance at the cell's corners (00 at column, row; 10 at column + 1; 01 at row + 1; 11 at
+  // both).
+  struct Corners {
+    Rgb c00, c10, c01, c11;
+  };
+  Corners corners(int column, int row) const {
+    const Rgb* top = &grid_[size_t(row) * (width_ + 1) + column];
+    const Rgb* bottom = top + width_ + 1;
+    return {top[0], top[1], bottom[0], bottom[1]};
+  }
+  static Rgb interpolate(const Corners& c, float s, float t) {
+    return (1 - t) * ((1 - s) * c.c00 + s * c.c10) + t * ((1 - s) * c.c01 + s * c.c11);
+  }
+
+  // Radiance arriving from `direction` (unit, pointing away from the scene).
+  Rgb radiance(const vec3& direction) const {
+    const Position p = locate(direction);
+    return interpolate(corners(p.column, p.row), p.s, p.t);
+  }
+
+ private:
+  int width_, height_;
+  float uShift_;           // rotation, in turns
+  std::vector<Rgb> grid_;  // (H + 2) rows of W + 1 corners; the last column repeats the first
 };
+
+inline Probe::Position Probe::locate(const vec3& d) const {
+  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
+  float u = 0.5f + atan2Turns(d.x, -d.z) - uShift_;
+  u -= std::floor(u);
+  const float v = 2 * atan2Turns(sinTheta, d.y);
+
+  Position p;
+  p.sinTheta = sinTheta;
+  // Column 0's centre lies at u = 0.5 / W.
+  float x = u * float(width_) - 0.5f;
+  if (x < 0) x += float(width_);
+  p.column = std::min(int(x), width_ - 1);
+  p.s = x - float(p.column);
+  const float y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
+  p.row = std::min(int(y), height_);
+  p.t = y - float(p.row);
+  if (p.row == 0)
+    p.t = 2 * y - 1;  // from the pole at y = 1/2
+  else if (p.row == height_)
+    p.t *= 2;
+  return p;
+}
+
+inline vec3 Probe::direction(Position& p) const {
+  const float x = float(p.column) + p.s + 0.5f;
+  float y = float(p.row) + p.t - 0.5f;
+  if (p.row == 0)
+    y = 0.5f * p.t;
+  else if (p.row == height_)
+    y = float(height_) - 0.5f + 0.5f * p.t;
+  float sinPhi, cosPhi, cosTheta;
+  sinCosTurns(x / float(width_) + uShift_, sinPhi, cosPhi);
+  sinCosTurns(0.5f * y / float(height_), p.sinTheta, cosTheta);
+  p.sinTheta = std::fmax(p.sinTheta, 0.0f);
+  // u = 1/2 looks along -Z: phi in turns is u, so x = sin(2 pi (u - 1/2)), z = -cos(...).
+  return {-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi};
+}
 
 }  // namespace chromeball

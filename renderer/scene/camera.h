@@ -17,12 +17,31 @@ struct Camera {
   float halfHeight = 1;    // half the height of the view in metres (orthographic)
   float aspect = 0;        // width / height the file asks for; 0: none
 
-  // The ray through image point (u right, v down, both in [0, 1]) of a picture with the given
-  // width / height. The direction is unit.
-  void ray(float u, float v, float aspectRatio, vec3& origin, vec3& direction) const;
-
   // Throws InputError where eye and target coincide or up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);
+};
+
+// The rays of a camera for a picture with the given width / height.
+class CameraRays {
+ public:
+  CameraRays(const Camera& camera, float aspectRatio);
+
+  // Through image point (u right, v down, both in [0, 1]). The direction is unit.
+  void ray(float u, float v, vec3& origin, vec3& direction) const {
+    const vec3 point = corner_ + u * across_ + v * down_;
+    origin = orthographic_ ? position_ + point : position_;
+    direction = orthographic_ ? forward_ : glm::normalize(point);
+  }
+
+  // Metres along the camera's axis to a point `distance` metres along a ray.
+  float depth(const vec3& direction, float distance) const {
+    return distance * glm::dot(direction, forward_);
+  }
+
+ private:
+  bool orthographic_;
+  vec3 position_, forward_;
+  vec3 corner_, across_, down_;  // of the view's rectangle, from the position; at distance 1
 };
 
 }  // namespace chromeball

@@ -31,4 +31,10 @@ struct Material {
   TextureSlot specularColorTexture;  // sRGB
 };
 
+// Every slot of a material, for what treats them alike.
+inline std::array<TextureSlot*, 6> textureSlots(Material& m) {
+  return {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
+          &m.emissiveTexture,  &m.specularTexture,          &m.specularColorTexture};
+}
+
 }  // namespace chromeball

@@ -30,7 +30,8 @@ struct Transform {
   glm::mat3 linear{1};
   vec3 translation{0};
 
-  vec3 point(vec3 p) const { return linear * p + translation; }
+  vec3 point(const vec3& p) const { return linear * p + translation; }
+  bool isIdentity() const { return linear == glm::mat3(1) && translation == vec3(0); }
 };
 
 // A mesh standing somewhere. A mesh with one instance is stored in world space (identity here).

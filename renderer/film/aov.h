@@ -1,0 +1,57 @@
+// Arbitrary output variables: what else there is to know of a pixel.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace chromeball {
+
+// What a camera ray met first.
+struct FirstHit {
+  bool hit = false;
+  float depth = 0;             // metres along the camera's axis
+  Rgb albedo{0};               // base colour
+  vec3 normal{0};              // unit shading normal, world space
+  int material = -1, node = -1;
+};
+
+// The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
+//   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
+//   alpha           share that hit something    material, node  index + 1 at the first sample; else 0
+//   variance        squared standard error of the pixel (Film)        samples  their number (Film)
+enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node };
+
+struct AovInfo {
+  Aov aov;
+  const char* name;
+  const char* channels;  // one letter each; empty: one channel that has the layer's name
+};
+const std::vector<AovInfo>& allAovs();
+const AovInfo& aovInfo(Aov aov);
+// `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
+Aov aovFromName(const std::string& name, const std::string& place);
+
+// Gathers those that come from the first hit.
+class AovFilm {
+ public:
+  AovFilm(int width, int height, const std::vector<Aov>& wanted);
+
+  bool empty() const { return sums_.empty(); }
+
+  // Concurrently for different pixels.
+  void add(int x, int y, const FirstHit& first);
+
+  Image finished(Aov aov, int samplesPerPixel) const;
+
+ private:
+  struct Sum {
+    Aov aov;
+    Image image;
+  };
+  std::vector<Sum> sums_;
+  Image hits_;  // number of samples that hit something
+};
+
+}  // namespace chromeball

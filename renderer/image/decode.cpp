@@ -1,0 +1,90 @@
+#include "image/decode.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+#include "math/error.h"
+
+namespace chromeball {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at = 0) {
+  return file.size() >= at + magic.size() &&
+         std::equal(magic.begin(), magic.end(), file.begin() + at,
+                    [](char a, uint8_t b) { return uint8_t(a) == b; });
+}
+
+// The file name extension that leads OpenImageIO to the right reader. The content decides, since
+// models often label their images wrongly.
+const char* formatOf(std::span<const uint8_t> file, const std::string& name) {
+  if (startsWith(file, "\x89PNG\r\n\x1a\n")) return "texture.png";
+  if (startsWith(file, "\xff\xd8\xff")) return "texture.jpg";
+  const char* found = startsWith(file, "\xabKTX 20")                            ? "KTX2"
+                      : startsWith(file, "RIFF") && startsWith(file, "WEBP", 8) ? "WebP"
+                      : startsWith(file, "DDS ")                                ? "DDS"
+                      : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
+                                                                    : nullptr;
+  if (found) throwInput("{}: is {}; PNG and JPEG can be read", name, found);
+  throwInput("{}: is neither PNG nor JPEG", name);
+}
+
+void checkSize(const ImageSpec& spec, size_t fileBytes, const std::string& name) {
+  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxImageSide ||
+      spec.height > kMaxImageSide || spec.nchannels < 1)
+    throwInput("{}: {} x {} texels of {} channels; at most {} x {} can be read", name, spec.width,
+               spec.height, spec.nchannels, kMaxImageSide, kMaxImageSide);
+  // Deflate shrinks at most 1032 times, and a texel has at least one bit.
+  if (uint64_t(spec.width) * uint64_t(spec.height) > fileBytes * uint64_t(1032 * 8))
+    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
+               spec.width, spec.height, fileBytes);
+}
+
+// Reads the image as T, spread over RGBA.
+template <class T, class Texel>
+std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
+  const ImageSpec& spec = input.spec();
+  const int channels = std::min(spec.nchannels, 4);
+  std::vector<Texel> texels(size_t(spec.width) * size_t(spec.height));
+  if (!input.read_image(0, 0, 0, channels, type, texels.data(), sizeof(Texel)))
+    throwInput("{}: damaged image: {}", name, input.geterror());
+  if (channels == 4) return texels;
+  for (Texel& t : texels) {
+    if (channels == 3) t[3] = opaque;
+    if (channels == 2) t = {t[0], t[0], t[0], t[1]};
+    if (channels == 1) t = {t[0], t[0], t[0], opaque};
+  }
+  return texels;
+}
+
+}  // namespace
+
+DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
+  const char* format = formatOf(file, name);
+  OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());
+  ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  config.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
+  const std::unique_ptr<ImageInput> input = ImageInput::open(format, &config, proxy);
+  if (!input) throwInput("{}: damaged image: {}", name, OIIO::geterror());
+  checkSize(input->spec(), file.size(), name);
+
+  DecodedImage image;
+  image.width = input->spec().width;
+  image.height = input->spec().height;
+  if (input->spec().format == TypeDesc::UINT8)
+    image.texels8 = readTexels<uint8_t, std::array<uint8_t, 4>>(*input, TypeDesc::UINT8, 255, name);
+  else
+    image.texelsFloat = readTexels<float, vec4>(*input, TypeDesc::FLOAT, 1.0f, name);
+  return image;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,153 @@
+#include "image/read.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "image/file.h"
+#include "image/limits.h"
+#include "image/pfm.h"
+#include "image/radiance_hdr.h"
+#include "image/tonemap.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string oneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+// OpenImageIO's message about `path`, as one of ours. Its messages may hold the path themselves.
+[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+  throwInput("{}: cannot be read: {}", path.string(),
+             reason.empty() ? "damaged, or of an unknown format" : oneLine(reason));
+}
+
+std::string firstBytes(const fs::path& path) {
+  checkReadable(path);
+  std::string bytes(4, '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), std::streamsize(bytes.size()));
+  return bytes;
+}
+
+Metadata metadataOf(const OIIO::ImageSpec& spec) {
+  Metadata metadata;
+  for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+    const std::string name = attribute.name().string();
+    if (attribute.type() == OIIO::TypeDesc::INT)
+      metadata[name] = attribute.get_int();
+    else if (attribute.type() == OIIO::TypeDesc::FLOAT)
+      metadata[name] = attribute.get_float();
+    else if (attribute.type() == OIIO::TypeDesc::STRING)
+      metadata[name] = attribute.get_string(0);
+  }
+  return metadata;
+}
+
+// No encoding packs texels tighter than this; a header that asks for more in a large image lies.
+void checkPlausible(const fs::path& path, const OIIO::ImageSpec& spec) {
+  constexpr uint64_t kMaxRatio = 100'000, kAlwaysAllowed = 64 << 20;
+  const uint64_t decoded = spec.image_bytes(true);
+  if (decoded > kAlwaysAllowed && decoded / kMaxRatio > fs::file_size(path))
+    throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
+}
+
+ImageFile readThroughLibrary(const fs::path& path, IntegerTexels integers) {
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) fail(path, OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
+  checkImageSize(path, spec.width, spec.height, spec.nchannels);
+  checkPlausible(path, spec);
+
+  ImageFile file;
+  file.channels = spec.channelnames;
+  file.metadata = metadataOf(spec);
+  file.image = Image(spec.width, spec.height, spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
+    fail(path, input->geterror());
+
+  if (!spec.format.is_floating_point() && integers == IntegerTexels::Srgb)
+    for (size_t i = 0; i < file.image.texels.size(); ++i)
+      if (int(i % spec.nchannels) != spec.alpha_channel)
+        file.image.texels[i] = srgbToLinear(file.image.texels[i]);
+  return file;
+}
+
+Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
+  Image out(file.image.width, file.image.height, int(channels.size()));
+  const size_t stride = file.image.channels, texelCount = size_t(out.width) * out.height;
+  for (size_t i = 0; i < texelCount; ++i)
+    for (size_t c = 0; c < channels.size(); ++c)
+      out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
+  return out;
+}
+
+std::optional<Image> findChannels(const ImageFile& file, const std::string& prefix,
+                                  std::initializer_list<const char*> names) {
+  std::vector<size_t> indices;
+  for (const char* name : names) {
+    const auto found = std::find(file.channels.begin(), file.channels.end(), prefix + name);
+    if (found == file.channels.end()) return std::nullopt;
+    indices.push_back(found - file.channels.begin());
+  }
+  return extract(file, indices);
+}
+
+}  // namespace
+
+ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
+  const std::string magic = firstBytes(path);
+  if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
+  if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
+  if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
+  try {
+    return readThroughLibrary(path, integers);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {  // the library's own, about a damaged file
+    fail(path, error.what());
+  }
+}
+
+std::optional<Image> findColor(const ImageFile& file) {
+  if (auto color = findChannels(file, "", {"R", "G", "B"})) return color;
+  for (const std::string& layer : layerNames(file))
+    if (auto color = findChannels(file, layer + ".", {"R", "G", "B"})) return color;
+  if (auto color = findChannels(file, "", {"Y", "Y", "Y"})) return color;
+  if (file.channels.size() > 2) return std::nullopt;
+  return extract(file, {0, 0, 0});
+}
+
+std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
+  const std::string prefix = name + ".";
+  if (auto image = findChannels(file, prefix, {"R", "G", "B"})) return image;
+  if (auto image = findChannels(file, prefix, {"X", "Y", "Z"})) return image;
+  if (auto image = findChannels(file, prefix, {"Z"})) return image;
+  if (auto image = findChannels(file, prefix, {"Y"})) return image;
+  return findChannels(file, name, {""});
+}
+
+std::vector<std::string> layerNames(const ImageFile& file) {
+  constexpr std::array kOfTheColor = {"R", "G", "B", "A", "X", "Y", "Z"};
+  std::vector<std::string> names;
+  for (const std::string& channel : file.channels) {
+    if (std::find(kOfTheColor.begin(), kOfTheColor.end(), channel) != kOfTheColor.end()) continue;
+    const std::string name = channel.substr(0, channel.rfind('.'));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+Image readImage(const fs::path& path, IntegerTexels integers) {
+  std::optional<Image> color = findColor(readImageFile(path, integers));
+  if (!color) throwInput("{}: has no channels R, G and B, and is not grey", path.string());
+  return *std::move(color);
+}
+
+}  // namespace chromeball

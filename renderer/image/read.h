@@ -1,0 +1,46 @@
+// Reading images: EXR, Radiance .hdr, PFM, PNG, JPEG, TIFF. A file is known by its first bytes, not
+// by its name. All of these throw InputError ("FILE: reason").
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "image/image.h"
+
+namespace chromeball {
+
+using Metadata = std::map<std::string, std::variant<std::string, int, float>>;
+
+// What the texels of integer files (8 or 16 bits) mean. Float files are linear whatever is asked.
+enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear; alpha never is
+
+// Everything in a file: all channels, interleaved in `image`, in the file's order.
+struct ImageFile {
+  Image image;
+  std::vector<std::string> channels;
+  Metadata metadata;
+};
+
+ImageFile readImageFile(const std::filesystem::path& path,
+                        IntegerTexels integers = IntegerTexels::Srgb);
+
+// The colour, always three channels: R, G and B by name, else of the first layer that has them,
+// else grey (Y, or the first of one or two channels) repeated. nullopt where there is none of
+// these.
+std::optional<Image> findColor(const ImageFile& file);
+
+// The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME.Z, NAME.Y
+// or NAME (one channel). nullopt where the file has no such layer.
+std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
+
+// The names findLayer knows.
+std::vector<std::string> layerNames(const ImageFile& file);
+
+// The colour of a file.
+Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
+
+}  // namespace chromeball

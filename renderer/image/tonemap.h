@@ -1,0 +1,37 @@
+// From linear radiance to what a screen shows.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "image/image.h"
+#include "math/vec.h"
+
+namespace chromeball {
+
+// The sRGB transfer function (IEC 61966-2-1) and its inverse; odd about 0, so negative values keep
+// their sign.
+float linearToSrgb(float linear);
+float srgbToLinear(float encoded);
+
+enum class ToneOperator {
+  None,        // clips at 1
+  Reinhard,    // luminance Y becomes Y (1 + Y/16) / (1 + Y): Reinhard et al. 2002, eq. 4, white 4
+  Aces,        // fit of the ACES RRT and ODT: Hill, "BakingLab", 2016
+  PbrNeutral,  // Khronos PBR Neutral, 2024: colours below 0.8 keep their hue and saturation
+  Filmic,      // Hable, "Uncharted 2", GDC 2010; white 11.2
+};
+
+// none, reinhard, aces, neutral, filmic; throws InputError for any other, and names the nearest.
+ToneOperator parseToneOperator(std::string_view name);
+const std::vector<std::string_view>& toneOperatorNames();  // in the enumeration's order
+
+struct DisplayTransform {
+  ToneOperator tone = ToneOperator::None;
+  float exposure = 0;  // stops: radiance is multiplied by 2^exposure
+};
+
+// Display-linear colour in [0, 1]. NaN gives 0; negative channels count as 0.
+Rgb display(const DisplayTransform& transform, const Rgb& radiance);
+
+}  // namespace chromeball

@@ -1,0 +1,133 @@
+#include "image/write.h"
+
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+
+#include "image/file.h"
+#include "image/pfm.h"
+#include "image/radiance_hdr.h"
+#include "math/error.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension(const fs::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+// `texels` holds channels of the spec's format, interleaved.
+void writeThroughLibrary(const fs::path& path, const std::string& format,
+                         const OIIO::ImageSpec& spec, const void* texels) {
+  const auto check = [&](bool ok, const std::string& reason) {
+    if (!ok) throwRun("{}: cannot be written: {}", path.string(), reason);
+  };
+  AtomicFile file(path);
+  const auto output = OIIO::ImageOutput::create(format);
+  check(output != nullptr, "this build of OpenImageIO lacks the format");
+  check(output->open(file.temporary().string(), spec), output->geterror());
+  check(output->write_image(spec.format, texels), output->geterror());
+  check(output->close(), output->geterror());
+  file.commit();
+}
+
+std::vector<std::string> channelNames(const OutputImage& output) {
+  std::vector<std::string> names;
+  for (const Layer& layer : output.layers) {
+    if (layer.channels.empty()) names.push_back(layer.name);
+    for (const char letter : layer.channels)
+      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
+  }
+  return names;
+}
+
+void writeExr(const fs::path& path, const OutputImage& output) {
+  const Image& color = output.layers.front().image;
+  const std::vector<std::string> names = channelNames(output);
+  Image all(color.width, color.height, int(names.size()));
+  int offset = 0;
+  for (const Layer& layer : output.layers) {
+    for (int y = 0; y < all.height; ++y)
+      for (int x = 0; x < all.width; ++x)
+        std::copy_n(layer.image.at(x, y), layer.image.channels, all.at(x, y) + offset);
+    offset += layer.image.channels;
+  }
+
+  OIIO::ImageSpec spec(all.width, all.height, all.channels, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = names;
+  spec.attribute("compression", "zip");
+  for (const auto& [name, contents] : output.metadata)
+    std::visit([&, key = name](const auto& number) { spec.attribute(key, number); }, contents);
+  writeThroughLibrary(path, "openexr", spec, all.texels.data());
+}
+
+void writePng(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
+  const bool hasAlpha = color.channels == 4;
+  std::vector<uint8_t> bytes;
+  bytes.reserve(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) {
+      const Rgb shown = display(transform, color.rgb(x, y));
+      for (int c = 0; c < 3; ++c) bytes.push_back(byte(linearToSrgb(shown[c])));
+      if (hasAlpha) bytes.push_back(byte(std::clamp(color.at(x, y)[3], 0.0f, 1.0f)));
+    }
+  OIIO::ImageSpec spec(color.width, color.height, hasAlpha ? 4 : 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  // Texels go out as they are; without this, colour would be divided by alpha.
+  if (hasAlpha) spec.attribute("oiio:UnassociatedAlpha", 1);
+  writeThroughLibrary(path, "png", spec, bytes.data());
+}
+
+// Grey repeated into three channels; anything else as it is.
+Image withColor(const Image& image) {
+  if (image.channels >= 3) return image;
+  Image color(image.width, image.height, 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) color.setRgb(x, y, Rgb(*image.at(x, y)));
+  return color;
+}
+
+}  // namespace
+
+void checkWritable(const fs::path& path) {
+  constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
+  if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
+    throwInput("{}: cannot write this kind of image; end the name in .exr, .hdr, .pfm or .png",
+               path.string());
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!fs::is_directory(folder))
+    throwInput("{}: there is no folder {}", path.string(), folder.string());
+  if (fs::is_directory(path)) throwInput("{}: is a folder", path.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    throwInput("{}: nothing can be written into {}: {}", path.string(), folder.string(),
+               std::strerror(errno));
+}
+
+void writeImage(const fs::path& path, const OutputImage& output,
+                const DisplayTransform& transform) {
+  checkWritable(path);
+  const std::string kind = extension(path);
+  if (kind == ".exr") return writeExr(path, output);
+  const Image color = withColor(output.layers.front().image);
+  if (kind == ".hdr") return writeRadianceHdr(path, color);
+  if (kind == ".pfm") return writePfm(path, color);
+  writePng(path, color, transform);
+}
+
+void writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
+  writeImage(path, OutputImage{{{"", letters, color}}, {}}, transform);
+}
+
+}  // namespace chromeball

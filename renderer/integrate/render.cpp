@@ -1,0 +1,205 @@
+#include "integrate/render.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/combinable.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+namespace chromeball {
+namespace {
+
+constexpr int kTile = 16;
+constexpr uint32_t kLargestBlock = 4096;
+// Deeper vertices carry too little for stratification to show; they take plain random numbers.
+constexpr int kTabulatedVertices = 6;
+constexpr uint32_t kLeastForNoise = 8;  // samples a pixel before an estimate of noise is believed
+
+double now() {
+  using namespace std::chrono;
+  return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+uint32_t powerOfTwoBelow(double x) {
+  return std::bit_floor(uint32_t(std::clamp(x, 0.0, double(kLargestBlock))));
+}
+
+// Decides how many samples each pixel gets next; 0 ends the render.
+class Schedule {
+ public:
+  explicit Schedule(const RenderSettings& settings) : settings_(settings), start_(now()) {
+    if (!open()) plan_ = planBlocks(uint32_t(settings.samples));
+  }
+
+  uint32_t largest() const { return open() ? kLargestBlock : plan_.front(); }
+
+  uint32_t next(uint32_t pass, uint32_t done, const Film& film) const {
+    if (!open()) return pass < plan_.size() ? plan_[pass] : 0;
+    const double left = double(settings_.samples) - done;
+    if (done == 0) return 1;
+    double wanted = std::min(left, double(done));
+    if (settings_.timeLimit) {
+      const double elapsed = now() - start_;
+      wanted = std::min(wanted, (*settings_.timeLimit - elapsed) * done / elapsed);
+    }
+    if (settings_.noiseLimit && done >= kLeastForNoise) {
+      const double ratio = film.noise() / *settings_.noiseLimit;
+      if (ratio <= 1) return 0;
+      wanted = std::min(wanted, std::ceil(done * (ratio * ratio - 1)));
+    }
+    return powerOfTwoBelow(wanted);
+  }
+
+  // Share of the work done after `samples`; NaN where only the noise tells.
+  double progress(double samples) const {
+    if (settings_.timeLimit) return std::min(1.0, (now() - start_) / *settings_.timeLimit);
+    if (settings_.noiseLimit) return std::nan("");
+    return samples / settings_.samples;
+  }
+
+ private:
+  bool open() const { return settings_.timeLimit || settings_.noiseLimit; }
+
+  const RenderSettings& settings_;
+  double start_;
+  std::vector<uint32_t> plan_;
+};
+
+// What a thread needs of its own.
+struct Worker {
+  PixelSampler sampler;
+  std::vector<DirectionSample> samples;
+  RayCounts rays;
+  InvalidSamples invalid;
+};
+
+class Renderer {
+ public:
+  Renderer(const PathScene<Accel>& path, const Camera& camera, const RenderSettings& settings,
+           uint32_t largestBlock, RenderResult& result)
+      : path_(path),
+        camera_(camera, float(settings.width) / float(settings.height)),
+        settings_(settings),
+        result_(result),
+        table_(std::bit_ceil(largestBlock),
+               dimension::kVertex +
+                   dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
+               settings.seed),
+        workers_([this] { return Worker{PixelSampler(table_, settings_.seed), {}, {}, {}}; }) {}
+
+  // Adds one block to every pixel. `progress` is told the share of the pass.
+  void pass(uint32_t block, uint32_t samples, const Progress& progress,
+            const std::atomic<bool>& stop) {
+    const int columns = (settings_.width + kTile - 1) / kTile;
+    const int tiles = columns * ((settings_.height + kTile - 1) / kTile);
+    std::atomic<int> finished = 0;
+    std::mutex reporting;
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, tiles, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          Worker& worker = workers_.local();
+          for (int tile = range.begin(); tile < range.end() && !stop; ++tile) {
+            renderTile(worker, tile % columns * kTile, tile / columns * kTile, block, samples);
+            const int count = ++finished;
+            if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+              progress(double(count) / tiles);
+          }
+        },
+        tbb::simple_partitioner());
+  }
+
+  void gather() {
+    for (const Worker& worker : workers_) {
+      result_.rays.add(worker.rays);
+      if (worker.invalid.count && !result_.invalid.count) result_.invalid = worker.invalid;
+      else result_.invalid.count += worker.invalid.count;
+    }
+  }
+
+ private:
+  void renderTile(Worker& worker, int left, int top, uint32_t block, uint32_t samples) {
+    for (int y = top; y < std::min(top + kTile, settings_.height); ++y)
+      for (int x = left; x < std::min(left + kTile, settings_.width); ++x)
+        renderPixel(worker, x, y, block, samples);
+  }
+
+  void renderPixel(Worker& worker, int x, int y, uint32_t block, uint32_t samples) {
+    const float width = float(settings_.width), height = float(settings_.height);
+    FirstHit first;
+    FirstHit* wantsFirst = result_.aovs.empty() ? nullptr : &first;
+    SampleSums sums;
+    worker.sampler.startPixel(uint32_t(x), uint32_t(y), block);
+    for (uint32_t i = 0; i < samples; ++i) {
+      worker.sampler.startSample(i);
+      const vec2 offset = worker.sampler.get2(dimension::kPixel);
+      Ray ray;
+      camera_.ray((float(x) + offset.x) / width, (float(y) + offset.y) / height, ray.origin,
+                  ray.direction);
+      first = {};
+      const Rgb radiance =
+          pathRadiance(path_, ray, worker.sampler, worker.samples, worker.rays, wantsFirst);
+      if (isFinite(radiance) && glm::all(glm::greaterThanEqual(radiance, Rgb(0))))
+        sums.add(radiance);
+      else
+        worker.invalid = {worker.invalid.count + 1, x, y};
+      if (wantsFirst) {
+        first.depth = camera_.depth(ray.direction, first.depth);
+        result_.aovs.add(x, y, first);
+      }
+    }
+    result_.film.addBlock(x, y, sums);
+  }
+
+  const PathScene<Accel>& path_;
+  CameraRays camera_;
+  const RenderSettings& settings_;
+  RenderResult& result_;
+  SobolTable table_;
+  tbb::enumerable_thread_specific<Worker> workers_;
+};
+
+}  // namespace
+
+std::vector<uint32_t> planBlocks(uint32_t samples) {
+  std::vector<uint32_t> blocks;
+  const uint32_t largest = std::min(kLargestBlock, std::bit_floor(std::max(1u, samples / 2)));
+  for (uint32_t left = samples; left > 0; left -= blocks.back())
+    blocks.push_back(std::min(largest, std::bit_floor(left)));
+  return blocks;
+}
+
+RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
+                    const LightingStrategy& lighting, const RenderSettings& settings,
+                    const Progress& progress, const std::atomic<bool>& stop) {
+  RenderResult result{Film(settings.width, settings.height),
+                      AovFilm(settings.width, settings.height, settings.aovs),
+                      {}, {}, 0, false};
+  const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
+  const PathScene<Accel> path{scene,          accel,        lighting,
+                              emitters.get(), settings.mis, settings.maxDepth,
+                              settings.hideProbe};
+  const Schedule schedule(settings);
+  Renderer renderer(path, camera, settings, schedule.largest(), result);
+
+  uint32_t done = 0;
+  for (uint32_t pass = 0; uint32_t samples = schedule.next(pass, done, result.film); ++pass) {
+    renderer.pass(
+        pass, samples,
+        [&](double share) { progress(schedule.progress(done + share * samples)); }, stop);
+    if (stop) {
+      result.interrupted = true;
+      break;
+    }
+    done += samples;
+  }
+  renderer.gather();
+  result.samples = int(done);
+  return result;
+}
+
+}  // namespace chromeball

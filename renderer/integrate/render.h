@@ -1,0 +1,56 @@
+// The one render loop: every pixel's samples, in blocks, on all threads.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "film/aov.h"
+#include "film/film.h"
+#include "integrate/path.h"
+#include "scene/camera.h"
+#include "trace/accel.h"
+
+namespace chromeball {
+
+struct RenderSettings {
+  int width = 800, height = 600;
+  int samples = 256;                     // per pixel; the most where a limit below is set
+  std::optional<double> timeLimit;       // seconds
+  std::optional<double> noiseLimit;      // fraction (film.h)
+  int maxDepth = 8;
+  Mis mis = Mis::Balance;
+  uint64_t seed = 0;
+  bool hideProbe = false;                // from the camera only: for compositing
+  std::vector<Aov> aovs;
+};
+
+// Samples that came out NaN, infinite or negative: counted, left out of the mean, never hidden.
+struct InvalidSamples {
+  uint64_t count = 0;
+  int x = -1, y = -1;  // where one of them was
+};
+
+struct RenderResult {
+  Film film;
+  AovFilm aovs;
+  RayCounts rays;
+  InvalidSamples invalid;
+  int samples = 0;  // per pixel
+  bool interrupted = false;
+};
+
+// Told now and then which share of the work is done, in [0, 1]; NaN where that is not known.
+using Progress = std::function<void(double)>;
+
+// Renders until the samples, the time or the noise is reached, or `stop` is set. Depends on the
+// settings alone, not on the number of threads (but for the time limit).
+RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
+                    const LightingStrategy& lighting, const RenderSettings& settings,
+                    const Progress& progress, const std::atomic<bool>& stop);
+
+// Sizes of the blocks, each a power of two, that make up exactly `samples`: two equal ones as large
+// as will fit (the error is estimated from how they differ), then what is left.
+std::vector<uint32_t> planBlocks(uint32_t samples);
+
+}  // namespace chromeball

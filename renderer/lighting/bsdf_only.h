@@ -1,0 +1,24 @@
+// `bsdf`: no light samples; the BSDF finds the probe.
+#pragma once
+
+#include "lighting/strategy.h"
+
+namespace chromeball {
+
+class BsdfOnly : public LightingStrategy {
+ public:
+  explicit BsdfOnly(const Probe& probe) : probe_(probe) {}
+
+  void sample(const LightPoint&, const PixelSampler&,
+              std::vector<DirectionSample>&) const override {}
+  Escaped escaped(const LightPoint&, const vec3& wi) const override {
+    return {probe_.radiance(wi), 0};
+  }
+  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  bool unbiased() const override { return true; }
+
+ private:
+  const Probe& probe_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,45 @@
+// Emissive triangles as lights.
+#pragma once
+
+#include <vector>
+
+#include "math/cdf.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+// Every triangle whose material emits, chosen by power (mean emitted luminance x area) and sampled
+// uniformly over its area. The density over area is then the same for all points of a material:
+// its mean luminance / total.
+class Emitters {
+ public:
+  // Null where nothing emits: such a scene has no table and no branch for one.
+  static std::unique_ptr<Emitters> make(const Scene& scene);
+
+  struct Point {
+    uint32_t instance, triangle;  // as in Hit
+    vec2 barycentric;
+    vec3 position;
+  };
+  Point sample(vec2 u) const;
+
+  // Density over solid angle of sampling a point of `material` seen from `distance` metres under
+  // the cosine `cosine` (> 0) at the emitter.
+  float density(int material, float distance, float cosine) const {
+    return areaDensity_[material] * distance * distance / cosine;
+  }
+
+ private:
+  struct EmissiveTriangle {
+    uint32_t instance, triangle;
+    vec3 p0, p1, p2;
+  };
+  Emitters(std::vector<EmissiveTriangle> triangles, const std::vector<double>& powers,
+           const std::vector<double>& radiances);
+
+  std::vector<EmissiveTriangle> triangles_;
+  std::vector<float> areaDensity_;  // by material, 1/m^2; 0 where it does not emit
+  CdfRows choice_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,70 @@
+// The seam on which everything the user compares hangs: one way of turning a probe into light.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "math/sampler.h"
+#include "math/vec.h"
+#include "probe/probe.h"
+
+namespace chromeball {
+
+class Bsdf;
+
+// Where light is wanted.
+struct LightPoint {
+  vec3 position;
+  vec3 normal;  // shading normal, on the viewer's side
+  vec3 wo;      // unit, towards the viewer
+  const Bsdf* bsdf;
+  int depth;    // 0 at the first hit: a strategy may do less on later bounces
+};
+
+// One direction worth a shadow ray. `density` is the effective density over solid angle: the sum
+// over all samples that were taken together, so that the sum over samples of
+//   radiance * f cos / density
+// is the estimate, however many samples a strategy takes.
+struct DirectionSample {
+  vec3 wi;  // unit, from the point to the light
+  Rgb radiance;
+  float density;
+};
+
+class LightingStrategy {
+ public:
+  virtual ~LightingStrategy() = default;
+
+  // Appends zero or more samples. The vector keeps its capacity from call to call.
+  virtual void sample(const LightPoint& point, const PixelSampler& sampler,
+                      std::vector<DirectionSample>& out) const = 0;
+
+  // What a ray that left `point` by the BSDF's choice and met nothing adds, and the density with
+  // which sample() would have found that direction; 0 where it never does.
+  struct Escaped {
+    Rgb radiance;
+    float density;
+  };
+  virtual Escaped escaped(const LightPoint& point, const vec3& wi) const = 0;
+
+  // What the camera and mirrors see, for which sample() has no competing estimate.
+  virtual Rgb background(const vec3& wi) const = 0;
+
+  // False for an approximation, whose error does not vanish with the number of samples.
+  virtual bool unbiased() const = 0;
+};
+
+// How light samples and BSDF samples of the same direction share it (Veach 1997).
+enum class Mis { Off, Balance, Power };
+
+// Builds a strategy from its name on the command line, "NAME" or "NAME:COUNT"; "auto" is the
+// unbiased strategy best for the probe. `place` (an option, or FILE:LINE) begins the InputError thrown
+// for an unknown name. The probe must outlive the strategy.
+std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
+                                               Mis mis, const std::string& place);
+
+// The name that "auto" stands for.
+std::string resolveStrategy(const std::string& name);
+
+}  // namespace chromeball

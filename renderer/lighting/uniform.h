@@ -1,0 +1,30 @@
+// `uniform`: directions uniform over the hemisphere of the normal, density 1 / 2 pi.
+#pragma once
+
+#include "lighting/strategy.h"
+#include "math/frame.h"
+#include "math/warp.h"
+
+namespace chromeball {
+
+class Uniform : public LightingStrategy {
+ public:
+  explicit Uniform(const Probe& probe) : probe_(probe) {}
+
+  void sample(const LightPoint& point, const PixelSampler& sampler,
+              std::vector<DirectionSample>& out) const override {
+    const vec3 local = squareToUniformHemisphere(sampler.get2(dimension::kLight));
+    const vec3 wi = Frame(point.normal).toWorld(local);
+    out.push_back({wi, probe_.radiance(wi), 0.5f * kInvPi});
+  }
+  Escaped escaped(const LightPoint& point, const vec3& wi) const override {
+    return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
+  }
+  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  bool unbiased() const override { return true; }
+
+ private:
+  const Probe& probe_;
+};
+
+}  // namespace chromeball

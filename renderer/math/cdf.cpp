@@ -1,0 +1,38 @@
+#include "math/cdf.h"
+
+#include <cassert>
+
+namespace chromeball {
+
+CdfRows::CdfRows(int rows, int columns)
+    : columns_(columns),
+      cdf_(size_t(rows) * (columns + 1)),
+      guide_(size_t(rows) * (kGuide + 1)) {}
+
+double CdfRows::setRow(int row, std::span<const double> weights) {
+  assert(int(weights.size()) == columns_);
+  double total = 0;
+  for (double w : weights) total += w;
+  double* cdf = &cdf_[size_t(row) * (columns_ + 1)];
+  if (!(total > 0)) return 0;
+
+  double sum = 0;
+  int last = 0;
+  for (int i = 0; i < columns_; ++i) {
+    cdf[i] = sum / total;
+    sum += weights[i];
+    if (weights[i] > 0) last = i;
+  }
+  // Rounding must not leave a gap below 1 that falls to a column of zero weight.
+  for (int i = last + 1; i <= columns_; ++i) cdf[i] = 1;
+
+  int column = 0;
+  for (int k = 0; k < kGuide; ++k) {
+    while (cdf[column + 1] <= double(k) / kGuide) ++column;
+    guide_[size_t(row) * (kGuide + 1) + k] = column;
+  }
+  guide_[size_t(row) * (kGuide + 1) + kGuide] = last;
+  return total;
+}
+
+}  // namespace chromeball

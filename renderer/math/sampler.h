@@ -1,0 +1,74 @@
+// The random numbers of one path. They depend on (pixel, sample, dimension, seed) only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/hash.h"
+#include "math/sobol.h"
+#include "math/vec.h"
+
+namespace chromeball {
+
+// Which dimensions a path uses for what. Blocks of eight keep every vertex's decisions in the same
+// two 4D groups of the table, however many numbers its material and light really take.
+namespace dimension {
+inline constexpr int kPixel = 0;    // 2: position in the pixel
+inline constexpr int kLens = 2;     // 2
+inline constexpr int kVertex = 4;   // first block
+inline constexpr int kLight = 0;    // 2: direction towards the probe
+inline constexpr int kBsdf = 2;     // 2: direction of the next ray
+inline constexpr int kLobe = 4;     // 1: which lobe
+inline constexpr int kRoulette = 5; // 1
+inline constexpr int kEmitter = 6;  // 2: which triangle and where on it
+inline constexpr int kPerVertex = 8;
+}  // namespace dimension
+
+// Numbers for the samples of one pixel. The table's points are shared by all pixels; each pixel and
+// dimension moves them by its own XOR (a random digital shift), which keeps their stratification
+// and makes each point uniform. A table's worth of samples is a block; every block has its own
+// shifts and is thus an independent randomisation.
+class PixelSampler {
+ public:
+  PixelSampler(const SobolTable& table, uint64_t seed)
+      : table_(&table), seed_(seed), shifts_(table.dimensions()) {}
+
+  void startPixel(uint32_t x, uint32_t y, uint64_t block) {
+    key_ = hash(seed_, uint64_t(y) << 32 | x, block);
+    for (size_t d = 0; d < shifts_.size(); d += 2) {
+      const uint64_t bits = hash(key_ + d);
+      shifts_[d] = uint32_t(bits);
+      shifts_[d + 1] = uint32_t(bits >> 32);
+    }
+  }
+  void startSample(uint32_t indexInBlock) {
+    point_ = table_->point(indexInBlock);
+    index_ = indexInBlock;
+  }
+  // Dimensions asked for from here on are relative to `dimension`.
+  void startVertex(int depth) {
+    base_ = dimension::kVertex + depth * dimension::kPerVertex;
+  }
+  void startCamera() { base_ = 0; }
+
+  uint32_t bits(int d) const {
+    d += base_;
+    if (d < int(shifts_.size())) return point_[d] ^ shifts_[d];
+    return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: plain random numbers
+  }
+  float get1(int d) const { return toUnit(bits(d)); }
+  vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
+
+  // A key for decisions made outside the path's own dimensions (stochastic alpha).
+  uint32_t sampleKey() const { return uint32_t(hash(key_, index_)) + uint32_t(base_); }
+
+ private:
+  const SobolTable* table_;
+  uint64_t seed_, key_ = 0;
+  std::vector<uint32_t> shifts_;
+  const uint32_t* point_ = nullptr;
+  uint32_t index_ = 0;
+  int base_ = 0;
+};
+
+}  // namespace chromeball

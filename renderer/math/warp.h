@@ -1,0 +1,54 @@
+// Warps from the unit square to directions and triangles, each beside its pdf and its inverse.
+// z is the pole of every hemisphere. Densities are over solid angle.
+#pragma once
+
+#include "math/trig.h"
+#include "math/vec.h"
+
+namespace chromeball {
+
+// The unit vector at height z and azimuth in turns.
+inline vec3 unitVector(float z, float azimuthTurns) {
+  float sine, cosine;
+  sinCosTurns(azimuthTurns, sine, cosine);
+  const float r = std::sqrt(std::fmax(0.0f, (1 - z) * (1 + z)));
+  return {r * cosine, r * sine, z};
+}
+
+// The azimuth of v about z in turns, [0, 1).
+inline float azimuthTurns(const vec3& v) {
+  const float turns = atan2Turns(v.y, v.x);
+  return turns < 0 ? turns + 1 : turns;
+}
+
+inline vec3 squareToUniformSphere(vec2 u) { return unitVector(1 - 2 * u.y, u.x); }
+inline float squareToUniformSpherePdf() { return 0.25f * kInvPi; }
+inline vec2 uniformSphereToSquare(const vec3& v) { return {azimuthTurns(v), (1 - v.z) / 2}; }
+
+inline vec3 squareToUniformHemisphere(vec2 u) { return unitVector(1 - u.y, u.x); }
+inline float squareToUniformHemispherePdf(const vec3& v) { return v.z >= 0 ? 0.5f * kInvPi : 0; }
+inline vec2 uniformHemisphereToSquare(const vec3& v) { return {azimuthTurns(v), 1 - v.z}; }
+
+// Density cos(theta)/pi: the height over the disc of radius sqrt(u.y) (Malley's method).
+inline vec3 squareToCosineHemisphere(vec2 u) {
+  float sine, cosine;
+  sinCosTurns(u.x, sine, cosine);
+  const float r = std::sqrt(u.y);
+  return {r * cosine, r * sine, std::sqrt(1 - u.y)};
+}
+inline float squareToCosineHemispherePdf(const vec3& v) { return v.z > 0 ? v.z * kInvPi : 0; }
+inline vec2 cosineHemisphereToSquare(const vec3& v) {
+  return {azimuthTurns(v), v.x * v.x + v.y * v.y};
+}
+
+// Barycentric coordinates (of the second and third vertex), uniform over the triangle's area
+// (density 1/area). Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+inline vec2 squareToTriangle(vec2 u) {
+  if (u.y > u.x) return {u.x / 2, u.y - u.x / 2};
+  return {u.x - u.y / 2, u.y / 2};
+}
+inline vec2 triangleToSquare(vec2 b) {
+  return b.y > b.x ? vec2{2 * b.x, b.y + b.x} : vec2{b.x + b.y, 2 * b.y};
+}
+
+}  // namespace chromeball

@@ -1,0 +1,75 @@
+#include "measure/image_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/error.h"
+
+namespace chromeball {
+namespace {
+
+void checkSameShape(const Image& a, const Image& b, const char* what) {
+  if (a.width != b.width || a.height != b.height || a.channels != b.channels)
+    throwInput("{} differ in size: {} x {} x {} and {} x {} x {}", what, a.width, a.height,
+               a.channels, b.width, b.height, b.channels);
+}
+
+ZScores zScores(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB) {
+  ZScores scores;
+  double sum = 0, sumOfSquares = 0;
+  size_t beyond = 0;
+  for (size_t i = 0; i < a.texels.size(); ++i) {
+    const double variance = (varianceA ? double(varianceA->texels[i]) : 0) +
+                            (varianceB ? double(varianceB->texels[i]) : 0);
+    const double z = (double(a.texels[i]) - b.texels[i]) / std::sqrt(variance);
+    if (!(variance > 0) || !std::isfinite(z)) continue;
+    ++scores.count;
+    sum += z;
+    sumOfSquares += z * z;
+    beyond += std::fabs(z) > 3;
+  }
+  if (scores.count == 0) return scores;
+  const double n = double(scores.count);
+  scores.mean = sum / n;
+  scores.standardDeviation = std::sqrt(std::max(0.0, sumOfSquares / n - scores.mean * scores.mean));
+  scores.shareBeyond3 = double(beyond) / n;
+  return scores;
+}
+
+}  // namespace
+
+ImageError imageError(const Image& a, const Image& b, const Image* varianceA,
+                      const Image* varianceB) {
+  checkSameShape(a, b, "the images");
+  if (varianceA) checkSameShape(a, *varianceA, "the first image and its variance");
+  if (varianceB) checkSameShape(b, *varianceB, "the second image and its variance");
+
+  ImageError error;
+  double sumDifference = 0, sumReference = 0, peak = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < a.texels.size(); ++i) {
+    const double x = a.texels[i], y = b.texels[i], difference = x - y;
+    if (!std::isfinite(difference)) {
+      ++error.invalid;
+      continue;
+    }
+    ++count;
+    error.mse += difference * difference;
+    error.relMse += difference * difference / (y * y + 0.01);
+    error.maxDifference = std::max(error.maxDifference, std::fabs(difference));
+    sumDifference += difference;
+    sumReference += y;
+    peak = std::max(peak, std::fabs(y));
+  }
+  const double n = double(std::max<size_t>(count, 1));
+  error.mse /= n;
+  error.relMse /= n;
+  error.bias = sumDifference == 0 ? 0 : sumDifference / sumReference;
+  error.psnr = 10 * std::log10(peak * peak / error.mse);
+  if (error.mse == 0) error.psnr = std::numeric_limits<double>::infinity();
+  if (varianceA || varianceB) error.zScores = zScores(a, b, varianceA, varianceB);
+  return error;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,34 @@
+// How far one image is from another.
+#pragma once
+
+#include <optional>
+
+#include "image/image.h"
+
+namespace chromeball {
+
+// Of z = (a - b) / sqrt(variance a + variance b), over numbers whose variance is positive. Where
+// the images agree but for noise: mean 0, deviation 1, and 0.27% beyond 3.
+struct ZScores {
+  size_t count = 0;
+  double mean = 0, standardDeviation = 0, shareBeyond3 = 0;
+};
+
+// Over pixels and channels; pairs in which a number is not finite are counted and left out.
+struct ImageError {
+  double mse = 0;
+  double relMse = 0;         // mean of (a - b)^2 / (b^2 + 0.01)
+  double bias = 0;           // mean(a - b) / mean(b); infinite or NaN where mean(b) is 0
+  double maxDifference = 0;  // largest |a - b|
+  double psnr = 0;           // dB below the largest |b|; infinite where the images are equal
+  size_t invalid = 0;
+  std::optional<ZScores> zScores;
+};
+
+// `b` is the reference. Variances are squared standard errors of the pixels, of the images' sizes;
+// null where unknown, which counts as 0 (z-scores need at least one). Throws InputError where sizes
+// or channels differ.
+ImageError imageError(const Image& a, const Image& b, const Image* varianceA = nullptr,
+                      const Image* varianceB = nullptr);
+
+}  // namespace chromeball

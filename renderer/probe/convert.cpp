@@ -1,0 +1,116 @@
+#include "probe/convert.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/error.h"
+#include "probe/bake.h"
+#include "probe/probe.h"
+
+namespace chromeball {
+namespace {
+
+int roundUpToEven(double length) { return std::max(2, 2 * int(std::ceil(0.5 * length - 1e-9))); }
+
+// Bilinear interpolation inside the disc, or inside the face, that shows `direction`.
+class PatchSource {
+ public:
+  PatchSource(const Image& image, Mapping mapping)
+      : image_(image),
+        mapping_(mapping),
+        faceWidth_(image.width / faceLayout(mapping).columns),
+        faceHeight_(image.height / faceLayout(mapping).rows) {}
+
+  dvec3 radiance(const dvec3& direction) const {
+    dvec2 uv = directionToUv(mapping_, direction);
+    if (isDisc()) {
+      // Half a texel inside the rim, where one of the four texels around is sure to be inside.
+      const dvec2 fromCentre = uv - 0.5;
+      const double radius = glm::length(fromCentre), most = 0.5 - 0.5 / image_.width;
+      if (radius > most) uv = 0.5 + fromCentre * (most / radius);
+    }
+    const double x = uv.x * image_.width, y = uv.y * image_.height;
+    const int left = std::min(int(x) / faceWidth_ * faceWidth_, image_.width - faceWidth_);
+    const int top = std::min(int(y) / faceHeight_ * faceHeight_, image_.height - faceHeight_);
+    const double cornerX = std::floor(x - 0.5), cornerY = std::floor(y - 0.5);
+    const double s = x - 0.5 - cornerX, t = y - 0.5 - cornerY;
+
+    dvec3 sum(0);
+    double sumWeight = 0;
+    for (int k = 0; k < 4; ++k) {
+      const int dx = k & 1, dy = k >> 1;
+      const int texelX = std::clamp(int(cornerX) + dx, left, left + faceWidth_ - 1);
+      const int texelY = std::clamp(int(cornerY) + dy, top, top + faceHeight_ - 1);
+      if (isDisc() && !insideDisc(texelX, texelY)) continue;
+      const double weight = (dx ? s : 1 - s) * (dy ? t : 1 - t);
+      sum += weight * dvec3(image_.rgb(texelX, texelY));
+      sumWeight += weight;
+    }
+    return sumWeight > 0 ? sum / sumWeight : dvec3(0);
+  }
+
+ private:
+  bool isDisc() const { return mapping_ == Mapping::AngularMap || mapping_ == Mapping::MirrorBall; }
+  bool insideDisc(int x, int y) const {
+    return std::hypot((x + 0.5) / image_.width - 0.5, (y + 0.5) / image_.height - 0.5) <= 0.5;
+  }
+
+  const Image& image_;
+  Mapping mapping_;
+  int faceWidth_, faceHeight_;
+};
+
+// Samples along a side of each target texel: two for each source texel it covers, at least four.
+int samplesPerSide(const ImageSize& source, const ImageSize& target) {
+  const double sourceTexels = double(source.width) * source.height;
+  const double targetTexels = double(target.width) * target.height;
+  return std::max(4, int(std::ceil(2 * std::sqrt(sourceTexels / targetTexels))));
+}
+
+dvec3 turnAboutY(const dvec3& d, double degrees) {
+  const double angle = degrees * kPiD / 180, c = std::cos(angle), s = std::sin(angle);
+  return {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+}
+
+}  // namespace
+
+ImageSize latLongSize(Mapping mapping, const ImageSize& image) {
+  const int faceWidth = image.width / faceLayout(mapping).columns;
+  double height = 2.0 * faceWidth;
+  if (mapping == Mapping::LatLong) return image;
+  if (mapping == Mapping::AngularMap) height = 0.5 * image.width;
+  if (mapping == Mapping::MirrorBall) height = 0.25 * kPiD * image.width;
+  return {2 * roundUpToEven(height), roundUpToEven(height)};
+}
+
+ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
+  const auto [columns, rows] = faceLayout(mapping);
+  int face = roundUpToEven(0.5 * latLong.height);
+  if (mapping == Mapping::LatLong) return latLong;
+  if (mapping == Mapping::AngularMap) face = roundUpToEven(2.0 * latLong.height);
+  if (mapping == Mapping::MirrorBall) face = roundUpToEven(latLong.height * 4 / kPiD);
+  return {face * columns, face * rows};
+}
+
+Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
+              float rotationDegrees) {
+  if (parseMapping(mappingName(to), size.width, size.height, "--size") != to)
+    throwInput("--size: {} x {} texels are another kind of {}", size.width, size.height,
+               mappingName(to));
+  const ImageSize source{image.width, image.height};
+  if (from == to && rotationDegrees == 0 && size.width == image.width &&
+      size.height == image.height)
+    return image;
+
+  const int samples = samplesPerSide(source, size);
+  if (from == Mapping::LatLong) {
+    const Probe probe(image, rotationDegrees);
+    return bake(to, size, samples, [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
+  }
+  const PatchSource patches(image, from);
+  return bake(to, size, samples, [&](const dvec3& d) {
+    return patches.radiance(turnAboutY(d, -double(rotationDegrees)));
+  });
+}
+
+}  // namespace chromeball

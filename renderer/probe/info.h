@@ -1,0 +1,41 @@
+// What a probe holds, in numbers.
+#pragma once
+
+#include <vector>
+
+#include "image/image.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// A small region far brighter than the rest.
+struct FoundSun {
+  dvec3 direction;         // unit, the centroid of its flux
+  double angularDiameter;  // degrees, of the disc with its solid angle
+  dvec3 irradiance;        // on a surface that faces it
+};
+
+struct BrightestShare {
+  size_t texels;
+  double share;  // of the integral of luminance over the sphere; 0 for a black probe
+};
+
+struct ProbeInfo {
+  Rgb min{0}, max{0};
+  dvec3 mean{0};            // of the texels
+  dvec3 meanRadiance{0};    // over the sphere
+  double dynamicRange = 0;  // largest luminance over the smallest positive one; 0 for a black probe
+  dvec3 brightestDirection{0};
+  Rgb brightest{0};
+  std::vector<FoundSun> suns;                   // by irradiance, the greatest first
+  std::vector<BrightestShare> brightestShares;  // of 1, 10 and 100 texels, and of 1% of all
+};
+
+// `latLong` is finite and not negative; its texels are taken as constant.
+ProbeInfo probeInfo(const Image& latLong);
+
+// Connected regions of texels more than 100 times as luminous as the mean over the sphere, that
+// hold at least 1% of its flux and are no wider than 6 degrees (or are a single texel).
+std::vector<FoundSun> findSuns(const Image& latLong);
+
+}  // namespace chromeball

@@ -1,0 +1,201 @@
+#include "probe/mapping.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "math/error.h"
+#include "math/suggest.h"
+
+namespace chromeball {
+namespace {
+
+struct Face {
+  int column, row;
+  dvec3 forward, up;
+  dvec3 right() const { return glm::cross(forward, up); }
+};
+
+constexpr dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+// The front face comes first, so that it wins where a direction lies on an edge.
+const std::array<Face, 6> kVerticalCross{{{1, 1, -kZ, kY},
+                                          {0, 1, -kX, kY},
+                                          {2, 1, kX, kY},
+                                          {1, 0, kY, kZ},
+                                          {1, 2, -kY, -kZ},
+                                          {1, 3, kZ, -kY}}};
+const std::array<Face, 6> kHorizontalCross{{{1, 1, -kZ, kY},
+                                            {0, 1, -kX, kY},
+                                            {2, 1, kX, kY},
+                                            {1, 0, kY, kZ},
+                                            {1, 2, -kY, -kZ},
+                                            {3, 1, kZ, kY}}};
+const std::array<Face, 6> kHorizontalStrip{{{0, 0, kX, kY},
+                                            {1, 0, -kX, kY},
+                                            {2, 0, kY, kZ},
+                                            {3, 0, -kY, -kZ},
+                                            {4, 0, kZ, kY},
+                                            {5, 0, -kZ, kY}}};
+const std::array<Face, 6> kVerticalStrip{{{0, 0, kX, kY},
+                                          {0, 1, -kX, kY},
+                                          {0, 2, kY, kZ},
+                                          {0, 3, -kY, -kZ},
+                                          {0, 4, kZ, kY},
+                                          {0, 5, -kZ, kY}}};
+
+const std::array<Face, 6>& facesOf(Mapping mapping) {
+  switch (mapping) {
+    case Mapping::VerticalCross:
+      return kVerticalCross;
+    case Mapping::HorizontalCross:
+      return kHorizontalCross;
+    case Mapping::HorizontalStrip:
+      return kHorizontalStrip;
+    default:
+      return kVerticalStrip;
+  }
+}
+
+dvec2 directionToCube(Mapping mapping, const dvec3& d) {
+  const std::array<Face, 6>& faces = facesOf(mapping);
+  const Face& face =
+      *std::max_element(faces.begin(), faces.end(), [&](const Face& a, const Face& b) {
+        return glm::dot(a.forward, d) < glm::dot(b.forward, d);
+      });
+  const double depth = glm::dot(face.forward, d);
+  const auto [columns, rows] = faceLayout(mapping);
+  return {(face.column + 0.5 * (1 + glm::dot(face.right(), d) / depth)) / columns,
+          (face.row + 0.5 * (1 - glm::dot(face.up, d) / depth)) / rows};
+}
+
+std::optional<dvec3> cubeToDirection(Mapping mapping, const dvec2& uv) {
+  const auto [columns, rows] = faceLayout(mapping);
+  const double x = uv.x * columns, y = uv.y * rows;
+  for (const Face& face : facesOf(mapping)) {
+    const double s = 2 * (x - face.column) - 1, t = 1 - 2 * (y - face.row);
+    if (std::fabs(s) <= 1 && std::fabs(t) <= 1)
+      return glm::normalize(face.forward + s * face.right() + t * face.up);
+  }
+  return std::nullopt;
+}
+
+// Both disc mappings: the point at `radius` (1 at the rim) from the centre, on the side of (x, y).
+dvec2 discUv(double x, double y, double radius) {
+  const double length = std::hypot(x, y);
+  if (length == 0) return {0.5 + 0.5 * radius, 0.5};
+  return {0.5 + 0.5 * radius * x / length, 0.5 - 0.5 * radius * y / length};
+}
+
+std::optional<dvec3> discToDirection(Mapping mapping, const dvec2& uv) {
+  const double x = 2 * uv.x - 1, y = 1 - 2 * uv.y;
+  const double radius = std::hypot(x, y);
+  if (radius > 1) return std::nullopt;
+  if (radius == 0) return -kZ;
+  const double theta = mapping == Mapping::AngularMap ? kPiD * radius : 2 * std::asin(radius);
+  const double scale = std::sin(theta) / radius;
+  return dvec3(scale * x, scale * y, -std::cos(theta));
+}
+
+bool fits(Mapping mapping, int width, int height) {
+  const auto [columns, rows] = faceLayout(mapping);
+  if (mapping == Mapping::LatLong) return true;
+  return width % columns == 0 && height % rows == 0 && width / columns == height / rows;
+}
+
+}  // namespace
+
+Layout faceLayout(Mapping mapping) {
+  switch (mapping) {
+    case Mapping::VerticalCross:
+      return {3, 4};
+    case Mapping::HorizontalCross:
+      return {4, 3};
+    case Mapping::HorizontalStrip:
+      return {6, 1};
+    case Mapping::VerticalStrip:
+      return {1, 6};
+    default:
+      return {1, 1};
+  }
+}
+
+dvec2 directionToUv(Mapping mapping, const dvec3& d) {
+  const double fromY = std::atan2(std::hypot(d.x, d.z), d.y);
+  const double fromCentre = std::atan2(std::hypot(d.x, d.y), -d.z);
+  switch (mapping) {
+    case Mapping::LatLong:
+      return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD), fromY / kPiD};
+    case Mapping::AngularMap:
+      return discUv(d.x, d.y, fromCentre / kPiD);
+    case Mapping::MirrorBall:
+      return discUv(d.x, d.y, std::sin(0.5 * fromCentre));
+    default:
+      return directionToCube(mapping, d);
+  }
+}
+
+std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {
+  if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return std::nullopt;
+  switch (mapping) {
+    case Mapping::LatLong: {
+      const double phi = kPiD * (2 * uv.x - 1), theta = kPiD * uv.y;
+      const double sinTheta = std::sin(theta);
+      return dvec3(sinTheta * std::sin(phi), std::cos(theta), -sinTheta * std::cos(phi));
+    }
+    case Mapping::AngularMap:
+    case Mapping::MirrorBall:
+      return discToDirection(mapping, uv);
+    default:
+      return cubeToDirection(mapping, uv);
+  }
+}
+
+std::string_view mappingName(Mapping mapping) {
+  switch (mapping) {
+    case Mapping::LatLong:
+      return "lat-long";
+    case Mapping::AngularMap:
+      return "angular";
+    case Mapping::MirrorBall:
+      return "mirror-ball";
+    case Mapping::VerticalCross:
+    case Mapping::HorizontalCross:
+      return "cube-cross";
+    default:
+      return "cube-strip";
+  }
+}
+
+std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
+                                    std::string_view place) {
+  struct Named {
+    std::string_view name, shape;
+    std::vector<Mapping> candidates;
+  };
+  static const std::vector<Named> kNamed{{"lat-long", "of any shape", {Mapping::LatLong}},
+                                         {"angular", "square", {Mapping::AngularMap}},
+                                         {"mirror-ball", "square", {Mapping::MirrorBall}},
+                                         {"cube-cross",
+                                          "3:4 or 4:3, of square faces",
+                                          {Mapping::VerticalCross, Mapping::HorizontalCross}},
+                                         {"cube-strip",
+                                          "6:1 or 1:6, of square faces",
+                                          {Mapping::HorizontalStrip, Mapping::VerticalStrip}}};
+  if (name == "auto") return std::nullopt;
+
+  std::vector<std::string_view> known{"auto"};
+  for (const Named& named : kNamed) {
+    known.push_back(named.name);
+    if (named.name != name) continue;
+    for (const Mapping mapping : named.candidates)
+      if (fits(mapping, width, height)) return mapping;
+    throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", place, width, height,
+               name, named.shape);
+  }
+  throwInput("{}: unknown mapping `{}`; {}", place, name, didYouMean(name, known));
+}
+
+}  // namespace chromeball

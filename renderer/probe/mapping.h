@@ -1,0 +1,52 @@
+// The omnidirectional mappings: direction to image and back. This is the only copy of each.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+using glm::dvec2;
+using glm::dvec3;
+
+// All look along -Z in the centre of the image (of the front face), +Y up. OpenEXR's and other
+// programs' lat-long maps may look elsewhere; turn those with a rotation.
+enum class Mapping {
+  LatLong,          // u = (1 + atan2(Dx, -Dz)/pi)/2, v = acos(Dy)/pi
+  AngularMap,       // the disc's radius is proportional to the angle from -Z
+  MirrorBall,       // ideal, orthographic: the disc's radius is sin of half that angle
+  VerticalCross,    // 3 x 4 faces: +Y / -X -Z +X / -Y / +Z upside down
+  HorizontalCross,  // 4 x 3 faces: +Y / -X -Z +X +Z / -Y
+  HorizontalStrip,  // 6 x 1 faces: +X -X +Y -Y +Z -Z, each as OpenEXR stores it: seen from inside
+  VerticalStrip,    // 1 x 6 faces, the same
+};
+
+struct ImageSize {
+  int width, height;
+};
+
+// The point of the image (u right, v down, both in [0, 1]) that shows `direction` (need not be
+// unit).
+dvec2 directionToUv(Mapping mapping, const dvec3& direction);
+
+// The unit direction shown at `uv`; nullopt outside the disc or the faces.
+std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv);
+
+// Cube maps: how many faces lie side by side and one above another; {1, 1} for the others.
+struct Layout {
+  int columns, rows;
+};
+Layout faceLayout(Mapping mapping);
+
+// "lat-long", "angular", "mirror-ball", "vertical cube-cross", ...: for messages.
+std::string_view mappingName(Mapping mapping);
+
+// The mapping that lat-long, angular, mirror-ball, cube-cross or cube-strip means for an image of
+// this size (the shape decides which cross or strip), nullopt for auto. Throws InputError where the
+// name is unknown or cannot fit the size; `place` begins the message.
+std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
+                                    std::string_view place);
+
+}  // namespace chromeball

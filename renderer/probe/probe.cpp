@@ -1,0 +1,43 @@
+#include "probe/probe.h"
+
+#include "math/error.h"
+
+namespace chromeball {
+
+Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
+    : width_(latLong.width),
+      height_(latLong.height),
+      uShift_(-rotationDegrees / 360),
+      grid_(size_t(width_ + 1) * (height_ + 2)) {
+  if (!(scale >= 0) || !std::isfinite(scale))
+    throwInput("probe: the scale is {}, and must be finite and not negative", scale);
+  if (!std::isfinite(rotationDegrees))
+    throwInput("probe: the rotation is {}, and must be a finite number of degrees",
+               rotationDegrees);
+  uShift_ -= std::floor(uShift_);
+
+  const auto corner = [&](int x, int cornerRow) -> Rgb& {
+    return grid_[size_t(cornerRow) * (width_ + 1) + x];
+  };
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const Rgb radiance = latLong.rgb(x, y) * scale;
+      if (!isFinite(radiance))
+        throwInput("probe: texel ({}, {}) times the scale {} exceeds the range of a float", x, y,
+                   scale);
+      corner(x, y + 1) = radiance;
+    }
+  const auto rowMean = [&](int cornerRow) {
+    glm::dvec3 sum(0);
+    for (int x = 0; x < width_; ++x) sum += glm::dvec3(corner(x, cornerRow));
+    return Rgb(sum / double(width_));
+  };
+  const Rgb north = rowMean(1), south = rowMean(height_);
+  for (int x = 0; x < width_; ++x) {
+    corner(x, 0) = north;
+    corner(x, height_ + 1) = south;
+  }
+  for (int y = 0; y < height_ + 2; ++y) corner(width_, y) = corner(0, y);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,57 @@
+// The clear sky with its sun. Preetham, Shirley and Smits, "A Practical Analytic Model for
+// Daylight", SIGGRAPH 1999.
+#pragma once
+
+#include <array>
+
+#include "image/image.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+inline constexpr double kSunDiameter = 0.5323;  // degrees, seen from the Earth
+
+struct ClearSky {
+  double sunElevation = 45;  // degrees, 0 to 90
+  double sunAzimuth = 0;  // degrees, counter-clockwise seen from above, from -Z (the map's centre)
+  double turbidity = 3;   // 2 (very clear) to 10 (hazy)
+  double groundAlbedo = 0.2;
+};
+
+dvec3 sunDirection(const ClearSky& sky);
+
+// Units: a white surface that faces a sun of 100,000 lux has radiance 1, so 1 is 100/pi kcd/m^2,
+// and that sun's irradiance is pi.
+
+// Radiance of the sky at a unit direction above the horizon, Rec. 709, without the sun.
+class SkyRadiance {
+ public:
+  explicit SkyRadiance(const ClearSky& sky);
+  dvec3 operator()(const dvec3& direction) const;
+
+ private:
+  // Of luminance and the chromaticities x and y: Perez's five coefficients, and the zenith's value
+  // over the distribution's value there.
+  struct Channel {
+    std::array<double, 5> perez;
+    double scale;
+  };
+  std::array<Channel, 3> channels_;
+  dvec3 sun_;
+};
+
+// The sun's irradiance on a surface that faces it: 128,000 lux of white outside the atmosphere,
+// less what air (Rayleigh) and haze (Angstrom) take at 610, 550 and 465 nm. Ozone, water and mixed
+// gases, which the paper has too, are left out.
+dvec3 sunIrradiance(const ClearSky& sky);
+
+// Adds a disc of even radiance to a lat-long map. However coarse the map, the sum over texels of
+// added radiance x solid angle x cosine to `direction` at the texel's centre is `irradiance`.
+void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
+                const dvec3& irradiance);
+
+// Sky, sun, and below the horizon a ground that reflects both evenly. Throws InputError where the
+// sun or the turbidity is out of range.
+Image clearSkyProbe(const ImageSize& size, const ClearSky& sky, bool withSun = true);
+
+}  // namespace chromeball

@@ -1,0 +1,37 @@
+#include "probe/solid_angle.h"
+
+#include <cmath>
+
+namespace chromeball {
+
+double texelSolidAngle(int row, int width, int height) {
+  // cos a - cos b = 2 sin((a + b)/2) sin((b - a)/2), which does not cancel near the poles.
+  const double middle = kPiD * (row + 0.5) / height, half = 0.5 * kPiD / height;
+  return 2 * kPiD / width * 2 * std::sin(middle) * std::sin(half);
+}
+
+double solidAngleDensity(Mapping mapping, const dvec2& uv) {
+  if (mapping == Mapping::LatLong) return 2 * kPiD * kPiD * std::sin(kPiD * uv.y);
+  if (mapping == Mapping::MirrorBall) return 16;  // an equal-area mapping: 4 pi over a disc of pi/4
+  if (mapping == Mapping::AngularMap) {
+    const double theta = kPiD * std::hypot(2 * uv.x - 1, 2 * uv.y - 1);
+    return 4 * kPiD * kPiD * (theta > 0 ? std::sin(theta) / theta : 1);
+  }
+  // A cube's face spans [-1, 1]^2 at distance 1: d(omega) = (1 + s^2 + t^2)^(-3/2) ds dt.
+  const auto [columns, rows] = faceLayout(mapping);
+  const double x = uv.x * columns, y = uv.y * rows;
+  const double s = 2 * (x - std::floor(x)) - 1, t = 2 * (y - std::floor(y)) - 1;
+  return 4 * columns * rows * std::pow(1 + s * s + t * t, -1.5);
+}
+
+dvec3 meanRadiance(const Image& latLong) {
+  dvec3 sum(0);
+  for (int y = 0; y < latLong.height; ++y) {
+    dvec3 row(0);
+    for (int x = 0; x < latLong.width; ++x) row += dvec3(latLong.rgb(x, y));
+    sum += row * texelSolidAngle(y, latLong.width, latLong.height);
+  }
+  return sum / (4 * kPiD);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,36 @@
+#include "probe/spherical_harmonics.h"
+
+#include "probe/solid_angle.h"
+
+namespace chromeball {
+
+std::array<double, kShCount> shBasis(const dvec3& d) {
+  const double l0 = 0.5 * std::sqrt(1 / kPiD), l1 = 0.5 * std::sqrt(3 / kPiD);
+  const double l2 = 0.5 * std::sqrt(15 / kPiD), l20 = 0.25 * std::sqrt(5 / kPiD);
+  return {l0,
+          l1 * d.y,
+          l1 * d.z,
+          l1 * d.x,
+          l2 * d.x * d.y,
+          l2 * d.y * d.z,
+          l20 * (3 * d.z * d.z - 1),
+          l2 * d.x * d.z,
+          0.5 * l2 * (d.x * d.x - d.y * d.y)};
+}
+
+ShCoefficients projectSh(const Image& latLong) {
+  ShCoefficients coefficients{};
+  const int w = latLong.width, h = latLong.height;
+  for (int y = 0; y < h; ++y) {
+    const double solidAngle = texelSolidAngle(y, w, h);
+    for (int x = 0; x < w; ++x) {
+      const auto direction = uvToDirection(Mapping::LatLong, {(x + 0.5) / w, (y + 0.5) / h});
+      const std::array<double, kShCount> basis = shBasis(*direction);
+      const dvec3 flux = dvec3(latLong.rgb(x, y)) * solidAngle;
+      for (int i = 0; i < kShCount; ++i) coefficients[i] += basis[i] * flux;
+    }
+  }
+  return coefficients;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,24 @@
+// Spherical harmonics to order 2: nine coefficients a channel.
+#pragma once
+
+#include <array>
+
+#include "image/image.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22.
+inline constexpr int kShCount = 9;
+using ShCoefficients = std::array<dvec3, kShCount>;
+
+// The real basis Y_lm at a unit direction, in our axes: Y10 goes with z, which points backwards.
+// (Ramamoorthi and Hanrahan 2001 let z point into the picture; their L10, L2-1 and L21 have the
+// other sign.)
+std::array<double, kShCount> shBasis(const dvec3& direction);
+
+// L_lm = integral over the sphere of radiance Y_lm, for a lat-long map whose texels are constant:
+// Y_lm at each texel's centre, times its exact solid angle.
+ShCoefficients projectSh(const Image& latLong);
+
+}  // namespace chromeball

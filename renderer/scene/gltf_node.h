@@ -1,0 +1,21 @@
+// The node hierarchy of a glTF file, flattened.
+#pragma once
+
+#include <vector>
+
+#include "scene/gltf_file.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+struct NodeTree {
+  std::vector<glm::dmat4> toWorld;  // of every node in the file
+  std::vector<int> inScene;         // the nodes of the scene to show, parents before children
+  std::vector<std::string> names;   // of every node; never empty
+};
+
+// Composes the transforms of all nodes, `placement` outermost. Throws InputError where the nodes
+// are not trees, or a transform is not affine and finite.
+NodeTree readNodes(const GltfFile& file, const Transform& placement);
+
+}  // namespace chromeball

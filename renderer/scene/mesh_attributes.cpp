@@ -1,0 +1,119 @@
+#include "scene/mesh_attributes.h"
+
+#include <limits>
+#include <utility>
+
+namespace chromeball {
+namespace {
+
+using glm::dvec3;
+
+constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+
+template <class T>
+void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
+  if (array.empty()) return;
+  std::vector<T> gathered(source.size());
+  for (size_t i = 0; i < source.size(); ++i) gathered[i] = array[source[i]];
+  array = std::move(gathered);
+}
+
+// Twice the area times the normal.
+dvec3 areaNormal(const Mesh& mesh, const Triangle& t) {
+  const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+  return glm::cross(b - a, c - a);
+}
+
+// False where the vector has no direction. The double's range keeps tiny and huge ones apart from
+// 0.
+bool normalize(dvec3& v) {
+  const double length = glm::length(v);
+  if (!(length > 0) || !std::isfinite(length)) return false;
+  v /= length;
+  return true;
+}
+
+dvec3 anyPerpendicular(const dvec3& n) {
+  const dvec3 axis = std::fabs(n.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  return glm::normalize(glm::cross(n, axis));
+}
+
+}  // namespace
+
+void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
+  gather(mesh.positions, source);
+  gather(mesh.normals, source);
+  gather(mesh.tangents, source);
+  gather(mesh.colors, source);
+  for (auto& uv : mesh.uvs) gather(uv, source);
+}
+
+void dropUnusedVertices(Mesh& mesh) {
+  std::vector<uint32_t> newIndex(mesh.positions.size(), kUnused);
+  for (const Triangle& t : mesh.triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 0;
+  std::vector<uint32_t> source;
+  for (uint32_t i = 0; i < newIndex.size(); ++i) {
+    if (newIndex[i] == kUnused) continue;
+    newIndex[i] = uint32_t(source.size());
+    source.push_back(i);
+  }
+  if (source.size() == mesh.positions.size()) return;
+  gatherVertices(mesh, source);
+  for (Triangle& t : mesh.triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
+}
+
+void makeFlat(Mesh& mesh) {
+  std::vector<uint32_t> source;
+  source.reserve(3 * mesh.triangles.size());
+  for (Triangle& t : mesh.triangles) {
+    const uint32_t first = uint32_t(source.size());
+    source.insert(source.end(), {t.x, t.y, t.z});
+    t = {first, first + 1, first + 2};
+  }
+  gatherVertices(mesh, source);
+  mesh.normals.assign(mesh.positions.size(), vec3(0));
+  mendNormals(mesh);
+}
+
+void mendNormals(Mesh& mesh) {
+  std::vector<uint32_t> bad;
+  for (uint32_t i = 0; i < mesh.normals.size(); ++i) {
+    dvec3 n = mesh.normals[i];
+    if (normalize(n))
+      mesh.normals[i] = vec3(n);
+    else
+      bad.push_back(i);
+  }
+  if (bad.empty()) return;
+
+  std::vector<dvec3> around(mesh.normals.size(), dvec3(0));
+  for (const Triangle& t : mesh.triangles) {
+    const dvec3 n = areaNormal(mesh, t);
+    for (int k = 0; k < 3; ++k) around[t[k]] += n;
+  }
+  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : vec3(0, 1, 0);
+}
+
+void mendTangents(Mesh& mesh) {
+  for (size_t i = 0; i < mesh.tangents.size(); ++i) {
+    const vec4& given = mesh.tangents[i];
+    dvec3 t(given);
+    if (!normalize(t)) t = anyPerpendicular(dvec3(mesh.normals[i]));
+    mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
+  }
+}
+
+void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
+  const glm::dmat3 linear(transform);
+  const glm::dmat3 inverseTranspose = glm::transpose(glm::inverse(linear));
+  const bool mirrors = glm::determinant(linear) < 0;
+  for (vec3& p : mesh.positions) p = vec3(transform * glm::dvec4(dvec3(p), 1));
+  for (vec3& n : mesh.normals) n = vec3(inverseTranspose * dvec3(n));
+  for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), mirrors ? -t.w : t.w);
+  if (mirrors)
+    for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
+  mendNormals(mesh);
+  mendTangents(mesh);
+}
+
+}  // namespace chromeball

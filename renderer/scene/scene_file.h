@@ -1,0 +1,62 @@
+// The scene file (TOML): which models, camera and probe make a picture, and how it is rendered.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+// A name that only its user can check (a strategy, a camera of the model), with the place it was
+// given, "FILE:LINE" or an option of the command line, for the error where it is not known.
+struct NamedSetting {
+  std::string name;
+  std::string place;
+};
+
+struct ModelEntry {
+  std::string file;
+  // translation * rotation * scale. The file's `rotation` is three angles in degrees, about X, then
+  // Y, then Z (fixed axes), or glTF's quaternion x, y, z, w; its `scale` is one number or three.
+  Transform placement;
+};
+
+// What the file says; what it leaves out is nullopt or empty, for the command line or the default
+// to fill. File names are resolved against the scene file's folder.
+struct SceneFile {
+  std::vector<ModelEntry> models;  // at least one
+
+  std::optional<NamedSetting> cameraName;  // a camera of the model; or
+  std::optional<Camera> camera;  // [camera] position, look_at, up, fov (vertical, degrees)
+
+  std::optional<std::string> probe;
+  std::optional<NamedSetting> probeMapping;
+  std::optional<float> probeRotation;  // degrees
+  std::optional<float> probeScale;     // >= 0
+
+  std::optional<NamedSetting> strategy;  // NAME or NAME:COUNT
+  std::optional<NamedSetting> mis;
+
+  struct Size {
+    int width, height;  // 1..65536
+  };
+  std::optional<Size> size;
+  std::optional<int> samples;   // >= 1, per pixel
+  std::optional<int> maxDepth;  // >= 0
+  std::optional<uint64_t> seed;
+  std::optional<double> timeLimit;   // seconds, > 0
+  std::optional<double> noiseLimit;  // percent, > 0
+
+  std::vector<std::string> outputs;
+  std::vector<NamedSetting> aovs;
+};
+
+// Throws InputError "FILE:LINE: ..." for what is not TOML, an unknown key (with the nearest known
+// one), a wrong type, a number out of range, or a model or probe that does not exist.
+SceneFile readSceneFile(const std::string& path);
+
+}  // namespace chromeball

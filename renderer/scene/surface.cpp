@@ -1,0 +1,157 @@
+#include "scene/surface.h"
+
+#include <limits>
+
+namespace chromeball {
+namespace {
+
+template <class T>
+T interpolate(const std::vector<T>& vertices, const Triangle& t, vec2 b) {
+  return (1 - b.x - b.y) * vertices[t.x] + b.x * vertices[t.y] + b.y * vertices[t.z];
+}
+
+vec4 lookup(const Scene& scene, const TextureSlot& slot, const Mesh& mesh, const Triangle& t,
+            vec2 b) {
+  vec2 uv(0);
+  if (slot.uvSet < int(mesh.uvs.size()) && !mesh.uvs[slot.uvSet].empty())
+    uv = interpolate(mesh.uvs[slot.uvSet], t, b);
+  return scene.textures[slot.texture].lookup(slot.transform(uv));
+}
+
+vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
+  return lookup(scene, slot, *s.mesh, s.triangle, s.barycentric);
+}
+
+// Tangent-space normal mapping (glTF 2.0, 3.9.3). Returns the shading normal unmapped where the
+// tangent is degenerate.
+vec3 mappedNormal(const Scene& scene, const Surface& s, const Transform& toWorld, float handedness,
+                  const vec3& normal) {
+  const vec4 tangent4 = interpolate(s.mesh->tangents, s.triangle, s.barycentric);
+  vec3 tangent = toWorld.linear * vec3(tangent4);
+  tangent -= normal * glm::dot(normal, tangent);
+  const float length2 = glm::dot(tangent, tangent);
+  if (!(length2 > 0)) return normal;
+  tangent /= std::sqrt(length2);
+  const vec3 bitangent = handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent);
+
+  vec3 n = vec3(lookup(scene, s.material->normalTexture, s)) * 2.0f - 1.0f;
+  n.x *= s.material->normalScale;
+  n.y *= s.material->normalScale;
+  const vec3 mapped = n.x * tangent + n.y * bitangent + n.z * normal;
+  const float mapped2 = glm::dot(mapped, mapped);
+  return mapped2 > 0 ? mapped / std::sqrt(mapped2) : normal;
+}
+
+float absoluteMax(float a, float b, float c) {
+  return std::fmax(std::fabs(a), std::fmax(std::fabs(b), std::fabs(c)));
+}
+
+// The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
+// again, is a few roundings of the triangle's coordinates. Measured along the normal, as Waechter
+// and Binder (2019) offset in units in the last place; but by the vertices' coordinates and not the
+// point's, so that it also holds for a large triangle through the origin.
+float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal) {
+  constexpr float kRoundings = 16 * std::numeric_limits<float>::epsilon();
+  return kRoundings * (std::fabs(normal.x) * absoluteMax(p0.x, p1.x, p2.x) +
+                       std::fabs(normal.y) * absoluteMax(p0.y, p1.y, p2.y) +
+                       std::fabs(normal.z) * absoluteMax(p0.z, p1.z, p2.z));
+}
+
+}  // namespace
+
+Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle,
+                  vec2 barycentric, const vec3& wo) {
+  Surface s;
+  s.mesh = &scene.meshes[instance.mesh];
+  s.material = &scene.materials[s.mesh->material];
+  s.triangle = s.mesh->triangles[triangle];
+  s.barycentric = barycentric;
+
+  vec3 p0 = s.mesh->positions[s.triangle.x];
+  vec3 p1 = s.mesh->positions[s.triangle.y];
+  vec3 p2 = s.mesh->positions[s.triangle.z];
+  const Transform& toWorld = instance.toWorld;
+  const bool moved = !toWorld.isIdentity();
+  float handedness = 1;
+  if (moved) {
+    p0 = toWorld.point(p0);
+    p1 = toWorld.point(p1);
+    p2 = toWorld.point(p2);
+    handedness = glm::determinant(toWorld.linear) < 0 ? -1.0f : 1.0f;
+  }
+
+  s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
+  vec3 front = handedness * glm::cross(p1 - p0, p2 - p0);
+  const float doubleArea2 = glm::dot(front, front);
+  front = doubleArea2 > 0 ? front / std::sqrt(doubleArea2) : wo;
+  s.frontFace = glm::dot(front, wo) >= 0;
+  s.geometricNormal = s.frontFace ? front : -front;
+  s.rayOffset = rayOffset(p0, p1, p2, front);
+
+  s.normal = s.geometricNormal;
+  if (!s.mesh->normals.empty()) {
+    vec3 n = interpolate(s.mesh->normals, s.triangle, barycentric);
+    if (moved) {
+      const mat3& m = toWorld.linear;  // normals turn by the matrix of cofactors
+      n = handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
+                        n.z * glm::cross(m[0], m[1]));
+    }
+    const float length2 = glm::dot(n, n);
+    if (length2 > 0) {
+      n /= std::sqrt(length2);
+      if (s.material->normalTexture && !s.mesh->tangents.empty())
+        n = mappedNormal(scene, s, toWorld, handedness, n);
+      if (!s.frontFace) n = -n;
+      if (glm::dot(n, s.geometricNormal) > 0) s.normal = n;
+    }
+  }
+  return s;
+}
+
+MaterialPoint materialAt(const Scene& scene, const Surface& s) {
+  const Material& m = *s.material;
+  MaterialPoint p;
+  p.baseColor = Rgb(m.baseColor);
+  p.metallic = m.metallic;
+  p.roughness = m.roughness;
+  if (m.baseColorTexture) p.baseColor *= Rgb(lookup(scene, m.baseColorTexture, s));
+  if (!s.mesh->colors.empty())
+    p.baseColor *= Rgb(interpolate(s.mesh->colors, s.triangle, s.barycentric));
+  p.baseColor = glm::clamp(p.baseColor, 0.0f, 1.0f);
+  if (m.metallicRoughnessTexture) {
+    const vec4 texel = lookup(scene, m.metallicRoughnessTexture, s);
+    p.roughness *= texel.y;
+    p.metallic *= texel.z;
+  }
+
+  float specular = m.specular;
+  Rgb specularColor = m.specularColor;
+  if (m.specularTexture) specular *= lookup(scene, m.specularTexture, s).w;
+  if (m.specularColorTexture) specularColor *= Rgb(lookup(scene, m.specularColorTexture, s));
+  // KHR_materials_specular and _ior: F0 = min(((ior-1)/(ior+1))^2 color, 1) specular.
+  const float r = m.ior == 0 ? 1 : (m.ior - 1) / (m.ior + 1);
+  p.dielectricF0 = glm::min(r * r * specularColor, Rgb(1)) * specular;
+  p.dielectricF90 = specular;
+  return p;
+}
+
+Rgb emittedRadiance(const Scene& scene, const Surface& s) {
+  const Material& m = *s.material;
+  if (m.unlit) return materialAt(scene, s).baseColor;
+  if (isBlack(m.emission) || !(s.frontFace || m.doubleSided)) return Rgb(0);
+  if (!m.emissiveTexture) return m.emission;
+  return m.emission * Rgb(lookup(scene, m.emissiveTexture, s));
+}
+
+float surfaceAlpha(const Scene& scene, const Mesh& mesh, const Material& material,
+                   uint32_t triangle, vec2 barycentric) {
+  const Triangle& t = mesh.triangles[triangle];
+  float alpha = material.baseColor.w;
+  if (material.baseColorTexture)
+    alpha *= lookup(scene, material.baseColorTexture, mesh, t, barycentric).w;
+  if (!mesh.colors.empty()) alpha *= interpolate(mesh.colors, t, barycentric).w;
+  if (material.alphaMode == AlphaMode::Mask) return alpha >= material.alphaCutoff ? 1.0f : 0.0f;
+  return glm::clamp(alpha, 0.0f, 1.0f);
+}
+
+}  // namespace chromeball

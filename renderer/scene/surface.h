@@ -1,0 +1,48 @@
+// What a ray finds where it hits: geometry, normals, and the material's parameters at that point.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace chromeball {
+
+// A point on a triangle. Both normals are unit and on the side of the viewer; `normal` is the
+// interpolated (and, where the material has one, mapped) shading normal.
+struct Surface {
+  const Mesh* mesh;
+  const Material* material;
+  Triangle triangle;
+  vec2 barycentric;  // weights of the second and third vertex
+  vec3 position;
+  vec3 geometricNormal;
+  vec3 normal;
+  float rayOffset;  // how far a ray must start off the surface not to meet it again (metres)
+  bool frontFace;
+
+  // Where a ray that leaves towards `direction` starts.
+  vec3 rayOrigin(const vec3& direction) const {
+    const float side = glm::dot(geometricNormal, direction) < 0 ? -rayOffset : rayOffset;
+    return position + side * geometricNormal;
+  }
+};
+
+// `wo`: unit, towards the viewer.
+Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle,
+                  vec2 barycentric, const vec3& wo);
+
+// The metallic-roughness parameters at a point: factors x textures x vertex colours.
+struct MaterialPoint {
+  Rgb baseColor;
+  float metallic, roughness;
+  Rgb dielectricF0;     // reflectance at normal incidence of the dielectric part
+  float dielectricF90;  // and at grazing incidence
+};
+MaterialPoint materialAt(const Scene& scene, const Surface& surface);
+
+// Radiance emitted towards the viewer. A single-sided material emits from its front only.
+Rgb emittedRadiance(const Scene& scene, const Surface& surface);
+
+// Coverage at a point: 0 or 1 for masks, in between for blended surfaces.
+float surfaceAlpha(const Scene& scene, const Mesh& mesh, const Material& material,
+                   uint32_t triangle, vec2 barycentric);
+
+}  // namespace chromeball

@@ -1,0 +1,100 @@
+#include "scene/texture.h"
+
+namespace chromeball {
+namespace {
+
+double decodeSrgb(double c) {  // IEC 61966-2-1
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+// The sRGB curve at every 8-bit code.
+const std::array<float, 256> kSrgb8 = [] {
+  std::array<float, 256> table;
+  for (int i = 0; i < 256; ++i) table[i] = float(decodeSrgb(i / 255.0));
+  return table;
+}();
+
+// The curve at kSteps + 1 equidistant points, for sources deeper than 8 bits. Between the points it
+// is interpolated linearly, which errs by less than 5e-7.
+constexpr int kSteps = 1024;
+const std::array<float, kSteps + 2> kSrgbCurve = [] {
+  std::array<float, kSteps + 2> table;
+  for (int i = 0; i <= kSteps + 1; ++i) table[i] = float(decodeSrgb(double(i) / kSteps));
+  return table;
+}();
+
+float decodeSrgbFast(float c) {
+  const float x = std::fmin(std::fmax(c, 0.0f), 1.0f) * kSteps;
+  const int i = int(x);
+  return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
+}
+
+// Linear RGBA of one texel.
+vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
+  const size_t i = size_t(y) * grid.width + x;
+  if (!grid.texels8.empty()) {
+    const std::array<uint8_t, 4>& t = grid.texels8[i];
+    const float alpha = t[3] * (1 / 255.0f);
+    if (srgb) return {kSrgb8[t[0]], kSrgb8[t[1]], kSrgb8[t[2]], alpha};
+    return vec4(t[0], t[1], t[2], t[3]) * (1 / 255.0f);
+  }
+  const vec4& t = grid.texelsFloat[i];
+  if (!srgb) return t;
+  return {decodeSrgbFast(t.x), decodeSrgbFast(t.y), decodeSrgbFast(t.z), t.w};
+}
+
+// Maps a texel index at most one period outside [0, size) back inside. A coordinate that has been
+// reduced (see `reduce`) and shifted by a texel for interpolation is never further out.
+int wrapIndex(int i, int size, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::Repeat:
+      return i < 0 ? i + size : i >= size ? i - size : i;
+    case Wrap::ClampToEdge:
+      return i < 0 ? 0 : i >= size ? size - 1 : i;
+    case Wrap::MirroredRepeat: {
+      if (i < 0) i = -1 - i;
+      if (i >= size) i = 2 * size - 1 - i;
+      return i < 0 ? 0 : i;
+    }
+  }
+  return 0;
+}
+
+// Brings a coordinate into one period, [0, 1] or for the mirrored wrap [0, 1] after the fold.
+// Comparisons are so ordered that NaN and infinities give 0.
+float reduce(float x, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::Repeat:
+      x -= std::floor(x);
+      break;
+    case Wrap::ClampToEdge:
+      break;
+    case Wrap::MirroredRepeat:
+      x -= 2 * std::floor(0.5f * x);
+      if (x > 1) x = 2 - x;
+      break;
+  }
+  if (!(x > 0)) return 0;
+  return x < 1 ? x : 1;
+}
+
+}  // namespace
+
+vec4 Texture::lookup(vec2 uv) const {
+  const TexelGrid& g = *grid;
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch(g, srgb, 0, 0);
+  const float x = reduce(uv.x, wrapS) * float(g.width);
+  const float y = reduce(uv.y, wrapT) * float(g.height);
+  if (filter == Filter::Nearest)
+    return fetch(g, srgb, wrapIndex(int(x), g.width, wrapS), wrapIndex(int(y), g.height, wrapT));
+
+  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
+  const float tx = x - 0.5f - fx, ty = y - 0.5f - fy;
+  const int x0 = wrapIndex(int(fx), g.width, wrapS), x1 = wrapIndex(int(fx) + 1, g.width, wrapS);
+  const int y0 = wrapIndex(int(fy), g.height, wrapT), y1 = wrapIndex(int(fy) + 1, g.height, wrapT);
+  const vec4 top = glm::mix(fetch(g, srgb, x0, y0), fetch(g, srgb, x1, y0), tx);
+  const vec4 bottom = glm::mix(fetch(g, srgb, x0, y1), fetch(g, srgb, x1, y1), tx);
+  return glm::mix(top, bottom, ty);
+}
+
+}  // namespace chromeball

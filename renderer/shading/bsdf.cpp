@@ -1,0 +1,129 @@
+#include "shading/bsdf.h"
+
+#include "math/warp.h"
+#include "shading/ggx.h"
+
+namespace chromeball {
+namespace {
+
+// Below this width the highlight is narrower than the sun by a factor of 50: a mirror.
+constexpr float kSmoothAlpha = 1e-4f;
+
+// Turns the shading normal towards the geometric one as far as needed for the mirrored view to
+// leave the surface; otherwise smooth normals on coarse meshes leave black rims.
+// Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System".
+vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, const vec3& wo) {
+  const vec3 mirrored = 2 * glm::dot(normal, wo) * normal - wo;
+  const float height = glm::dot(mirrored, geometricNormal);
+  const float least = 0.1f * std::fmin(glm::dot(wo, geometricNormal), 1.0f);
+  if (height >= least) return normal;
+  const vec3 lifted = glm::normalize(mirrored + (least - height) * geometricNormal);
+  return glm::normalize(lifted + wo);
+}
+
+// Fraction that leaves after two or more bounces between microfacets (Kulla and Conty 2017).
+template <class T>
+T scatteredAgain(const T& f0, const T& f90, float meanAlbedo) {
+  const T mean = f0 + (f90 - f0) * (1.0f / 21);
+  return mean * mean * meanAlbedo / (1.0f - mean * (1 - meanAlbedo));
+}
+
+}  // namespace
+
+Bsdf::Bsdf(const MaterialPoint& m, const Surface& surface, const vec3& wo)
+    : normal_(surface.normal),
+      geometricNormal_(surface.geometricNormal),
+      diffuse_(m.baseColor * (1 - m.metallic)),
+      specular_(m.metallic > 0 || m.dielectricF90 > 0),
+      frame_(normal_) {
+  if (specular_) initSpecular(m, wo);
+}
+
+void Bsdf::initSpecular(const MaterialPoint& m, const vec3& wo) {
+  normal_ = normalThatReflects(normal_, geometricNormal_, wo);
+  frame_ = Frame(normal_);
+  wo_ = frame_.toLocal(wo);
+  wo_.z = std::fmax(wo_.z, 1e-6f);
+  alpha_ = m.roughness * m.roughness;
+  smooth_ = alpha_ < kSmoothAlpha;
+  f0_ = glm::mix(m.dielectricF0, m.baseColor, m.metallic);
+  f90_ = Rgb(glm::mix(m.dielectricF90, 1.0f, m.metallic));
+
+  energy_ = EnergyTable::get().row(m.roughness);
+  const SpecularAlbedo toViewer = energy_.at(wo_.z), mean = energy_.average();
+  const float meanAlbedo = mean.a + mean.b;
+  const Rgb again = glm::mix(scatteredAgain(m.dielectricF0, Rgb(m.dielectricF90), meanAlbedo),
+                             scatteredAgain(m.baseColor, Rgb(1), meanAlbedo), m.metallic);
+  const float lost = 1 - toViewer.a - toViewer.b, meanLost = 1 - meanAlbedo;
+  const Rgb againAlbedo = again * lost;
+  again_ = meanLost > 1e-5f ? againAlbedo / meanLost : Rgb(0);
+
+  const float coatF0 = maxComponent(m.dielectricF0);
+  coating_ = {coatF0, m.dielectricF90, scatteredAgain(coatF0, m.dielectricF90, meanAlbedo)};
+  const Rgb diffuseAlbedo = diffuse_ * (1 - coating_.albedo(toViewer));
+  const float through = 1 - coating_.albedo(mean);
+  diffuse_ = through > 1e-5f ? diffuseAlbedo / through : Rgb(0);
+
+  const float specular = luminance(f0_ * toViewer.a + f90_ * toViewer.b);
+  const float rest = luminance(diffuseAlbedo + againAlbedo);
+  specularShare_ = specular + rest > 0 ? specular / (specular + rest) : 1;
+}
+
+Rgb Bsdf::fresnel(float cosine) const {
+  const float c = 1 - cosine, c2 = c * c;
+  return f0_ + (f90_ - f0_) * (c2 * c2 * c);
+}
+
+Bsdf::Value Bsdf::evaluate(const vec3& wi) const {
+  const float cosine = glm::dot(normal_, wi);
+  if (cosine <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
+  if (!specular_) return {diffuse_ * (cosine * kInvPi), cosine * kInvPi};
+  return evaluateLobes(frame_.toLocal(wi));
+}
+
+Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
+  const float cosine = wi.z;
+  Value v;
+  const SpecularAlbedo toLight = energy_.at(cosine);
+  v.fCos = (diffuse_ * (1 - coating_.albedo(toLight)) + again_ * (1 - toLight.a - toLight.b)) *
+           (cosine * kInvPi);
+  v.pdf = (1 - specularShare_) * cosine * kInvPi;
+  if (smooth_) return v;
+
+  const vec3 h = glm::normalize(wo_ + wi);
+  const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
+  const float lambdaO = ggx::lambda(wo_.z, alpha_);
+  v.fCos += fresnel(std::fmin(glm::dot(wo_, h), 1.0f)) *
+            (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
+  v.pdf += specularShare_ * d / (1 + lambdaO);
+  return v;
+}
+
+bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
+  if (specular_ && lobe < specularShare_) {
+    const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
+    const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
+    if (local.z <= 0) return false;
+    out.wi = frame_.toWorld(local);
+    if (glm::dot(geometricNormal_, out.wi) <= 0) return false;
+    if (smooth_) {
+      out.weight = fresnel(wo_.z) / specularShare_;
+      out.pdf = 0;
+      return true;
+    }
+  } else {
+    out.wi = frame_.toWorld(squareToCosineHemisphere(u));
+    if (!specular_) {
+      out.weight = diffuse_;
+      out.pdf = glm::dot(normal_, out.wi) * kInvPi;
+      return out.pdf > 0 && glm::dot(geometricNormal_, out.wi) > 0;
+    }
+  }
+  const Value v = evaluate(out.wi);
+  if (!(v.pdf > 0)) return false;
+  out.weight = v.fCos / v.pdf;
+  out.pdf = v.pdf;
+  return true;
+}
+
+}  // namespace chromeball

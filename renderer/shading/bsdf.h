@@ -1,0 +1,68 @@
+// How a surface scatters light: eval, sample and pdf over the lobes its material really has.
+#pragma once
+
+#include "math/frame.h"
+#include "scene/surface.h"
+#include "shading/energy_table.h"
+
+namespace chromeball {
+
+struct BsdfSample {
+  vec3 wi;       // unit, away from the surface
+  Rgb weight;    // f cos / pdf
+  float pdf;     // over solid angle; 0 for a mirror direction, which nothing else can sample
+};
+
+// glTF metallic-roughness (glTF 2.0, appendix B) at one point, seen from one direction. Reflection
+// only, and reciprocal:
+//   f = specular + diffuse (1 - S(wo))(1 - S(wi)) / (pi (1 - S_mean)) + multiple scattering
+// The specular lobe is GGX; what its microfacets scatter again comes back as a diffuse-like lobe
+// (Kulla and Conty 2017), and the diffuse base gets what the coating lets through (Kelemen and
+// Szirmay-Kalos 2001), so that a white material reflects exactly all light. A material without
+// specular reflection is Lambert's, and pays for nothing else.
+class Bsdf {
+ public:
+  // `wo`: unit, towards the viewer; the surface's normals are on its side.
+  Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo);
+
+  struct Value {
+    Rgb fCos;   // f times |cos| at the shading normal
+    float pdf;  // of sample(), over solid angle
+  };
+  Value evaluate(const vec3& wi) const;
+
+  // False where the sampled direction is absorbed. `lobe` in [0, 1) chooses the lobe.
+  bool sample(vec2 u, float lobe, BsdfSample& out) const;
+
+  // False for a perfect mirror, on which sampling lights is in vain.
+  bool hasContinuousLobe() const { return !(smooth_ && specularShare_ >= 1); }
+  const vec3& normal() const { return normal_; }
+
+ private:
+  void initSpecular(const MaterialPoint& material, const vec3& wo);
+  Value evaluateLobes(const vec3& wi) const;  // in the frame of the normal
+  Rgb fresnel(float cosine) const;
+
+  // Scalar form of the dielectric coating's albedo: S(mu) = f0 a + f90 b + again (1 - a - b).
+  struct Coating {
+    float f0, f90, again;
+    float albedo(const SpecularAlbedo& s) const {
+      return f0 * s.a + f90 * s.b + again * (1 - s.a - s.b);
+    }
+  };
+
+  vec3 normal_, geometricNormal_;
+  Rgb diffuse_;                // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
+  bool specular_;              // the members below hold only where this is set
+  bool smooth_ = false;        // a mirror: the specular lobe is a delta
+  float specularShare_ = 0;    // probability of sampling the specular lobe
+  vec3 wo_;                    // in the frame of the normal
+  Frame frame_;
+  float alpha_;
+  Rgb f0_, f90_;
+  Rgb again_;                  // multiple scattering, times (1 - E(wo)) / (1 - E_mean)
+  Coating coating_;
+  EnergyTable::Row energy_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,40 @@
+// The GGX microfacet distribution (Walter et al. 2007) in the frame of the normal, +z.
+#pragma once
+
+#include "math/warp.h"
+
+namespace chromeball::ggx {
+
+// D(h): density of microfacet normals per solid angle and projected area. `alpha` is the width,
+// the square of glTF's perceptual roughness. Written so that it holds for alpha down to 1e-4.
+inline float distribution(const vec3& h, float alpha) {
+  const float e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
+  return 1 / (kPi * alpha * alpha * e * e);
+}
+
+// Smith's Lambda for a direction at height z.
+inline float lambda(float z, float alpha) {
+  const float z2 = z * z;
+  return 0.5f * (std::sqrt(1 + alpha * alpha * (1 - z2) / z2) - 1);
+}
+// Height-correlated masking and shadowing of two directions, and of one.
+inline float g2(float zo, float zi, float alpha) {
+  return 1 / (1 + lambda(zo, alpha) + lambda(zi, alpha));
+}
+inline float g1(float z, float alpha) { return 1 / (1 + lambda(z, alpha)); }
+
+// A normal visible from wo, with density G1(wo) D(h) max(0, wo.h) / wo.z over solid angle.
+// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
+inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, vec2 u) {
+  const vec3 stretched = glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
+  const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;
+  const vec3 h = unitVector(z, u.x) + stretched;
+  return glm::normalize(vec3(alpha * h.x, alpha * h.y, std::fmax(0.0f, h.z)));
+}
+
+// Density over solid angle of the direction that mirrors wo about such a normal h.
+inline float reflectedPdf(const vec3& wo, const vec3& h, float alpha) {
+  return distribution(h, alpha) * g1(wo.z, alpha) / (4 * wo.z);
+}
+
+}  // namespace chromeball::ggx

@@ -1,0 +1,53 @@
+// Which surface a ray meets first, and whether one stands in its way.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+#include "trace/ray.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace chromeball {
+
+// Embree's hierarchy over a scene's instances. A mesh that stands in several places is built once.
+// Surfaces with alpha (masked or blended) are resolved here, so that the path loop never sees them;
+// scenes without them carry no filter.
+class Accel {
+ public:
+  explicit Accel(const Scene& scene);  // the scene must outlive this; throws RunError
+  ~Accel();
+  Accel(const Accel&) = delete;
+  Accel& operator=(const Accel&) = delete;
+
+  // The closest hit. `key` decides where a blended surface lets the ray pass: it does so with
+  // probability 1 - alpha.
+  bool intersect(const Ray& ray, uint32_t key, Hit& hit) const;
+
+  // The share of light that passes along the ray up to tMax: 0, 1, or the product of 1 - alpha over
+  // the blended surfaces between.
+  float transmittance(const Ray& ray) const;
+
+  // What a surface with alpha needs to answer a filter call.
+  struct AlphaSource {
+    const Scene* scene;
+    const Mesh* mesh;
+    const Material* material;
+    uint32_t instance;
+  };
+
+ private:
+  void build(const Scene& scene);
+  void release();
+  RTCSceneTy* meshScene(const Scene& scene, int mesh);
+
+  RTCDeviceTy* device_ = nullptr;
+  RTCSceneTy* scene_ = nullptr;
+  std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null where a mesh stands in one place only
+  std::vector<AlphaSource> alphaSources_;
+  bool hasAlpha_ = false;
+};
+
+}  // namespace chromeball

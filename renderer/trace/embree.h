@@ -1,0 +1,43 @@
+// The one place that knows which Embree this is: 3.13 or 4.
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace chromeball {
+
+// What a query carries to the filter functions. The Embree part comes first, so that a filter can
+// cast back.
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+inline void initQueryContext(QueryContext& context) { rtcInitRayQueryContext(&context); }
+
+inline void rtcIntersect(RTCScene scene, RTCRayHit& ray, QueryContext& context) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.feature_mask = RTC_FEATURE_FLAG_ALL;
+  rtcIntersect1(scene, &ray, &arguments);
+}
+inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded1(scene, &ray, &arguments);
+}
+#else
+using QueryContext = RTCIntersectContext;
+inline void initQueryContext(QueryContext& context) { rtcInitIntersectContext(&context); }
+
+inline void rtcIntersect(RTCScene scene, RTCRayHit& ray, QueryContext& context) {
+  rtcIntersect1(scene, &context, &ray);
+}
+inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+}  // namespace chromeball

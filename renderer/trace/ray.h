@@ -1,0 +1,22 @@
+// Rays, and what they hit.
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+struct Ray {
+  vec3 origin;
+  vec3 direction;  // unit
+  float tMax = INFINITY;
+};
+
+struct Hit {
+  uint32_t instance;  // index into Scene::instances
+  uint32_t triangle;  // index into the mesh's triangles
+  vec2 barycentric;   // weights of the second and third vertex
+};
+
+}  // namespace chromeball

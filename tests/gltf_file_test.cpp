@@ -1,0 +1,149 @@
+// Opening glTF files: containers, versions, extensions, URIs.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "gltf_writer.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+std::vector<uint8_t> glb(uint32_t version, const std::string& text,
+                         const std::vector<float>& binary, int lengthError = 0) {
+  std::vector<uint8_t> bytes;
+  const auto word = [&](uint32_t w) {
+    for (int i = 0; i < 4; ++i) bytes.push_back(uint8_t(w >> (8 * i)));
+  };
+  const std::string padded = text + std::string((4 - text.size() % 4) % 4, ' ');
+  const uint32_t binaryBytes = uint32_t(binary.size() * 4);
+  bytes.insert(bytes.end(), {'g', 'l', 'T', 'F'});
+  word(version);
+  word(uint32_t(12 + 8 + padded.size() + 8 + binaryBytes) + uint32_t(lengthError));
+  word(uint32_t(padded.size()));
+  bytes.insert(bytes.end(), {'J', 'S', 'O', 'N'});
+  bytes.insert(bytes.end(), padded.begin(), padded.end());
+  word(binaryBytes);
+  bytes.insert(bytes.end(), {'B', 'I', 'N', 0});
+  const auto* from = reinterpret_cast<const uint8_t*>(binary.data());
+  bytes.insert(bytes.end(), from, from + binaryBytes);
+  return bytes;
+}
+
+std::string refusalOf(const std::filesystem::path& path) {
+  try {
+    loadGltf(path.string(), {}, nullptr);
+  } catch (const InputError& e) {
+    return std::string(e.what()).substr(path.string().size() + 2);
+  }
+  return "";
+}
+
+TEST(GltfFile, GlbChunks) {
+  GltfWriter w;
+  addTriangle(w);
+  w.save();
+  w.root["buffers"] = {{{"byteLength", 36}}};
+  const std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const auto path = w.folder() / "model.glb";
+  w.write("model.glb", glb(2, w.root.dump(), positions));
+  EXPECT_EQ(loadGltf(path.string(), {}, nullptr).meshes.at(0).positions[1], vec3(1, 0, 0));
+
+  w.write("model.glb", glb(2, w.root.dump(), {0, 0, 0}));
+  EXPECT_EQ(refusalOf(path), "buffers[0]: 36 bytes promised, 12 there");
+  w.write("model.glb", glb(2, w.root.dump(), positions, 4));
+  EXPECT_TRUE(refusalOf(path).starts_with("is a truncated GLB")) << refusalOf(path);
+  w.write("model.glb", glb(1, w.root.dump(), positions));
+  EXPECT_EQ(refusalOf(path), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
+  // Every truncation is refused, none crashes.
+  const std::vector<uint8_t> whole = glb(2, w.root.dump(), positions);
+  for (size_t size = 0; size < whole.size(); ++size) {
+    w.write("model.glb", {whole.begin(), whole.begin() + std::ptrdiff_t(size)});
+    EXPECT_NE(refusalOf(path), "") << size;
+  }
+}
+
+TEST(GltfFile, VersionsAndExtensions) {
+  GltfWriter w;
+  w.root["asset"]["version"] = "1.0";
+  EXPECT_EQ(w.refusal(), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
+  w.root["asset"] = {{"version", "2.1"}};
+  EXPECT_EQ(w.refusal(), "");
+  w.root["asset"]["minVersion"] = "2.1";
+  EXPECT_EQ(w.refusal(), "asks for glTF 2.1; 2.0 can be read");
+  w.root["asset"] = {{"version", "2.0"}};
+  w.root["extensionsUsed"] =
+      json::array({"KHR_xmp_json_ld", "KHR_materials_unlit", "KHR_materials_sheen"});
+  w.load();
+  ASSERT_EQ(w.warnings.size(), 1u);
+  EXPECT_TRUE(
+      w.warnings[0].ends_with(": ignored extensions: KHR_materials_sheen, KHR_xmp_json_ld"));
+  w.root["extensionsRequired"] = json::array({"KHR_draco_mesh_compression"});
+  EXPECT_EQ(w.refusal(),
+            "requires the extension KHR_draco_mesh_compression, which is not supported; export it "
+            "again without mesh compression");
+}
+
+TEST(GltfFile, BuffersByUri) {
+  GltfWriter w;
+  addTriangle(w);
+  w.save();
+  std::filesystem::create_directory(w.folder() / "sub dir");
+  std::filesystem::rename(w.folder() / "data.bin", w.folder() / "sub dir" / "d\u00e9.bin");
+  const auto refusal = [&](const std::string& uri) {
+    w.root["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
+    std::ofstream(w.folder() / "model.gltf") << w.root;
+    return refusalOf(w.folder() / "model.gltf");
+  };
+  EXPECT_EQ(refusal("sub dir/d\u00e9.bin"), "");
+  EXPECT_EQ(refusal("sub%20dir/d%C3%A9.bin"), "");
+  EXPECT_EQ(refusal("./sub%20dir/d%C3%A9.bin"), "");
+  EXPECT_EQ(refusal("data:application/octet-stream;base64,"
+                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
+            "");
+  EXPECT_EQ(refusal("data:application/octet-stream;base64,AA*A"),
+            "buffers[0].uri: is not a well-formed data URI");
+  EXPECT_EQ(refusal("none.bin"), "buffers[0].uri: \"none.bin\" does not exist");
+  for (const char* outside : {"../data.bin", "sub%20dir/../../x", "%2e%2e/x", "/etc/passwd",
+                              "file:///etc/passwd", "https://example.org/x.bin", "..\\x", "C:\\x"})
+    EXPECT_NE(refusal(outside).find("is not below the model's folder"), std::string::npos)
+        << outside;
+}
+
+TEST(GltfFile, BuffersWithoutBytesAreRefusedOnlyWhenUsed) {
+  GltfWriter w;
+  w.root["buffers"] = {{{"byteLength", 100}}};
+  EXPECT_EQ(w.refusal(), "");
+}
+
+TEST(GltfFile, RefusesWhatIsNotGltf) {
+  GltfWriter w;
+  const auto refusal = [&](const std::string& text) {
+    w.write("x.gltf", {text.begin(), text.end()});
+    return refusalOf(w.folder() / "x.gltf");
+  };
+  EXPECT_NE(refusal(""), "");
+  EXPECT_NE(refusal("PNG"), "");
+  EXPECT_EQ(refusal("[]"), "is not a JSON object");
+  EXPECT_EQ(refusal("{}"), "has no asset.version; glTF 2.0 says \"2.0\" there");
+  const std::string deep(100000, '[');
+  EXPECT_EQ(refusal("{\"extras\":" + deep + "}"), "nests deeper than 128 levels");
+  const std::string brackets = "{\"asset\":{\"version\":\"2.0\"},\"extras\":\"\\\"" + deep + "\"}";
+  EXPECT_EQ(refusal(brackets), "");
+  EXPECT_EQ(refusalOf(w.folder() / "missing.gltf"), "does not exist");
+  EXPECT_EQ(refusalOf(w.folder()), "is not a file");
+}
+
+TEST(GltfFile, RefusesToBlowUp) {
+  // 20 000 primitives that all read the same megabyte.
+  GltfWriter w;
+  const int positions = w.vec3s(std::vector<float>(3 * 90000, 0.0f));
+  const json primitive = {{"attributes", {{"POSITION", positions}}}};
+  w.add("meshes", {{"primitives", std::vector<json>(20000, primitive)}});
+  w.add("nodes", {{"mesh", 0}});
+  EXPECT_NE(w.refusal().find("far more than the file holds"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chromeball

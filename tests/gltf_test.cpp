@@ -1,0 +1,215 @@
+// The structure of glTF files: primitives, nodes, instances, cameras, poses.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+std::vector<Triangle> trianglesOf(int mode, const std::vector<uint16_t>& indices) {
+  GltfWriter w;
+  const int positions = w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 2, 0});
+  json primitive = {{"attributes", {{"POSITION", positions}}}, {"mode", mode}};
+  if (!indices.empty()) primitive["indices"] = w.indices(indices);
+  w.add("nodes", {{"mesh", w.mesh(primitive)}});
+  return w.load().meshes.at(0).triangles;
+}
+
+TEST(Gltf, TrianglesStripsAndFans) {
+  EXPECT_EQ(trianglesOf(4, {0, 1, 2, 2, 1, 3, 4, 4}),  // two indices too many
+            (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}}));
+  EXPECT_EQ(trianglesOf(5, {0, 1, 2, 3, 4}),
+            (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+  EXPECT_EQ(trianglesOf(6, {0, 1, 2, 3, 4}),
+            (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+  EXPECT_EQ(trianglesOf(5, {}), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+}
+
+TEST(Gltf, WhatHasNoTrianglesIsLeftOutWithOneWarning) {
+  GltfWriter w;
+  addTriangle(w, {{"mode", 0}});
+  addTriangle(w, {{"mode", 3}});
+  EXPECT_TRUE(w.load().meshes.empty());
+  ASSERT_EQ(w.warnings.size(), 1u);
+  EXPECT_TRUE(w.warnings[0].ends_with("model.gltf: points and lines are left out"));
+
+  GltfWriter bare;
+  bare.add("nodes", {{"mesh", bare.mesh({{"attributes", json::object()}})}});
+  EXPECT_TRUE(bare.load().meshes.empty());
+  EXPECT_EQ(bare.warnings.size(), 1u);
+}
+
+TEST(Gltf, UnusedVerticesAreDropped) {
+  GltfWriter w;
+  const int positions = w.vec3s({9, 9, 9, 0, 0, 0, 1, 0, 0, 9, 9, 9, 0, 1, 0});
+  w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}}},
+                                   {"indices", w.indices({1, 2, 4})}})}});
+  const Mesh mesh = w.load().meshes[0];
+  EXPECT_EQ(mesh.positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+TEST(Gltf, OneUserIsBakedSeveralShare) {
+  GltfWriter w;
+  addTriangle(w, {}, {{"translation", {10, 0, 0}}, {"name", "alone"}});
+  const int shared = w.mesh({{"attributes", {{"POSITION", w.vec3s({0, 0, 0, 2, 0, 0, 0, 2, 0})}}}});
+  w.add("nodes", {{"mesh", shared}, {"translation", {0, 1, 0}}});
+  w.add("nodes", {{"mesh", shared}, {"scale", {-1, 1, 1}}});
+  const Scene scene = w.load();
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  ASSERT_EQ(scene.instances.size(), 3u);
+  EXPECT_EQ(scene.triangleCount(), 3u);
+  EXPECT_EQ(scene.meshes[0].positions[0], vec3(10, 0, 0));
+  EXPECT_EQ(scene.instances[0].toWorld.linear, glm::mat3(1));
+  EXPECT_EQ(scene.nodeNames[size_t(scene.instances[0].node)], "alone");
+  EXPECT_EQ(scene.meshes[1].positions[1], vec3(2, 0, 0));
+  EXPECT_EQ(scene.instances[1].toWorld.point({2, 0, 0}), vec3(2, 1, 0));
+  EXPECT_EQ(scene.instances[2].toWorld.point({2, 0, 0}), vec3(-2, 0, 0));
+  EXPECT_LT(glm::determinant(scene.instances[2].toWorld.linear), 0);
+}
+
+TEST(Gltf, HierarchyAndPlacementCompose) {
+  GltfWriter w;
+  const int child = addTriangle(w, {}, {{"translation", {1, 0, 0}}});
+  const double half = std::sqrt(0.5);  // a quarter turn about +Y: +X goes to -Z
+  w.add("nodes", {{"rotation", {0, half, 0, half}}, {"scale", {2, 2, 2}}, {"children", {child}}});
+  Transform placement;
+  placement.translation = {0, 5, 0};
+  const vec3 p = w.load(placement).meshes[0].positions[0];
+  EXPECT_NEAR(p.x, 0, 1e-6f);
+  EXPECT_NEAR(p.y, 5, 1e-6f);
+  EXPECT_NEAR(p.z, -2, 1e-6f);
+}
+
+// The geometric normal stays on the side of the shading normal.
+TEST(Gltf, MirrorsKeepTheFront) {
+  GltfWriter w;
+  addTriangle(w, {{"attributes", {{"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}},
+              {{"matrix", {-2, 0, 0, 0, 0, 3, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1}}});
+  const Mesh mesh = w.load().meshes[0];
+  const Triangle t = mesh.triangles[0];
+  const vec3 geometric = glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                                    mesh.positions[t.z] - mesh.positions[t.x]);
+  EXPECT_GT(glm::dot(geometric, mesh.normals[0]), 0);
+  // The plane maps to itself but its normal does not follow the shear: inverse transpose.
+  EXPECT_NEAR(glm::dot(mesh.normals[0], mesh.positions[t.y] - mesh.positions[t.x]), 0, 1e-6f);
+  EXPECT_NEAR(glm::length(mesh.normals[0]), 1, 1e-6f);
+}
+
+TEST(Gltf, BadNormalsAreMended) {
+  GltfWriter w;
+  addTriangle(w, {{"attributes", {{"NORMAL", w.vec3s({0, 0, 0, 0, 3, 0, NAN, 0, 1})}}}});
+  const std::vector<vec3> normals = w.load().meshes[0].normals;
+  EXPECT_EQ(normals, (std::vector<vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
+}
+
+TEST(Gltf, FlattenedNodesAreLeftOut) {
+  GltfWriter w;
+  addTriangle(w, {}, {{"scale", {1, 0, 1}}});
+  addTriangle(w, {}, {{"scale", {1e-6, 1e-6, 1e-6}}});  // small, but a shape
+  EXPECT_EQ(w.load().instances.size(), 1u);
+  EXPECT_EQ(w.warnings.size(), 1u);
+}
+
+TEST(Gltf, ScenesChooseTheNodes) {
+  GltfWriter w;
+  addTriangle(w);
+  addTriangle(w, {}, {{"translation", {7, 0, 0}}});
+  EXPECT_EQ(w.load().instances.size(), 2u);  // no scenes: every root
+  w.root["scenes"] = {{{"nodes", {1}}}, {{"nodes", {0}}}};
+  EXPECT_EQ(w.load().instances.at(0).node, 1);  // none named: the first
+  w.root["scene"] = 1;
+  EXPECT_EQ(w.load().instances.at(0).node, 0);
+  w.root["scene"] = 2;
+  EXPECT_EQ(w.refusal(), "scene: scenes[2] does not exist (2 in the file)");
+}
+
+TEST(Gltf, MeshesWithoutNodesStandAtTheOrigin) {
+  GltfWriter w;
+  addTriangle(w);
+  w.root.erase("nodes");
+  EXPECT_EQ(w.load().instances.size(), 1u);
+}
+
+TEST(Gltf, NodesMustFormTrees) {
+  GltfWriter w;
+  w.root["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, json::object()};
+  EXPECT_EQ(w.refusal(),
+            "nodes[1].children: nodes[2] is a child of nodes[0] too; nodes must form trees");
+  w.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
+  EXPECT_EQ(w.refusal(), "nodes[0]: is its own ancestor; nodes must form trees");
+  w.root["nodes"] = {{{"children", {5}}}};
+  EXPECT_EQ(w.refusal(), "nodes[0].children: nodes[5] does not exist (1 in the file)");
+}
+
+TEST(Gltf, AVeryDeepChainIsNoProblem) {
+  GltfWriter w;
+  constexpr int kDepth = 100000;
+  for (int i = 0; i < kDepth; ++i)
+    w.add("nodes", {{"children", {i + 1}}, {"translation", {0, 0, 0.5}}});
+  addTriangle(w);
+  EXPECT_EQ(w.load().meshes[0].positions[0], vec3(0, 0, kDepth / 2));
+}
+
+TEST(Gltf, CamerasStandAtTheirNodes) {
+  GltfWriter w;
+  w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+  w.add("cameras", {{"type", "orthographic"},
+                    {"name", "plan"},
+                    {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}});
+  // Turned a quarter about +Y, and scaled unevenly and mirrored, which a camera ignores.
+  const double half = std::sqrt(0.5);
+  w.add("nodes", {{"camera", 0},
+                  {"name", "eye"},
+                  {"translation", {1, 2, 3}},
+                  {"rotation", {0, half, 0, half}},
+                  {"scale", {-1, 2, 5}}});
+  w.add("nodes", {{"camera", 1}});
+  const Scene scene = w.load();
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  const Camera& eye = scene.cameras[0];
+  EXPECT_EQ(eye.name, "eye");
+  EXPECT_EQ(eye.position, vec3(1, 2, 3));
+  EXPECT_NEAR(glm::distance(eye.back, vec3(1, 0, 0)), 0, 1e-6f);
+  EXPECT_NEAR(glm::distance(eye.up, vec3(0, 1, 0)), 0, 1e-6f);
+  EXPECT_NEAR(glm::distance(eye.right, vec3(0, 0, -1)), 0, 1e-6f);
+  EXPECT_EQ(eye.fov, 0.5f);
+  EXPECT_TRUE(scene.cameras[1].orthographic);
+  EXPECT_EQ(scene.cameras[1].name, "plan");
+  EXPECT_EQ(scene.cameras[1].halfHeight, 2);
+  EXPECT_EQ(scene.cameras[1].aspect, 2);
+}
+
+TEST(Gltf, MorphWeightsOfTheNodeOverrideTheMesh) {
+  GltfWriter w;
+  const int up = w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int node = addTriangle(w, {{"targets", {{{"POSITION", up}}}}});
+  w.root["meshes"][0]["weights"] = {0.5};
+  EXPECT_EQ(w.load().meshes[0].positions[1], vec3(1, 0, 0.5f));
+  EXPECT_EQ(w.warnings.size(), 1u);  // that nothing moves
+  w.root["nodes"][size_t(node)]["weights"] = {2};
+  EXPECT_EQ(w.load().meshes[0].positions[1], vec3(1, 0, 2));
+}
+
+TEST(Gltf, SkinsBlendTheirJoints) {
+  GltfWriter w;
+  const int joints = w.accessor(w.view(std::vector<uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}),
+                                kUByte, "VEC4", 3);
+  const int weights = w.accessor(w.view(std::vector<float>{1, 0, 0, 0, .5f, .5f, 0, 0, 1, 0, 0, 0}),
+                                 kFloat, "VEC4", 3);
+  // The mesh's own node is far away, which a skinned mesh ignores.
+  const json patch = {{"attributes", {{"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}};
+  addTriangle(w, patch, {{"skin", 0}, {"translation", {100, 0, 0}}});
+  w.add("nodes", {{"translation", {0, 0, 1}}});
+  w.add("nodes", {{"translation", {0, 0, 3}}});
+  w.add("skins", {{"joints", {1, 2}}});
+  EXPECT_EQ(w.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 1}, {1, 0, 2}, {0, 1, 3}}));
+  w.root["skins"][0]["joints"] = {1};
+  EXPECT_EQ(w.refusal(),
+            "meshes[0].primitives[0].attributes.JOINTS_0: joint 1 out of range (1 joints)");
+}
+
+}  // namespace
+}  // namespace chromeball

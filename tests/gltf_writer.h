@@ -1,0 +1,120 @@
+// Writes small glTF files for tests, each into a folder of its own that goes with the writer.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "math/error.h"
+#include "scene/gltf.h"
+
+namespace chromeball {
+
+enum ComponentType { kByte = 5120, kUByte, kShort, kUShort, kUInt = 5125, kFloat };
+
+class GltfWriter {
+ public:
+  nlohmann::json root = {{"asset", {{"version", "2.0"}}}};
+  std::vector<std::string> warnings;  // of the last load()
+
+  GltfWriter() {
+    static int count = 0;
+    folder_ = std::filesystem::temp_directory_path() /
+              ("chromeball-gltf-" + std::to_string(getpid()) + "-" + std::to_string(count++));
+    std::filesystem::create_directories(folder_);
+  }
+  ~GltfWriter() { std::filesystem::remove_all(folder_); }
+  GltfWriter(const GltfWriter&) = delete;
+  GltfWriter& operator=(const GltfWriter&) = delete;
+
+  std::filesystem::path folder() const { return folder_; }
+
+  // Appends bytes to the buffer; returns the index of their buffer view.
+  template <class T>
+  int view(const std::vector<T>& elements, int stride = 0) {
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    const size_t offset = bytes_.size(), size = elements.size() * sizeof(T);
+    const auto* from = reinterpret_cast<const uint8_t*>(elements.data());
+    bytes_.insert(bytes_.end(), from, from + size);
+    nlohmann::json v = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}};
+    if (stride) v["byteStride"] = stride;
+    return add("bufferViews", v);
+  }
+
+  int accessor(int view, ComponentType component, const std::string& type, size_t count,
+               size_t offset = 0, bool normalized = false) {
+    nlohmann::json a = {{"componentType", component}, {"type", type}, {"count", count}};
+    if (view >= 0) a["bufferView"] = view;
+    if (offset) a["byteOffset"] = offset;
+    if (normalized) a["normalized"] = true;
+    return add("accessors", a);
+  }
+
+  int vec3s(const std::vector<float>& f) { return accessor(view(f), kFloat, "VEC3", f.size() / 3); }
+  int vec2s(const std::vector<float>& f) { return accessor(view(f), kFloat, "VEC2", f.size() / 2); }
+  int indices(const std::vector<uint16_t>& i) {
+    return accessor(view(i), kUShort, "SCALAR", i.size());
+  }
+
+  // Appends to one of the root's arrays; returns the index.
+  int add(const std::string& array, const nlohmann::json& element) {
+    root[array].push_back(element);
+    return int(root[array].size()) - 1;
+  }
+
+  int mesh(const nlohmann::json& primitive) {
+    return add("meshes", {{"primitives", nlohmann::json::array({primitive})}});
+  }
+
+  void write(const std::string& name, const std::vector<uint8_t>& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  }
+
+  std::string save() {
+    if (!bytes_.empty()) {
+      root["buffers"] = {{{"byteLength", bytes_.size()}, {"uri", "data.bin"}}};
+      write("data.bin", bytes_);
+    }
+    std::ofstream(folder_ / "model.gltf") << root;
+    return (folder_ / "model.gltf").string();
+  }
+
+  Scene load(const Transform& placement = {}) {
+    warnings.clear();
+    return loadGltf(save(), placement, [this](const std::string& w) { warnings.push_back(w); });
+  }
+
+  // The message with which the file is refused, without the path; "" where it loads.
+  std::string refusal() {
+    const std::string path = save();
+    try {
+      loadGltf(path, {}, nullptr);
+    } catch (const InputError& e) {
+      const std::string message = e.what();
+      return message.starts_with(path + ": ") ? message.substr(path.size() + 2) : message;
+    }
+    return "";
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<uint8_t> bytes_;
+};
+
+// A node that shows a mesh of one triangle, (0,0,0) (1,0,0) (0,1,0), with the given additions.
+inline int addTriangle(GltfWriter& w, const nlohmann::json& primitive = {},
+                       const nlohmann::json& node = {}) {
+  nlohmann::json p = {{"attributes", {{"POSITION", w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0})}}}};
+  if (!primitive.is_null()) p.merge_patch(primitive);
+  nlohmann::json n = {{"mesh", w.mesh(p)}};
+  if (!node.is_null()) n.merge_patch(node);
+  return w.add("nodes", n);
+}
+
+}  // namespace chromeball

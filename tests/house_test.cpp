@@ -1,0 +1,124 @@
+// The one-way flow of the source tree: who may include whom, and which single place sees each
+// third-party library.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Folder of renderer/: the folders it may include besides itself.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"math", {}},
+    {"image", {"math"}},
+    {"probe", {"math", "image"}},
+    {"scene", {"math", "image", "probe"}},
+    {"trace", {"math", "scene"}},
+    {"shading", {"math", "scene"}},
+    {"lighting", {"math", "image", "probe", "scene", "shading"}},
+    {"film", {"math", "image"}},
+    {"integrate", {"math", "image", "probe", "scene", "trace", "shading", "lighting", "film"}},
+    {"composite",
+     {"math", "image", "probe", "scene", "trace", "shading", "lighting", "film", "integrate"}},
+    {"measure",
+     {"math", "image", "probe", "scene", "trace", "shading", "lighting", "film", "integrate"}},
+};
+
+// Header of a library: the only place that may include it, as the start of the path.
+const std::map<std::string, std::string> kSeenBy = {
+    {"rtcore.h", "renderer/trace/"},
+    {"OpenImageIO/", "renderer/image/"},
+    {"tiny_gltf.h", "renderer/scene/gltf"},
+    {"toml++/", "renderer/scene/scene_file.cpp"},
+    {"CLI/", "tools/"},
+};
+
+// What is wrong with the includes of the file `path` (relative to the project), one line each.
+std::vector<std::string> violations(const std::string& path, const std::string& text) {
+  std::vector<std::string> found;
+  static const std::regex kInclude(R"((?:^|\n)\s*#\s*include\s*([<"])([^>"]+)[>"])");
+  static const std::regex kRoom("renderer/([^/]+)/.*");
+  std::smatch room;
+  const bool inLibrary = std::regex_match(path, room, kRoom);
+
+  for (std::sregex_iterator match(text.begin(), text.end(), kInclude), end; match != end; ++match) {
+    const std::string header = (*match)[2];
+    for (const auto& [library, place] : kSeenBy)
+      if (header.find(library) != std::string::npos && !path.starts_with(place))
+        found.push_back(path + " includes " + header + ": only " + place + " may");
+    if (!inLibrary || (*match)[1] == "<") continue;
+
+    const std::string from = room[1], to = header.substr(0, header.find('/'));
+    if (!kMayInclude.contains(from)) {
+      found.push_back(path + ": the house has no room renderer/" + from);
+    } else if (header.find('/') == std::string::npos) {
+      found.push_back(path + " includes " + header + ": write the path from renderer/");
+    } else if (to != from && !kMayInclude.at(from).contains(to)) {
+      found.push_back(path + " includes " + header + ": " + from + " may not look into " + to);
+    }
+  }
+  return found;
+}
+
+std::string contents(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(House, CheckFindsWhatItShould) {
+  const auto count = [](const char* path, const char* text) {
+    return violations(path, text).size();
+  };
+  EXPECT_EQ(count("renderer/math/warp.h", "#include \"math/vec.h\"\n#include <cmath>\n"), 0u);
+  EXPECT_EQ(count("renderer/math/warp.h", "#include \"image/image.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/math/warp.h", "#pragma once\n  # include \"probe/probe.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/math/warp.h", "#include \"vec.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/attic/a.h", "#include \"math/vec.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/lighting/a.cpp", "#include \"trace/tracer.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/integrate/a.cpp", "#include \"measure/error.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/integrate/a.cpp", "#include \"trace/tracer.h\"\n"), 0u);
+  EXPECT_EQ(count("renderer/trace/a.cpp", "#include <embree3/rtcore.h>\n"), 0u);
+  EXPECT_EQ(count("renderer/shading/a.cpp", "#include <embree4/rtcore.h>\n"), 1u);
+  EXPECT_EQ(count("tests/a.cpp", "#include <OpenImageIO/imageio.h>\n"), 1u);
+  EXPECT_EQ(count("renderer/scene/gltf_mesh.cpp", "#include <tiny_gltf.h>\n"), 0u);
+  EXPECT_EQ(count("renderer/scene/scene_file.h", "#include <toml++/toml.h>\n"), 1u);
+  EXPECT_EQ(count("renderer/film/a.cpp", "#include <CLI/CLI.hpp>\n"), 1u);
+  EXPECT_EQ(count("tools/render.cpp", "#include <CLI/CLI.hpp>\n#include \"film/film.h\"\n"), 0u);
+}
+
+TEST(House, IncludesGoOneWay) {
+  const fs::path root = CHROMEBALL_SOURCE_DIR;
+  int files = 0;
+  for (const char* folder : {"renderer", "tools", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".h" && extension != ".cpp") continue;
+      ++files;
+      const std::string path = entry.path().lexically_relative(root).generic_string();
+      for (const auto& violation : violations(path, contents(entry.path())))
+        ADD_FAILURE() << violation;
+    }
+  EXPECT_GT(files, 10) << "the source tree is not where it was";
+}
+
+TEST(House, TopLevelHoldsOnlyItsRooms) {
+  const std::set<std::string> allowed = {"renderer", "tools",          "tests",    "scenes",
+                                         "probes",   "CMakeLists.txt", "README.md"};
+  for (const auto& entry : fs::directory_iterator(CHROMEBALL_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const bool generated = name.starts_with("build") || name == "out";
+    if (name.starts_with('.') || generated) continue;
+    EXPECT_TRUE(allowed.contains(name)) << name << " does not belong at the top level";
+  }
+}
+
+}  // namespace

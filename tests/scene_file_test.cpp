@@ -1,0 +1,238 @@
+#include "scene/scene_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "math/error.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder with an (empty) model and probe, and the scene file under test in a folder of its own.
+class SceneFileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = fs::temp_directory_path() / fmt::format("chromeball-scene-file-{}", getpid());
+    fs::create_directories(root_ / "scenes");
+    std::ofstream(root_ / "ball.glb") << "x";
+    std::ofstream(root_ / "sky.exr") << "x";
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  std::string scenePath() const { return (root_ / "scenes/test.toml").string(); }
+  SceneFile read(const std::string& toml) const {
+    std::ofstream(scenePath(), std::ios::binary) << toml;
+    return readSceneFile(scenePath());
+  }
+  // A line before the text, so that a line number of 1 is always wrong.
+  SceneFile readWithModel(const std::string& toml) const {
+    return read("model = '../ball.glb'\n" + toml);
+  }
+  std::string errorOf(const std::string& toml) const {
+    try {
+      readWithModel(toml);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "(no error)";
+  }
+  // The error is one line, says `line` of the scene file, and mentions all of `words`.
+  void expectError(const std::string& toml, int line, const std::vector<std::string>& words) const {
+    const std::string error = errorOf(toml);
+    const std::string place = fmt::format("{}:{}: ", scenePath(), line);
+    EXPECT_EQ(error.substr(0, place.size()), place) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    for (const auto& word : words)
+      EXPECT_NE(error.find(word, place.size()), std::string::npos) << word << " in: " << error;
+  }
+
+  fs::path root_;
+};
+
+TEST_F(SceneFileTest, ModelAloneLeavesAllElseOpen) {
+  const SceneFile scene = readWithModel("");
+  ASSERT_EQ(scene.models.size(), 1u);
+  EXPECT_EQ(scene.models[0].file, (root_ / "ball.glb").string());
+  EXPECT_EQ(scene.models[0].placement.point({1, 2, 3}), vec3(1, 2, 3));
+  EXPECT_FALSE(scene.cameraName || scene.camera || scene.probe || scene.probeMapping);
+  EXPECT_FALSE(scene.probeRotation || scene.probeScale || scene.strategy || scene.mis);
+  EXPECT_FALSE(scene.size || scene.samples || scene.maxDepth || scene.seed);
+  EXPECT_FALSE(scene.timeLimit || scene.noiseLimit);
+  EXPECT_TRUE(scene.outputs.empty() && scene.aovs.empty());
+}
+
+TEST_F(SceneFileTest, EveryKeyArrives) {
+  const SceneFile scene = readWithModel(R"([camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+fov = 90
+[probe]
+file = "../sky.exr"
+mapping = "lat-long"
+rotation = -30
+scale = 2.5
+[lighting]
+strategy = "median-cut:64"
+mis = "power"
+[render]
+size = [800, 600]
+samples = 256
+max_depth = 0
+seed = 7
+time = 1.5
+noise = 2
+[output]
+file = ["out/a.exr", "/b.png"]
+aovs = ["albedo", "depth"]
+)");
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->position, vec3(0, 0, 5));
+  EXPECT_EQ(scene.camera->back, vec3(0, 0, 1));
+  EXPECT_FLOAT_EQ(scene.camera->fov, kPi / 2);
+  EXPECT_EQ(scene.probe, (root_ / "sky.exr").string());
+  EXPECT_EQ(scene.probeMapping->name, "lat-long");
+  EXPECT_EQ(scene.probeRotation, -30.f);
+  EXPECT_EQ(scene.probeScale, 2.5f);
+  EXPECT_EQ(scene.strategy->name, "median-cut:64");
+  EXPECT_EQ(scene.strategy->place, scenePath() + ":12");
+  EXPECT_EQ(scene.mis->name, "power");
+  EXPECT_EQ(scene.size->width, 800);
+  EXPECT_EQ(scene.size->height, 600);
+  EXPECT_EQ(scene.samples, 256);
+  EXPECT_EQ(scene.maxDepth, 0);
+  EXPECT_EQ(scene.seed, 7u);
+  EXPECT_EQ(scene.timeLimit, 1.5);
+  EXPECT_EQ(scene.noiseLimit, 2.0);
+  const std::vector<std::string> outputs{(root_ / "scenes/out/a.exr").string(), "/b.png"};
+  EXPECT_EQ(scene.outputs, outputs);
+  ASSERT_EQ(scene.aovs.size(), 2u);
+  EXPECT_EQ(scene.aovs[1].name, "depth");
+}
+
+TEST_F(SceneFileTest, CameraAndOutputByName) {
+  const SceneFile scene = readWithModel("camera.name = 'Front'\noutput.file = 'a.exr'\n");
+  EXPECT_EQ(scene.cameraName->name, "Front");
+  EXPECT_EQ(scene.outputs, std::vector{(root_ / "scenes/a.exr").string()});
+}
+
+// T R S: (1, 2, 3) scaled by (2, 3, 4), turned 90 degrees about Y (z to x, x to -z), moved.
+TEST_F(SceneFileTest, PlacementScalesThenRotatesThenMoves) {
+  const char* const rotations[] = {"[0, 90, 0]", "[0, 0.70710678, 0, 0.70710678]",
+                                   "[0, 5.0, 0, 5.0]"};
+  for (const char* rotation : rotations) {
+    const SceneFile scene = read(fmt::format(
+        "[[model]]\nfile='../ball.glb'\nscale=[2,3,4]\nrotation={}\ntranslation=[10,20,30]\n",
+        rotation));
+    const vec3 moved = scene.models.at(0).placement.point({1, 2, 3});
+    EXPECT_LT(glm::distance(moved, vec3(10 + 12, 20 + 6, 30 - 2)), 1e-4f) << rotation;
+  }
+}
+
+// Angles about fixed axes, X first: 90 about X takes y to z, and then 90 about Z leaves it there.
+TEST_F(SceneFileTest, AnglesTurnAboutXThenYThenZ) {
+  const SceneFile scene = read("[[model]]\nfile='../ball.glb'\nrotation=[90,0,90]\n");
+  EXPECT_LT(glm::distance(scene.models.at(0).placement.point({0, 1, 0}), vec3(0, 0, 1)), 1e-6f);
+  EXPECT_LT(glm::distance(scene.models.at(0).placement.point({1, 0, 0}), vec3(0, 1, 0)), 1e-6f);
+}
+
+TEST_F(SceneFileTest, SeveralModelsKeepTheirOrder) {
+  const SceneFile scene =
+      read("[[model]]\nfile='../sky.exr'\nscale=2\n[[model]]\nfile='../ball.glb'\n");
+  ASSERT_EQ(scene.models.size(), 2u);
+  EXPECT_EQ(scene.models[0].placement.point({1, 1, 1}), vec3(2, 2, 2));
+  EXPECT_EQ(scene.models[1].file, (root_ / "ball.glb").string());
+}
+
+TEST_F(SceneFileTest, UnknownKeyNamesItsLineAndTheNearestKey) {
+  expectError("[render]\nsampels = 3\n", 3, {"`sampels`", "[render]", "did you mean `samples`?"});
+  expectError("[renderer]\n", 2, {"`renderer`", "did you mean `render`?"});
+  expectError("[camera]\nlookat = [0,0,0]\n", 3, {"`lookat`", "`look_at`"});
+  expectError("[probe]\nwattage = 3\n", 3, {"`wattage`", "file, mapping, rotation, scale"});
+  expectError("\"a\\nb\" = 3\n", 2, {"unknown key"});
+}
+
+TEST_F(SceneFileTest, WrongTypeNamesKeyAndLine) {
+  expectError("[render]\n\nsamples = '16'\n", 4, {"`samples`", "whole number", "\"16\""});
+  expectError("[render]\nsamples = 1.5\n", 3, {"`samples`", "1.5"});
+  expectError("[render]\nsize = 800\n", 3, {"`size`", "[width, height]"});
+  expectError("[render]\nsize = [800]\n", 3, {"`size`", "an array of 1"});
+  expectError("[render]\nsize = [800, true]\n", 3, {"`size`", "a boolean"});
+  expectError("[render]\ntime = 12:00:00\n", 3, {"`time`", "a date or time"});
+  expectError("render = 3\n", 2, {"`render`", "a table"});
+  expectError("[probe]\nfile = 3\n", 3, {"`file`", "a string"});
+  expectError("[probe]\nrotation = [1]\n", 3, {"`rotation`", "a finite number"});
+  expectError("[lighting]\nstrategy = 3\n", 3, {"`strategy`"});
+  expectError("[output]\naovs = ['depth', 3]\n", 3, {"`aovs`"});
+  expectError("[output]\nfile = ''\n", 3, {"`file`"});
+  expectError("[camera]\nposition = [1, 2]\nlook_at = [0,0,0]\n", 3, {"`position`"});
+}
+
+TEST_F(SceneFileTest, OutOfRangeNamesKeyAndLine) {
+  expectError("[render]\nsize = [0, 600]\n", 3, {"`size`", "0"});
+  expectError("[render]\nsize = [800, -600]\n", 3, {"`size`", "-600"});
+  expectError("[render]\nsize = [800, 65537]\n", 3, {"`size`", "65536"});
+  expectError("[render]\nsamples = 0\n", 3, {"`samples`"});
+  expectError("[render]\nsamples = 4294967297\n", 3, {"`samples`"});
+  expectError("[render]\nmax_depth = -1\n", 3, {"`max_depth`"});
+  expectError("[render]\nseed = -1\n", 3, {"`seed`"});
+  expectError("[render]\ntime = 0\n", 3, {"`time`"});
+  expectError("[render]\nnoise = nan\n", 3, {"`noise`", "nan"});
+  expectError("[render]\ntime = inf\n", 3, {"`time`", "inf"});
+  expectError("[probe]\nscale = -1\n", 3, {"`scale`"});
+  expectError("[probe]\nrotation = 1e300\n", 3, {"`rotation`"});
+  expectError("[camera]\nposition=[0,0,1]\nlook_at=[0,0,0]\nfov = 180\n", 5, {"`fov`"});
+}
+
+TEST_F(SceneFileTest, CameraMustBeOneOrTheOther) {
+  expectError("[camera]\nname = 'A'\nfov = 30\n", 4, {"`name`", "`fov`"});
+  expectError("\n[camera]\nposition = [0,0,1]\n", 3, {"look_at"});
+  expectError("[camera]\nposition = [0,0,1]\nlook_at = [0,0,1]\n", 2, {"same point"});
+  expectError("[camera]\nposition=[0,0,1]\nlook_at=[0,0,0]\nup=[0,0,1]\n", 2, {"parallel"});
+}
+
+TEST_F(SceneFileTest, BadModelsAreRefused) {
+  const auto refuse = [&](const std::string& toml) {
+    EXPECT_THROW(read(toml), InputError) << toml;
+  };
+  refuse("");
+  refuse("model = []");
+  refuse("model = 3");
+  refuse("[[model]]\nscale = 2\n");
+  refuse("[[model]]\nfile='../ball.glb'\nscale = 0\n");
+  refuse("[[model]]\nfile='../ball.glb'\nscale = [1, 0, 1]\n");
+  refuse("[[model]]\nfile='../ball.glb'\nrotation = [0, 0]\n");
+  refuse("[[model]]\nfile='../ball.glb'\nrotation = [0, 0, 0, 0]\n");
+  refuse("[[model]]\nfile='../ball.glb'\ntranslation = [0, nan, 0]\n");
+}
+
+TEST_F(SceneFileTest, MissingFilesAreNamedWithTheirLine) {
+  expectError("[probe]\nfile = '../moon.exr'\n", 3, {"`file`", "moon.exr"});
+  expectError("[probe]\nfile = '..'\n", 3, {"`file`"});    // a folder is no probe
+  EXPECT_THROW(read("model = 'ball.glb'\n"), InputError);  // not relative to where we run
+}
+
+TEST_F(SceneFileTest, BrokenTomlNamesItsLine) {
+  expectError("[render]\nsamples = \n", 3, {"TOML"});
+  expectError("[render]\nsamples = 1\nsamples = 2\n", 4, {"TOML"});
+  expectError("[render\n", 2, {"TOML"});
+  expectError("[render]\nsamples = \xff\n", 3, {"TOML"});
+  expectError("x = " + std::string(100000, '['), 2, {"TOML"});
+}
+
+TEST_F(SceneFileTest, CompositeIsRefusedByName) {
+  expectError("[composite]\nplate = 'p.exr'\n", 2, {"[composite]", "not supported"});
+}
+
+TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
+  EXPECT_THROW(readSceneFile((root_ / "none.toml").string()), InputError);
+  EXPECT_THROW(readSceneFile(root_.string()), InputError);
+  EXPECT_THROW(read("# " + std::string(size_t(5) << 20, 'x')), InputError);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,17 @@
+// Arguments that several subcommands take.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "probe/convert.h"
+
+namespace chromeball {
+
+// "WxH", both 1 to 65536. Throws InputError that begins with `option`.
+ImageSize parseSize(std::string_view text, std::string_view option = "--size");
+
+// "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError that begins with `option`.
+std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view option);
+
+}  // namespace chromeball

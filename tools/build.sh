@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Installs what the build needs and this machine lacks (Debian and Ubuntu, as root or with sudo),
+# then builds everything into build/. Arguments go to the configure step (-DNAME=VALUE).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(build-essential cmake pkg-config
+  libembree-dev libopenimageio-dev libtinygltf-dev libtomlplusplus-dev libcli11-dev
+  libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev)
+
+needs() {
+  echo "chromeball needs these packages (Debian's names), and could not install them here:" >&2
+  echo "  $*" >&2
+  exit 1
+}
+
+if command -v dpkg-query >/dev/null; then
+  missing=()
+  for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ $status == installed* ]] || missing+=("$package")
+  done
+  if ((${#missing[@]})); then
+    asRoot=()
+    if ((EUID != 0)); then
+      if ! sudo -n true 2>/dev/null && ! { command -v sudo >/dev/null && [[ -t 0 ]]; }; then
+        needs "${missing[@]}"
+      fi
+      asRoot=(sudo)
+    fi
+    echo "Installing ${missing[*]}"
+    "${asRoot[@]}" apt-get update -q || true
+    "${asRoot[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -qy --no-install-recommends "${missing[@]}" || needs "${missing[@]}"
+  fi
+fi
+
+# One compiler may want 1.5 GiB.
+memory=$(awk '/^MemAvailable/ { print int($2 / 1572864) }' /proc/meminfo 2>/dev/null || echo 1)
+jobs=$(nproc 2>/dev/null || echo 1)
+((jobs <= memory)) || jobs=$((memory > 0 ? memory : 1))
+
+if ! cmake -S . -B build -DCMAKE_BUILD_TYPE=Release "$@"; then
+  command -v dpkg-query >/dev/null || needs "${packages[@]}"
+  exit 1
+fi
+cmake --build build --parallel "$jobs"

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Builds and renders the demo scene. Arguments go to `chromeball render` (--samples 32 for a quick look).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tools/build.sh
+mkdir -p out
+build/chromeball render scenes/demo.toml -o out/demo.exr -o out/demo.png "$@"
+echo "The pictures: $PWD/out/demo.png (tone mapped), $PWD/out/demo.exr (radiance)"

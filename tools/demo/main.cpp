@@ -1,0 +1,28 @@
+// make_demo still-life|lambertian|conductors OUT.glb
+// make_demo dusk OUT.exr
+#include <iostream>
+
+#include "dusk.h"
+#include "image/write.h"
+#include "math/error.h"
+#include "still_life.h"
+
+int main(int argc, char** argv) {
+  using namespace chromeball;
+  const std::string what = argc == 3 ? argv[1] : "";
+  try {
+    if (what == "still-life")
+      demo::writeStillLife(argv[2], demo::Finish::Demo);
+    else if (what == "lambertian")
+      demo::writeStillLife(argv[2], demo::Finish::Lambertian);
+    else if (what == "conductors")
+      demo::writeStillLife(argv[2], demo::Finish::Conductors);
+    else if (what == "dusk")
+      writeImage(argv[2], demo::paintDusk(1024));
+    else
+      throwInput("make_demo: still-life|lambertian|conductors OUT.glb, or dusk OUT.exr");
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+}

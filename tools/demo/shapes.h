@@ -1,0 +1,44 @@
+// The surfaces that the demo's still life is made of.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball::demo {
+
+using glm::dvec3;
+
+inline constexpr double kTableRadius = 2.3;
+
+// Smooth, with UVs that lay the table's square over x and z.
+struct Surface {
+  std::vector<vec3> positions, normals;
+  std::vector<vec2> uvs;
+  std::vector<glm::u16vec3> triangles;
+};
+
+// The point of a surface at (u, v) in [0, 1]^2. u runs counter-clockwise seen from above, v
+// upwards, so that dp/du x dp/dv points out.
+using Parametrisation = std::function<dvec3(double u, double v)>;
+
+// 2 * columns * rows triangles, less those that a pole makes degenerate. At most 2^16 vertices.
+Surface tessellate(int columns, int rows, const Parametrisation& point);
+
+Parametrisation ball(dvec3 center, double radius);
+
+// A disc of radius kTableRadius with a rounded edge, its top at y = 0:
+// (radius/R)^16 + (height/h)^16 = 1.
+Parametrisation tableTop();
+
+// Up the outside, over the lip and down the inside.
+Parametrisation vase(dvec3 foot);
+
+// A tube along the (2, 3) torus knot, standing upright, turned about its vertical (radians).
+Parametrisation knot(dvec3 center, double size, double tube, double turn);
+
+// |x|^6 + |y|^6 + |z|^6 = radius^6: a cube with soft edges, turned about its vertical (radians).
+Parametrisation softCube(dvec3 center, double radius, double turn);
+
+}  // namespace chromeball::demo

@@ -1,0 +1,175 @@
+#include "still_life.h"
+
+#include <filesystem>
+#include <numeric>
+
+#include "glb_writer.h"
+#include "image/write.h"
+#include "noise.h"
+#include "scene/camera.h"
+#include "shapes.h"
+
+namespace chromeball::demo {
+namespace {
+
+struct Object {
+  std::string name;
+  Surface surface;
+  Rgb color;
+  float metallic, roughness, glow;
+};
+
+std::vector<Object> stillLife() {
+  return {
+      {"table", tessellate(128, 24, tableTop()), {1, 1, 1}, 0, 0.38f, 0},
+      {"chrome ball",
+       tessellate(112, 56, ball({-0.3, 0.62, -0.1}, 0.62)),
+       {0.95f, 0.95f, 0.95f},
+       1,
+       0.02f,
+       0},
+      {"copper vase",
+       tessellate(72, 90, vase({-1.3, 0, -0.75})),
+       {0.93f, 0.52f, 0.36f},
+       1,
+       0.38f,
+       0},
+      {"golden knot",
+       tessellate(220, 26, knot({0.95, 0.6, -0.6}, 0.42, 0.13, 0.35)),
+       {1, 0.71f, 0.29f},
+       1,
+       0.22f,
+       0},
+      {"white ball",
+       tessellate(88, 44, ball({-1.05, 0.3, 0.62}, 0.3)),
+       {0.8f, 0.8f, 0.78f},
+       0,
+       1,
+       0},
+      {"red cube",
+       tessellate(96, 48, softCube({0.5, 0.27, 0.85}, 0.27, 0.5)),
+       {0.55f, 0.025f, 0.03f},
+       0,
+       0.12f,
+       0},
+      {"lantern",
+       tessellate(64, 32, ball({1.3, 0.17, 0.55}, 0.17)),
+       {0.8f, 0.6f, 0.4f},
+       0,
+       0.6f,
+       1},
+  };
+}
+
+// Everything without gloss, or `conductors` of a roughness that both renderers sample well.
+void makePlain(std::vector<Object>& objects, bool conductors) {
+  for (Object& object : objects) {
+    object.glow = 0;
+    object.roughness = conductors && object.metallic > 0 ? std::max(object.roughness, 0.2f) : 1;
+    object.metallic = conductors ? object.metallic : 0;
+  }
+  objects[0].color = {0.5f, 0.38f, 0.26f};  // the table, which has no texture here
+}
+
+// Planks along x: each with its own tone, grain stretched along it, dark joints between.
+Image wood(int size) {
+  Image image(size, size, 3);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const float px = 5.0f * float(x) / float(size), pz = 5.0f * float(y) / float(size) * 3;
+      const float plank = std::floor(pz), across = pz - plank;
+      const float warp = fractalNoise({0.7f * px + 17 * plank, 1.5f * pz, 3}, 3);
+      const float grain = fractalNoise({1.3f * px + 9 * plank, 16 * pz + 14 * warp, 7}, 4);
+      const float tone = 0.75f + 0.5f * valueNoise({plank * 7.3f, 0.5f, 0.5f});
+      const float joint = glm::smoothstep(0.0f, 0.03f, std::min(across, 1 - across));
+      const Rgb color = glm::mix(Rgb(0.115f, 0.055f, 0.027f), Rgb(0.36f, 0.2f, 0.105f), grain);
+      image.setRgb(x, y, color * tone * (0.25f + 0.75f * joint));
+    }
+  return image;
+}
+
+// glTF's componentType.
+constexpr int kUint16 = 5123, kFloat = 5126;
+
+int addMesh(GlbWriter& glb, const Object& object, int material) {
+  const Surface& s = object.surface;
+  const int positions = glb.accessor(s.positions, kFloat, "VEC3", s.positions.size());
+  vec3 low = s.positions[0], high = low;
+  for (const vec3& p : s.positions) low = glm::min(low, p), high = glm::max(high, p);
+  glb.root["accessors"][positions]["min"] = {low.x, low.y, low.z};
+  glb.root["accessors"][positions]["max"] = {high.x, high.y, high.z};
+  const json attributes = {
+      {"POSITION", positions},
+      {"NORMAL", glb.accessor(s.normals, kFloat, "VEC3", s.normals.size())},
+      {"TEXCOORD_0", glb.accessor(s.uvs, kFloat, "VEC2", s.uvs.size())},
+  };
+  const int triangles = glb.accessor(s.triangles, kUint16, "SCALAR", 3 * s.triangles.size());
+  glb.root["meshes"].push_back(
+      {{"primitives",
+        {{{"attributes", attributes}, {"indices", triangles}, {"material", material}}}}});
+  return int(glb.root["meshes"].size()) - 1;
+}
+
+int addMaterial(GlbWriter& glb, const Object& object, bool lambertian) {
+  json material = {{"name", object.name},
+                   {"pbrMetallicRoughness",
+                    {{"baseColorFactor", {object.color.x, object.color.y, object.color.z, 1}},
+                     {"metallicFactor", object.metallic},
+                     {"roughnessFactor", object.roughness}}}};
+  if (lambertian) material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  if (object.glow > 0) {
+    material["emissiveFactor"] = {1, 0.5, 0.18};
+    material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", object.glow}};
+  }
+  glb.root["materials"].push_back(material);
+  return int(glb.root["materials"].size()) - 1;
+}
+
+// Lays the picture of wood over the first material.
+void addWood(GlbWriter& glb) {
+  const auto file = std::filesystem::temp_directory_path() / "chromeball-demo-wood.png";
+  writeImage(file, wood(1024));
+  const int view = glb.view(readFile(file));
+  std::filesystem::remove(file);
+  glb.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
+  glb.root["textures"] = {{{"source", 0}}};
+  glb.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+}
+
+void addCamera(GlbWriter& glb) {
+  const Camera camera =
+      Camera::lookAt({0.3f, 1.3f, 5.4f}, {0.05f, 0.62f, 0}, {0, 1, 0}, glm::radians(29.0f));
+  const glm::quat q = glm::quat_cast(mat3(camera.right, camera.up, camera.back));
+  glb.root["cameras"] = {{{"name", "Front"},
+                          {"type", "perspective"},
+                          {"perspective", {{"yfov", camera.fov}, {"znear", 0.01}}}}};
+  glb.root["nodes"].push_back(
+      {{"name", "Front"},
+       {"camera", 0},
+       {"translation", {camera.position.x, camera.position.y, camera.position.z}},
+       {"rotation", {q.x, q.y, q.z, q.w}}});
+}
+
+}  // namespace
+
+void writeStillLife(const std::string& path, Finish finish) {
+  std::vector<Object> objects = stillLife();
+  if (finish != Finish::Demo) makePlain(objects, finish == Finish::Conductors);
+
+  GlbWriter glb;
+  for (const Object& object : objects) {
+    const bool lambertian = finish != Finish::Demo && object.metallic == 0;
+    const int mesh = addMesh(glb, object, addMaterial(glb, object, lambertian));
+    glb.root["nodes"].push_back({{"name", object.name}, {"mesh", mesh}});
+  }
+  if (finish == Finish::Demo) addWood(glb);
+  addCamera(glb);
+
+  std::vector<int> nodes(glb.root["nodes"].size());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  glb.root["scenes"] = {{{"nodes", nodes}}};
+  glb.root["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_emissive_strength"};
+  glb.write(path);
+}
+
+}  // namespace chromeball::demo

@@ -1,0 +1,17 @@
+// The demo's model: six objects on a round table.
+#pragma once
+
+#include <string>
+
+namespace chromeball::demo {
+
+enum class Finish {
+  Demo,        // metals, plastic, wood, a lantern that glows
+  Lambertian,  // all diffuse: what any two renderers can agree on
+  Conductors,  // diffuse, but for three metals of roughness 0.2 and more
+};
+
+// A .glb of some 66,000 triangles with a camera named Front. Throws RunError.
+void writeStillLife(const std::string& path, Finish finish);
+
+}  // namespace chromeball::demo

@@ -1,0 +1,14 @@
+#include "commands.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+
+void addProbeCommand(CLI::App& app) {
+  CLI::App* probe = app.add_subcommand("probe", "Look at, convert and make light probes.");
+  probe->require_subcommand(1);
+  addProbeInfoCommand(*probe);
+  addProbeConvertCommand(*probe);
+  addProbeSynthCommand(*probe);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,120 @@
+#include "render_job.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "arguments.h"
+#include "image/write.h"
+#include "math/error.h"
+#include "math/suggest.h"
+
+namespace chromeball {
+namespace {
+
+// Where only the time or the noise limits a render.
+constexpr int kEndless = 1 << 30;
+
+SceneFile openScene(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+  if (extension == ".toml") return readSceneFile(path);
+  if (extension != ".gltf" && extension != ".glb")
+    throwInput("{}: not a scene; give a scene file (.toml) or a model (.gltf, .glb)", path);
+  SceneFile file;
+  file.models.push_back({path, {}});
+  return file;
+}
+
+void overlay(std::optional<NamedSetting>& setting, const std::optional<std::string>& option,
+             const char* place) {
+  if (option) setting = NamedSetting{*option, place};
+}
+
+template <class T>
+void overlay(std::optional<T>& setting, const std::optional<T>& option) {
+  if (option) setting = option;
+}
+
+Mis parseMis(const NamedSetting& setting) {
+  if (setting.name == "off") return Mis::Off;
+  if (setting.name == "balance") return Mis::Balance;
+  if (setting.name == "power") return Mis::Power;
+  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+             didYouMean(setting.name, {"off", "balance", "power"}));
+}
+
+template <class T>
+void require(bool valid, const char* option, T given, const char* expected) {
+  if (!valid) throwInput("{}: {} is not {}", option, given, expected);
+}
+
+void checkRanges(const RenderOptions& o) {
+  if (o.samples) require(*o.samples >= 1, "--samples", *o.samples, "1 or more");
+  if (o.maxDepth) require(*o.maxDepth >= 0, "--max-depth", *o.maxDepth, "0 or more");
+  if (o.time) require(*o.time > 0 && std::isfinite(*o.time), "--time", *o.time, "above 0 seconds");
+  if (o.noise)
+    require(*o.noise > 0 && std::isfinite(*o.noise), "--noise", *o.noise, "above 0 percent");
+  if (o.scale)
+    require(*o.scale >= 0 && std::isfinite(*o.scale), "--probe-scale", *o.scale, "0 or more");
+  if (o.rotation)
+    require(std::isfinite(*o.rotation), "--probe-rotation", *o.rotation, "a finite angle");
+  require(std::isfinite(o.exposure), "--exposure", o.exposure, "a finite number of stops");
+  require(o.threads >= 0, "--threads", o.threads, "0 (all) or more");
+}
+
+}  // namespace
+
+RenderJob planJob(const RenderOptions& o) {
+  checkRanges(o);
+  RenderJob job;
+  SceneFile& file = job.file = openScene(o.scene);
+  if (o.camera) file.camera.reset();
+  overlay(file.cameraName, o.camera, "--camera");
+  overlay(file.probe, o.probe);
+  overlay(file.probeMapping, o.mapping, "--probe-mapping");
+  overlay(file.probeRotation, o.rotation);
+  overlay(file.probeScale, o.scale);
+  overlay(file.strategy, o.strategy, "--strategy");
+  overlay(file.mis, o.mis, "--mis");
+  if (o.samples || o.time || o.noise) {  // how long to render is one decision
+    file.samples = o.samples;
+    file.timeLimit = o.time;
+    file.noiseLimit = o.noise;
+  }
+  overlay(file.maxDepth, o.maxDepth);
+  overlay(file.seed, o.seed);
+
+  job.size = file.size;
+  if (o.size) {
+    const ImageSize size = parseSize(*o.size);
+    job.size = SceneFile::Size{size.width, size.height};
+  }
+  job.strategy = file.strategy.value_or(NamedSetting{"auto", "--strategy"});
+  job.outputs = o.outputs.empty() ? file.outputs : o.outputs;
+  if (job.outputs.empty())
+    throwInput("{}: nowhere to write the picture; give --output FILE", o.scene);
+  for (const std::string& output : job.outputs) checkWritable(output);
+  job.display = {parseToneOperator(o.tonemap), o.exposure};
+
+  RenderSettings& settings = job.settings;
+  settings.timeLimit = file.timeLimit;
+  if (file.noiseLimit) settings.noiseLimit = *file.noiseLimit / 100;
+  const bool limited = file.timeLimit || file.noiseLimit;
+  settings.samples = file.samples.value_or(limited ? kEndless : settings.samples);
+  settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
+  settings.seed = file.seed.value_or(0);
+  settings.hideProbe = o.transparent;
+  if (file.mis) settings.mis = parseMis(*file.mis);
+  std::vector<NamedSetting> aovs = file.aovs;
+  if (!o.aovs.empty()) {
+    aovs.clear();
+    for (const std::string& name : o.aovs) aovs.push_back({name, "--aov"});
+  }
+  for (const NamedSetting& aov : aovs) settings.aovs.push_back(aovFromName(aov.name, aov.place));
+  if (settings.hideProbe && std::count(settings.aovs.begin(), settings.aovs.end(), Aov::Alpha) == 0)
+    settings.aovs.push_back(Aov::Alpha);
+  return job;
+}
+
+}  // namespace chromeball

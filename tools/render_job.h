@@ -1,0 +1,42 @@
+// What one render is to do: the command line laid over the scene file, laid over the defaults.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/tonemap.h"
+#include "integrate/render.h"
+#include "scene/scene_file.h"
+
+namespace chromeball {
+
+// The options of `chromeball render` as they were given.
+struct RenderOptions {
+  std::string scene;
+  std::vector<std::string> outputs, aovs;
+  std::optional<std::string> probe, mapping, strategy, mis, camera, size;
+  std::optional<float> rotation, scale;
+  std::optional<int> samples, maxDepth;
+  std::optional<double> time, noise;
+  std::optional<uint64_t> seed;
+  int threads = 0;
+  std::string stats;
+  bool progress = false, quiet = false, transparent = false;
+  std::string tonemap = "none";
+  float exposure = 0;
+};
+
+struct RenderJob {
+  SceneFile file;               // models, camera, probe
+  RenderSettings settings;      // but for the size, which the camera may decide
+  std::optional<SceneFile::Size> size;
+  NamedSetting strategy;
+  std::vector<std::string> outputs;
+  DisplayTransform display;
+};
+
+// Throws InputError for whatever the options or the scene file get wrong, before any work is done.
+RenderJob planJob(const RenderOptions& options);
+
+}  // namespace chromeball
