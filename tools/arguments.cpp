@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "math/error.h"
+#include "image/limits.h"
 
 namespace chromeball {
 namespace {
@@ -31,8 +31,10 @@ ImageSize parseSize(std::string_view text, std::string_view option) {
   ImageSize size{};
   std::string_view rest = text;
   if (takeNumber(rest, size.width) && takeLetter(rest, 'x') && takeNumber(rest, size.height) &&
-      rest.empty() && inRange(size.width) && inRange(size.height))
+      rest.empty() && inRange(size.width) && inRange(size.height)) {
+    checkImageSize(option, size.width, size.height, 3);
     return size;
+  }
   throwInput("{}: `{}` should be WIDTHxHEIGHT, each 1 to {}, as in 1024x512", option, text,
              kLargest);
 }

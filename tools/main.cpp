@@ -21,19 +21,22 @@ int report(int status, std::string message) {
   return status;
 }
 
-const CLI::App& deepestSubcommand(const CLI::App& app) {
-  const auto parsed = app.get_subcommands();
-  return parsed.empty() ? app : deepestSubcommand(*parsed.front());
+// The subcommands that were named, outermost first; at least the program itself.
+std::vector<const CLI::App*> namedCommands(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty())
+    commands.push_back(commands.back()->get_subcommands().front());
+  return commands;
 }
 
 // CLI11's error as one of ours; where a word was not understood, with the nearest that would be.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App& command = deepestSubcommand(app);
+  const std::vector<const CLI::App*> commands = namedCommands(app);
+  const CLI::App& command = *commands.back();
+  std::string help = "see `";
+  for (const CLI::App* named : commands) help += named->get_name() + " ";
+  help += "--help`";
   const std::vector<std::string> unknown = app.remaining(true);
-  const std::string help = fmt::format(
-      "see `{} --help`", command.get_display_name() == app.get_name()
-                             ? app.get_name()
-                             : fmt::format("{} {}", app.get_name(), command.get_display_name()));
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
   const std::string& word = unknown.front();

@@ -1,102 +1,130 @@
-"""Renders one picture with Cycles. Runs inside Blender 3.4:
-blender --background --factory-startup --python versus_cycles.py -- MODEL.glb PROBE.exr OUT.exr
-        WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
+"""Error and time of chromeball and of Cycles for the same picture; see versus_cycles.sh.
 
-The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1 for
-direct light. Materials are taken for what the glTF file says: Lambertian, or a conductor.
+relMSE is measured against a reference by the same renderer, so that a small difference between the
+two (a filter, a Fresnel term) does not count as noise; the table's last line says how far apart the
+references are. Only rendering is timed: no loading, no building of the BVH or of the probe's tables.
+With relMSE ~ 1/samples, relMSE x seconds does not depend on the number of samples, and the ratio of the
+two renderers' products says how many times longer one takes for the error of the other.
 """
+import argparse
+import hashlib
 import json
-import math
-import struct
-import sys
+import pathlib
+import re
+import statistics
+import subprocess
 
-import bpy
-import numpy
-
-# The importer of Blender 3.4 wants names that NumPy 1.24 has dropped.
-for alias, kind in {"bool": bool, "int": int, "float": float, "object": object}.items():
-    if alias not in numpy.__dict__:
-        setattr(numpy, alias, kind)
-
-model, probe, output, size, samples, seed, threads, depth = sys.argv[sys.argv.index("--") + 1:]
-width, height = (int(number) for number in size.split("x"))
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+WORK = ROOT / "build" / "versus"
+CHROMEBALL = ROOT / "build" / "chromeball"
+SCENES = ("lambertian", "conductors")
 
 
-def gltf_json(path):
-    with open(path, "rb") as file:
-        file.seek(12)
-        (length,) = struct.unpack("<I4x", file.read(8))
-        return json.loads(file.read(length))
+def arguments():
+    parser = argparse.ArgumentParser(prog="versus_cycles.sh", description=__doc__.split("\n")[0])
+    parser.add_argument("--probe", type=pathlib.Path, default=ROOT / "probes" / "dusk.exr",
+                        help="a lat-long map (make one with chromeball probe convert)")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=SCENES)
+    parser.add_argument("--size", default="320x240")
+    parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--reference-samples", type=int, default=16384)
+    parser.add_argument("--depth", type=int, default=5, help="scattering events")
+    parser.add_argument("--seeds", type=int, default=5, help="pictures by each renderer")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--strategy", default="auto", help="chromeball's")
+    return parser.parse_args()
 
 
-def import_model():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
-    bpy.ops.preferences.addon_enable(module="cycles")
-    bpy.ops.import_scene.gltf(filepath=model)
-    camera = next(thing for thing in bpy.data.objects if thing.type == "CAMERA")
-    camera.data.sensor_fit = "VERTICAL"
-    camera.data.angle_y = gltf_json(model)["cameras"][0]["perspective"]["yfov"]
-    bpy.context.scene.camera = camera
+def run(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{command[0]} failed:\n{done.stdout}{done.stderr}")
+    return done.stdout
 
 
-def replace_materials():
-    """Principled's diffuse lobe is not Lambert's; its metal is GGX with a Fresnel term."""
-    for material in bpy.data.materials:
-        nodes, links = material.node_tree.nodes, material.node_tree.links
-        principled = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
-        if principled.inputs["Metallic"].default_value > 0:
-            principled.distribution = "MULTI_GGX"
-            continue
-        diffuse = nodes.new("ShaderNodeBsdfDiffuse")
-        diffuse.inputs["Color"].default_value = principled.inputs["Base Color"].default_value
-        diffuse.inputs["Roughness"].default_value = 0
-        surface = next(node for node in nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
-        links.new(diffuse.outputs["BSDF"], surface)
+class Chromeball:
+    name = "chromeball"
+
+    @staticmethod
+    def render(options, model, output, samples, seed):
+        """Returns the seconds of rendering."""
+        stats = output.with_suffix(".json")
+        run(CHROMEBALL, "render", model, "--probe", options.probe, "--probe-mapping", "lat-long",
+            "--size", options.size, "--samples", samples, "--max-depth", options.depth,
+            "--strategy", options.strategy, "--seed", seed, "--threads", options.threads,
+            "--stats", stats, "--quiet", "-o", output)
+        return json.loads(stats.read_text())["seconds"]["render"]
 
 
-def light_with_probe():
-    world = bpy.data.worlds.new("probe")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    nodes, links = world.node_tree.nodes, world.node_tree.links
-    texture = nodes.new("ShaderNodeTexEnvironment")
-    texture.image = bpy.data.images.load(probe)
-    texture.image.colorspace_settings.name = "Non-Color"  # linear, as it is
-    # Blender's map has +X in its centre; glTF's -Z is Blender's +Y.
-    turn = nodes.new("ShaderNodeMapping")
-    turn.vector_type = "POINT"
-    turn.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
-    links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], turn.inputs["Vector"])
-    links.new(turn.outputs["Vector"], texture.inputs["Vector"])
-    links.new(texture.outputs["Color"], nodes["Background"].inputs["Color"])
+class Cycles:
+    name = "Cycles"
+
+    @staticmethod
+    def render(options, model, output, samples, seed):
+        """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
+        log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1, "--python",
+                  ROOT / "tools" / "cycles_picture.py", "--", model, options.probe, output,
+                  options.size, samples, seed, options.threads, options.depth)
+        clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
+        times = {}
+        for hours, minutes, seconds, event in clock.findall(log):
+            times[event] = 3600 * int(hours or 0) + 60 * int(minutes) + float(seconds)
+        return times["Finished"] - times["Sample 0/"]
 
 
-def configure():
-    scene = bpy.context.scene
-    render, cycles = scene.render, scene.cycles
-    render.engine = "CYCLES"
-    cycles.device = "CPU"
-    render.threads_mode, render.threads = "FIXED", int(threads)
-    render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
-    render.film_transparent = False
-    cycles.samples, cycles.seed = int(samples), int(seed)
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type = "BOX"
-    bounces = int(depth) - 1  # Cycles counts those after the first
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
-    cycles.caustics_reflective = cycles.caustics_refractive = True
-    cycles.blur_glossy = 0
-    cycles.use_auto_tile = False
-    render.image_settings.file_format = "OPEN_EXR"
-    render.image_settings.color_depth = "32"
-    render.image_settings.color_mode = "RGB"
-    render.filepath = output
+def error(picture, reference):
+    return json.loads(run(CHROMEBALL, "image", "error", picture, reference, "--json"))
 
 
-import_model()
-replace_materials()
-light_with_probe()
-configure()
-bpy.ops.render.render(write_still=True)
+def reference(options, renderer, model):
+    """Rendered once for each model, probe and setting."""
+    key = hashlib.sha1(model.read_bytes() + options.probe.read_bytes() + repr(
+        (options.size, options.reference_samples, options.depth)).encode()).hexdigest()[:12]
+    path = WORK / f"reference-{renderer.name}-{model.stem}-{key}.exr"
+    if not path.exists():
+        print(f"rendering {path.name}", flush=True)
+        partial = path.with_suffix(".part.exr")
+        renderer.render(options, model, partial, options.reference_samples, 1_000_003)
+        partial.rename(path)
+    return path
+
+
+def compare(options, scene):
+    model = WORK / f"{scene}.glb"
+    run(ROOT / "build" / "make_demo", scene, model)
+    renderers = (Chromeball, Cycles)
+    references = {r: reference(options, r, model) for r in renderers}
+    errors, seconds = {r: [] for r in renderers}, {r: [] for r in renderers}
+    for seed in range(1, options.seeds + 1):
+        for r in renderers:  # in turns, so that a change of the machine's speed meets both
+            picture = WORK / f"{r.name}-{scene}.exr"
+            seconds[r].append(r.render(options, model, picture, options.samples, seed))
+            errors[r].append(error(picture, references[r])["relmse"])
+
+    width, height = map(int, options.size.split("x"))
+    print(f"\n{scene}: {options.probe.name}, {options.size}, {options.samples} samples a pixel, "
+          f"depth {options.depth}, {options.threads} threads, {options.seeds} seeds, "
+          f"references of {options.reference_samples} samples")
+    print(f"{'':12}{'relMSE':>12}{'seconds':>10}{'Msamples/s':>12}{'relMSE x s':>12}")
+    product = {}
+    for r in renderers:
+        mean_error, median_seconds = statistics.mean(errors[r]), statistics.median(seconds[r])
+        product[r] = mean_error * median_seconds
+        rate = width * height * options.samples / median_seconds / 1e6
+        print(f"{r.name:12}{mean_error:12.3e}{median_seconds:10.2f}{rate:12.2f}{product[r]:12.3e}")
+    apart = error(references[Chromeball], references[Cycles])
+    print(f"Cycles takes {product[Cycles] / product[Chromeball]:.2f} times as long for the same error. "
+          f"References differ by {100 * apart['bias']:+.3f}% in their means, "
+          f"relMSE {apart['relmse']:.2e}.", flush=True)
+
+
+def main():
+    options = arguments()
+    options.probe = options.probe.resolve()
+    WORK.mkdir(parents=True, exist_ok=True)
+    print(run("blender", "--version").splitlines()[0], "and", run(CHROMEBALL, "--version").strip())
+    for scene in options.scenes:
+        compare(options, scene)
+
+
+main()

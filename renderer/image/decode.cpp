@@ -7,6 +7,7 @@
 #include <memory>
 #include <string_view>
 
+#include "image/quiet.h"
 #include "math/error.h"
 
 namespace chromeball {
@@ -21,6 +22,8 @@ bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at
          std::equal(magic.begin(), magic.end(), file.begin() + at,
                     [](char a, uint8_t b) { return uint8_t(a) == b; });
 }
+
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 // The file name extension that leads OpenImageIO to the right reader. The content decides, since
 // models often label their images wrongly.
@@ -54,7 +57,7 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
   const int channels = std::min(spec.nchannels, 4);
   std::vector<Texel> texels(size_t(spec.width) * size_t(spec.height));
   if (!input.read_image(0, 0, 0, channels, type, texels.data(), sizeof(Texel)))
-    throwInput("{}: damaged image: {}", name, input.geterror());
+    throwInput("{}: damaged image: {}", name, firstLine(input.geterror()));
   if (channels == 4) return texels;
   for (Texel& t : texels) {
     if (channels == 3) t[3] = opaque;
@@ -68,13 +71,14 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
   const char* format = formatOf(file, name);
+  const QuietStandardError quiet;
   OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());
   ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   OIIO::Filesystem::IOProxy* proxy = &memory;
   config.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
   const std::unique_ptr<ImageInput> input = ImageInput::open(format, &config, proxy);
-  if (!input) throwInput("{}: damaged image: {}", name, OIIO::geterror());
+  if (!input) throwInput("{}: damaged image: {}", name, firstLine(OIIO::geterror()));
   checkSize(input->spec(), file.size(), name);
 
   DecodedImage image;

@@ -9,6 +9,7 @@
 #include "image/file.h"
 #include "image/limits.h"
 #include "image/pfm.h"
+#include "image/quiet.h"
 #include "image/radiance_hdr.h"
 #include "image/tonemap.h"
 
@@ -17,15 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string oneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
-// OpenImageIO's message about `path`, as one of ours. Its messages may hold the path themselves.
-[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+// OpenImageIO's message about `path`, as one line of ours. What its message says up to the path is
+// said by ours; a damaged file's names may hold anything.
+[[noreturn]] void fail(const fs::path& path, std::string reason) {
+  const size_t repeated = reason.rfind(path.string());
+  if (repeated != std::string::npos) reason.erase(0, repeated + path.string().size());
+  reason.erase(0, reason.find_first_not_of("\". "));
+  for (char& c : reason)
+    if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
   throwInput("{}: cannot be read: {}", path.string(),
-             reason.empty() ? "damaged, or of an unknown format" : oneLine(reason));
+             reason.empty() ? "damaged, or of an unknown format" : reason);
 }
 
 std::string firstBytes(const fs::path& path) {
@@ -107,6 +109,7 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
   try {
+    const QuietStandardError quiet;
     return readThroughLibrary(path, integers);
   } catch (const InputError&) {
     throw;

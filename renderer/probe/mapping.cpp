@@ -66,9 +66,14 @@ dvec2 directionToCube(Mapping mapping, const dvec3& d) {
         return glm::dot(a.forward, d) < glm::dot(b.forward, d);
       });
   const double depth = glm::dot(face.forward, d);
+  // Neighbours in the image need not be neighbours on the cube: a direction on an edge stays inside
+  // the face that was chosen, whatever rounding does.
+  constexpr double kInside = 1e-14;
+  const auto inFace = [&](const dvec3& axis) {
+    return std::clamp(0.5 * (1 + glm::dot(axis, d) / depth), kInside, 1 - kInside);
+  };
   const auto [columns, rows] = faceLayout(mapping);
-  return {(face.column + 0.5 * (1 + glm::dot(face.right(), d) / depth)) / columns,
-          (face.row + 0.5 * (1 - glm::dot(face.up, d) / depth)) / rows};
+  return {(face.column + inFace(face.right())) / columns, (face.row + inFace(-face.up)) / rows};
 }
 
 std::optional<dvec3> cubeToDirection(Mapping mapping, const dvec2& uv) {
@@ -123,15 +128,15 @@ Layout faceLayout(Mapping mapping) {
 }
 
 dvec2 directionToUv(Mapping mapping, const dvec3& d) {
-  const double fromY = std::atan2(std::hypot(d.x, d.z), d.y);
-  const double fromCentre = std::atan2(std::hypot(d.x, d.y), -d.z);
+  const auto fromCentre = [&] { return std::atan2(std::hypot(d.x, d.y), -d.z); };
   switch (mapping) {
     case Mapping::LatLong:
-      return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD), fromY / kPiD};
+      return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD),
+              std::atan2(std::hypot(d.x, d.z), d.y) / kPiD};
     case Mapping::AngularMap:
-      return discUv(d.x, d.y, fromCentre / kPiD);
+      return discUv(d.x, d.y, fromCentre() / kPiD);
     case Mapping::MirrorBall:
-      return discUv(d.x, d.y, std::sin(0.5 * fromCentre));
+      return discUv(d.x, d.y, std::sin(0.5 * fromCentre()));
     default:
       return directionToCube(mapping, d);
   }

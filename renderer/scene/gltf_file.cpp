@@ -92,6 +92,12 @@ int fillGaps(json& root) {
 
 }  // namespace
 
+std::string oneLine(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  return text;
+}
+
 GltfFile::GltfFile(const std::string& path, Warn warn) : path_(path), warn_(std::move(warn)) {
   try {
     file_ = readWholeFile(path);
@@ -142,7 +148,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
     buffers_.push_back(bytes.first(std::min<uint64_t>(length, bytes.size())));
     total += buffers_.back().size();
   }
-  budget_ = (uint64_t(1) << 30) + 256 * total;
+  budget_ = (uint64_t(1) << 27) + 256 * total;
 }
 
 void GltfFile::readModel(json& root) {
@@ -183,7 +189,7 @@ std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {
 std::string GltfFile::describeImage(int index) const {
   const std::string& uri = images[size_t(index)].uri;
   const bool named = !uri.empty() && !uri.starts_with("data:");
-  return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + uri + ")" : "");
+  return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
 }
 
 Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const {
@@ -205,7 +211,7 @@ Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const 
 }
 
 void GltfFile::warnOnce(const std::string& what) {
-  if (said_.insert(what).second && warn_) warn_(path_ + ": " + what);
+  if (said_.insert(what).second && warn_) warn_(path_ + ": " + oneLine(what));
 }
 
 void GltfFile::spend(uint64_t bytes) {

@@ -23,6 +23,9 @@ struct ImageSource {
   std::string uri;
 };
 
+// A string of the file made fit for a message: control characters become '?'.
+std::string oneLine(std::string text);
+
 class GltfFile {
  public:
   // Reads the file and its buffers. Throws InputError where it is not glTF 2.0, requires an
@@ -51,7 +54,7 @@ class GltfFile {
 
   template <class... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    throw InputError(path_ + ": " + fmt::format(format, std::forward<Args>(args)...));
+    throw InputError(path_ + ": " + oneLine(fmt::format(format, std::forward<Args>(args)...)));
   }
 
   // Says a warning, the same one only once.

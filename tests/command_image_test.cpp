@@ -1,0 +1,136 @@
+// chromeball image error and view.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/read.h"
+#include "image/write.h"
+#include "run_command.h"
+#include "shared_data.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+Image filled(int w, int h, int channels, float number) {
+  Image image(w, h, channels);
+  std::fill(image.texels.begin(), image.texels.end(), number);
+  return image;
+}
+
+CommandResult run(const std::vector<std::string>& arguments) {
+  CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 0) << result.error;
+  return result;
+}
+
+TEST(CommandImage, ErrorInNumbers) {
+  const TemporaryFolder folder;
+  writeImage(folder / "a.exr", filled(4, 3, 3, 1.5f));
+  writeImage(folder / "b.pfm", filled(4, 3, 3, 1));
+  const json error =
+      json::parse(run({"image", "error", folder / "a.exr", folder / "b.pfm", "--json"}).out);
+  EXPECT_EQ(error["mse"], 0.25);
+  EXPECT_EQ(error["bias"], 0.5);
+  EXPECT_EQ(error["max_difference"], 0.5);
+  EXPECT_NEAR(double(error["relmse"]), 0.25 / 1.01, 1e-9);
+  EXPECT_FALSE(error.contains("z"));
+  EXPECT_NE(
+      run({"image", "error", folder / "a.exr", folder / "b.pfm"}).out.find("mse             0.25"),
+      std::string::npos);
+  const json same =
+      json::parse(run({"image", "error", folder / "a.exr", folder / "a.exr", "--json"}).out);
+  EXPECT_EQ(same["mse"], 0.0);
+  EXPECT_TRUE(same["psnr"].is_null());
+}
+
+TEST(CommandImage, ErrorInSigmas) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, float radiance, float variance) {
+    writeImage(folder / name, OutputImage{{{"", "RGB", filled(4, 3, 3, radiance)},
+                                           {"variance", "RGB", filled(4, 3, 3, variance)}},
+                                          {}});
+  };
+  write("a.exr", 1.5f, 0.01f);
+  write("b.exr", 1, 0.0025f);
+  const json z =
+      json::parse(run({"image", "error", folder / "a.exr", folder / "b.exr", "--json"}).out)["z"];
+  EXPECT_EQ(z["count"], 36);
+  EXPECT_NEAR(double(z["mean"]), 0.5 / std::sqrt(0.0125), 1e-5);
+  EXPECT_EQ(z["beyond_3_sigma"], 1.0);
+}
+
+TEST(CommandImage, ViewAppliesExposureAndTransfer) {
+  const TemporaryFolder folder;
+  writeImage(folder / "a.exr", filled(2, 2, 3, 0.125f));
+  run({"image", "view", folder / "a.exr", folder / "a.png", "--exposure", "2"});
+  EXPECT_NEAR(readImage(folder / "a.png").rgb(1, 1).x, 0.5f, 0.004f);
+  for (const char* tone : {"none", "reinhard", "aces", "neutral", "filmic"})
+    run({"image", "view", folder / "a.exr", folder / "a.png", "--tonemap", tone});
+}
+
+TEST(CommandImage, ViewShowsLayers) {
+  const TemporaryFolder folder;
+  Image depth(2, 1, 1), normal(2, 1, 3);
+  depth.texels = {2, 1e10f};
+  normal.setRgb(0, 0, Rgb(0, 1, 0));
+  const std::string path = folder / "a.exr", png = folder / "a.png";
+  writeImage(
+      path,
+      OutputImage{
+          {{"", "RGB", filled(2, 1, 3, 1)}, {"depth", "Z", depth}, {"normal", "XYZ", normal}}, {}});
+  run({"image", "view", path, png, "--layer", "depth"});
+  EXPECT_EQ(readImage(png).rgb(0, 0), Rgb(1));
+  EXPECT_EQ(readImage(png).rgb(1, 0), Rgb(0));
+  run({"image", "view", path, png, "--layer", "normal"});
+  EXPECT_NEAR(readImage(png).rgb(0, 0).x, 0.5f, 0.004f);
+  EXPECT_EQ(readImage(png).rgb(0, 0).y, 1);
+  expectRefused({"image", "view", path, png, "--layer", "dept"}, "`depth`");
+}
+
+TEST(CommandImage, BadInputIsRefused) {
+  const TemporaryFolder folder;
+  const std::string a = folder / "a.exr", png = folder / "a.png";
+  writeImage(a, filled(2, 2, 3, 1));
+  writeImage(folder / "b.exr", filled(3, 2, 3, 1));
+  expectRefused({"image", "error", a, folder / "b.exr"}, "one size");
+  expectRefused({"image", "error", a}, "B");
+  expectRefused({"image", "error", a, folder / "none.exr"}, "no such file");
+  expectRefused({"image", "view", a, folder / "a.gif"}, ".png");
+  expectRefused({"image", "view", a, png, "--tonemap", "reinhart"}, "`reinhard`");
+  expectRefused({"image", "view", a, png, "--exposure", "nan"}, "--exposure");
+  expectRefused({"image", "view", a, png, "--layer", "depth"}, "depth");
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "b.exr"}));
+}
+
+// Files from fuzzers: shown or refused with one line, never a crash, never half an output.
+TEST(SlowCommandImage, DamagedFilesAreShownOrRefused) {
+  const auto root = sharedData("bad/images");
+  if (!root) GTEST_SKIP() << "no bad/images";
+  const TemporaryFolder folder;
+  int shown = 0, refused = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(*root)) {
+    if (!entry.is_regular_file()) continue;
+    const CommandResult result =
+        runCommand({"image", "view", entry.path().string(), folder / "v.png"});
+    const std::string& error = result.error;
+    if (result.status == 0) {
+      ++shown;
+      EXPECT_EQ(error, "") << entry.path();
+      EXPECT_EQ(folder.files(), std::vector<std::string>{"v.png"}) << entry.path();
+      std::filesystem::remove(folder / "v.png");
+    } else {
+      ++refused;
+      EXPECT_EQ(result.status, 2) << entry.path();
+      EXPECT_TRUE(error.starts_with("chromeball: " + entry.path().string() + ": ")) << error;
+      EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+      EXPECT_TRUE(folder.files().empty()) << entry.path();
+    }
+  }
+  EXPECT_GT(shown, 3);
+  EXPECT_GT(refused, 50);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,143 @@
+// chromeball probe info, convert and synth; and the command line's own errors.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+CommandResult run(const std::vector<std::string>& arguments) {
+  CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 0) << result.error;
+  return result;
+}
+
+TEST(Command, HelpAndVersionSucceed) {
+  EXPECT_TRUE(run({"--version"}).out.starts_with("chromeball "));
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"probe", "--help"},
+                                             {"probe", "info", "--help"},
+                                             {"probe", "convert", "--help"},
+                                             {"probe", "synth", "--help"},
+                                             {"image", "view", "--help"},
+                                             {"image", "error", "--help"},
+                                             {"render", "--help"}})
+    EXPECT_FALSE(run(arguments).out.empty());
+}
+
+TEST(Command, WrongWordsAreRefusedWithTheNearest) {
+  expectRefused({}, "subcommand is required");
+  expectRefused({"rendr"}, "`render`");
+  expectRefused({"prob", "info"}, "`probe`");
+  expectRefused({"probe", "inf", "x"}, "`info`");
+  expectRefused({"probe", "info", "x", "--jsn"}, "`--json`");
+  expectRefused({"probe", "info"}, "FILE");
+  expectRefused({"probe", "info", "a", "b"}, "`b`");
+  expectRefused({"probe", "synth", "sun-sky", "a.exr", "--turbidity", "much"}, "--turbidity");
+}
+
+TEST(CommandProbe, SynthInfoAgree) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "sun.exr";
+  run({"probe", "synth", "one-hot", path, "--size", "64x32", "--texel", "5,20", "--radiance",
+       "3e5,2e5,1e5"});
+  const json info = json::parse(run({"probe", "info", path, "--json"}).out);
+  EXPECT_EQ(info["width"], 64);
+  EXPECT_EQ(info["height"], 32);
+  EXPECT_EQ(info["mapping"], "lat-long");
+  EXPECT_EQ(info["mapping_guessed"], true);
+  EXPECT_EQ(info["max"][1], 2e5);
+  EXPECT_EQ(info["invalid_texels"]["nan"], 0);
+  EXPECT_EQ(info["suns"].size(), 1u);
+  EXPECT_EQ(info["brightest_shares"][0]["share"], 1.0);
+  EXPECT_NE(run({"probe", "info", path}).out.find("lat-long (guessed"), std::string::npos);
+  EXPECT_EQ(
+      json::parse(
+          run({"probe", "info", path, "--json", "--mapping", "lat-long"}).out)["mapping_guessed"],
+      false);
+}
+
+TEST(CommandProbe, InfoReportsInvalidTexels) {
+  const TemporaryFolder folder;
+  Image image = constantProbe({8, 4}, Rgb(1));
+  image.setRgb(2, 1, Rgb(std::nanf("")));
+  image.setRgb(3, 3, Rgb(-1));
+  writeImage(folder / "bad.exr", image);
+  const json info = json::parse(run({"probe", "info", folder / "bad.exr", "--json"}).out);
+  EXPECT_EQ(info["invalid_texels"]["nan"], 1);
+  EXPECT_EQ(info["invalid_texels"]["negative"], 1);
+  EXPECT_EQ(info["invalid_texels"]["first"], json({2, 1}));
+}
+
+TEST(CommandProbe, EveryKindInEveryFormat) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"constant", "one-hot", "gradient", "sun-sky", "overcast", "studio"})
+    for (const char* extension : {".exr", ".hdr", ".pfm", ".png"}) {
+      const std::string path = folder / (std::string(kind) + extension);
+      run({"probe", "synth", kind, path, "--size", "32x16"});
+      const Image image = readImage(path);
+      EXPECT_EQ(image.width, 32) << path;
+      EXPECT_EQ(image.height, 16) << path;
+    }
+}
+
+TEST(CommandProbe, ConvertThereAndBack) {
+  const TemporaryFolder folder;
+  run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
+  for (const char* to : {"angular", "mirror-ball", "cube-cross", "cube-strip", "lat-long"}) {
+    run({"probe", "convert", folder / "a.exr", folder / "b.exr", "--to", to});
+    run({"probe", "convert", folder / "b.exr", folder / "c.exr", "--from", to, "--to", "lat-long",
+         "--size", "64x32"});
+    const Image a = readImage(folder / "a.exr"), c = readImage(folder / "c.exr");
+    ASSERT_EQ(c.texels.size(), a.texels.size());
+    for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], c.texels[i], 0.03) << to;
+  }
+  run({"probe", "convert", folder / "a.exr", folder / "w.exr", "--to", "cube-cross", "--size",
+       "64x48"});
+  EXPECT_EQ(readImage(folder / "w.exr").width, 64);
+}
+
+TEST(CommandProbe, BadInputIsRefused) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "a.exr", out = folder / "b.exr";
+  writeImage(in, constantProbe({8, 4}, Rgb(1)));
+  std::ofstream(folder / "not.hdr") << "hello";
+  expectRefused({"probe", "info", folder / "none.exr"}, "no such file");
+  expectRefused({"probe", "info", folder / "not.hdr"}, "not.hdr");
+  expectRefused({"probe", "info", in, "--mapping", "angulr"}, "`angular`");
+  expectRefused({"probe", "info", in, "--mapping", "angular"}, "square");
+  expectRefused({"probe", "convert", in, out}, "--to");
+  expectRefused({"probe", "convert", in, out, "--to", "auto"}, "--to");
+  expectRefused({"probe", "convert", in, out, "--to", "cube"}, "cube-cross");
+  expectRefused({"probe", "convert", in, out, "--to", "auto", "--size", "8x4"}, "--to");
+  expectRefused({"probe", "convert", in, out, "--to", "angular", "--size", "8x4"}, "square");
+  expectRefused({"probe", "convert", in, out, "--to", "lat-long", "--size", "8"}, "--size");
+  expectRefused({"probe", "convert", in, out, "--to", "lat-long", "--rotation", "nan"},
+                "--rotation");
+  expectRefused({"probe", "convert", in, folder / "b.bmp", "--to", "lat-long"}, ".exr");
+  expectRefused({"probe", "convert", in, folder / "no/b.exr", "--to", "lat-long"}, "no folder");
+  expectRefused({"probe", "synth", "cloudy", out}, "known");
+  expectRefused({"probe", "synth", "constant", out, "--size", "0x4"}, "--size");
+  expectRefused({"probe", "synth", "constant", out, "--size", "65536x65536"}, "--size");
+  expectRefused({"probe", "synth", "constant", out, "--radiance", "1,2"}, "--radiance");
+  expectRefused({"probe", "synth", "constant", out, "--radiance", "1,2,-3"}, "--radiance");
+  expectRefused({"probe", "synth", "constant", out, "--radiance", "1,2,1e300"}, "--radiance");
+  expectRefused({"probe", "synth", "one-hot", out, "--size", "8x4", "--texel", "8,0"}, "--texel");
+  expectRefused({"probe", "synth", "one-hot", out, "--direction", "0,0,0"}, "--direction");
+  expectRefused({"probe", "synth", "gradient", out, "--slope", "1,1,1"}, "--slope");
+  expectRefused({"probe", "synth", "sun-sky", out, "--sun-elevation", "95"}, "--sun-elevation");
+  expectRefused({"probe", "synth", "sun-sky", out, "--turbidity", "50"}, "--turbidity");
+  expectRefused({"probe", "synth", "sun-sky", out, "--ground-albedo", "2"}, "--ground-albedo");
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "not.hdr"}));
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,185 @@
+// glTF materials, textures and the images behind them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf_writer.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+// A 2 x 1 RGB PNG: (255 0 0) (0 128 255).
+const std::vector<uint8_t> kPng = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7b,
+    0x40, 0xe8, 0xdd, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8,
+    0xcf, 0xc0, 0xc0, 0xd0, 0xf0, 0x1f, 0x00, 0x08, 0x00, 0x02, 0x7f, 0x9c, 0x45, 0x40, 0x4e,
+    0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+const std::vector<float> kUv = {0, 0, 1, 0, 0, 1};
+
+// A textured triangle with the given material.
+Scene loadWith(GltfWriter& w, const json& material) {
+  w.write("a.png", kPng);
+  w.root["images"] = {{{"uri", "a.png"}}};
+  w.root["textures"] = {{{"source", 0}}, {{"source", 0}, {"sampler", 0}}};
+  w.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  w.root["materials"] = {material};
+  addTriangle(w, {{"material", 0},
+                  {"attributes",
+                   {{"TEXCOORD_0", w.vec2s(kUv)},
+                    {"TEXCOORD_1", w.vec2s({5, 5, 6, 5, 5, 6})},
+                    {"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}});
+  return w.load();
+}
+
+TEST(GltfMaterial, DefaultsWithoutOne) {
+  GltfWriter w;
+  addTriangle(w);
+  const Scene scene = w.load();
+  ASSERT_EQ(scene.materials.size(), 1u);
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.baseColor, vec4(1));
+  EXPECT_EQ(m.metallic, 1);
+  EXPECT_EQ(m.roughness, 1);
+  EXPECT_EQ(m.ior, 1.5f);
+  EXPECT_FALSE(m.baseColorTexture);
+}
+
+TEST(GltfMaterial, FactorsAndExtensions) {
+  GltfWriter w;
+  const Material m =
+      loadWith(w, {{"name", "paint"},
+                   {"pbrMetallicRoughness",
+                    {{"baseColorFactor", {.1, .2, .3, .4}},
+                     {"metallicFactor", .5},
+                     {"roughnessFactor", .25}}},
+                   {"emissiveFactor", {1, .5, 0}},
+                   {"alphaMode", "MASK"},
+                   {"alphaCutoff", .75},
+                   {"doubleSided", true},
+                   {"extensions",
+                    {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                     {"KHR_materials_ior", {{"ior", 1.33}}},
+                     {"KHR_materials_specular",
+                      {{"specularFactor", .5}, {"specularColorFactor", {1, 2, .5}}}}}}})
+          .materials[0];
+  EXPECT_EQ(m.name, "paint");
+  EXPECT_EQ(m.baseColor, vec4(.1f, .2f, .3f, .4f));
+  EXPECT_EQ(m.metallic, .5f);
+  EXPECT_EQ(m.roughness, .25f);
+  EXPECT_EQ(m.emission, Rgb(8, 4, 0));
+  EXPECT_EQ(m.alphaMode, AlphaMode::Mask);
+  EXPECT_EQ(m.alphaCutoff, .75f);
+  EXPECT_TRUE(m.doubleSided);
+  EXPECT_EQ(m.ior, 1.33f);
+  EXPECT_EQ(m.specular, .5f);
+  EXPECT_EQ(m.specularColor, Rgb(1, 2, .5f));
+}
+
+TEST(GltfMaterial, OneImageServesBothEncodings) {
+  GltfWriter w;
+  const Scene scene = loadWith(
+      w, {{"pbrMetallicRoughness",
+           {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 0}}}}}});
+  EXPECT_EQ(scene.grids.size(), 1u);
+  ASSERT_EQ(scene.textures.size(), 2u);
+  const Material& m = scene.materials[0];
+  const Texture& color = scene.textures[size_t(m.baseColorTexture.texture)];
+  const Texture& linear = scene.textures[size_t(m.metallicRoughnessTexture.texture)];
+  const vec2 right{0.75f, 0.5f};
+  EXPECT_NEAR(color.lookup(right).y, std::pow((128 / 255. + 0.055) / 1.055, 2.4), 1e-6);
+  EXPECT_NEAR(linear.lookup(right).y, 128 / 255., 1e-6);
+  EXPECT_EQ(linear.lookup(right).w, 1);
+  EXPECT_EQ(linear.wrapS, Wrap::Repeat);
+}
+
+TEST(GltfMaterial, SamplersAndTransforms) {
+  GltfWriter w;
+  const Scene scene = loadWith(w, {{"emissiveFactor", {1, 1, 1}},
+                                   {"emissiveTexture",
+                                    {{"index", 1},
+                                     {"extensions",
+                                      {{"KHR_texture_transform",
+                                        {{"offset", {10, 20}},
+                                         {"rotation", M_PI / 2},
+                                         {"scale", {2, 3}},
+                                         {"texCoord", 1}}}}}}}});
+  const TextureSlot& slot = scene.materials[0].emissiveTexture;
+  EXPECT_EQ(slot.uvSet, 1);
+  // Scale, then a quarter turn counter-clockwise as seen (v points down), then the offset.
+  const vec2 u = slot.transform({1, 0}), v = slot.transform({0, 1});
+  EXPECT_NEAR(glm::distance(u, vec2(10, 18)), 0, 1e-5f);
+  EXPECT_NEAR(glm::distance(v, vec2(13, 20)), 0, 1e-5f);
+  const Texture& texture = scene.textures[size_t(slot.texture)];
+  EXPECT_EQ(texture.wrapS, Wrap::ClampToEdge);
+  EXPECT_EQ(texture.wrapT, Wrap::MirroredRepeat);
+  EXPECT_EQ(texture.filter, Filter::Nearest);
+  EXPECT_TRUE(texture.srgb);
+  // Only the set that the material reads is kept.
+  const Mesh& mesh = scene.meshes[0];
+  ASSERT_EQ(mesh.uvs.size(), 2u);
+  EXPECT_TRUE(mesh.uvs[0].empty());
+  EXPECT_EQ(mesh.uvs[1][1], vec2(6, 5));
+}
+
+TEST(GltfMaterial, UnlitKeepsOnlyItsColour) {
+  GltfWriter w;
+  const Scene scene = loadWith(w, {{"normalTexture", {{"index", 0}}},
+                                   {"emissiveFactor", {1, 1, 1}},
+                                   {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  EXPECT_TRUE(scene.materials[0].unlit);
+  EXPECT_TRUE(isBlack(scene.materials[0].emission));
+  EXPECT_TRUE(scene.textures.empty());
+}
+
+TEST(GltfMaterial, TangentsOnlyForNormalMaps) {
+  GltfWriter plain;
+  EXPECT_TRUE(loadWith(plain, {{"name", "plain"}}).meshes[0].tangents.empty());
+  GltfWriter mapped;
+  const Mesh mesh = loadWith(mapped, {{"normalTexture", {{"index", 0}}}}).meshes[0];
+  ASSERT_EQ(mesh.tangents.size(), 3u);
+  // v points down the image and here up the triangle, so the map's up is the triangle's down.
+  for (const vec4& t : mesh.tangents) EXPECT_EQ(t, vec4(1, 0, 0, -1));
+}
+
+TEST(GltfMaterial, RefusesAndClamps) {
+  const auto refusal = [](const json& material) {
+    GltfWriter w;
+    try {
+      loadWith(w, material);
+    } catch (const InputError& e) {
+      return std::string(e.what()).substr((w.folder() / "model.gltf").string().size() + 2);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal({{"alphaMode", "GLASS"}}),
+            "materials[0].alphaMode: \"GLASS\" is not OPAQUE, MASK or BLEND");
+  EXPECT_EQ(refusal({{"normalTexture", {{"index", 9}}}}),
+            "materials[0].normalTexture: textures[9] does not exist (2 in the file)");
+  EXPECT_EQ(refusal({{"normalTexture", {{"index", 0}, {"texCoord", 1000000000}}}}),
+            "materials[0].normalTexture: texCoord 1000000000 is out of range; 0 to 15 can be read");
+  GltfWriter w;
+  const Scene scene = loadWith(w, {{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}});
+  EXPECT_EQ(scene.materials[0].roughness, 1);
+  EXPECT_EQ(w.warnings.size(), 1u);
+}
+
+TEST(GltfMaterial, RefusesImagesThatCannotBe) {
+  const auto refusal = [](const std::vector<uint8_t>& image) {
+    GltfWriter w;
+    loadWith(w, {{"normalTexture", {{"index", 0}}}});
+    w.write("a.png", image);
+    return w.refusal();
+  };
+  EXPECT_EQ(refusal(kPng), "");
+  EXPECT_EQ(refusal({}), "images[0] (a.png): is neither PNG nor JPEG");
+  EXPECT_NE(refusal({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("is WebP"),
+            std::string::npos);
+  EXPECT_NE(refusal({kPng.begin(), kPng.begin() + 50}).find("damaged image"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chromeball

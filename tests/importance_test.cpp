@@ -1,0 +1,181 @@
+// The probe's radiance function, and the sampler that must follow it.
+#include <gtest/gtest.h>
+
+#include "lighting/importance.h"
+#include "probe/mapping.h"
+#include "probe/synth.h"
+#include "sphere_test.h"
+
+namespace chromeball {
+namespace {
+
+// One texel above the rest, or one texel alone.
+Image spot(int width, int height, int x, int y, float radiance, float rest) {
+  Image image = constantProbe({width, height}, Rgb(rest));
+  image.setRgb(x, y, Rgb(radiance));
+  return image;
+}
+
+TEST(Probe, isTheTexelAtItsCentreAndHalfwayBetweenTwo) {
+  Image image(8, 4, 3);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) image.setRgb(x, y, Rgb(float(x + 8 * y), 1, 2));
+  const Probe probe(image);
+  const auto at = [&](double u, double v) {
+    return probe.radiance(vec3(*uvToDirection(Mapping::LatLong, {u, v}))).x;
+  };
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) {
+      EXPECT_NEAR(at((x + 0.5) / 8, (y + 0.5) / 4), x + 8 * y, 1e-4);
+      if (x < 7) {
+        EXPECT_NEAR(at((x + 1.0) / 8, (y + 0.5) / 4), x + 8 * y + 0.5, 1e-4);
+      }
+    }
+  EXPECT_NEAR(at(0, 0.375), 8 + 3.5, 1e-4);         // the seam: between 8 and 15
+  EXPECT_NEAR(at(0.3, 1e-7), 3.5, 1e-3);            // the poles: their rows' means
+  EXPECT_NEAR(at(0.7, 1 - 1e-7), 24 + 3.5, 1e-3);
+}
+
+TEST(Probe, rotationTurnsTheEnvironmentCounterClockwiseFromAbove) {
+  const Image image = spot(64, 32, 32, 16, 1, 0);  // along -Z, a little right and down
+  const vec3 feature(*uvToDirection(Mapping::LatLong, {32.5 / 64, 16.5 / 32}));
+  for (float degrees : {0.0f, 90.0f, -30.0f, 725.0f}) {
+    const float r = degrees * kPi / 180;
+    const vec3 turned(feature.x * std::cos(r) + feature.z * std::sin(r), feature.y,
+                      -feature.x * std::sin(r) + feature.z * std::cos(r));
+    EXPECT_NEAR(Probe(image, degrees).radiance(turned).x, 1, 1e-3) << degrees;
+  }
+}
+
+TEST(Probe, locateInvertsDirectionEverywhere) {
+  const Probe probe(constantProbe({512, 256}, Rgb(1)), 77);
+  for (int i = 0; i < 200000; ++i) {
+    Probe::Position p{};
+    p.column = int(random1(i, 0) * 512);
+    p.row = i % 3 ? int(random1(i, 1) * 257) : 256 * (i & 1);
+    p.s = random1(i, 2);
+    p.t = random1(i, 3);
+    const vec3 d = probe.direction(p);
+    ASSERT_NEAR(glm::length(d), 1, 1e-5);
+    const Probe::Position q = probe.locate(d);
+    const float dx = std::remainder(float(q.column - p.column) + q.s - p.s, 512.0f);
+    ASSERT_NEAR(dx * p.sinTheta, 0, 2e-4) << p.row;
+    const float scale = p.row == 0 || p.row == 256 ? 0.5f : 1;
+    if (p.row == q.row) {
+      ASSERT_NEAR((q.t - p.t) * scale, 0, 2e-4);
+    }
+  }
+}
+
+TEST(Probe, refusesScalesThatLeaveTheRangeOfFloat) {
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1e30f)), 0, 1e20f), std::runtime_error);
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), 0, -1), std::runtime_error);
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);
+}
+
+struct Case {
+  const char* name;
+  Image image;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  all.push_back({"constant", constantProbe({16, 8}, Rgb(0.3f))});
+  all.push_back({"one texel", spot(32, 16, 11, 5, 1, 0)});
+  all.push_back({"seam, last column", spot(32, 16, 31, 8, 1, 0)});
+  all.push_back({"seam, first column", spot(32, 16, 0, 8, 1, 0)});
+  all.push_back({"north pole", spot(32, 16, 3, 0, 1, 0)});
+  all.push_back({"south pole", spot(32, 16, 20, 15, 1, 0)});
+  all.push_back({"sun over a grey sky", spot(64, 32, 40, 9, 2000, 0.5f)});
+  all.push_back({"3x2", gradientProbe({3, 2}, Rgb(1), {0.3, 0.5, 0.2})});
+  all.push_back({"1x1", constantProbe({1, 1}, Rgb(2))});
+  all.push_back({"2x1", spot(2, 1, 0, 0, 1, 0)});
+  all.push_back({"gradient", gradientProbe({64, 32}, Rgb(1, 2, 3), {0.5, 0.5, 0.5})});
+  return all;
+}
+
+TEST(Importance, samplesItsDensityOnEveryProbe) {
+  const std::vector<Case> all = cases();
+  for (bool compensated : {false, true})
+    for (const Case& c : all) {
+      SCOPED_TRACE(std::string(c.name) + (compensated ? ", compensated" : ""));
+      const Probe probe(c.image, 40);
+      const Importance importance(probe, compensated);
+      const SphereTest test = testDirections(
+          [&](int i) {
+            return std::optional(
+                importance.sampleDirection(double(random1(i, 0)), double(random1(i, 1))).wi);
+          },
+          [&](const vec3& w) { return importance.density(w); }, 200000);
+      EXPECT_NEAR(test.totalProbability, 1, 5e-3);
+      EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, 2 * int(all.size())));
+    }
+}
+
+TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const Probe probe(c.image);
+    const Importance importance(probe, false);
+    for (int i = 0; i < 20000; ++i) {
+      const DirectionSample s = importance.sampleDirection(random1(i, 0), random1(i, 1));
+      ASSERT_GT(s.density, 0);
+      ASSERT_NEAR(importance.density(s.wi), s.density, 2e-3f * s.density + 1e-3f);
+      const vec3 w = squareToUniformSphere(random2(i, 2));
+      if (luminance(probe.radiance(w)) > 0) {
+        ASSERT_GT(importance.density(w), 0);
+      }
+    }
+  }
+}
+
+// The density follows the radiance inside texels too, so on a grey probe every sample carries almost
+// the same weight: the estimate of the mean radiance has next to no variance.
+TEST(Importance, weightsAreConstantOnAGreyProbe) {
+  Image image = constantProbe({64, 32}, Rgb(1));
+  for (int i = 0; i < 64 * 32; ++i) image.setRgb(i % 64, i / 64, Rgb(random1(i, 0) < 0.1f ? 100 : 1));
+  const Probe probe(image);
+  const Importance importance(probe, false);
+  double sum = 0, sumOfSquares = 0;
+  constexpr int kSamples = 100000;
+  for (int i = 0; i < kSamples; ++i) {
+    const DirectionSample s = importance.sampleDirection(random1(i, 1), random1(i, 2));
+    const double weight = luminance(s.radiance) / s.density;
+    sum += weight;
+    sumOfSquares += weight * weight;
+  }
+  const double mean = sum / kSamples;
+  EXPECT_LT(std::sqrt(sumOfSquares / kSamples - mean * mean) / mean, 0.02);
+}
+
+TEST(Importance, aSunOf1e12LeavesTheTexelsAfterItTheirWidth) {
+  const Probe probe(spot(4096, 64, 1000, 20, 1e12f, 1));
+  const Importance importance(probe, false);
+  // Without the sun, the columns right of it must be as likely as those left of it.
+  const vec3 left(*uvToDirection(Mapping::LatLong, {500.5 / 4096, 20.5 / 64}));
+  const vec3 right(*uvToDirection(Mapping::LatLong, {3500.5 / 4096, 20.5 / 64}));
+  EXPECT_GT(importance.density(left), 0);
+  EXPECT_NEAR(importance.density(right) / importance.density(left), 1, 1e-3);
+  const DirectionSample last = importance.sampleDirection(0x1.fffffffffp-1, 0.3);
+  EXPECT_NEAR(luminance(last.radiance) / last.density,
+              luminance(probe.radiance(right)) / importance.density(right), 1e6);
+}
+
+TEST(Importance, blackProbesGiveNoSamples) {
+  const Probe probe(constantProbe({8, 4}, Rgb(0)));
+  const Importance importance(probe, true);
+  EXPECT_EQ(importance.sampleDirection(0.3, 0.4).density, 0);
+  EXPECT_EQ(importance.density(vec3(0, 1, 0)), 0);
+}
+
+TEST(Importance, compensationTakesTheMeanOffAndFallsBackWhereNothingIsLeft) {
+  const Probe flat(constantProbe({32, 16}, Rgb(5)));
+  EXPECT_NEAR(Importance(flat, true).density(vec3(0, 0, 1)), 0.25f * kInvPi, 1e-3);
+  const Probe sun(spot(64, 32, 40, 9, 2000, 0.5f));
+  const Importance compensated(sun, true);
+  EXPECT_EQ(compensated.density(vec3(0, -1, 0)), 0);
+  EXPECT_GT(compensated.density(vec3(*uvToDirection(Mapping::LatLong, {40.5 / 64, 9.5 / 32}))), 10);
+}
+
+}  // namespace
+}  // namespace chromeball

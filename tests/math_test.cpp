@@ -1,0 +1,132 @@
+// Warps, trigonometry and tabulated distributions.
+#include <gtest/gtest.h>
+
+#include "math/cdf.h"
+#include "math/frame.h"
+#include "sphere_test.h"
+
+namespace chromeball {
+namespace {
+
+TEST(Trig, agreesWithTheLibrary) {
+  for (int i = -100000; i <= 100000; ++i) {
+    const float turns = float(i) / 100000;
+    float sine, cosine;
+    sinCosTurns(turns, sine, cosine);
+    ASSERT_NEAR(sine, std::sin(2 * kPiD * turns), 2e-7);
+    ASSERT_NEAR(cosine, std::cos(2 * kPiD * turns), 2e-7);
+    for (double radius : {1e-20, 1.0, 1e15}) {
+      const auto x = float(radius * std::cos(2 * kPiD * turns));
+      const auto y = float(radius * std::sin(2 * kPiD * turns));
+      ASSERT_NEAR(atan2Turns(y, x), std::atan2(double(y), double(x)) / (2 * kPiD), 6e-8);
+    }
+  }
+  EXPECT_EQ(atan2Turns(0, 0), 0);
+  EXPECT_TRUE(std::isnan(atan2Turns(NAN, 1)));
+}
+
+TEST(Frame, isOrthonormalForEveryNormal) {
+  for (int i = 0; i < 10000; ++i) {
+    vec3 n = squareToUniformSphere(random2(i, 0));
+    if (i < 6) n = vec3(i == 0, i == 1, i == 2) - vec3(i == 3, i == 4, i == 5);
+    const Frame f(n);
+    ASSERT_NEAR(glm::length(f.x), 1, 1e-5);
+    ASSERT_NEAR(glm::dot(f.x, f.y), 0, 1e-5);
+    ASSERT_NEAR(glm::dot(glm::cross(f.x, f.y), n), 1, 1e-5);
+    const vec3 v = squareToUniformSphere(random2(i, 2));
+    ASSERT_NEAR(glm::distance(f.toWorld(f.toLocal(v)), v), 0, 1e-6);
+  }
+}
+
+struct Warp {
+  const char* name;
+  vec3 (*toDirection)(vec2);
+  double (*pdf)(const vec3&);
+  vec2 (*toSquare)(const vec3&);
+};
+const Warp kWarps[] = {
+    {"uniform sphere", squareToUniformSphere,
+     [](const vec3&) { return double(squareToUniformSpherePdf()); }, uniformSphereToSquare},
+    {"uniform hemisphere", squareToUniformHemisphere,
+     [](const vec3& v) { return double(squareToUniformHemispherePdf(v)); },
+     uniformHemisphereToSquare},
+    {"cosine hemisphere", squareToCosineHemisphere,
+     [](const vec3& v) { return double(squareToCosineHemispherePdf(v)); },
+     cosineHemisphereToSquare}};
+
+TEST(Warp, hasItsDensityAndItsInverse) {
+  for (const Warp& warp : kWarps) {
+    SCOPED_TRACE(warp.name);
+    const SphereTest test = testDirections(
+        [&](int i) { return std::optional(warp.toDirection(random2(i, 0))); }, warp.pdf, 400000);
+    EXPECT_NEAR(test.totalProbability, 1, 1e-3);
+    EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, 3));
+    for (int i = 0; i < 1000; ++i) {
+      const vec2 u = random2(i, 5), back = warp.toSquare(warp.toDirection(u));
+      ASSERT_NEAR(u.x, back.x, 2e-5);
+      ASSERT_NEAR(u.y, back.y, 2e-6);
+    }
+  }
+}
+
+TEST(Warp, triangleIsUniformAndInvertible) {
+  std::vector<double> counts(16);  // four levels of the midpoint subdivision: equal areas
+  constexpr int kSamples = 100000;
+  for (int i = 0; i < kSamples; ++i) {
+    const vec2 u = random2(i, 0);
+    vec2 b = squareToTriangle(u);
+    ASSERT_GE(b.x, 0);
+    ASSERT_GE(b.y, 0);
+    ASSERT_LE(b.x + b.y, 1 + 1e-6f);
+    ASSERT_NEAR(glm::distance(triangleToSquare(b), u), 0, 1e-6);
+    int cell = 0;
+    for (int level = 0; level < 2; ++level) {
+      const float c = 1 - b.x - b.y;
+      const int part = b.x > 0.5f ? 1 : b.y > 0.5f ? 2 : c > 0.5f ? 3 : 0;
+      cell = 4 * cell + part;
+      if (part == 0) b = {1 - 2 * b.x, 1 - 2 * b.y};
+      if (part == 1) b = {2 * b.x - 1, 2 * b.y};
+      if (part == 2) b = {2 * b.x, 2 * b.y - 1};
+      if (part == 3) b = {2 * b.x, 2 * b.y};
+    }
+    ++counts[cell];
+  }
+  const std::vector<double> expected(16, kSamples / 16.0);
+  EXPECT_GT(chiSquareTest(counts, expected).pValue, 1e-3);
+}
+
+TEST(CdfRows, returnsColumnsInProportionAndThePlaceInside) {
+  const std::vector<double> weights{0, 3, 0, 0, 1, 4, 0};
+  CdfRows rows(2, 7);
+  EXPECT_EQ(rows.setRow(1, weights), 8);
+  std::vector<double> counts(7);
+  constexpr int kSamples = 80000;
+  for (int i = 0; i < kSamples; ++i) {
+    double u = (i + 0.5) / kSamples;
+    const double before = u;
+    const int column = rows.sample(1, u);
+    ++counts[column];
+    double sum = 0;
+    for (int c = 0; c < column; ++c) sum += weights[c];
+    ASSERT_NEAR((sum + u * weights[column]) / 8, before, 1e-12);
+  }
+  for (int c = 0; c < 7; ++c) EXPECT_NEAR(counts[c], weights[c] / 8 * kSamples, 1.01);
+}
+
+TEST(CdfRows, aWeightOf1e12LeavesTheOthersTheirWidth) {
+  std::vector<double> weights(16384, 1.0);
+  weights[5000] = 1e12;
+  CdfRows rows(1, 16384);
+  const double total = rows.setRow(0, weights);
+  for (int column : {0, 4999, 5001, 9000, 16383}) {
+    const double before = column < 5000 ? column : column - 1 + 1e12;
+    double u = (before + 0.5) / total;
+    EXPECT_EQ(rows.sample(0, u), column);
+    EXPECT_NEAR(u, 0.5, 1e-3);
+  }
+  double u = 0x1.fffffffffffffp-1;
+  EXPECT_EQ(rows.sample(0, u), 16383);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,209 @@
+// Pictures whose exact answer is known, and what must not change them.
+#include "integrate/render.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "measure/statistics.h"
+#include "probe/mapping.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+Scene plane(const Material& material) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, material), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
+  return scene;
+}
+
+// Irradiance of the plane y = 0 by brute force over the radiance function.
+double irradiance(const Probe& probe, int rows) {
+  double sum = 0;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < 4 * rows; ++j) {
+      const double theta = kPiD / 2 * (i + 0.5) / rows, phi = 2 * kPiD * (j + 0.5) / (4 * rows);
+      const vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta),
+                   std::sin(theta) * std::cos(phi));
+      sum += luminance(probe.radiance(d)) * std::cos(theta) * std::sin(theta);
+    }
+  return sum * (kPiD / 2 / rows) * (2 * kPiD / (4 * rows));
+}
+
+// Mean luminance of a small picture, over independent seeds.
+Moments pictures(const Scene& scene, const Camera& camera, const Probe& probe,
+                 const std::string& strategy, RenderSettings settings, int repeats) {
+  std::vector<double> means;
+  for (int i = 0; i < repeats; ++i) {
+    settings.seed = 100 + uint64_t(i);
+    means.push_back(
+        luminance(meanColor(renderScene(scene, camera, probe, strategy, settings).film.mean())));
+  }
+  return Moments::of(means);
+}
+
+constexpr const char* kUnbiased[] = {"bsdf", "uniform", "importance"};
+
+TEST(Render, lambertUnderConstantAndGradientProbes) {
+  const Scene scene = plane(lambert(Rgb(0.5f)));
+  struct Case {
+    Image probe;
+    double expected;
+  };
+  const Case cases[] = {
+      {constantProbe({16, 8}, Rgb(2)), 1.0},
+      {gradientProbe({512, 256}, Rgb(1), {0.2, 0.6, 0.3}), 0.5 * (1 + 2.0 / 3 * 0.6)}};
+  for (const Case& c : cases)
+    for (const char* strategy : kUnbiased) {
+      const Moments m = pictures(scene, topCamera(3, 40), Probe(c.probe), strategy,
+                                 smallRender(16, 16, 64, 1), 8);
+      EXPECT_NEAR(m.mean, c.expected, 1e-3 * c.expected) << strategy;
+    }
+}
+
+TEST(Render, lambertUnderOneTexel) {
+  Image image = constantProbe({64, 32}, Rgb(0));
+  image.setRgb(20, 9, Rgb(100));
+  image.setRgb(50, 0, Rgb(30));  // at the pole
+  const Probe probe(image);
+  const double expected = 0.5 * irradiance(probe, 2000) / kPiD;
+  const Scene scene = plane(lambert(Rgb(0.5f)));
+  for (const char* strategy : kUnbiased) {
+    const Moments m =
+        pictures(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 256, 1), 12);
+    EXPECT_GT(tTest(m, expected), sidak(1e-3, 3)) << strategy << ": " << m.mean;
+    if (std::string(strategy) == "importance") {
+      EXPECT_NEAR(m.mean, expected, 2e-3 * expected);
+    }
+  }
+}
+
+// A sun of 0.5323 degrees and radiance 46,700 puts radiance 1 on a white surface that faces it.
+TEST(Render, theSunOf46700) {
+  Image image = constantProbe({8192, 4096}, Rgb(0));
+  const double radius = 0.5323 / 2 * kPiD / 180;
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      double covered = 0;  // share of the texel inside the disc, which is centred on the zenith
+      for (int k = 0; k < 16; ++k)
+        covered += (y + (k + 0.5) / 16) * kPiD / image.height < radius ? 1.0 / 16 : 0;
+      image.setRgb(x, y, Rgb(float(46700 * covered)));
+    }
+  const Scene scene = plane(lambert(Rgb(1)));
+  const Moments m = pictures(scene, topCamera(3, 40), Probe(image), "importance",
+                             smallRender(8, 8, 64, 1), 4);
+  EXPECT_NEAR(m.mean, 1, 0.01);
+}
+
+// Inside a closed sphere that emits 1 and reflects half, depth d sees 1 + 1/2 + ... + 1/2^d.
+TEST(Render, closedEmittingSphereCountsEveryBounce) {
+  Scene scene;
+  Material material = lambert(Rgb(0.5f));
+  material.emission = Rgb(1);
+  addSphere(scene, addMaterial(scene, material), vec3(0), -2, 24, false);
+  const Probe dark(constantProbe({4, 2}, Rgb(0)));
+  const Camera camera = Camera::lookAt({0, 0, 0.5f}, {0, 0, 0}, {0, 1, 0}, 1);
+  for (int depth : {0, 1, 2, 5, 12}) {
+    const double expected = 2 - std::pow(0.5, depth);
+    for (Mis mis : {Mis::Off, Mis::Balance, Mis::Power}) {
+      RenderSettings settings = smallRender(16, 16, 64, depth);
+      settings.mis = mis;
+      const Moments m = pictures(scene, camera, dark, "importance", settings, 8);
+      EXPECT_GT(tTest(m, expected), sidak(1e-3, 15)) << depth << ": " << m.mean;
+      EXPECT_NEAR(m.mean, expected, (mis == Mis::Off ? 0.02 : 0.005) * expected) << depth;
+    }
+  }
+}
+
+// A white object in a uniformly white surrounding cannot be seen.
+TEST(Render, whiteFurnace) {
+  for (float metallic : {-1.0f, 0.0f, 0.5f, 1.0f})  // -1: Lambert
+    for (float roughness : {0.05f, 0.5f, 1.0f}) {
+      if (metallic < 0 && roughness < 1) continue;
+      Material material = lambert(Rgb(1));
+      if (metallic >= 0) {
+        material.metallic = metallic;
+        material.specular = 1;
+        material.roughness = roughness;
+      }
+      Scene scene;
+      addSphere(scene, addMaterial(scene, material), vec3(0), 1, 96);
+      RenderSettings settings = smallRender(24, 24, 64, 16);
+      for (const char* strategy : {"bsdf", "importance"}) {
+        const Moments m = pictures(scene, topCamera(2.2f, 40), Probe(constantProbe({8, 4}, Rgb(1))),
+                                   strategy, settings, 4);
+        EXPECT_NEAR(m.mean, 1, metallic < 0 ? 1e-3 : 5e-3)
+            << strategy << " metallic " << metallic << " roughness " << roughness;
+        EXPECT_LT(m.mean, 1 + 1e-3);
+      }
+    }
+}
+
+TEST(Render, sameBitsForAnyNumberOfThreads) {
+  Scene scene = plane(lambert(Rgb(0.7f)));
+  Material metal;
+  metal.roughness = 0.3f;
+  addSphere(scene, addMaterial(scene, metal), {0, 0.6f, 0}, 0.6f);
+  const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));
+  RenderSettings settings = smallRender(70, 50, 6, 5);
+  settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Node};
+  std::vector<std::vector<float>> pictures;
+  for (int threads : {1, 2, 3}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "importance", settings);
+    std::vector<float> all = r.film.mean().texels;
+    for (float x : r.film.squaredStandardError().texels) all.push_back(x);
+    for (float x : r.aovs.finished(Aov::Albedo, 6).texels) all.push_back(x);
+    all.push_back(float(r.rays.shadow));
+    pictures.push_back(all);
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_EQ(pictures[0], pictures[2]);
+}
+
+TEST(Render, blocksMakeUpExactlyTheSamplesAskedFor) {
+  for (uint32_t samples : {1u, 2u, 3u, 7u, 64u, 100u, 255u, 4096u, 8192u, 100000u}) {
+    uint32_t sum = 0;
+    for (uint32_t block : planBlocks(samples)) {
+      EXPECT_EQ(block & (block - 1), 0u);
+      sum += block;
+    }
+    EXPECT_EQ(sum, samples);
+  }
+}
+
+TEST(Render, stopsAtTheNoiseAskedFor) {
+  const Scene scene = plane(lambert(Rgb(0.7f)));
+  const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));
+  RenderSettings settings = smallRender(32, 32, 1 << 20, 3);
+  settings.noiseLimit = 0.002;
+  const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "uniform", settings);
+  EXPECT_LE(r.film.noise(), 0.002);
+  EXPECT_LT(r.samples, 1 << 16);
+  EXPECT_GE(r.samples, 8);
+}
+
+// Half of a blended plane's light passes; a mask's holes let all of it through.
+TEST(Render, alphaLetsItsShareOfLightThrough) {
+  const Probe probe(constantProbe({8, 4}, Rgb(1)));
+  Scene scene;
+  Material black = lambert(Rgb(0));
+  black.alphaMode = AlphaMode::Blend;
+  black.baseColor.w = 0.25f;
+  addQuad(scene, addMaterial(scene, black), {-500, 1, 500}, {1000, 0, 0}, {0, 0, -1000});
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-500, 0, 500}, {1000, 0, 0},
+          {0, 0, -1000});
+  for (const char* strategy : kUnbiased) {
+    const Moments m =
+        pictures(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 64, 1), 8);
+    EXPECT_GT(tTest(m, 0.75 * 0.75), sidak(1e-3, 4)) << strategy << ": " << m.mean;
+  }
+  scene.materials[0].alphaMode = AlphaMode::Mask;  // 0.25 is below the cutoff
+  const Moments m =
+      pictures(scene, topCamera(3, 40), probe, "importance", smallRender(16, 16, 16, 1), 4);
+  EXPECT_NEAR(m.mean, 1, 2e-3);
+}
+
+}  // namespace
+}  // namespace chromeball

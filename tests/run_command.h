@@ -1,0 +1,86 @@
+// Runs the command that was built beside the tests.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+// A folder of the running test's own, removed with its contents at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "chromeball-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct CommandResult {
+  int status = -1;  // exit status, or minus the number of the signal that ended it
+  std::string out, error;
+};
+
+inline std::string fileContents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+inline CommandResult runCommand(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const std::string outPath = folder / "out", errorPath = folder / "error";
+  std::vector<char*> argv{const_cast<char*>(CHROMEBALL_COMMAND)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(open(outPath.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    dup2(open(errorPath.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  CommandResult result;
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  result.out = fileContents(outPath);
+  result.error = fileContents(errorPath);
+  return result;
+}
+
+// The input was refused as the command line promises: status 2, nothing on standard output, and one
+// line `chromeball: ...` that holds `reason`.
+inline void expectRefused(const std::vector<std::string>& arguments, const std::string& reason) {
+  const CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 2) << result.error;
+  EXPECT_EQ(result.out, "");
+  EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+  EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+}

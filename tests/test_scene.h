@@ -1,0 +1,93 @@
+// Small scenes made in code, and a render of one without files.
+#pragma once
+
+#include "integrate/render.h"
+#include "math/warp.h"
+
+namespace chromeball {
+
+inline Material lambert(Rgb albedo) {
+  Material m;
+  m.baseColor = vec4(albedo, 1);
+  m.metallic = 0;
+  m.specular = 0;
+  m.doubleSided = true;
+  return m;
+}
+
+inline int addMaterial(Scene& scene, const Material& material) {
+  scene.materials.push_back(material);
+  return int(scene.materials.size()) - 1;
+}
+
+inline void addMesh(Scene& scene, Mesh mesh) {
+  if (scene.nodeNames.empty()) scene.nodeNames.push_back("node");
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({int(scene.meshes.size()) - 1, 0, {}});
+}
+
+// corner + u a + v b, u and v in [0, 1]; faces along cross(a, b).
+inline void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b) {
+  Mesh mesh;
+  mesh.material = material;
+  mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  addMesh(scene, std::move(mesh));
+}
+
+// A sphere of 2 n^2 x 2 triangles; faces outwards, or inwards for a negative radius. `smooth`: with
+// the sphere's normals.
+inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int n = 32,
+                      bool smooth = true) {
+  Mesh mesh;
+  mesh.material = material;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= 2 * n; ++j) {
+      const float theta = kPi * float(i) / float(n), phi = kPi * float(j) / float(n);
+      vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
+      if (i == 0 || i == n) d = {0, i == 0 ? 1.0f : -1.0f, 0};
+      mesh.positions.push_back(centre + radius * d);
+      if (smooth) mesh.normals.push_back(radius < 0 ? -d : d);
+    }
+  const auto index = [&](int i, int j) { return uint32_t(i * (2 * n + 1) + j); };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 2 * n; ++j) {
+      if (i > 0) mesh.triangles.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
+      if (i < n - 1)
+        mesh.triangles.push_back({index(i, j + 1), index(i + 1, j), index(i + 1, j + 1)});
+    }
+  addMesh(scene, std::move(mesh));
+}
+
+// Looks straight down at the origin from `height`, -Z up in the picture.
+inline Camera topCamera(float height, float fovDegrees) {
+  return Camera::lookAt({0, height, 0}, {0, 0, 0}, {0, 0, -1}, fovDegrees * kPi / 180);
+}
+
+inline RenderResult renderScene(const Scene& scene, const Camera& camera, const Probe& probe,
+                                const std::string& strategy, const RenderSettings& settings) {
+  const Accel accel(scene);
+  const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
+  const std::atomic<bool> stop = false;
+  return render(scene, accel, camera, *lighting, settings, [](double) {}, stop);
+}
+
+inline RenderSettings smallRender(int width, int height, int samples, int maxDepth,
+                                  uint64_t seed = 0) {
+  RenderSettings s;
+  s.width = width;
+  s.height = height;
+  s.samples = samples;
+  s.maxDepth = maxDepth;
+  s.seed = seed;
+  return s;
+}
+
+inline Rgb meanColor(const Image& image) {
+  glm::dvec3 sum(0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += glm::dvec3(image.rgb(x, y));
+  return Rgb(sum / (double(image.width) * image.height));
+}
+
+}  // namespace chromeball
