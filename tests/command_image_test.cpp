@@ -89,7 +89,7 @@ TEST(CommandImage, ViewShowsLayers) {
   expectRefused({"image", "view", path, png, "--layer", "dept"}, "`depth`");
 }
 
-TEST(CommandImage, BadInputIsRefused) {
+TEST(SlowCommandImage, BadInputIsRefused) {
   const TemporaryFolder folder;
   const std::string a = folder / "a.exr", png = folder / "a.png";
   writeImage(a, filled(2, 2, 3, 1));

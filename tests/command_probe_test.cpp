@@ -19,7 +19,7 @@ CommandResult run(const std::vector<std::string>& arguments) {
   return result;
 }
 
-TEST(Command, HelpAndVersionSucceed) {
+TEST(SlowCommand, HelpAndVersionSucceed) {
   EXPECT_TRUE(run({"--version"}).out.starts_with("chromeball "));
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"--help"},
@@ -33,7 +33,7 @@ TEST(Command, HelpAndVersionSucceed) {
     EXPECT_FALSE(run(arguments).out.empty());
 }
 
-TEST(Command, WrongWordsAreRefusedWithTheNearest) {
+TEST(SlowCommand, WrongWordsAreRefusedWithTheNearest) {
   expectRefused({}, "subcommand is required");
   expectRefused({"rendr"}, "`render`");
   expectRefused({"prob", "info"}, "`probe`");
@@ -77,19 +77,23 @@ TEST(CommandProbe, InfoReportsInvalidTexels) {
   EXPECT_EQ(info["invalid_texels"]["first"], json({2, 1}));
 }
 
-TEST(CommandProbe, EveryKindInEveryFormat) {
+TEST(CommandProbe, EveryKindAndFormat) {
   const TemporaryFolder folder;
-  for (const char* kind : {"constant", "one-hot", "gradient", "sun-sky", "overcast", "studio"})
-    for (const char* extension : {".exr", ".hdr", ".pfm", ".png"}) {
-      const std::string path = folder / (std::string(kind) + extension);
-      run({"probe", "synth", kind, path, "--size", "32x16"});
-      const Image image = readImage(path);
-      EXPECT_EQ(image.width, 32) << path;
-      EXPECT_EQ(image.height, 16) << path;
-    }
+  for (const auto& [kind, extension] : {std::pair{"constant", ".pfm"},
+                                        {"one-hot", ".EXR"},
+                                        {"gradient", ".hdr"},
+                                        {"sun-sky", ".exr"},
+                                        {"overcast", ".png"},
+                                        {"studio", ".hdr"}}) {
+    const std::string path = folder / (std::string(kind) + extension);
+    run({"probe", "synth", kind, path, "--size", "32x16"});
+    const Image image = readImage(path);
+    EXPECT_EQ(image.width, 32) << path;
+    EXPECT_EQ(image.height, 16) << path;
+  }
 }
 
-TEST(CommandProbe, ConvertThereAndBack) {
+TEST(SlowCommandProbe, ConvertThereAndBack) {
   const TemporaryFolder folder;
   run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
   for (const char* to : {"angular", "mirror-ball", "cube-cross", "cube-strip", "lat-long"}) {
@@ -98,14 +102,17 @@ TEST(CommandProbe, ConvertThereAndBack) {
          "--size", "64x32"});
     const Image a = readImage(folder / "a.exr"), c = readImage(folder / "c.exr");
     ASSERT_EQ(c.texels.size(), a.texels.size());
-    for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], c.texels[i], 0.03) << to;
+    double difference = 0;
+    for (size_t i = 0; i < a.texels.size(); ++i)
+      difference += std::fabs(a.texels[i] - c.texels[i]) / double(a.texels.size());
+    EXPECT_LT(difference, 0.02) << to;
   }
   run({"probe", "convert", folder / "a.exr", folder / "w.exr", "--to", "cube-cross", "--size",
        "64x48"});
   EXPECT_EQ(readImage(folder / "w.exr").width, 64);
 }
 
-TEST(CommandProbe, BadInputIsRefused) {
+TEST(SlowCommandProbe, BadInputIsRefused) {
   const TemporaryFolder folder;
   const std::string in = folder / "a.exr", out = folder / "b.exr";
   writeImage(in, constantProbe({8, 4}, Rgb(1)));

@@ -99,14 +99,14 @@ TEST(Importance, samplesItsDensityOnEveryProbe) {
   for (bool compensated : {false, true})
     for (const Case& c : all) {
       SCOPED_TRACE(std::string(c.name) + (compensated ? ", compensated" : ""));
-      const Probe probe(c.image, 40);
+      const Probe probe(c.image, 33);
       const Importance importance(probe, compensated);
       const SphereTest test = testDirections(
           [&](int i) {
             return std::optional(
                 importance.sampleDirection(double(random1(i, 0)), double(random1(i, 1))).wi);
           },
-          [&](const vec3& w) { return importance.density(w); }, 200000);
+          [&](const vec3& w) { return importance.density(w); }, 200000, 3, 16, 32);
       EXPECT_NEAR(test.totalProbability, 1, 5e-3);
       EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, 2 * int(all.size())));
     }
@@ -132,8 +132,9 @@ TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
 // The density follows the radiance inside texels too, so on a grey probe every sample carries almost
 // the same weight: the estimate of the mean radiance has next to no variance.
 TEST(Importance, weightsAreConstantOnAGreyProbe) {
-  Image image = constantProbe({64, 32}, Rgb(1));
-  for (int i = 0; i < 64 * 32; ++i) image.setRgb(i % 64, i / 64, Rgb(random1(i, 0) < 0.1f ? 100 : 1));
+  Image image = constantProbe({512, 256}, Rgb(1));
+  for (int i = 0; i < 512 * 256; ++i)
+    image.setRgb(i % 512, i / 512, Rgb(random1(i, 0) < 0.1f ? 100 : 1));
   const Probe probe(image);
   const Importance importance(probe, false);
   double sum = 0, sumOfSquares = 0;

@@ -6,6 +6,7 @@
 
 #include "measure/statistics.h"
 #include "probe/mapping.h"
+#include "probe/sky.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 
@@ -79,21 +80,25 @@ TEST(Render, lambertUnderOneTexel) {
   }
 }
 
-// A sun of 0.5323 degrees and radiance 46,700 puts radiance 1 on a white surface that faces it.
+// A sun of 0.5323 degrees and radiance 46,700 puts radiance 1 (to 1%) on a white surface that faces
+// it: exactly 46,700 sin^2(0.5323 / 2 degrees).
 TEST(Render, theSunOf46700) {
-  Image image = constantProbe({8192, 4096}, Rgb(0));
-  const double radius = 0.5323 / 2 * kPiD / 180;
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      double covered = 0;  // share of the texel inside the disc, which is centred on the zenith
-      for (int k = 0; k < 16; ++k)
-        covered += (y + (k + 0.5) / 16) * kPiD / image.height < radius ? 1.0 / 16 : 0;
-      image.setRgb(x, y, Rgb(float(46700 * covered)));
-    }
-  const Scene scene = plane(lambert(Rgb(1)));
-  const Moments m = pictures(scene, topCamera(3, 40), Probe(image), "importance",
-                             smallRender(8, 8, 64, 1), 4);
-  EXPECT_NEAR(m.mean, 1, 0.01);
+  const double sine = std::sin(0.5323 / 2 * kPiD / 180), expected = 46700 * sine * sine;
+  EXPECT_NEAR(expected, 1, 0.01);
+  for (glm::dvec3 sun : {glm::dvec3(-0.3, 0.9, -0.01), glm::dvec3(0.1, 0.2, 0.9)}) {
+    sun = glm::normalize(sun);
+    Image image = constantProbe({2048, 1024}, Rgb(0));
+    addSunDisc(image, sun, 0.5323, glm::dvec3(kPiD * expected));
+    Scene scene;
+    const vec3 across = glm::normalize(glm::cross(vec3(sun), vec3(0, 0, 1)));
+    const vec3 along = glm::cross(vec3(sun), across);
+    addQuad(scene, addMaterial(scene, lambert(Rgb(1))), -across - along, 2.0f * across,
+            2.0f * along);
+    const Camera camera = Camera::lookAt(3.0f * vec3(sun), vec3(0), along, 0.4f);
+    const Moments m =
+        pictures(scene, camera, Probe(image), "importance", smallRender(8, 8, 64, 1), 4);
+    EXPECT_NEAR(m.mean, expected, 2e-3);
+  }
 }
 
 // Inside a closed sphere that emits 1 and reflects half, depth d sees 1 + 1/2 + ... + 1/2^d.

@@ -11,9 +11,10 @@
 
 namespace chromeball {
 
-// Integral of f over a rectangle, refined until a finer rule agrees.
+// Integral of f over a rectangle, halved at least `least` times (so that no feature falls between
+// the points) and then until a finer rule agrees.
 inline double integrate(const std::function<double(double, double)>& f, double x0, double x1,
-                        double y0, double y1, double tolerance, int depth = 0) {
+                        double y0, double y1, double tolerance, int least, int depth = 0) {
   const auto rule = [&](int n) {
     double sum = 0;
     for (int i = 0; i < n; ++i)
@@ -21,11 +22,13 @@ inline double integrate(const std::function<double(double, double)>& f, double x
         sum += f(x0 + (x1 - x0) * (i + 0.5) / n, y0 + (y1 - y0) * (j + 0.5) / n);
     return sum * (x1 - x0) * (y1 - y0) / (n * n);
   };
-  const double coarse = rule(3), fine = rule(6);
-  if (depth >= 1 && (depth >= 9 || std::fabs(coarse - fine) < tolerance)) return fine;
+  const double coarse = depth < least ? 0 : rule(3), fine = depth < least ? 0 : rule(6);
+  if (depth >= least && (depth >= 9 || std::fabs(coarse - fine) < tolerance)) return fine;
   const double xm = (x0 + x1) / 2, ym = (y0 + y1) / 2, t = tolerance / 2;
-  return integrate(f, x0, xm, y0, ym, t, depth + 1) + integrate(f, xm, x1, y0, ym, t, depth + 1) +
-         integrate(f, x0, xm, ym, y1, t, depth + 1) + integrate(f, xm, x1, ym, y1, t, depth + 1);
+  return integrate(f, x0, xm, y0, ym, t, least, depth + 1) +
+         integrate(f, xm, x1, y0, ym, t, least, depth + 1) +
+         integrate(f, x0, xm, ym, y1, t, least, depth + 1) +
+         integrate(f, xm, x1, ym, y1, t, least, depth + 1);
 }
 
 struct SphereTest {
@@ -37,7 +40,7 @@ struct SphereTest {
 // along z times azimuth), against the integral of `density` over each bin.
 inline SphereTest testDirections(const std::function<std::optional<vec3>(int)>& draw,
                                  const std::function<double(const vec3&)>& density, int samples,
-                                 int heights = 24, int azimuths = 48) {
+                                 int leastHalvings = 2, int heights = 24, int azimuths = 48) {
   const auto bin = [&](const vec3& w) {
     const int i = std::clamp(int((w.z + 1) / 2 * float(heights)), 0, heights - 1);
     const int j = std::clamp(int(azimuthTurns(w) * float(azimuths)), 0, azimuths - 1);
@@ -56,7 +59,7 @@ inline SphereTest testDirections(const std::function<std::optional<vec3>(int)>& 
             return 2 * kPiD * density(unitVector(float(z), float(turns)));
           },
           -1 + 2.0 * i / heights, -1 + 2.0 * (i + 1) / heights, double(j) / azimuths,
-          double(j + 1) / azimuths, 1e-6);
+          double(j + 1) / azimuths, 1e-6, leastHalvings);
       expected[i * azimuths + j] = probability * samples;
       total += probability;
     }

@@ -39,7 +39,7 @@ TEST(SphericalHarmonics, GradientHasOnlyItsOwnTerms) {
 
 // Published tables (Ramamoorthi and Hanrahan 2001; Rost's "OpenGL Shading Language"), each up to
 // one exposure. Their z points into the picture, ours out of it.
-TEST(SphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
+TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
   const auto table = sharedData("reference/sh_coefficients_debevec.json");
   if (!table) GTEST_SKIP() << "no reference/sh_coefficients_debevec.json";
   const auto json = nlohmann::json::parse(std::ifstream(*table));
@@ -66,8 +66,9 @@ TEST(SphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
       double residual = 0;
       for (const auto& [ours, published] : pairs)
         residual = std::max(residual, std::fabs(dot / square * ours - published) / largest);
-      // What an independent projection of the same file leaves, and 0.2% for the conversion.
-      EXPECT_LT(residual, double(file.at("max_residual_rel")) + 0.002) << fileName;
+      // What a projection with directions at texel corners leaves, as the tables' authors took
+      // them, and 0.3% for our centres: half a texel of 2 pi / 1000.
+      EXPECT_LT(residual, double(file.at("max_residual_rel")) + 0.003) << fileName;
       ++compared;
     }
   EXPECT_GE(compared, 3);

@@ -20,14 +20,15 @@ struct Arguments {
 std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& latLong) {
   if (!arguments.size.empty()) {
     const ImageSize size = parseSize(arguments.size);
-    return {*parseMapping(arguments.to, size.width, size.height, "--to"), size};
+    if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
+      return {*mapping, size};
   }
-  const ImageSize source{latLong.width, latLong.height};
   for (const Mapping mapping : {Mapping::LatLong, Mapping::AngularMap, Mapping::MirrorBall,
                                 Mapping::VerticalCross, Mapping::VerticalStrip})
-    if (mappingName(mapping) == arguments.to) return {mapping, sizeFor(mapping, source)};
-  parseMapping(arguments.to, 1, 1, "--to");
-  throwInput("--to: should be a mapping, not {}", arguments.to);
+    if (mappingName(mapping) == arguments.to)
+      return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
+  throwInput("--to: `{}` should be lat-long, angular, mirror-ball, cube-cross or cube-strip",
+             arguments.to);
 }
 
 void run(const Arguments& arguments) {

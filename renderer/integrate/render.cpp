@@ -183,6 +183,7 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
   const PathScene<Accel> path{scene,          accel,        lighting,
                               emitters.get(), settings.mis, settings.maxDepth,
                               settings.hideProbe};
+  prepareBsdfs(scene);
   const Schedule schedule(settings);
   Renderer renderer(path, camera, settings, schedule.largest(), result);
 

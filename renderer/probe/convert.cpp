@@ -60,11 +60,11 @@ class PatchSource {
   int faceWidth_, faceHeight_;
 };
 
-// Samples along a side of each target texel: two for each source texel it covers, at least four.
+// Samples along a side of each target texel: two for each source texel it covers, at least two.
 int samplesPerSide(const ImageSize& source, const ImageSize& target) {
   const double sourceTexels = double(source.width) * source.height;
   const double targetTexels = double(target.width) * target.height;
-  return std::max(4, int(std::ceil(2 * std::sqrt(sourceTexels / targetTexels))));
+  return std::max(2, int(std::ceil(2 * std::sqrt(sourceTexels / targetTexels))));
 }
 
 dvec3 turnAboutY(const dvec3& d, double degrees) {

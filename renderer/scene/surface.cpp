@@ -42,19 +42,15 @@ vec3 mappedNormal(const Scene& scene, const Surface& s, const Transform& toWorld
   return mapped2 > 0 ? mapped / std::sqrt(mapped2) : normal;
 }
 
-float absoluteMax(float a, float b, float c) {
-  return std::fmax(std::fabs(a), std::fmax(std::fabs(b), std::fabs(c)));
-}
-
 // The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
 // again, is a few roundings of the triangle's coordinates. Measured along the normal, as Waechter
 // and Binder (2019) offset in units in the last place; but by the vertices' coordinates and not the
-// point's, so that it also holds for a large triangle through the origin.
+// point's, so that it also holds for a large triangle through the origin. A small share of the
+// other directions keeps it above zero on a coordinate plane.
 float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal) {
-  constexpr float kRoundings = 16 * std::numeric_limits<float>::epsilon();
-  return kRoundings * (std::fabs(normal.x) * absoluteMax(p0.x, p1.x, p2.x) +
-                       std::fabs(normal.y) * absoluteMax(p0.y, p1.y, p2.y) +
-                       std::fabs(normal.z) * absoluteMax(p0.z, p1.z, p2.z));
+  constexpr float kRoundings = 16 * std::numeric_limits<float>::epsilon(), kAcross = 1.0f / 1024;
+  const vec3 extent = glm::max(glm::abs(p0), glm::max(glm::abs(p1), glm::abs(p2)));
+  return kRoundings * glm::dot(glm::abs(normal) + kAcross, extent);
 }
 
 }  // namespace

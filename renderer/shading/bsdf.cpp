@@ -30,6 +30,14 @@ T scatteredAgain(const T& f0, const T& f90, float meanAlbedo) {
 
 }  // namespace
 
+void prepareBsdfs(const Scene& scene) {
+  for (const Material& m : scene.materials)
+    if (m.metallic > 0 || m.specular > 0) {
+      EnergyTable::get();
+      return;
+    }
+}
+
 Bsdf::Bsdf(const MaterialPoint& m, const Surface& surface, const vec3& wo)
     : normal_(surface.normal),
       geometricNormal_(surface.geometricNormal),

@@ -7,6 +7,9 @@
 
 namespace chromeball {
 
+// Makes the tables that the scene's materials will ask for, while no path is waiting for them.
+void prepareBsdfs(const Scene& scene);
+
 struct BsdfSample {
   vec3 wi;       // unit, away from the surface
   Rgb weight;    // f cos / pdf

@@ -11,7 +11,11 @@ namespace {
 
 constexpr int kRoughnesses = 32, kAngles = 64;
 
-// Nodes crowd towards grazing angles, where the albedo bends: mu = t^2.
+// Nodes crowd towards smooth surfaces and grazing angles, where the albedo bends: both are t^2.
+float roughnessNode(int i) {
+  const float t = float(i) / (kRoughnesses - 1);
+  return std::fmax(t * t, 0.01f);
+}
 float angleNode(int i) {
   const float t = float(i) / (kAngles - 1);
   return std::fmax(t * t, 1e-4f);
@@ -43,7 +47,7 @@ SpecularAlbedo mix(const SpecularAlbedo& x, const SpecularAlbedo& y, float t) {
 
 EnergyTable::EnergyTable() : cells_(kRoughnesses * kAngles), averages_(kRoughnesses) {
   tbb::parallel_for(0, kRoughnesses, [&](int r) {
-    const float roughness = std::fmax(float(r) / (kRoughnesses - 1), 0.01f);
+    const float roughness = roughnessNode(r);
     for (int i = 0; i < kAngles; ++i)
       cells_[r * kAngles + i] = integrate(angleNode(i), roughness * roughness);
     // The average of the very interpolant that at() returns, so that compensation balances.
@@ -67,7 +71,7 @@ const EnergyTable& EnergyTable::get() {
 }
 
 EnergyTable::Row EnergyTable::row(float roughness) const {
-  const float x = roughness * (kRoughnesses - 1);
+  const float x = std::sqrt(roughness) * (kRoughnesses - 1);
   const int i = std::min(int(x), kRoughnesses - 2);
   Row row;
   row.low_ = &cells_[i * kAngles];

@@ -14,7 +14,7 @@ struct SpecularAlbedo {
 
 class EnergyTable {
  public:
-  // Tabulated by quadrature once a process, on first use.
+  // Tabulated by quadrature once a process, on first use, which must not be inside a parallel loop.
   static const EnergyTable& get();
 
   // One roughness (of perceptual roughness r = sqrt(alpha)), ready for any angle.

@@ -7,8 +7,8 @@ namespace chromeball::demo {
 namespace {
 
 const vec3 kSun = glm::normalize(vec3(-0.86f, 0.4f, 0.32f));  // to the left, a little behind us
-constexpr float kSunRadius = 5;  // degrees: haze makes it wide and soft
-const Rgb kSunRadiance(150, 84, 38);
+constexpr float kSunRadius = 9;  // degrees: haze makes it wide and soft
+const Rgb kSunRadiance(54, 30, 13.5f);
 
 // 0 with our back to the sun, 1 towards it.
 float towardsSun(const vec3& d) { return 0.5f + 0.5f * glm::dot(d, kSun); }

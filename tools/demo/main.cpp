@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     else if (what == "conductors")
       demo::writeStillLife(argv[2], demo::Finish::Conductors);
     else if (what == "dusk")
-      writeImage(argv[2], demo::paintDusk(1024));
+      writeImage(argv[2], demo::paintDusk(1536));
     else
       throwInput("make_demo: still-life|lambertian|conductors OUT.glb, or dusk OUT.exr");
   } catch (const std::exception& error) {
