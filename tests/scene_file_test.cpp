@@ -234,5 +234,11 @@ TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
   EXPECT_THROW(read("# " + std::string(size_t(5) << 20, 'x')), InputError);
 }
 
+TEST(SceneFileOfTheDemo, IsValidAndItsFilesAreThere) {
+  const SceneFile scene = readSceneFile(CHROMEBALL_SOURCE_DIR "/scenes/demo.toml");
+  EXPECT_EQ(scene.models.size(), 1u);
+  EXPECT_TRUE(scene.probe && scene.size && scene.samples);
+}
+
 }  // namespace
 }  // namespace chromeball
