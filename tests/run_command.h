@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -51,7 +52,9 @@ inline std::string fileContents(const std::string& path) {
   return text.str();
 }
 
-inline CommandResult runCommand(const std::vector<std::string>& arguments) {
+// Where `interruptAt` is given, sends SIGINT as soon as standard error holds it.
+inline CommandResult runCommand(const std::vector<std::string>& arguments,
+                                const std::string& interruptAt = "") {
   const TemporaryFolder folder;
   const std::string outPath = folder / "out", errorPath = folder / "error";
   std::vector<char*> argv{const_cast<char*>(CHROMEBALL_COMMAND)};
@@ -66,7 +69,14 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments) {
     _exit(127);
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  bool ended = false;
+  while (!interruptAt.empty() && !ended &&
+         fileContents(errorPath).find(interruptAt) == std::string::npos) {
+    usleep(10000);
+    ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  if (!interruptAt.empty() && !ended) kill(child, SIGINT);
+  if (!ended) waitpid(child, &status, 0);
   CommandResult result;
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = fileContents(outPath);
@@ -76,11 +86,13 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments) {
 
 // The input was refused as the command line promises: status 2, nothing on standard output, and one
 // line `chromeball: ...` that holds `reason`.
-inline void expectRefused(const std::vector<std::string>& arguments, const std::string& reason) {
+inline CommandResult expectRefused(const std::vector<std::string>& arguments,
+                                   const std::string& reason) {
   const CommandResult result = runCommand(arguments);
   EXPECT_EQ(result.status, 2) << result.error;
   EXPECT_EQ(result.out, "");
   EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;
   EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
   EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+  return result;
 }

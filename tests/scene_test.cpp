@@ -12,7 +12,7 @@ Scene makeScene(const std::string& name) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
   scene.meshes.push_back(mesh);
-  scene.instances.push_back({0, 0, {}});
+  scene.instances.push_back({});
   Material material;
   material.name = name;
   material.normalTexture.texture = 0;
@@ -27,7 +27,7 @@ Scene makeScene(const std::string& name) {
 
 TEST(Scene, CountsInstancedTrianglesOncePerInstance) {
   Scene scene = makeScene("a");
-  scene.instances.push_back({0, 0, {}});
+  scene.instances.push_back({});
   EXPECT_EQ(scene.triangleCount(), 2u);
 }
 
@@ -44,7 +44,7 @@ TEST(Scene, BoundsFollowInstances) {
   Scene scene = makeScene("a");
   EXPECT_TRUE(bounds(Scene()).empty());
   EXPECT_EQ(bounds(scene).max, vec3(1, 1, 0));
-  scene.instances.push_back({0, 0, {glm::mat3(-2), {0, 0, 5}}});
+  scene.instances.push_back({0, 0, 0, {glm::mat3(-2), {0, 0, 5}}});
   EXPECT_EQ(bounds(scene).min, vec3(-2, -2, 0));
   EXPECT_EQ(bounds(scene).max, vec3(1, 1, 5));
 }
@@ -57,7 +57,7 @@ TEST(Scene, AppendRenumbersEverything) {
   const Instance& second = scene.instances[1];
   EXPECT_EQ(second.mesh, 1);
   EXPECT_EQ(scene.nodeNames[size_t(second.node)], "b");
-  const Material& material = scene.materials[size_t(scene.meshes[1].material)];
+  const Material& material = scene.materials[size_t(second.material)];
   EXPECT_EQ(material.name, "b");
   EXPECT_EQ(material.normalTexture.texture, 1);
   EXPECT_EQ(material.baseColorTexture.texture, -1);

@@ -20,19 +20,18 @@ inline int addMaterial(Scene& scene, const Material& material) {
   return int(scene.materials.size()) - 1;
 }
 
-inline void addMesh(Scene& scene, Mesh mesh) {
+inline void addMesh(Scene& scene, int material, Mesh mesh) {
   if (scene.nodeNames.empty()) scene.nodeNames.push_back("node");
   scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({int(scene.meshes.size()) - 1, 0, {}});
+  scene.instances.push_back({int(scene.meshes.size()) - 1, material, 0, {}});
 }
 
 // corner + u a + v b, u and v in [0, 1]; faces along cross(a, b).
 inline void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b) {
   Mesh mesh;
-  mesh.material = material;
   mesh.positions = {corner, corner + a, corner + a + b, corner + b};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  addMesh(scene, std::move(mesh));
+  addMesh(scene, material, std::move(mesh));
 }
 
 // A sphere of 2 n^2 x 2 triangles; faces outwards, or inwards for a negative radius. `smooth`: with
@@ -40,7 +39,6 @@ inline void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b) {
 inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int n = 32,
                       bool smooth = true) {
   Mesh mesh;
-  mesh.material = material;
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= 2 * n; ++j) {
       const float theta = kPi * float(i) / float(n), phi = kPi * float(j) / float(n);
@@ -56,7 +54,7 @@ inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int
       if (i < n - 1)
         mesh.triangles.push_back({index(i, j + 1), index(i + 1, j), index(i + 1, j + 1)});
     }
-  addMesh(scene, std::move(mesh));
+  addMesh(scene, material, std::move(mesh));
 }
 
 // Looks straight down at the origin from `height`, -Z up in the picture.

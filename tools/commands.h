@@ -7,7 +7,9 @@
 namespace chromeball {
 
 void addRenderCommand(CLI::App& app);
-void addProbeCommand(CLI::App& app);  // info, convert, synth
+void addProbeCommand(CLI::App& app);  // info, convert, synth, irradiance
 void addImageCommand(CLI::App& app);  // view, error
+void addLightsCommand(CLI::App& app);
+void addLightsErrorCommand(CLI::App& app);
 
 }  // namespace chromeball

@@ -5,5 +5,5 @@ cd "$(dirname "$0")/.."
 
 tools/build.sh
 mkdir -p out
-build/chromeball render scenes/demo.toml -o out/demo.exr -o out/demo.png "$@"
+build/chromeball render scenes/demo.toml -o out/demo.exr -o out/demo.png --tonemap neutral "$@"
 echo "The pictures: $PWD/out/demo.png (tone mapped), $PWD/out/demo.exr (radiance)"

@@ -63,6 +63,8 @@ int run(int argc, char** argv) {
   addRenderCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
+  addLightsCommand(app);
+  addLightsErrorCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,6 +9,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
   addProbeSynthCommand(*probe);
+  addProbeIrradianceCommand(*probe);
 }
 
 }  // namespace chromeball

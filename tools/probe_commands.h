@@ -8,5 +8,6 @@ namespace chromeball {
 void addProbeInfoCommand(CLI::App& probe);
 void addProbeConvertCommand(CLI::App& probe);
 void addProbeSynthCommand(CLI::App& probe);
+void addProbeIrradianceCommand(CLI::App& probe);
 
 }  // namespace chromeball

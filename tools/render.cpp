@@ -1,7 +1,6 @@
 // chromeball render: a scene becomes a picture.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -51,21 +50,26 @@ Scene loadModels(const SceneFile& file) {
   return scene;
 }
 
-Image loadProbeImage(const RenderJob& job, const Scene& scene, bool quiet) {
+// The probe as a lat-long map; black where the scene lights itself.
+LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
   const SceneFile& file = job.file;
   if (!file.probe) {
     const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& m) { return m.unlit || !isBlack(m.emission); });
     if (!lit) throwInput("{}: nothing lights the scene; give --probe FILE", file.models[0].file);
-    return Image(2, 1, 3);
+    LoadedProbe black;
+    black.latLong = Image(2, 1, 3);
+    return black;
   }
   const NamedSetting mapping = file.probeMapping.value_or(NamedSetting{"auto", "--probe-mapping"});
-  LoadedProbe probe = loadProbe(*file.probe, mapping.name, mapping.place);
-  for (const std::string& line : warnings(probe, *file.probe)) warn(line);
+  return loadProbe(*file.probe, mapping.name, mapping.place);
+}
+
+void sayNotes(const LoadedProbe& probe, const std::string& path, bool quiet) {
+  for (const std::string& line : warnings(probe, path)) warn(line);
   if (probe.guessed && !quiet)
-    fmt::print(stderr, "chromeball: {}: taken for a {} probe, since {}\n", *file.probe,
+    fmt::print(stderr, "chromeball: {}: taken for a {} probe, since {}\n", path,
                mappingName(probe.mapping), probe.reason);
-  return std::move(probe.latLong);
 }
 
 Camera chooseCamera(const RenderJob& job, const Scene& scene) {
@@ -124,7 +128,8 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
       {"height", result.film.height()},
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
-      {"threads", tbb::this_task_arena::max_concurrency()},
+      {"threads",
+       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
       {"seconds",
        {{"load", seconds.load}, {"build", seconds.build}, {"prepare", seconds.prepare},
         {"render", seconds.render}, {"write", seconds.write}}},
@@ -164,7 +169,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
   if (settings.hideProbe)
     output.layers.push_back(
         {"", "RGBA",
-         withAlpha(result.film.mean(), result.aovs.finished(Aov::Alpha, result.samples))});
+         withAlpha(result.film.mean(), result.aovs.finished(Aov::Alpha))});
   else
     output.layers.push_back({"", "RGB", result.film.mean()});
   for (Aov aov : settings.aovs) {
@@ -172,7 +177,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
     output.layers.push_back({info.name, info.channels,
                              aov == Aov::Variance  ? result.film.squaredStandardError()
                              : aov == Aov::Samples ? result.film.sampleCounts()
-                                                   : result.aovs.finished(aov, result.samples)});
+                                                   : result.aovs.finished(aov)});
   }
   return output;
 }
@@ -193,13 +198,16 @@ void render(const RenderOptions& options) {
   const Scene scene = loadModels(job.file);
   chooseSize(job, scene);
   const Camera camera = chooseCamera(job, scene);
-  const Probe probe(loadProbeImage(job, scene, options.quiet), job.file.probeRotation.value_or(0),
+  LoadedProbe loaded = loadProbeOf(job, scene);
+  const Probe probe(std::move(loaded.latLong), job.file.probeRotation.value_or(0),
                     job.file.probeScale.value_or(1));
   seconds.load = watch.lap();
   const Accel accel(scene);
   seconds.build = watch.lap();
   const auto lighting = makeStrategy(job.strategy.name, probe, job.settings.mis, job.strategy.place);
   seconds.prepare = watch.lap();
+  // Said once nothing can be wrong any more, so that what is wrong stays one line.
+  if (job.file.probe) sayNotes(loaded, *job.file.probe, options.quiet);
 
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });

@@ -1,5 +1,6 @@
 #include "film/aov.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "math/error.h"
@@ -38,10 +39,11 @@ AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted) {
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
     sums_.push_back({aov, Image(width, height, channels)});
   }
-  if (!sums_.empty()) hits_ = Image(width, height, 1);
+  if (!sums_.empty()) samples_ = hits_ = Image(width, height, 1);
 }
 
 void AovFilm::add(int x, int y, const FirstHit& first) {
+  *samples_.at(x, y) += 1;
   if (!first.hit) return;
   const bool isFirst = *hits_.at(x, y) == 0;
   *hits_.at(x, y) += 1;
@@ -60,7 +62,7 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
   }
 }
 
-Image AovFilm::finished(Aov aov, int samplesPerPixel) const {
+Image AovFilm::finished(Aov aov) const {
   for (const Sum& sum : sums_) {
     if (sum.aov != aov) continue;
     Image image = aov == Aov::Alpha ? hits_ : sum.image;
@@ -72,7 +74,8 @@ Image AovFilm::finished(Aov aov, int samplesPerPixel) const {
         if (aov == Aov::Depth)
           *texel = hits > 0 ? *texel / hits : kNoDepth;
         else
-          for (int c = 0; c < image.channels; ++c) texel[c] /= float(samplesPerPixel);
+          for (int c = 0; c < image.channels; ++c)
+            texel[c] /= std::max(*samples_.at(x, y), 1.0f);  // a render may stop before any
       }
     return image;
   }

@@ -40,10 +40,10 @@ class AovFilm {
 
   bool empty() const { return sums_.empty(); }
 
-  // Concurrently for different pixels.
+  // Adds a sample. Concurrently for different pixels.
   void add(int x, int y, const FirstHit& first);
 
-  Image finished(Aov aov, int samplesPerPixel) const;
+  Image finished(Aov aov) const;
 
  private:
   struct Sum {
@@ -51,7 +51,7 @@ class AovFilm {
     Image image;
   };
   std::vector<Sum> sums_;
-  Image hits_;  // number of samples that hit something
+  Image samples_, hits_;  // number of samples, and of those that hit something
 };
 
 }  // namespace chromeball

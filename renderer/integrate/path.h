@@ -86,8 +86,9 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const Bsdf::Value bsdf = point.bsdf->evaluate(wi);
   if (isBlack(bsdf.fCos)) return Rgb(0);
 
-  const Surface source = surfaceAt(path.scene, path.scene.instances[emitter.instance],
-                                   emitter.triangle, emitter.barycentric, -wi);
+  const Instance& instance = path.scene.instances[emitter.instance];
+  const Surface source =
+      surfaceAt(path.scene, instance, emitter.triangle, emitter.barycentric, -wi);
   const Rgb radiance = emittedRadiance(path.scene, source);
   const float cosine = glm::dot(source.geometricNormal, -wi);
   if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
@@ -97,7 +98,7 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const float length = glm::length(target - origin);
   ++counts.shadow;
   const float passed = path.rays.transmittance({origin, (target - origin) / length, length});
-  const float density = path.emitters->density(source.mesh->material, distance, cosine);
+  const float density = path.emitters->density(instance.material, distance, cosine);
   return bsdf.fCos * radiance *
          (passed * lightSampleWeight(path.mis, density, bsdf.pdf) / density);
 }
@@ -106,7 +107,7 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
 // raised by as much. The first two bounces always go on: they carry most of the picture.
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
-  const float survival = std::fmin(maxComponent(throughput), 0.95f);
+  const float survival = std::min(maxComponent(throughput), 0.95f);
   if (!(sampler.get1(dimension::kRoulette) < survival)) return false;
   throughput /= survival;
   return true;
@@ -139,8 +140,8 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
       float density = 0;
       if (path.emitters && !surface.material->unlit)
         density = path.emitters->density(
-            surface.mesh->material, glm::length(surface.position - from.position),
-            std::fmax(glm::dot(surface.geometricNormal, wo), 1e-12f));
+            instance.material, glm::length(surface.position - from.position),
+            std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
       radiance += throughput * emitted * bsdfSampleWeight(path.mis, pdf, density);
     }
     const bool ends = depth == path.maxDepth || surface.material->unlit;
@@ -149,7 +150,7 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
     const MaterialPoint material = materialAt(path.scene, surface);
     if (first && depth == 0)
       *first = {true, glm::length(surface.position - ray.origin), material.baseColor,
-                surface.normal, surface.mesh->material, instance.node};
+                surface.normal, instance.material, instance.node};
     if (ends) return radiance;
 
     const Bsdf bsdf(material, surface, wo);

@@ -8,9 +8,9 @@
 namespace chromeball {
 
 struct DirectionalLight {
-  vec3 direction;     // unit, from the scene to the light
-  Rgb irradiance;     // on a surface that faces it, W/m^2
-  float angle = 0;    // angular diameter, degrees; 0: a delta light
+  vec3 direction;   // unit, from the scene to the light
+  Rgb irradiance;   // on a surface that faces it, W/m^2
+  float angle = 0;  // angular diameter, degrees; 0: a delta light
 };
 
 using Constellation = std::vector<DirectionalLight>;

@@ -12,9 +12,9 @@ namespace chromeball {
 // Density over solid angle = w / (total x jacobian x sin(theta)), which follows the radiance even
 // inside a texel, and is positive wherever the radiance is.
 //
-// MIS compensation (Karlik et al. 2019): w becomes max(luminance - mean, 0) x sin(theta), leaving to
-// the BSDF's samples what they find as well. Only for use with MIS; falls back to the plain table
-// where next to nothing is left.
+// MIS compensation (Karlik et al. 2019): w becomes max(luminance - mean, 0) x sin(theta), leaving
+// to the BSDF's samples what they find as well. Only for use with MIS; falls back to the plain
+// table where next to nothing is left.
 class Importance : public LightingStrategy {
  public:
   Importance(const Probe& probe, bool compensated);
@@ -40,11 +40,11 @@ class Importance : public LightingStrategy {
   double tabulate();
 
   const Probe& probe_;
-  float offset_ = 0;             // luminance taken off by compensation
-  std::vector<float> rowSine_;   // sin(theta) of the corner rows
+  float offset_ = 0;            // luminance taken off by compensation
+  std::vector<float> rowSine_;  // sin(theta) of the corner rows
   CdfRows rows_, columns_;
   double total_;
-  float scale_;                  // 1 / (total x jacobian)
+  float scale_;  // 1 / (total x jacobian)
 };
 
 }  // namespace chromeball

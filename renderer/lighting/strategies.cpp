@@ -17,13 +17,16 @@ struct Entry {
 };
 
 const Entry kStrategies[] = {
-    {"bsdf", [](const Probe& probe, Mis) -> std::unique_ptr<LightingStrategy> {
+    {"bsdf",
+     [](const Probe& probe, Mis) -> std::unique_ptr<LightingStrategy> {
        return std::make_unique<BsdfOnly>(probe);
      }},
-    {"uniform", [](const Probe& probe, Mis) -> std::unique_ptr<LightingStrategy> {
+    {"uniform",
+     [](const Probe& probe, Mis) -> std::unique_ptr<LightingStrategy> {
        return std::make_unique<Uniform>(probe);
      }},
-    {"importance", [](const Probe& probe, Mis mis) -> std::unique_ptr<LightingStrategy> {
+    {"importance",
+     [](const Probe& probe, Mis mis) -> std::unique_ptr<LightingStrategy> {
        return std::make_unique<Importance>(probe, mis != Mis::Off);
      }},
 };
@@ -34,8 +37,8 @@ std::string resolveStrategy(const std::string& name) {
   return name == "auto" ? "importance" : name;
 }
 
-std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
-                                               Mis mis, const std::string& place) {
+std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
+                                               const std::string& place) {
   const std::string resolved = resolveStrategy(name);
   std::vector<std::string_view> names{"auto"};
   for (const Entry& entry : kStrategies) {

@@ -19,7 +19,7 @@ struct LightPoint {
   vec3 normal;  // shading normal, on the viewer's side
   vec3 wo;      // unit, towards the viewer
   const Bsdf* bsdf;
-  int depth;    // 0 at the first hit: a strategy may do less on later bounces
+  int depth;  // 0 at the first hit: a strategy may do less on later bounces
 };
 
 // One direction worth a shadow ray. `density` is the effective density over solid angle: the sum
@@ -59,10 +59,10 @@ class LightingStrategy {
 enum class Mis { Off, Balance, Power };
 
 // Builds a strategy from its name on the command line, "NAME" or "NAME:COUNT"; "auto" is the
-// unbiased strategy best for the probe. `place` (an option, or FILE:LINE) begins the InputError thrown
-// for an unknown name. The probe must outlive the strategy.
-std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
-                                               Mis mis, const std::string& place);
+// unbiased strategy best for the probe. `place` (an option, or FILE:LINE) begins the InputError
+// thrown for an unknown name. The probe must outlive the strategy.
+std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
+                                               const std::string& place);
 
 // The name that "auto" stands for.
 std::string resolveStrategy(const std::string& name);

@@ -33,4 +33,13 @@ ShCoefficients projectSh(const Image& latLong) {
   return coefficients;
 }
 
+dvec3 shIrradiance(const ShCoefficients& radiance, const dvec3& normal) {
+  const double a0 = kPiD, a1 = 2 * kPiD / 3, a2 = kPiD / 4;
+  const std::array<double, kShCount> cosineLobe{a0, a1, a1, a1, a2, a2, a2, a2, a2};
+  const std::array<double, kShCount> basis = shBasis(normal);
+  dvec3 sum(0);
+  for (int i = 0; i < kShCount; ++i) sum += cosineLobe[i] * basis[i] * radiance[i];
+  return sum;
+}
+
 }  // namespace chromeball

@@ -21,4 +21,10 @@ std::array<double, kShCount> shBasis(const dvec3& direction);
 // Y_lm at each texel's centre, times its exact solid angle.
 ShCoefficients projectSh(const Image& latLong);
 
+// The irradiance of the function these are the coefficients of, on a surface with unit `normal`:
+// sum of A_l L_lm Y_lm(normal) with A_0 = pi, A_1 = 2 pi / 3, A_2 = pi / 4 (Ramamoorthi and
+// Hanrahan 2001, eq. 8). What the bands above 2 of a probe add is about 1% on average; next to a
+// sun's it is much more, and the sum can be negative.
+dvec3 shIrradiance(const ShCoefficients& radiance, const dvec3& normal);
+
 }  // namespace chromeball

@@ -1,6 +1,7 @@
 #include "scene/gltf_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "scene/gltf_accessor.h"
@@ -9,11 +10,6 @@
 
 namespace chromeball {
 namespace {
-
-bool hasTriangles(int mode) {
-  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
-         mode == TINYGLTF_MODE_TRIANGLE_FAN;
-}
 
 // Triangles of a vertex sequence, each with the front the specification gives it (3.7.2.1).
 std::vector<Triangle> assemble(const std::vector<uint32_t>& v, int mode) {
@@ -45,8 +41,6 @@ class AttributeReader {
  public:
   AttributeReader(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where)
       : file_(file), primitive_(primitive), where_(where) {}
-
-  bool has(const std::string& name) const { return primitive_.attributes.contains(name); }
 
   // The attribute by `readArray` (see gltf_accessor.h); empty where the primitive lacks it.
   template <class T>
@@ -127,20 +121,52 @@ bool isSkinned(const tinygltf::Primitive& primitive, const Pose& pose) {
          primitive.attributes.contains("WEIGHTS_0");
 }
 
+bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where) {
+  switch (primitive.mode) {
+    case TINYGLTF_MODE_TRIANGLES:
+    case TINYGLTF_MODE_TRIANGLE_STRIP:
+    case TINYGLTF_MODE_TRIANGLE_FAN:
+      if (primitive.attributes.contains("POSITION")) return true;
+      file.warnOnce("primitives without POSITION are left out");
+      return false;
+    case TINYGLTF_MODE_POINTS:
+    case TINYGLTF_MODE_LINE:
+    case TINYGLTF_MODE_LINE_LOOP:
+    case TINYGLTF_MODE_LINE_STRIP:
+      file.warnOnce("points and lines are left out");
+      return false;
+  }
+  file.fail("{}.mode: {} is not one of glTF's (0 to 6)", where, primitive.mode);
+}
+
+MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Material material) {
+  MeshRecipe recipe{.mode = primitive.mode,
+                    .indices = primitive.indices,
+                    .attributes = primitive.attributes,
+                    .targets = primitive.targets,
+                    .weights = {},
+                    .uvSets = {},
+                    .normalMapSpace = {},
+                    .hasAlpha = material.alphaMode != AlphaMode::Opaque};
+  if (!primitive.targets.empty()) recipe.weights.assign(pose.weights.begin(), pose.weights.end());
+  for (const TextureSlot* slot : textureSlots(material))
+    if (*slot) recipe.uvSets.push_back(slot->uvSet);
+  std::sort(recipe.uvSets.begin(), recipe.uvSets.end());
+  recipe.uvSets.erase(std::unique(recipe.uvSets.begin(), recipe.uvSets.end()),
+                      recipe.uvSets.end());
+  if (const TextureSlot& slot = material.normalTexture; slot) {
+    recipe.normalMapSpace.push_back(uint32_t(slot.uvSet));
+    for (const vec2& v : {slot.uvRow0, slot.uvRow1, slot.uvOffset})
+      for (int k = 0; k < 2; ++k) recipe.normalMapSpace.push_back(std::bit_cast<uint32_t>(v[k]));
+  }
+  return recipe;
+}
+
 std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& primitive,
                                   const Pose& pose, const std::string& where,
-                                  MaterialReader& materials) {
-  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-    file.fail("{}.mode: {} is not one of glTF's (0 to 6)", where, primitive.mode);
-  AttributeReader attributes(file, primitive, where);
-  if (!hasTriangles(primitive.mode) || !attributes.has("POSITION")) {
-    file.warnOnce(hasTriangles(primitive.mode) ? "primitives without POSITION are left out"
-                                               : "points and lines are left out");
-    return std::nullopt;
-  }
-
+                                  const Material& material) {
   refuseCompressed(file, primitive, where);
-
+  AttributeReader attributes(file, primitive, where);
   Mesh mesh;
   mesh.positions = attributes.read("POSITION", readVectors<3>);
   std::vector<uint32_t> vertices;
@@ -158,8 +184,6 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && vertices.size() % 3 != 0)
     file.warnOnce("indices beyond the last whole triangle are left out");
 
-  mesh.material = materials.use(primitive.material, where + ".material");
-  const Material& material = materials[mesh.material];
   mesh.normals = attributes.read("NORMAL", readVectors<3>);
   if (material.normalTexture && !mesh.normals.empty())
     mesh.tangents = attributes.read("TANGENT", readVectors<4>);

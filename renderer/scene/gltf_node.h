@@ -18,4 +18,7 @@ struct NodeTree {
 // are not trees, or a transform is not affine and finite.
 NodeTree readNodes(const GltfFile& file, const Transform& placement);
 
+// False where the matrix flattens space, or does once it is rounded to float.
+bool isInvertible(const glm::dmat4& m);
+
 }  // namespace chromeball

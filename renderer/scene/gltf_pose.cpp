@@ -23,7 +23,7 @@ void addDisplacements(GltfFile& file, const std::map<std::string, int>& target, 
 
 // The blended joint matrix of every vertex.
 std::vector<glm::dmat4> blendJoints(GltfFile& file, const tinygltf::Primitive& primitive,
-                                    const std::vector<glm::dmat4>& joints, const std::string& where,
+                                    std::span<const glm::dmat4> joints, const std::string& where,
                                     size_t vertexCount) {
   std::vector<glm::dmat4> blended(vertexCount, glm::dmat4(0));
   std::vector<double> sum(vertexCount, 0);
@@ -61,7 +61,7 @@ std::vector<glm::dmat4> blendJoints(GltfFile& file, const tinygltf::Primitive& p
 }  // namespace
 
 void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,
-                       const std::vector<double>& weights, const std::string& where, Mesh& mesh) {
+                       std::span<const double> weights, const std::string& where, Mesh& mesh) {
   for (size_t i = 0; i < std::min(primitive.targets.size(), weights.size()); ++i) {
     if (weights[i] == 0) continue;
     if (!std::isfinite(weights[i])) file.fail("{}: morph weight {} is not finite", where, i);
@@ -73,7 +73,7 @@ void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,
 }
 
 void applySkin(GltfFile& file, const tinygltf::Primitive& primitive,
-               const std::vector<glm::dmat4>& joints, const std::string& where, Mesh& mesh) {
+               std::span<const glm::dmat4> joints, const std::string& where, Mesh& mesh) {
   const std::vector<glm::dmat4> blended =
       blendJoints(file, primitive, joints, where, mesh.positions.size());
   size_t mirrored = 0;

@@ -80,9 +80,9 @@ Camera framingCamera(const Bounds& bounds, float aspectRatio) {
 void append(Scene& scene, Scene&& other) {
   const int meshes = int(scene.meshes.size()), materials = int(scene.materials.size());
   const int textures = int(scene.textures.size()), nodes = int(scene.nodeNames.size());
-  for (Mesh& mesh : other.meshes) mesh.material += materials;
   for (Instance& instance : other.instances) {
     instance.mesh += meshes;
+    instance.material += materials;
     instance.node += nodes;
   }
   for (Material& material : other.materials)

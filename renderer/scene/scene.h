@@ -12,17 +12,16 @@ namespace chromeball {
 
 using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the front
 
-// One glTF primitive: an indexed triangle soup with a single material.
+// The geometry of a glTF primitive: an indexed triangle soup.
 // Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
 // the bitangent in w (bitangent = w * cross(normal, tangent)).
 struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<vec3> positions;
   std::vector<vec3> normals;               // empty: flat, the triangle's own normal
-  std::vector<vec4> tangents;              // filled only where the material has a normal map
+  std::vector<vec4> tangents;              // filled only where a material has a normal map
   std::vector<vec4> colors;                // linear RGBA; empty: white
-  std::vector<std::vector<vec2>> uvs;      // by UV set; only those the material reads are kept
-  int material = 0;                        // always valid
+  std::vector<std::vector<vec2>> uvs;      // by UV set; only those a material reads are kept
 };
 
 // Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
@@ -34,9 +33,11 @@ struct Transform {
   bool isIdentity() const { return linear == glm::mat3(1) && translation == vec3(0); }
 };
 
-// A mesh standing somewhere. A mesh with one instance is stored in world space (identity here).
+// A mesh standing somewhere, made of something. A mesh with one instance is stored in world space
+// (identity here); one with several serves materials that need the same of its vertices.
 struct Instance {
   int mesh = 0;
+  int material = 0;
   int node = 0;  // index into Scene::nodeNames
   Transform toWorld;
 };

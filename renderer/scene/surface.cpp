@@ -59,7 +59,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
                   vec2 barycentric, const vec3& wo) {
   Surface s;
   s.mesh = &scene.meshes[instance.mesh];
-  s.material = &scene.materials[s.mesh->material];
+  s.material = &scene.materials[instance.material];
   s.triangle = s.mesh->triangles[triangle];
   s.barycentric = barycentric;
 
@@ -139,8 +139,11 @@ Rgb emittedRadiance(const Scene& scene, const Surface& s) {
   return m.emission * Rgb(lookup(scene, m.emissiveTexture, s));
 }
 
-float surfaceAlpha(const Scene& scene, const Mesh& mesh, const Material& material,
-                   uint32_t triangle, vec2 barycentric) {
+float surfaceAlpha(const Scene& scene, const Instance& instance, uint32_t triangle,
+                   vec2 barycentric) {
+  const Material& material = scene.materials[instance.material];
+  if (material.alphaMode == AlphaMode::Opaque) return 1;
+  const Mesh& mesh = scene.meshes[instance.mesh];
   const Triangle& t = mesh.triangles[triangle];
   float alpha = material.baseColor.w;
   if (material.baseColorTexture)

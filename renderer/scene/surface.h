@@ -41,8 +41,8 @@ MaterialPoint materialAt(const Scene& scene, const Surface& surface);
 // Radiance emitted towards the viewer. A single-sided material emits from its front only.
 Rgb emittedRadiance(const Scene& scene, const Surface& surface);
 
-// Coverage at a point: 0 or 1 for masks, in between for blended surfaces.
-float surfaceAlpha(const Scene& scene, const Mesh& mesh, const Material& material,
-                   uint32_t triangle, vec2 barycentric);
+// Coverage at a point: 1 for opaque surfaces, 0 or 1 for masks, in between for blended ones.
+float surfaceAlpha(const Scene& scene, const Instance& instance, uint32_t triangle,
+                   vec2 barycentric);
 
 }  // namespace chromeball

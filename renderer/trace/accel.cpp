@@ -17,44 +17,35 @@ struct Query {
   float transmittance = 1;
 };
 
-float alphaAt(const Accel::AlphaSource& source, const RTCFilterFunctionNArguments* arguments) {
+// Index into Scene::instances, since geometry i of the top scene is instance i.
+uint32_t instanceOf(uint32_t topInstance, uint32_t geometry) {
+  return topInstance != RTC_INVALID_GEOMETRY_ID ? topInstance : geometry;
+}
+
+Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
   RTCHitN* hit = arguments->hit;
-  const uint32_t triangle = RTCHitN_primID(hit, 1, 0);
-  const vec2 barycentric(RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0));
-  return surfaceAlpha(*source.scene, *source.mesh, *source.material, triangle, barycentric);
+  return {instanceOf(RTCHitN_instID(hit, 1, 0, 0), RTCHitN_geomID(hit, 1, 0)),
+          RTCHitN_primID(hit, 1, 0),
+          {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)}};
+}
+
+float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
+  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  return surfaceAlpha(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric);
 }
 
 void filterClosest(const RTCFilterFunctionNArguments* arguments) {
-  const auto& source = *static_cast<const Accel::AlphaSource*>(arguments->geometryUserPtr);
   const auto& query = *reinterpret_cast<const Query*>(arguments->context);
-  const float alpha = alphaAt(source, arguments);
-  const uint64_t surface = uint64_t(source.instance) << 32 | RTCHitN_primID(arguments->hit, 1, 0);
+  const Hit hit = hitOf(arguments);
+  const float alpha = alphaAt(arguments, hit);
+  const uint64_t surface = uint64_t(hit.instance) << 32 | hit.triangle;
   if (alpha < 1 && toUnit(uint32_t(hash(query.key, surface))) >= alpha) arguments->valid[0] = 0;
 }
 
 void filterShadow(const RTCFilterFunctionNArguments* arguments) {
-  const auto& source = *static_cast<const Accel::AlphaSource*>(arguments->geometryUserPtr);
   auto& query = *reinterpret_cast<Query*>(arguments->context);
-  query.transmittance *= 1 - alphaAt(source, arguments);
+  query.transmittance *= 1 - alphaAt(arguments, hitOf(arguments));
   if (query.transmittance > 0) arguments->valid[0] = 0;
-}
-
-RTCGeometry meshGeometry(RTCDevice device, const Mesh& mesh) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads 16 bytes a vertex, past the end of an array of vec3: it gets its own copy.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(vec3), mesh.positions.size());
-  if (vertices)
-    std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                             mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
-  return geometry;
-}
-
-void setAlphaFilters(RTCGeometry geometry, Accel::AlphaSource& source) {
-  rtcSetGeometryUserData(geometry, &source);
-  rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
-  rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
 }
 
 RTCScene newScene(RTCDevice device, bool hasAlpha) {
@@ -100,12 +91,28 @@ void Accel::release() {
   rtcReleaseDevice(device_);
 }
 
+RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
+  const Mesh& mesh = scene.meshes[index];
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Embree reads 16 bytes a vertex, past the end of an array of vec3: it gets its own copy.
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(vec3), mesh.positions.size());
+  if (vertices)
+    std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
+  if (needsAlpha_[index]) {
+    rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
+    rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
+  }
+  return geometry;
+}
+
 RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
   if (!meshScenes_[mesh]) {
-    RTCGeometry geometry = meshGeometry(device_, scene.meshes[mesh]);
-    if (alphaSources_[mesh].material) setAlphaFilters(geometry, alphaSources_[mesh]);
     meshScenes_[mesh] = newScene(device_, hasAlpha_);
-    attach(meshScenes_[mesh], geometry);
+    attach(meshScenes_[mesh], meshGeometry(scene, mesh));
     rtcCommitScene(meshScenes_[mesh]);
   }
   return meshScenes_[mesh];
@@ -113,14 +120,11 @@ RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
 
 void Accel::build(const Scene& scene) {
   std::vector<int> uses(scene.meshes.size());
-  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
-
-  alphaSources_.resize(scene.meshes.size());
-  for (size_t i = 0; i < scene.meshes.size(); ++i) {
-    const Material& material = scene.materials[scene.meshes[i].material];
-    if (material.alphaMode == AlphaMode::Opaque) continue;
-    alphaSources_[i] = {&scene, &scene.meshes[i], &material, uint32_t(i)};
-    hasAlpha_ = true;
+  needsAlpha_.resize(scene.meshes.size());
+  for (const Instance& instance : scene.instances) {
+    ++uses[instance.mesh];
+    if (scene.materials[instance.material].alphaMode == AlphaMode::Opaque) continue;
+    needsAlpha_[instance.mesh] = hasAlpha_ = true;
   }
 
   meshScenes_.resize(scene.meshes.size());
@@ -129,9 +133,7 @@ void Accel::build(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     RTCGeometry geometry;
     if (uses[instance.mesh] == 1 && instance.toWorld.isIdentity()) {
-      geometry = meshGeometry(device_, scene.meshes[instance.mesh]);
-      AlphaSource& alpha = alphaSources_[instance.mesh];
-      if (alpha.material) setAlphaFilters(geometry, alpha);
+      geometry = meshGeometry(scene, instance.mesh);
     } else {
       geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
       rtcSetGeometryInstancedScene(geometry, meshScene(scene, instance.mesh));
@@ -158,8 +160,7 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  const bool instanced = r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-  hit = {instanced ? r.hit.instID[0] : r.hit.geomID, r.hit.primID, {r.hit.u, r.hit.v}};
+  hit = {instanceOf(r.hit.instID[0], r.hit.geomID), r.hit.primID, {r.hit.u, r.hit.v}};
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "trace/ray.h"
 
 struct RTCDeviceTy;
+struct RTCGeometryTy;
 struct RTCSceneTy;
 
 namespace chromeball {
@@ -30,23 +31,16 @@ class Accel {
   // the blended surfaces between.
   float transmittance(const Ray& ray) const;
 
-  // What a surface with alpha needs to answer a filter call.
-  struct AlphaSource {
-    const Scene* scene;
-    const Mesh* mesh;
-    const Material* material;
-    uint32_t instance;
-  };
-
  private:
   void build(const Scene& scene);
   void release();
+  RTCGeometryTy* meshGeometry(const Scene& scene, int mesh) const;
   RTCSceneTy* meshScene(const Scene& scene, int mesh);
 
   RTCDeviceTy* device_ = nullptr;
   RTCSceneTy* scene_ = nullptr;
   std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null where a mesh stands in one place only
-  std::vector<AlphaSource> alphaSources_;
+  std::vector<bool> needsAlpha_;         // by mesh: whether an instance has a surface with alpha
   bool hasAlpha_ = false;
 };
 

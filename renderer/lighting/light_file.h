@@ -1,0 +1,32 @@
+// Directional lights as files, for other programs and for ours.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "lighting/directional_light.h"
+
+namespace chromeball {
+
+// What `chromeball lights` makes of a probe.
+struct LightRig {
+  std::string probe, method;   // the file, and the name of the method
+  std::optional<Rgb> ambient;  // radiance from everywhere, beside the lights
+  Constellation lights;
+};
+
+// Writes atomically; the extension decides the format. Throws InputError where it is none of these,
+// RunError where a light is not finite or writing fails.
+//   .json  {"probe", "method", "ambient": [r, g, b] where there is one, "lights": [{"direction":
+//          [x, y, z], "irradiance": [r, g, b], "angle": degrees}, ...]}
+//   .gltf  KHR_lights_punctual: for each a directional light and a node, whose -Z is the way its
+//          light goes. Intensity times colour is the irradiance, the colour's largest component 1.
+//          Ambient light and angles, which the format does not have, are in extras.
+//   .csv   a line a light, under the header x,y,z,r,g,b,angle; the ambient light is left out
+void writeLights(const std::filesystem::path& path, const LightRig& rig);
+
+// Reads the JSON above. Directions of any length become unit. Throws InputError.
+LightRig readLights(const std::filesystem::path& path);
+
+}  // namespace chromeball

@@ -1,0 +1,165 @@
+// chromeball lights, lights-error and probe irradiance.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+CommandResult run(const std::vector<std::string>& arguments) {
+  CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 0) << result.error;
+  return result;
+}
+
+TEST(CommandIrradiance, OfAConstantProbe) {
+  const TemporaryFolder folder;
+  writeImage(folder / "in.exr", constantProbe({128, 64}, Rgb(1, 2, 3)));
+  for (const char* method : {"exact", "sh"}) {
+    run({"probe", "irradiance", folder / "in.exr", folder / "out.exr", "--size", "16x8", "--method",
+         method});
+    const Image map = readImage(folder / "out.exr");
+    ASSERT_EQ(map.width, 16);
+    ASSERT_EQ(map.height, 8);
+    for (int x = 0; x < 16; ++x)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(map.rgb(x, 3)[c], kPi * (c + 1), 0.005);
+  }
+  run({"probe", "irradiance", folder / "in.exr", folder / "same.exr"});
+  EXPECT_EQ(readImage(folder / "same.exr").width, 128);
+}
+
+TEST(CommandLights, EveryFormatAndThePreview) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr";
+  writeImage(probe, studioProbe({64, 32}));
+  run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.json",
+       "--preview", folder / "a.png"});
+  const json file = json::parse(fileContents(folder / "a.json"));
+  EXPECT_EQ(file["probe"], probe);
+  EXPECT_EQ(file["method"], "median-cut");
+  EXPECT_FALSE(file.contains("ambient"));
+  ASSERT_EQ(file["lights"].size(), 8u);
+  for (const json& light : file["lights"]) {
+    const json& d = light["direction"];
+    EXPECT_NEAR(std::hypot(double(d[0]), double(d[1]), double(d[2])), 1, 1e-6);
+    EXPECT_GT(light["irradiance"][0], 0);
+    EXPECT_EQ(light["angle"], 0);
+  }
+  EXPECT_EQ(readImage(folder / "a.png").width, 1024);
+  run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.gltf"});
+  EXPECT_EQ(json::parse(fileContents(folder / "a.gltf"))["nodes"].size(), 8u);
+  run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.csv"});
+  const std::string csv = fileContents(folder / "a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 9);
+}
+
+TEST(SlowCommandLights, FitFindsItsNumberOfLights) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr", out = folder / "a.json";
+  writeImage(probe, studioProbe({64, 32}));
+  run({"lights", probe, "--method", "irradiance-fit", "--max-error", "5%", "--ambient", "-o", out});
+  const json file = json::parse(fileContents(out));
+  EXPECT_EQ(file["ambient"].size(), 3u);
+  const size_t count = file["lights"].size();
+  EXPECT_GE(count, 1u);
+  EXPECT_LE(count, 20u);
+  const CommandResult capped = run({"lights", probe, "--method", "irradiance-fit", "--max-error",
+                                    "0.0001", "--count", "2", "-o", out});
+  EXPECT_LE(json::parse(fileContents(out))["lights"].size(), 2u);
+  EXPECT_NE(capped.error.find("do not reach"), std::string::npos);
+}
+
+TEST(SlowCommandLights, ErrorTableCsvAndPlot) {
+  const TemporaryFolder folder;
+  writeImage(folder / "studio.exr", studioProbe({64, 32}));
+  const std::string table = run({"lights-error", folder / "studio.exr", "--methods",
+                                 "median-cut,variance-cut", "--counts", "2,8,32,128", "--normals",
+                                 "1280", "--csv", folder / "e.csv", "--plot", folder / "e.svg"})
+                                .out;
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 9);
+
+  std::ifstream csv(folder / "e.csv");
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "method,count,lights,mean_percent,max_percent,seconds");
+  double first = 0, mean = 0, max = 0;
+  int count = 0, lights = 0;
+  for (int i = 0; i < 4 && std::getline(csv, line); ++i) {
+    ASSERT_EQ(std::sscanf(line.c_str(), "median-cut,%d,%d,%lf,%lf", &count, &lights, &mean, &max),
+              4)
+        << line;
+    EXPECT_EQ(count, lights);
+    EXPECT_GT(max, mean);
+    if (i == 0) first = mean;
+  }
+  EXPECT_LT(mean, first / 4);
+
+  const std::string svg = fileContents(folder / "e.svg");
+  EXPECT_TRUE(svg.starts_with("<svg xmlns"));
+  EXPECT_TRUE(svg.ends_with("</svg>\n"));
+  EXPECT_NE(svg.find(">variance-cut</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(SlowCommandLights, ABlackProbeIsNoError) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "black.exr";
+  writeImage(probe, constantProbe({32, 16}, Rgb(0)));
+  run({"lights", probe, "--method", "median-cut", "--count", "4", "-o", folder / "a.gltf",
+       "--preview", folder / "a.png"});
+  run({"lights-error", probe, "--methods", "median-cut,irradiance-fit", "--counts", "2",
+       "--normals", "80", "--plot", folder / "e.svg"});
+  EXPECT_EQ(fileContents(folder / "e.svg").find("nan"), std::string::npos);
+}
+
+TEST(SlowCommandLights, BadInputIsRefused) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "a.exr", out = folder / "a.json";
+  writeImage(in, constantProbe({32, 16}, Rgb(1)));
+  const std::vector<std::string> lights{"lights", in, "--count", "4", "-o", out, "--method"};
+  const auto with = [](std::vector<std::string> arguments,
+                       std::initializer_list<std::string> more) {
+    arguments.insert(arguments.end(), more);
+    return arguments;
+  };
+  expectRefused(with(lights, {"medain-cut"}), "`median-cut`");
+  expectRefused(with(lights, {"irradiance-fitt"}), "`irradiance-fit`");
+  expectRefused(with(lights, {"median-cut", "--ambient"}), "--ambient");
+  expectRefused(with(lights, {"median-cut", "--max-error", "5%"}), "--max-error");
+  expectRefused(with(lights, {"irradiance-fit", "--max-error", "-5"}), "--max-error");
+  expectRefused(with(lights, {"irradiance-fit", "--max-error", "five"}), "--max-error");
+  expectRefused(with(lights, {"median-cut", "--preview", folder / "a.jpg"}), ".png");
+  expectRefused({"lights", in, "--method", "median-cut", "-o", out}, "--count");
+  expectRefused({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "a.txt"},
+                ".json");
+  expectRefused({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "b/a.csv"},
+                "no folder");
+  expectRefused({"lights", in, "--method", "median-cut", "--count", "-4", "-o", out}, "count");
+  expectRefused({"lights", in, "--method", "irradiance-fit", "--count", "0", "-o", out}, "count");
+  expectRefused({"lights", in, "--method", "irradiance-fit", "--count", "2000000000", "-o", out},
+                "count");
+  expectRefused(
+      {"lights", folder / "none.exr", "--method", "median-cut", "--count", "4", "-o", out},
+      "no such file");
+  const std::vector<std::string> errors{"lights-error", in, "--methods", "median-cut", "--counts"};
+  expectRefused(with(errors, {"two"}), "--counts");
+  expectRefused(with(errors, {"2", "--normals", "1000"}), "1280");
+  expectRefused(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
+  expectRefused(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
+  expectRefused({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},
+                "suns-cut");
+  expectRefused({"probe", "irradiance", in, folder / "o.exr", "--method", "exakt"}, "`exact`");
+  expectRefused({"probe", "irradiance", in, folder / "o.exr", "--size", "0x2"}, "--size");
+  expectRefused({"probe", "irradiance", in, folder / "o.jpg"}, ".exr");
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr"}));
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,381 @@
+// chromeball render, from the command line to the files it writes.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gltf_writer.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+constexpr float kEmission = 0.75f;  // of the scene's lamp
+
+// A box a metre wide with a grey material, another of 0.2 m to its right that glows, seen from the
+// front (2 m from the box's face) and from the left (4 m); and probes.
+class RenderScene {
+  GltfWriter writer_;
+
+ public:
+  const std::string model, gradient, constant;
+  TemporaryFolder out;  // holds nothing but what renders wrote
+
+  RenderScene()
+      : model((makeModel(writer_), writer_.save())),
+        gradient((writer_.folder() / "gradient.exr").string()),
+        constant((writer_.folder() / "constant.exr").string()) {
+    writeImage(gradient, gradientProbe({64, 32}, Rgb(1, 2, 3), vec3(0.6f, 0.5f, 0.3f)));
+    writeImage(constant, constantProbe({8, 4}, Rgb(0.5f, 1, 2)));
+  }
+
+  std::string folder() const { return writer_.folder().string(); }
+
+  // Renders the model and expects success.
+  CommandResult render(const Words& options) const { return renderScene(model, options); }
+
+  CommandResult renderScene(const std::string& scene, const Words& options) const {
+    Words words{"render", scene};
+    words.insert(words.end(), options.begin(), options.end());
+    CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result;
+  }
+
+  ImageFile image(const std::string& name) const { return readImageFile(out / name); }
+  json stats(const std::string& name) const { return json::parse(fileContents(out / name)); }
+
+ private:
+  static int addBox(GltfWriter& w, float side, const json& material) {
+    std::vector<float> corners;
+    for (int i = 0; i < 8; ++i)
+      for (int axis = 0; axis < 3; ++axis) corners.push_back(i >> axis & 1 ? side / 2 : -side / 2);
+    std::vector<uint16_t> indices;
+    for (const auto& [a, b, c, d] : {std::array<uint16_t, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 4, 6, 2},
+                                     {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}})
+      indices.insert(indices.end(), {a, b, c, a, c, d});
+    return w.mesh({{"attributes", {{"POSITION", w.vec3s(corners)}}},
+                   {"indices", w.indices(indices)},
+                   {"material", w.add("materials", material)}});
+  }
+
+  static void makeModel(GltfWriter& w) {
+    const json grey = {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}};
+    w.add("nodes", {{"mesh", addBox(w, 1, {{"pbrMetallicRoughness", grey}})}});
+    w.add("nodes", {{"mesh", addBox(w, 0.2f, {{"emissiveFactor", {kEmission, kEmission, kEmission}}})},
+                    {"translation", {0.9, 0, 0}}});
+    w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
+    w.add("nodes", {{"camera", 0}, {"name", "Front"}, {"translation", {0, 0, 2.5}}});
+    const double half = std::sqrt(0.5);
+    w.add("nodes", {{"camera", 0},
+                    {"name", "Left"},
+                    {"translation", {-4.5, 0, 0}},
+                    {"rotation", {0, -half, 0, half}}});
+  }
+
+};
+
+// What an EXR file's header says (OpenEXR's file layout, version 2).
+struct ExrHeader {
+  std::map<std::string, int> channels;  // 2: float32
+  int compression = -1;                 // 3: ZIP
+  std::set<std::string> attributes;
+};
+
+ExrHeader exrHeader(const std::string& path) {
+  const std::string bytes = fileContents(path);
+  ExrHeader header;
+  size_t at = 8;
+  const auto text = [&] {
+    const std::string word(bytes.c_str() + at);
+    at += word.size() + 1;
+    return word;
+  };
+  const auto number = [&] {
+    int32_t n;
+    std::memcpy(&n, bytes.data() + at, sizeof n);
+    at += sizeof n;
+    return n;
+  };
+  for (std::string name = text(); !name.empty(); name = text()) {
+    header.attributes.insert(name);
+    const std::string type = text();
+    const size_t end = size_t(number()) + at;
+    if (name == "compression") header.compression = bytes[at];
+    if (type == "chlist")
+      for (std::string channel = text(); !channel.empty(); at += 12, channel = text())
+        header.channels[channel] = number();
+    at = end;
+  }
+  return header;
+}
+
+// A channel of a pixel by its full name; NaN where the file has no such channel.
+float texel(const ImageFile& file, const std::string& channel, int x, int y) {
+  const auto found = std::find(file.channels.begin(), file.channels.end(), channel);
+  EXPECT_NE(found, file.channels.end()) << channel;
+  return found == file.channels.end() ? NAN : file.image.at(x, y)[found - file.channels.begin()];
+}
+
+void expectWithin(const Image& image, const Image& expected, float relative) {
+  ASSERT_EQ(image.texels.size(), expected.texels.size());
+  for (size_t i = 0; i < image.texels.size(); ++i)
+    ASSERT_NEAR(image.texels[i], expected.texels[i], relative * expected.texels[i] + 1e-6f) << i;
+}
+
+TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
+  const RenderScene scene;
+  Words options{"--probe", scene.gradient, "--size", "24x18", "--samples", "3", "--threads", "1",
+                "--seed", "7", "--strategy", "importance", "--stats", scene.out / "stats.json",
+                "--aov", "albedo,normal,depth,variance", "--aov", "samples,material,node,alpha"};
+  for (const char* name : {"a.exr", "a.hdr", "a.pfm", "a.png"})
+    options.insert(options.end(), {"-o", scene.out / name});
+  const CommandResult result = scene.render(options);
+  EXPECT_TRUE(result.out.starts_with("3 samples a pixel")) << result.out;
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
+  EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.hdr", "a.pfm", "a.png", "stats.json"}));
+
+  const ExrHeader header = exrHeader(scene.out / "a.exr");
+  std::set<std::string> names;
+  for (const auto& [name, type] : header.channels) {
+    names.insert(name);
+    EXPECT_EQ(type, 2) << name;
+  }
+  EXPECT_EQ(names, (std::set<std::string>{
+                       "R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
+                       "normal.Z", "depth.Z", "variance.R", "variance.G", "variance.B", "samples",
+                       "material", "node", "alpha.A"}));
+  EXPECT_EQ(header.compression, 3);
+  EXPECT_FALSE(header.attributes.contains("tiles"));
+
+  const ImageFile exr = scene.image("a.exr");
+  const auto metadata = [&](const char* key) {
+    const auto found = exr.metadata.find(key);
+    EXPECT_NE(found, exr.metadata.end()) << key;
+    return found == exr.metadata.end() ? Metadata::mapped_type{} : found->second;
+  };
+  EXPECT_TRUE(std::get<std::string>(metadata("Software")).starts_with("chromeball "));
+  EXPECT_EQ(std::get<std::string>(metadata("scene")), scene.model);
+  EXPECT_EQ(std::get<std::string>(metadata("strategy")), "importance");
+  EXPECT_EQ(std::get<int>(metadata("samples")), 3);
+  EXPECT_EQ(std::get<std::string>(metadata("seed")), "7");
+  EXPECT_GT(std::get<float>(metadata("seconds")), 0);
+
+  const json stats = scene.stats("stats.json");
+  const auto count = [&](const char* kind) { return stats.at("rays").at(kind).get<uint64_t>(); };
+  EXPECT_EQ(count("camera"), 3u * 24 * 18);
+  EXPECT_GT(count("shadow"), 0u);
+  EXPECT_GT(count("bounce"), 0u);
+  EXPECT_EQ(std::get<std::string>(metadata("rays")),
+            std::to_string(count("camera") + count("shadow") + count("bounce")));
+  EXPECT_NEAR(std::get<float>(metadata("noise")), stats.at("noise").get<double>(), 1e-6);
+  for (const char* phase : {"load", "build", "prepare", "render", "write"})
+    EXPECT_GE(stats.at("seconds").at(phase).get<double>(), 0) << phase;
+  EXPECT_EQ(stats.at("samples_per_pixel"), 3);
+  EXPECT_EQ(stats.at("invalid_samples"), 0);
+  EXPECT_GT(stats.at("noise").get<double>(), 0);
+  EXPECT_GT(stats.at("peak_memory_bytes").get<uint64_t>(), 1u << 20);
+  EXPECT_EQ(stats.at("strategy"), "importance");
+  EXPECT_EQ(stats.at("threads"), 1);
+  EXPECT_EQ(stats.at("triangles"), 24);
+  EXPECT_TRUE(stats.at("version").is_string());
+
+  const Image color = *findColor(exr);
+  EXPECT_EQ(readImage(scene.out / "a.pfm").texels, color.texels);
+  expectWithin(readImage(scene.out / "a.hdr"), color, 0.02f);
+  EXPECT_EQ(readImage(scene.out / "a.png").width, 24);
+  EXPECT_EQ(readImage(scene.out / "a.png").height, 18);
+  // The middle of the picture looks at the middle of the box's front, 2 m away.
+  const auto middle = [&](const char* channel) { return texel(exr, channel, 12, 9); };
+  EXPECT_NEAR(middle("depth.Z"), 2, 1e-4f);
+  EXPECT_NEAR(middle("normal.Z"), 1, 1e-5f);
+  EXPECT_NEAR(middle("albedo.G"), 0.5f, 1e-5f);
+  EXPECT_EQ(middle("samples"), 3);
+  EXPECT_EQ(middle("material"), 1);
+  EXPECT_EQ(middle("alpha.A"), 1);
+  EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
+}
+
+TEST(CommandRender, ThreadsChangeNoBitAndSeedsDo) {
+  const RenderScene scene;
+  const auto render = [&](const char* threads, const char* seed) {
+    scene.render({"--probe", scene.gradient, "--size", "40x30", "--samples", "4", "--threads",
+                  threads, "--seed", seed, "-o", scene.out / "a.pfm"});
+    return readImage(scene.out / "a.pfm").texels;
+  };
+  const auto one = render("1", "1");
+  EXPECT_EQ(render("2", "1"), one);
+  EXPECT_NE(render("2", "2"), one);
+}
+
+TEST(CommandRender, TheCommandLineOverridesTheSceneFile) {
+  const RenderScene scene;
+  const std::string file = scene.folder() + "/scene.toml";
+  std::ofstream(file) << "model = 'model.gltf'\n[camera]\nname = 'Left'\n[probe]\nfile = "
+                         "'gradient.exr'\nscale = 3\n[lighting]\nstrategy = 'uniform'\n[render]\n"
+                         "size = [10, 8]\nsamples = 2\nseed = 5\nmax_depth = 0\n[output]\nfile = '"
+                      << scene.out / "file.exr" << "'\naovs = ['depth']\n";
+  scene.renderScene(file, {"--stats", scene.out / "file.json"});
+  scene.renderScene(file, {"--stats", scene.out / "line.json", "--size", "6x5", "--samples", "3",
+                           "--strategy", "bsdf", "--seed", "6", "--max-depth", "2", "--probe",
+                           scene.constant, "--probe-scale", "4", "--camera", "Front", "--aov",
+                           "albedo", "-o", scene.out / "line.exr"});
+  EXPECT_EQ(scene.out.files(), (Words{"file.exr", "file.json", "line.exr", "line.json"}));
+
+  const json byFile = scene.stats("file.json"), byLine = scene.stats("line.json");
+  const auto settings = [](const json& j) {
+    return Words{j["width"].dump(), j["height"].dump(), j["samples_per_pixel"].dump(),
+                 j["strategy"].dump(), j["seed"].dump(), j["max_depth"].dump()};
+  };
+  EXPECT_EQ(settings(byFile), (Words{"10", "8", "2", "\"uniform\"", "5", "0"}));
+  EXPECT_EQ(settings(byLine), (Words{"6", "5", "3", "\"bsdf\"", "6", "2"}));
+  EXPECT_NEAR(texel(scene.image("file.exr"), "depth.Z", 5, 4), 4, 1e-4f);
+  EXPECT_FALSE(findLayer(scene.image("line.exr"), "depth"));
+  EXPECT_TRUE(findLayer(scene.image("line.exr"), "albedo"));
+  EXPECT_EQ(findColor(scene.image("line.exr"))->rgb(0, 0), Rgb(2, 4, 8));
+}
+
+TEST(CommandRender, DepthZeroShowsEmissionAndBackgroundOnly) {
+  const RenderScene scene;
+  scene.render({"--probe", scene.constant, "--size", "64x48", "--samples", "4", "--max-depth", "0",
+                "-o", scene.out / "a.pfm"});
+  const Image image = readImage(scene.out / "a.pfm");
+  EXPECT_EQ(image.rgb(0, 0), Rgb(0.5f, 1, 2));
+  EXPECT_EQ(image.rgb(32, 24), Rgb(0));
+  // The lamp: 0.9 m to the right, 2.4 m away; half the picture's height is 2.4 tan(0.4) there.
+  const int column = 32 + int(std::lround(0.9f / (2.4f * std::tan(0.4f)) * 24));
+  EXPECT_EQ(image.rgb(column, 24), Rgb(kEmission));
+}
+
+TEST(CommandRender, ProbeScaleAndRotationAct) {
+  const RenderScene scene;
+  const auto render = [&](const Words& more) {
+    Words options{"--size", "32x24", "--samples", "4", "-o", scene.out / "a.pfm"};
+    options.insert(options.end(), more.begin(), more.end());
+    scene.render(options);
+    return readImage(scene.out / "a.pfm");
+  };
+  // From the left the lamp, whose light the probe's scale leaves alone, hides behind the box.
+  const Image one = render({"--probe", scene.gradient, "--camera", "Left", "--max-depth", "1"});
+  Image two = render(
+      {"--probe", scene.gradient, "--camera", "Left", "--max-depth", "1", "--probe-scale", "2"});
+  for (float& x : two.texels) x /= 2;
+  EXPECT_EQ(two.texels, one.texels);
+
+  // A quarter turn, counter-clockwise from above, brings what was ahead (-Z, the middle column) to
+  // the left (-X, a quarter of the width).
+  const Image probe = readImage(scene.gradient);
+  Image turned = probe;
+  for (int y = 0; y < probe.height; ++y)
+    for (int x = 0; x < probe.width; ++x)
+      turned.setRgb(x, y, probe.rgb((x + probe.width / 4) % probe.width, y));
+  writeImage(scene.folder() + "/turned.exr", turned);
+  const Image byOption =
+      render({"--probe", scene.gradient, "--probe-rotation", "90", "--max-depth", "0"});
+  expectWithin(byOption, render({"--probe", scene.folder() + "/turned.exr", "--max-depth", "0"}),
+               1e-4f);
+}
+
+TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
+  const RenderScene scene;
+  scene.render({"--probe", scene.gradient, "--size", "32x24", "--time", "1", "-o",
+                scene.out / "a.exr", "--stats", scene.out / "time.json"});
+  const json timed = scene.stats("time.json");
+  EXPECT_GT(timed["seconds"]["render"].get<double>(), 0.5);
+  EXPECT_LT(timed["seconds"]["render"].get<double>(), 4);  // on a busy machine
+  EXPECT_GT(timed["samples_per_pixel"].get<int>(), 8);
+  EXPECT_EQ(timed["rays"]["camera"].get<uint64_t>(),
+            timed["samples_per_pixel"].get<uint64_t>() * 32 * 24);
+
+  scene.render({"--probe", scene.gradient, "--size", "32x24", "--noise", "2", "-o",
+                scene.out / "a.exr", "--stats", scene.out / "noise.json"});
+  const json measured = scene.stats("noise.json");
+  EXPECT_LE(measured["noise"].get<double>(), 0.02);
+  EXPECT_GT(measured["noise"].get<double>(), 0.005);
+}
+
+TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
+  const RenderScene scene;
+  const CommandResult result = runCommand(
+      {"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples", "10000000",
+       "--progress", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json", "--aov", "albedo"},
+      "%");  // in the first pass over the picture
+  EXPECT_EQ(result.status, 130);
+  EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the picture so far is saved\n"));
+  EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
+  EXPECT_EQ(scene.stats("a.json")["interrupted"], true);
+  const ImageFile image = scene.image("a.exr");
+  for (float texel : image.image.texels) ASSERT_TRUE(std::isfinite(texel));
+  const Image color = *findColor(image);
+  EXPECT_GT(*std::max_element(color.texels.begin(), color.texels.end()), 0);
+}
+
+TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
+  const RenderScene scene;
+  const std::string output = scene.out / "a.exr", corrupt = scene.folder() + "/corrupt.exr";
+  const std::string whole = fileContents(scene.gradient);
+  std::ofstream(corrupt, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  GltfWriter demanding;
+  demanding.root["extensionsRequired"] = demanding.root["extensionsUsed"] = {"EXT_nonsense"};
+
+  const auto refused = [&](const Words& words, const std::string& named,
+                           const std::string& remedy) {
+    Words all{"render"};
+    all.insert(all.end(), words.begin(), words.end());
+    const CommandResult result = expectRefused(all, remedy);
+    EXPECT_NE(result.error.find(named), std::string::npos) << result.error;
+  };
+  const auto refusedOption = [&](const Words& more, const std::string& remedy) {
+    Words words{scene.model, "--probe", scene.gradient, "-o", output};
+    words.insert(words.end(), more.begin(), more.end());
+    refused(words, more.front(), remedy);
+  };
+  refused({scene.folder() + "/none.gltf", "-o", output}, "none.gltf", "does not exist");
+  refused({scene.folder() + "/none.toml", "-o", output}, "none.toml", "no such file");
+  refused({scene.gradient, "-o", output}, "gradient.exr", ".gltf");
+  refused({scene.model, "--probe", scene.folder() + "/none.exr", "-o", output}, "none.exr",
+          "no such file");
+  refused({scene.model, "--probe", corrupt, "-o", output}, "corrupt.exr", "corrupt.exr: ");
+  refused({demanding.save(), "--probe", scene.gradient, "-o", output}, "model.gltf",
+          "EXT_nonsense");
+  refused({scene.model, "--probe", scene.gradient}, "model.gltf", "--output");
+  refusedOption({"--strategy", "importence"}, "`importance`");
+  refusedOption({"--aov", "albdo"}, "`albedo`");
+  refusedOption({"--mis", "powr"}, "`power`");
+  refusedOption({"--camera", "Frnt"}, "`Front`");
+  refusedOption({"--size", "12by9"}, "WIDTHxHEIGHT");
+  refusedOption({"--size", "0x9"}, "WIDTHxHEIGHT");
+  refusedOption({"--samples", "0"}, "1 or more");
+  refusedOption({"--samples", "many"}, "many");
+  refusedOption({"--max-depth", "-1"}, "0 or more");
+  refusedOption({"--time", "nan"}, "above 0");
+  refusedOption({"--noise", "0"}, "above 0");
+  refusedOption({"--probe-scale", "nan"}, "0 or more");
+  refusedOption({"--probe-rotation", "inf"}, "finite");
+  refusedOption({"--samplse", "4"}, "`--samples`");
+  refused({scene.model, "--probe", scene.gradient, "-o", scene.folder() + "/none/a.exr"},
+          "none/a.exr: ", "no folder");
+  refused({scene.model, "--probe", scene.gradient, "-o", scene.out / "a.bmp"}, "a.bmp: ", ".exr");
+  EXPECT_EQ(scene.out.files(), Words{});
+}
+
+// A model that no probe lights shows what it emits, and one that emits nothing asks for a probe.
+TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
+  const RenderScene scene;
+  scene.render({"--size", "8x6", "--samples", "1", "-o", scene.out / "a.pfm"});
+  EXPECT_EQ(readImage(scene.out / "a.pfm").rgb(0, 0), Rgb(0));
+  GltfWriter dark;
+  addTriangle(dark);
+  expectRefused({"render", dark.save(), "-o", scene.out / "b.exr"}, "--probe");
+  EXPECT_EQ(scene.out.files(), Words{"a.pfm"});
+}
+
+}  // namespace
+}  // namespace chromeball

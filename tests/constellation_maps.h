@@ -1,0 +1,45 @@
+// Maps to place lights in, for the tests of constellations.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "lighting/constellations.h"
+#include "math/hash.h"
+#include "probe/load.h"
+#include "shared_data.h"
+
+namespace chromeball {
+
+// Lights by name; cube-grid gets the grid of at most `lights`.
+inline int countFor(std::string_view method, int lights) {
+  return method == "cube-grid" ? std::clamp(int(std::sqrt(lights / 6.0)), 1, 26) : lights;
+}
+
+inline Constellation make(std::string_view method, const Image& map, int lights,
+                          uint64_t seed = 1) {
+  return makeConstellation(std::string(method), map, countFor(method, lights), seed);
+}
+
+// Positive noise: no symmetry, no ties.
+inline Image noise(int width, int height) {
+  Image map(width, height, 3);
+  for (size_t i = 0; i < map.texels.size(); ++i)
+    map.texels[i] = std::pow(toUnit(uint32_t(hash(7, i))), 4.0f) + 0.01f;
+  return map;
+}
+
+inline std::vector<Image> realProbes(int most) {
+  std::vector<Image> maps;
+  for (const char* file :
+       {"probes/probulator/grace_latlong_small.hdr", "probes/probulator/uffizi_latlong_small.hdr",
+        "probes/probulator/ennis_latlong_small.hdr", "probes/probulator/pisa_latlong_small.hdr",
+        "probes/probulator/wells_latlong_small.hdr", "probes/misc/mitsuba_museum.exr",
+        "probes/polyhaven/kloppenheim_05_1k.hdr", "probes/polyhaven/studio_small_05_1k.hdr"})
+    if (const auto path = sharedData(file); path && int(maps.size()) < most)
+      maps.push_back(loadProbe(*path).latLong);
+  return maps;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,63 @@
+// Which primitives of a glTF file become one mesh with several instances.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+// Whether two primitives of one geometry, apart from what each states, become one mesh.
+bool shareOneMesh(const json& material, const json& otherMaterial, const json& other = {}) {
+  GltfWriter w;
+  w.write("wood.png", kPng);
+  w.root["images"] = {{{"uri", "wood.png"}}};
+  w.root["textures"] = {{{"source", 0}}};
+  const json attributes = {{"POSITION", w.vec3s({0, 0, 0, 2, 0, 0, 0, 2, 0})},
+                           {"TEXCOORD_0", w.vec2s({0, 0, 1, 0, 0, 1})},
+                           {"TEXCOORD_1", w.vec2s({0, 0, 2, 0, 0, 2})}};
+  json second = {{"attributes", attributes}, {"material", w.add("materials", otherMaterial)}};
+  if (!other.is_null()) second.merge_patch(other);
+  w.add("nodes", {{"mesh", w.mesh({{"attributes", attributes},
+                                   {"material", w.add("materials", material)}})}});
+  w.add("nodes", {{"mesh", w.mesh(second)}, {"translation", {1, 0, 0}}});
+  const Scene scene = w.load();
+  EXPECT_EQ(scene.instances.size(), 2u);
+  EXPECT_NE(scene.instances[0].material, scene.instances[1].material);
+  return scene.meshes.size() == 1;
+}
+
+TEST(GltfInstances, PrimitivesOfOneGeometryShareAMesh) {
+  const auto textured = [](const char* slot, int uvSet) -> json {
+    const json texture = {{"index", 0}, {"texCoord", uvSet}};
+    if (std::string(slot) == "normalTexture") return {{slot, texture}};
+    return {{"pbrMetallicRoughness", {{slot, texture}}}};
+  };
+  const json plain = json::object(), rough = {{"pbrMetallicRoughness", {{"metallicFactor", 0.5}}}};
+  EXPECT_TRUE(shareOneMesh(plain, rough));
+  EXPECT_TRUE(shareOneMesh({{"alphaMode", "MASK"}}, {{"alphaMode", "BLEND"}}));
+  EXPECT_TRUE(shareOneMesh(textured("baseColorTexture", 1),
+                           textured("metallicRoughnessTexture", 1)));
+  // The vertices or what is kept of them differ:
+  EXPECT_FALSE(shareOneMesh(plain, rough, {{"mode", 5}}));
+  EXPECT_FALSE(shareOneMesh(plain, textured("baseColorTexture", 0)));
+  EXPECT_FALSE(shareOneMesh(textured("baseColorTexture", 0), textured("baseColorTexture", 1)));
+  EXPECT_FALSE(shareOneMesh(textured("baseColorTexture", 0), textured("normalTexture", 0)));
+  EXPECT_FALSE(shareOneMesh(plain, {{"alphaMode", "BLEND"}}));
+}
+
+TEST(GltfInstances, MorphedPosesShareWhereTheyAreTheSame) {
+  GltfWriter w;
+  const int up = w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int node = addTriangle(w, {{"targets", {{{"POSITION", up}}}}});
+  for (double weight : {0.5, 0.5, 2.0})
+    w.add("nodes", {{"mesh", w.root["nodes"][size_t(node)]["mesh"]}, {"weights", {weight}}});
+  const Scene scene = w.load();
+  EXPECT_EQ(scene.instances.size(), 4u);
+  EXPECT_EQ(scene.meshes.size(), 3u);
+  EXPECT_EQ(scene.instances[1].mesh, scene.instances[2].mesh);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,165 @@
+// Directional lights as files, and Madsen and Laursen's measure of them.
+#include "lighting/light_file.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "lighting/light_error.h"
+#include "math/error.h"
+#include "probe/icosphere.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+LightRig exampleRig() {
+  LightRig rig{"a \"probe\".hdr", "median-cut", Rgb(0.1f, 0.2f, 0.3f), {}};
+  rig.lights.push_back({normalize(vec3(1, 2, -3)), Rgb(5, 2, 1), 0});
+  rig.lights.push_back({vec3(0, 0, -1), Rgb(0, 0.25f, 1 / 3.0f), 0.53f});
+  rig.lights.push_back({vec3(0, 0, 1), Rgb(0), 0});
+  rig.lights.push_back({vec3(0, -1, 0), Rgb(1e-9f, 1e20f, 3), 2});
+  return rig;
+}
+
+TEST(LightFile, JsonRoundTrip) {
+  const TemporaryFolder folder;
+  const LightRig rig = exampleRig();
+  writeLights(folder / "a.json", rig);
+  const LightRig read = readLights(folder / "a.json");
+  EXPECT_EQ(read.probe, rig.probe);
+  EXPECT_EQ(read.method, rig.method);
+  EXPECT_EQ(read.ambient, rig.ambient);
+  ASSERT_EQ(read.lights.size(), rig.lights.size());
+  for (size_t i = 0; i < rig.lights.size(); ++i) {
+    EXPECT_LT(distance(read.lights[i].direction, rig.lights[i].direction), 1e-7f);
+    EXPECT_EQ(read.lights[i].irradiance, rig.lights[i].irradiance);
+    EXPECT_EQ(read.lights[i].angle, rig.lights[i].angle);
+  }
+  LightRig empty{"p", "m", {}, {}};
+  writeLights(folder / "empty.json", empty);
+  EXPECT_FALSE(json::parse(fileContents(folder / "empty.json")).contains("ambient"));
+  EXPECT_TRUE(readLights(folder / "empty.json").lights.empty());
+}
+
+// Turns (0, 0, -1) by the quaternion x, y, z, w.
+dvec3 lightGoes(const json& q) {
+  return glm::dquat(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(),
+                    q[2].get<double>()) *
+         dvec3(0, 0, -1);
+}
+
+TEST(LightFile, GltfNodesPointFromTheLightToTheScene) {
+  const TemporaryFolder folder;
+  const LightRig rig = exampleRig();
+  writeLights(folder / "a.gltf", rig);
+  const json gltf = json::parse(fileContents(folder / "a.gltf"));
+  EXPECT_EQ(gltf["asset"]["version"], "2.0");
+  EXPECT_EQ(gltf["extensionsUsed"], json({"KHR_lights_punctual"}));
+  EXPECT_EQ(gltf["scenes"][0]["nodes"], json({0, 1, 2, 3}));
+  for (size_t i = 0; i < rig.lights.size(); ++i) {
+    const json& node = gltf["nodes"][i];
+    EXPECT_LT(distance(lightGoes(node["rotation"]), -dvec3(rig.lights[i].direction)), 1e-6) << i;
+    const size_t index = node["extensions"]["KHR_lights_punctual"]["light"];
+    const json& light = gltf["extensions"]["KHR_lights_punctual"]["lights"][index];
+    EXPECT_EQ(light["type"], "directional");
+    for (int c = 0; c < 3; ++c) {
+      const double color = light["color"][c], irradiance = rig.lights[i].irradiance[c];
+      EXPECT_LE(color, 1);
+      EXPECT_NEAR(color * light["intensity"].get<double>(), irradiance, 1e-6 * irradiance);
+    }
+  }
+}
+
+TEST(LightFile, GltfHasNoEmptyLists) {
+  const TemporaryFolder folder;
+  writeLights(folder / "a.gltf", {"p", "m", {}, {}});
+  EXPECT_EQ(fileContents(folder / "a.gltf").find("[]"), std::string::npos);
+}
+
+TEST(LightFile, CsvHasALineALight) {
+  const TemporaryFolder folder;
+  LightRig rig = exampleRig();
+  rig.lights.resize(2);
+  rig.lights[0].direction = vec3(0, 1, 0);
+  writeLights(folder / "a.csv", rig);
+  EXPECT_EQ(fileContents(folder / "a.csv"),
+            "x,y,z,r,g,b,angle\n0,1,0,5,2,1,0\n0,0,-1,0,0.25,0.33333334,0.53\n");
+}
+
+TEST(LightFile, WritesNothingThatIsWrong) {
+  const TemporaryFolder folder;
+  LightRig rig = exampleRig();
+  EXPECT_THROW(writeLights(folder / "a.txt", rig), InputError);
+  rig.lights[1].irradiance.y = INFINITY;
+  EXPECT_THROW(writeLights(folder / "a.json", rig), RunError);
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(LightFile, HostileJsonIsRefusedWithTheReason) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.json";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "parse error"},
+      {"{\"lights\": [", "parse error"},
+      {std::string(200000, '['), "parse error"},
+      {"[]", "`lights`"},
+      {"{}", "`lights`"},
+      {R"({"lights": 3})", "lights should be a list"},
+      {R"({"lights": [3]})", "lights[0]"},
+      {R"({"lights": [{"direction": [0,1,0]}]})", "`irradiance`"},
+      {R"({"lights": [{"direction": [0,1], "irradiance": [1,1,1]}]})", "three numbers"},
+      {R"({"lights": [{"direction": [0,1,"x"], "irradiance": [1,1,1]}]})", "three numbers"},
+      {R"({"lights": [{"direction": [0,0,0], "irradiance": [1,1,1]}]})", "direction"},
+      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,-1,1]}]})", "negative"},
+      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,1e99,1]}]})", "1e99"},
+      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,1,1], "angle": -1}]})", "angle"},
+      {R"({"lights": [], "ambient": "blue"})", "ambient"},
+      {R"({"lights": [], "method": 7})", "method"}};
+  for (const auto& [text, reason] : cases) {
+    std::ofstream(path) << text;
+    try {
+      readLights(path);
+      ADD_FAILURE() << text.substr(0, 80);
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(path));
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_THROW(readLights(folder / "none.json"), InputError);
+}
+
+TEST(LightError, MeanAndMaximumAgainstClosedForms) {
+  const std::vector<vec3> normals = icosphereNormals(5);
+  const Constellation sun{{vec3(0, 1, 0), Rgb(4), 0}};
+  const auto lit = irradianceOf(sun, Rgb(0), normals);
+  // E = 4 max(0, y): mean 1, at most 4.
+  const LightError none = lightError(std::vector<dvec3>(normals.size(), dvec3(0)), lit);
+  EXPECT_NEAR(none.mean, 100, 1e-3);
+  EXPECT_NEAR(none.max, 400, 0.2);
+  const LightError same = lightError(lit, lit);
+  EXPECT_EQ(same.mean, 0);
+  EXPECT_EQ(same.max, 0);
+  // An ambient radiance of 1/pi is irradiance 1 everywhere: the mean of |4 max(0, y) - 1| is 9/8.
+  const LightError ambient = lightError(irradianceOf({}, Rgb(kInvPi), normals), lit);
+  EXPECT_NEAR(ambient.mean, 112.5, 0.1);
+  EXPECT_NEAR(ambient.max, 300, 0.2);
+}
+
+TEST(LightError, AveragesTheMeasureOverRgb) {
+  const std::vector<dvec3> probe{{1, 2, 3}, {3, 2, 1}}, lights{{1.5, 2, 3}, {3, 2, 2}};
+  const LightError error = lightError(lights, probe);
+  EXPECT_NEAR(error.mean, 100 * (0.25 + 0 + 0.5) / 3 / 2, 1e-9);
+  EXPECT_NEAR(error.max, 100 * (0.5 + 0 + 1.0) / 3 / 2, 1e-9);
+}
+
+TEST(LightError, OfABlackProbe) {
+  const std::vector<dvec3> black{dvec3(0)}, lit{dvec3(1)};
+  EXPECT_EQ(lightError(black, black).max, 0);
+  EXPECT_TRUE(std::isinf(lightError(lit, black).mean));
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,12 @@
+// A picture of where directional lights stand in their probe.
+#pragma once
+
+#include "image/image.h"
+#include "lighting/directional_light.h"
+
+namespace chromeball {
+
+// The lat-long map, tone mapped to what a PNG may hold, 1024 x 512, with a white dot at each light.
+Image lightPreview(const Image& latLong, const Constellation& lights);
+
+}  // namespace chromeball

@@ -1,0 +1,79 @@
+// chromeball lights PROBE --method NAME --count N -o FILE
+#include <cstdio>
+
+#include "arguments.h"
+#include "commands.h"
+#include "image/write.h"
+#include "light_methods.h"
+#include "light_preview.h"
+#include "math/error.h"
+#include "output_file.h"
+#include "probe/load.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string probe, mapping = "auto", output, preview, maxError;
+  LightOptions options;
+};
+
+// "5" or "5%".
+double parsePercent(std::string text, std::string_view option) {
+  if (text.ends_with('%')) text.pop_back();
+  const double percent = parseNumbers(text, 1, option).front();
+  if (!(percent > 0)) throwInput("{}: should be a percentage above 0", option);
+  return percent;
+}
+
+void run(Arguments arguments) {
+  LightOptions& options = arguments.options;
+  checkLightMethod(options.method, "--method");
+  if (!arguments.maxError.empty())
+    options.maxError = parsePercent(arguments.maxError, "--max-error");
+  checkLightOptions(options);
+  checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
+  if (!arguments.preview.empty()) checkWritable(arguments.preview);
+
+  const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.probe))
+    fmt::print(stderr, "chromeball: {}\n", warning);
+  auto [rig, meanError] = makeLights(probe.latLong, options);
+  rig.probe = arguments.probe;
+  writeLights(arguments.output, rig);
+  if (!arguments.preview.empty())
+    writeImage(arguments.preview, lightPreview(probe.latLong, rig.lights));
+  fmt::print("lights      {}\n", rig.lights.size());
+  if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
+  if (meanError && options.maxError && *meanError > *options.maxError)
+    fmt::print(stderr, "chromeball: --max-error: {} lights do not reach {}%\n", rig.lights.size(),
+               *options.maxError);
+}
+
+}  // namespace
+
+void addLightsCommand(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("lights", "Stand directional lights in for a probe, for other programs.");
+  command->add_option("PROBE", arguments->probe, "the probe's image")->required();
+  command->add_option("--method", arguments->options.method, lightMethodList())->required();
+  command->add_option("--count", arguments->options.count,
+                      "how many lights; cube-grid: points along a face's edge");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "the lights to write: .json, .gltf (KHR_lights_punctual) or .csv")
+      ->required();
+  command->add_option("--preview", arguments->preview,
+                      "draw the lights into the probe, and write this image");
+  command->add_option("--max-error", arguments->maxError,
+                      "irradiance-fit: percent of the mean irradiance; the fewest lights, at most "
+                      "--count, whose mean error is no more");
+  command->add_flag("--ambient", arguments->options.ambient,
+                    "irradiance-fit: fit a constant radiance too");
+  command->add_option("--seed", arguments->options.seed, "of the methods that throw dice");
+  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto guesses");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
