@@ -106,7 +106,7 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
 // raised by as much. The first two bounces always go on: they carry most of the picture.
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
-  const float survival = std::fmin(maxComponent(throughput), 0.95f);
+  const float survival = std::min(maxComponent(throughput), 0.95f);
   if (!(sampler.get1(dimension::kRoulette) < survival)) return false;
   throughput /= survival;
   return true;
@@ -140,7 +140,7 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
       if (path.emitters && !surface.material->unlit)
         density = path.emitters->density(
             surface.mesh->material, glm::length(surface.position - from.position),
-            std::fmax(glm::dot(surface.geometricNormal, wo), 1e-12f));
+            std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
       radiance += throughput * emitted * bsdfSampleWeight(path.mis, pdf, density);
     }
     const bool ends = depth == path.maxDepth || surface.material->unlit;
