@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <limits>
 #include <numeric>
 
 namespace chromeball {
@@ -13,8 +14,9 @@ constexpr double kLeastCompensated = 1e-3;
 
 // A number in [0, 1) with density proportional to a (1 - x) + b x.
 float sampleLinear(float u, float a, float b) {
-  if (a == b) return u;  // also both 0
-  return std::min(u * (a + b) / (a + std::sqrt(a * a + u * (b * b - a * a))), 0x1.fffffep-1f);
+  const float root = std::sqrt(std::max(a * a + u * (b * b - a * a), 0.0f));
+  return std::min(u * (a + b) / std::max(a + root, std::numeric_limits<float>::min()),
+                  0x1.fffffep-1f);
 }
 
 double meanLuminance(const Probe& probe, const std::vector<float>& rowSine) {
