@@ -136,13 +136,14 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
     const Instance& instance = path.scene.instances[hit.instance];
     const vec3 wo = -ray.direction;
     const Surface surface = surfaceAt(path.scene, instance, hit.triangle, hit.barycentric, wo);
-    if (const Rgb emitted = emittedRadiance(path.scene, surface); !isBlack(emitted)) {
+    if (surface.material->emits()) {
       float density = 0;
       if (path.emitters && !surface.material->unlit)
         density = path.emitters->density(
             instance.material, glm::length(surface.position - from.position),
             std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
-      radiance += throughput * emitted * bsdfSampleWeight(path.mis, pdf, density);
+      radiance += throughput * emittedRadiance(path.scene, surface) *
+                  bsdfSampleWeight(path.mis, pdf, density);
     }
     const bool ends = depth == path.maxDepth || surface.material->unlit;
     if (ends && !(first && depth == 0)) return radiance;

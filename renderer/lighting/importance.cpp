@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <limits>
 #include <numeric>
 
 namespace chromeball {
@@ -13,8 +14,9 @@ constexpr double kLeastCompensated = 1e-3;
 
 // A number in [0, 1) with density proportional to a (1 - x) + b x.
 float sampleLinear(float u, float a, float b) {
-  if (a == b) return u;  // also both 0
-  return std::fmin(u * (a + b) / (a + std::sqrt(a * a + u * (b * b - a * a))), 0x1.fffffep-1f);
+  const float root = std::sqrt(std::max(a * a + u * (b * b - a * a), 0.0f));
+  return std::min(u * (a + b) / std::max(a + root, std::numeric_limits<float>::min()),
+                  0x1.fffffep-1f);
 }
 
 double meanLuminance(const Probe& probe, const std::vector<float>& rowSine) {
@@ -74,7 +76,7 @@ double Importance::tabulate() {
 Importance::Weights Importance::weights(const Probe::Corners& c, int row) const {
   const float top = rowSine_[row], bottom = rowSine_[row + 1];
   const auto weight = [&](const Rgb& radiance) {
-    return std::fmax(luminance(radiance) - offset_, 0.0f);
+    return std::max(luminance(radiance) - offset_, 0.0f);
   };
   return {weight(c.c00) * top, weight(c.c10) * top, weight(c.c01) * bottom, weight(c.c11) * bottom};
 }
@@ -90,7 +92,7 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   p.s = sampleLinear(float(u), (1 - p.t) * w.w00 + p.t * w.w01, (1 - p.t) * w.w10 + p.t * w.w11);
   const vec3 wi = probe_.direction(p);
   return {wi, Probe::interpolate(corners, p.s, p.t),
-          w.at(p.s, p.t) * scale_ / std::fmax(p.sinTheta, 1e-9f)};
+          w.at(p.s, p.t) * scale_ / std::max(p.sinTheta, 1e-9f)};
 }
 
 void Importance::sample(const LightPoint&, const PixelSampler& sampler,
@@ -104,7 +106,7 @@ LightingStrategy::Escaped Importance::escaped(const LightPoint&, const vec3& wi)
   const Probe::Position p = probe_.locate(wi);
   const Probe::Corners corners = probe_.corners(p.column, p.row);
   const float density =
-      weights(corners, p.row).at(p.s, p.t) * scale_ / std::fmax(p.sinTheta, 1e-9f);
+      weights(corners, p.row).at(p.s, p.t) * scale_ / std::max(p.sinTheta, 1e-9f);
   return {Probe::interpolate(corners, p.s, p.t), density};
 }
 

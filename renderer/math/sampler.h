@@ -31,7 +31,7 @@ inline constexpr int kPerVertex = 8;
 class PixelSampler {
  public:
   PixelSampler(const SobolTable& table, uint64_t seed)
-      : table_(&table), seed_(seed), shifts_(table.dimensions()) {}
+      : table_(&table), dimensions_(table.dimensions()), seed_(seed), shifts_(dimensions_) {}
 
   void startPixel(uint32_t x, uint32_t y, uint64_t block) {
     key_ = hash(seed_, uint64_t(y) << 32 | x, block);
@@ -53,17 +53,20 @@ class PixelSampler {
 
   uint32_t bits(int d) const {
     d += base_;
-    if (d < int(shifts_.size())) return point_[d] ^ shifts_[d];
+    if (d < dimensions_) return point_[d] ^ shifts_[d];
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: plain random numbers
   }
   float get1(int d) const { return toUnit(bits(d)); }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
-  // A key for decisions made outside the path's own dimensions (stochastic alpha).
-  uint32_t sampleKey() const { return uint32_t(hash(key_, index_)) + uint32_t(base_); }
+  // A key, to be hashed, for decisions outside the path's own dimensions (stochastic alpha).
+  uint32_t sampleKey() const {
+    return uint32_t(key_) ^ (index_ * 0x9e3779b9u + uint32_t(base_) * 0x85ebca6bu);
+  }
 
  private:
   const SobolTable* table_;
+  int dimensions_;
   uint64_t seed_, key_ = 0;
   std::vector<uint32_t> shifts_;
   const uint32_t* point_ = nullptr;

@@ -11,7 +11,7 @@ namespace chromeball {
 inline vec3 unitVector(float z, float azimuthTurns) {
   float sine, cosine;
   sinCosTurns(azimuthTurns, sine, cosine);
-  const float r = std::sqrt(std::fmax(0.0f, (1 - z) * (1 + z)));
+  const float r = std::sqrt(std::max(0.0f, (1 - z) * (1 + z)));
   return {r * cosine, r * sine, z};
 }
 

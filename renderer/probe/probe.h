@@ -95,7 +95,7 @@ inline vec3 Probe::direction(Position& p) const {
   float sinPhi, cosPhi, cosTheta;
   sinCosTurns(x / float(width_) + uShift_, sinPhi, cosPhi);
   sinCosTurns(0.5f * y / float(height_), p.sinTheta, cosTheta);
-  p.sinTheta = std::fmax(p.sinTheta, 0.0f);
+  p.sinTheta = std::max(p.sinTheta, 0.0f);
   // u = 1/2 looks along -Z: phi in turns is u, so x = sin(2 pi (u - 1/2)), z = -cos(...).
   return {-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi};
 }

@@ -23,6 +23,8 @@ struct Material {
   bool doubleSided = false;
   bool unlit = false;               // KHR_materials_unlit: emits its base colour, reflects nothing
 
+  bool emits() const { return unlit || emission != Rgb(0); }
+
   TextureSlot baseColorTexture;      // sRGB
   TextureSlot metallicRoughnessTexture;  // G roughness, B metallic
   TextureSlot normalTexture;

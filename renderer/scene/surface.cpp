@@ -31,7 +31,7 @@ vec3 mappedNormal(const Scene& scene, const Surface& s, const Transform& toWorld
   tangent -= normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(tangent, tangent);
   if (!(length2 > 0)) return normal;
-  tangent /= std::sqrt(length2);
+  tangent *= 1 / std::sqrt(length2);
   const vec3 bitangent = handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent);
 
   vec3 n = vec3(lookup(scene, s.material->normalTexture, s)) * 2.0f - 1.0f;
@@ -39,7 +39,7 @@ vec3 mappedNormal(const Scene& scene, const Surface& s, const Transform& toWorld
   n.y *= s.material->normalScale;
   const vec3 mapped = n.x * tangent + n.y * bitangent + n.z * normal;
   const float mapped2 = glm::dot(mapped, mapped);
-  return mapped2 > 0 ? mapped / std::sqrt(mapped2) : normal;
+  return mapped2 > 0 ? mapped * (1 / std::sqrt(mapped2)) : normal;
 }
 
 // The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
@@ -79,7 +79,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
   vec3 front = handedness * glm::cross(p1 - p0, p2 - p0);
   const float doubleArea2 = glm::dot(front, front);
-  front = doubleArea2 > 0 ? front / std::sqrt(doubleArea2) : wo;
+  front = doubleArea2 > 0 ? front * (1 / std::sqrt(doubleArea2)) : wo;
   s.frontFace = glm::dot(front, wo) >= 0;
   s.geometricNormal = s.frontFace ? front : -front;
   s.rayOffset = rayOffset(p0, p1, p2, front);
@@ -94,7 +94,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     }
     const float length2 = glm::dot(n, n);
     if (length2 > 0) {
-      n /= std::sqrt(length2);
+      n *= 1 / std::sqrt(length2);
       if (s.material->normalTexture && !s.mesh->tangents.empty())
         n = mappedNormal(scene, s, toWorld, handedness, n);
       if (!s.frontFace) n = -n;
@@ -112,14 +112,17 @@ MaterialPoint materialAt(const Scene& scene, const Surface& s) {
   p.roughness = m.roughness;
   if (m.baseColorTexture) p.baseColor *= Rgb(lookup(scene, m.baseColorTexture, s));
   if (!s.mesh->colors.empty())
-    p.baseColor *= Rgb(interpolate(s.mesh->colors, s.triangle, s.barycentric));
-  p.baseColor = glm::clamp(p.baseColor, 0.0f, 1.0f);
+    p.baseColor = glm::clamp(
+        p.baseColor * Rgb(interpolate(s.mesh->colors, s.triangle, s.barycentric)), 0.0f, 1.0f);
   if (m.metallicRoughnessTexture) {
     const vec4 texel = lookup(scene, m.metallicRoughnessTexture, s);
     p.roughness *= texel.y;
     p.metallic *= texel.z;
   }
 
+  p.dielectricF0 = Rgb(0);
+  p.dielectricF90 = 0;
+  if (m.specular == 0) return p;
   float specular = m.specular;
   Rgb specularColor = m.specularColor;
   if (m.specularTexture) specular *= lookup(scene, m.specularTexture, s).w;

@@ -15,7 +15,7 @@ constexpr float kSmoothAlpha = 1e-4f;
 vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, const vec3& wo) {
   const vec3 mirrored = 2 * glm::dot(normal, wo) * normal - wo;
   const float height = glm::dot(mirrored, geometricNormal);
-  const float least = 0.1f * std::fmin(glm::dot(wo, geometricNormal), 1.0f);
+  const float least = 0.1f * std::min(glm::dot(wo, geometricNormal), 1.0f);
   if (height >= least) return normal;
   const vec3 lifted = glm::normalize(mirrored + (least - height) * geometricNormal);
   return glm::normalize(lifted + wo);
@@ -51,7 +51,7 @@ void Bsdf::initSpecular(const MaterialPoint& m, const vec3& wo) {
   normal_ = normalThatReflects(normal_, geometricNormal_, wo);
   frame_ = Frame(normal_);
   wo_ = frame_.toLocal(wo);
-  wo_.z = std::fmax(wo_.z, 1e-6f);
+  wo_.z = std::max(wo_.z, 1e-6f);
   alpha_ = m.roughness * m.roughness;
   smooth_ = alpha_ < kSmoothAlpha;
   f0_ = glm::mix(m.dielectricF0, m.baseColor, m.metallic);
@@ -101,7 +101,7 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
   const vec3 h = glm::normalize(wo_ + wi);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   const float lambdaO = ggx::lambda(wo_.z, alpha_);
-  v.fCos += fresnel(std::fmin(glm::dot(wo_, h), 1.0f)) *
+  v.fCos += fresnel(std::min(glm::dot(wo_, h), 1.0f)) *
             (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
   v.pdf += specularShare_ * d / (1 + lambdaO);
   return v;

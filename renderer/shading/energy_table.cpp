@@ -14,11 +14,11 @@ constexpr int kRoughnesses = 32, kAngles = 64;
 // Nodes crowd towards smooth surfaces and grazing angles, where the albedo bends: both are t^2.
 float roughnessNode(int i) {
   const float t = float(i) / (kRoughnesses - 1);
-  return std::fmax(t * t, 0.01f);
+  return std::max(t * t, 0.01f);
 }
 float angleNode(int i) {
   const float t = float(i) / (kAngles - 1);
-  return std::fmax(t * t, 1e-4f);
+  return std::max(t * t, 1e-4f);
 }
 
 // Averages over visible normals h: albedo = E[F(wo.h) G2/G1].

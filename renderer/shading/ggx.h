@@ -29,7 +29,7 @@ inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, vec2 u) {
   const vec3 stretched = glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
   const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;
   const vec3 h = unitVector(z, u.x) + stretched;
-  return glm::normalize(vec3(alpha * h.x, alpha * h.y, std::fmax(0.0f, h.z)));
+  return glm::normalize(vec3(alpha * h.x, alpha * h.y, std::max(0.0f, h.z)));
 }
 
 // Density over solid angle of the direction that mirrors wo about such a normal h.
