@@ -58,8 +58,12 @@ class RenderScene {
     for (int i = 0; i < 8; ++i)
       for (int axis = 0; axis < 3; ++axis) corners.push_back(i >> axis & 1 ? side / 2 : -side / 2);
     std::vector<uint16_t> indices;
-    for (const auto& [a, b, c, d] : {std::array<uint16_t, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 4, 6, 2},
-                                     {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}})
+    for (const auto& [a, b, c, d] : {std::array<uint16_t, 4>{0, 2, 3, 1},
+                                     {4, 5, 7, 6},
+                                     {0, 4, 6, 2},
+                                     {1, 3, 7, 5},
+                                     {0, 1, 5, 4},
+                                     {2, 6, 7, 3}})
       indices.insert(indices.end(), {a, b, c, a, c, d});
     return w.mesh({{"attributes", {{"POSITION", w.vec3s(corners)}}},
                    {"indices", w.indices(indices)},
@@ -69,8 +73,9 @@ class RenderScene {
   static void makeModel(GltfWriter& w) {
     const json grey = {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}};
     w.add("nodes", {{"mesh", addBox(w, 1, {{"pbrMetallicRoughness", grey}})}});
-    w.add("nodes", {{"mesh", addBox(w, 0.2f, {{"emissiveFactor", {kEmission, kEmission, kEmission}}})},
-                    {"translation", {0.9, 0, 0}}});
+    w.add("nodes",
+          {{"mesh", addBox(w, 0.2f, {{"emissiveFactor", {kEmission, kEmission, kEmission}}})},
+           {"translation", {0.9, 0, 0}}});
     w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
     w.add("nodes", {{"camera", 0}, {"name", "Front"}, {"translation", {0, 0, 2.5}}});
     const double half = std::sqrt(0.5);
@@ -79,7 +84,6 @@ class RenderScene {
                     {"translation", {-4.5, 0, 0}},
                     {"rotation", {0, -half, 0, half}}});
   }
-
 };
 
 // What an EXR file's header says (OpenEXR's file layout, version 2).
@@ -132,9 +136,15 @@ void expectWithin(const Image& image, const Image& expected, float relative) {
 
 TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   const RenderScene scene;
-  Words options{"--probe", scene.gradient, "--size", "24x18", "--samples", "3", "--threads", "1",
-                "--seed", "7", "--strategy", "importance", "--stats", scene.out / "stats.json",
-                "--aov", "albedo,normal,depth,variance", "--aov", "samples,material,node,alpha"};
+  Words options{"--probe",    scene.gradient,
+                "--size",     "24x18",
+                "--samples",  "3",
+                "--threads",  "1",
+                "--seed",     "7",
+                "--strategy", "importance",
+                "--stats",    scene.out / "stats.json",
+                "--aov",      "albedo,normal,depth,variance",
+                "--aov",      "samples,material,node,alpha"};
   for (const char* name : {"a.exr", "a.hdr", "a.pfm", "a.png"})
     options.insert(options.end(), {"-o", scene.out / name});
   const CommandResult result = scene.render(options);
@@ -148,10 +158,10 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
     names.insert(name);
     EXPECT_EQ(type, 2) << name;
   }
-  EXPECT_EQ(names, (std::set<std::string>{
-                       "R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
-                       "normal.Z", "depth.Z", "variance.R", "variance.G", "variance.B", "samples",
-                       "material", "node", "alpha.A"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X",
+                                   "normal.Y", "normal.Z", "depth.Z", "variance.R", "variance.G",
+                                   "variance.B", "samples", "material", "node", "alpha.A"}));
   EXPECT_EQ(header.compression, 3);
   EXPECT_FALSE(header.attributes.contains("tiles"));
 
@@ -203,7 +213,7 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
 }
 
-TEST(CommandRender, ThreadsChangeNoBitAndSeedsDo) {
+TEST(SlowCommandRender, ThreadsChangeNoBitAndSeedsDo) {
   const RenderScene scene;
   const auto render = [&](const char* threads, const char* seed) {
     scene.render({"--probe", scene.gradient, "--size", "40x30", "--samples", "4", "--threads",
@@ -215,24 +225,43 @@ TEST(CommandRender, ThreadsChangeNoBitAndSeedsDo) {
   EXPECT_NE(render("2", "2"), one);
 }
 
-TEST(CommandRender, TheCommandLineOverridesTheSceneFile) {
+TEST(SlowCommandRender, TheCommandLineOverridesTheSceneFile) {
   const RenderScene scene;
   const std::string file = scene.folder() + "/scene.toml";
   std::ofstream(file) << "model = 'model.gltf'\n[camera]\nname = 'Left'\n[probe]\nfile = "
                          "'gradient.exr'\nscale = 3\n[lighting]\nstrategy = 'uniform'\n[render]\n"
                          "size = [10, 8]\nsamples = 2\nseed = 5\nmax_depth = 0\n[output]\nfile = '"
-                      << scene.out / "file.exr" << "'\naovs = ['depth']\n";
+                      << scene.out / "file.exr"
+                      << "'\naovs = ['depth']\n";
   scene.renderScene(file, {"--stats", scene.out / "file.json"});
-  scene.renderScene(file, {"--stats", scene.out / "line.json", "--size", "6x5", "--samples", "3",
-                           "--strategy", "bsdf", "--seed", "6", "--max-depth", "2", "--probe",
-                           scene.constant, "--probe-scale", "4", "--camera", "Front", "--aov",
-                           "albedo", "-o", scene.out / "line.exr"});
+  scene.renderScene(file, {"--stats",
+                           scene.out / "line.json",
+                           "--size",
+                           "6x5",
+                           "--samples",
+                           "3",
+                           "--strategy",
+                           "bsdf",
+                           "--seed",
+                           "6",
+                           "--max-depth",
+                           "2",
+                           "--probe",
+                           scene.constant,
+                           "--probe-scale",
+                           "4",
+                           "--camera",
+                           "Front",
+                           "--aov",
+                           "albedo",
+                           "-o",
+                           scene.out / "line.exr"});
   EXPECT_EQ(scene.out.files(), (Words{"file.exr", "file.json", "line.exr", "line.json"}));
 
   const json byFile = scene.stats("file.json"), byLine = scene.stats("line.json");
   const auto settings = [](const json& j) {
-    return Words{j["width"].dump(), j["height"].dump(), j["samples_per_pixel"].dump(),
-                 j["strategy"].dump(), j["seed"].dump(), j["max_depth"].dump()};
+    return Words{j["width"].dump(),    j["height"].dump(), j["samples_per_pixel"].dump(),
+                 j["strategy"].dump(), j["seed"].dump(),   j["max_depth"].dump()};
   };
   EXPECT_EQ(settings(byFile), (Words{"10", "8", "2", "\"uniform\"", "5", "0"}));
   EXPECT_EQ(settings(byLine), (Words{"6", "5", "3", "\"bsdf\"", "6", "2"}));
@@ -254,7 +283,7 @@ TEST(CommandRender, DepthZeroShowsEmissionAndBackgroundOnly) {
   EXPECT_EQ(image.rgb(column, 24), Rgb(kEmission));
 }
 
-TEST(CommandRender, ProbeScaleAndRotationAct) {
+TEST(SlowCommandRender, ProbeScaleAndRotationAct) {
   const RenderScene scene;
   const auto render = [&](const Words& more) {
     Words options{"--size", "32x24", "--samples", "4", "-o", scene.out / "a.pfm"};

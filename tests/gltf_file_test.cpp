@@ -145,8 +145,12 @@ TEST(GltfFile, RefusesToBlowUp) {
   // 2000 primitives that all read the same 100 kB.
   GltfWriter w;
   const int positions = w.vec3s(std::vector<float>(3 * 9000, 0.0f));
-  const json primitive = {{"attributes", {{"POSITION", positions}}}};
-  w.add("meshes", {{"primitives", std::vector<json>(2000, primitive)}});
+  std::vector<json> primitives;
+  for (int i = 0; i < 2000; ++i) {
+    const json accessor = w.root["accessors"][positions];
+    primitives.push_back({{"attributes", {{"POSITION", w.add("accessors", accessor)}}}});
+  }
+  w.add("meshes", {{"primitives", primitives}});
   w.add("nodes", {{"mesh", 0}});
   EXPECT_NE(w.refusal().find("far more than the file holds"), std::string::npos);
 }

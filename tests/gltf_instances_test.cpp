@@ -19,8 +19,9 @@ bool shareOneMesh(const json& material, const json& otherMaterial, const json& o
                            {"TEXCOORD_1", w.vec2s({0, 0, 2, 0, 0, 2})}};
   json second = {{"attributes", attributes}, {"material", w.add("materials", otherMaterial)}};
   if (!other.is_null()) second.merge_patch(other);
-  w.add("nodes", {{"mesh", w.mesh({{"attributes", attributes},
-                                   {"material", w.add("materials", material)}})}});
+  w.add(
+      "nodes",
+      {{"mesh", w.mesh({{"attributes", attributes}, {"material", w.add("materials", material)}})}});
   w.add("nodes", {{"mesh", w.mesh(second)}, {"translation", {1, 0, 0}}});
   const Scene scene = w.load();
   EXPECT_EQ(scene.instances.size(), 2u);
@@ -37,8 +38,8 @@ TEST(GltfInstances, PrimitivesOfOneGeometryShareAMesh) {
   const json plain = json::object(), rough = {{"pbrMetallicRoughness", {{"metallicFactor", 0.5}}}};
   EXPECT_TRUE(shareOneMesh(plain, rough));
   EXPECT_TRUE(shareOneMesh({{"alphaMode", "MASK"}}, {{"alphaMode", "BLEND"}}));
-  EXPECT_TRUE(shareOneMesh(textured("baseColorTexture", 1),
-                           textured("metallicRoughnessTexture", 1)));
+  EXPECT_TRUE(
+      shareOneMesh(textured("baseColorTexture", 1), textured("metallicRoughnessTexture", 1)));
   // The vertices or what is kept of them differ:
   EXPECT_FALSE(shareOneMesh(plain, rough, {{"mode", 5}}));
   EXPECT_FALSE(shareOneMesh(plain, textured("baseColorTexture", 0)));

@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 packages=(build-essential cmake pkg-config
   libembree-dev libopenimageio-dev libtinygltf-dev libtomlplusplus-dev libcli11-dev
-  libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libboost-dev libgtest-dev libbenchmark-dev)
+  libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
 
 needs() {
   echo "chromeball needs these packages (Debian's names), and could not install them here:" >&2

@@ -2,8 +2,8 @@
 blender --background --factory-startup --python cycles_picture.py -- MODEL.glb PROBE.exr OUT.exr
         WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
 
-The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1 for
-direct light. Materials are taken for what the glTF file says: Lambertian, or a conductor.
+The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1
+for direct light. Materials are taken for what the glTF file says: Lambertian, or a conductor.
 """
 import json
 import math

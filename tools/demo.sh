@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and renders the demo scene. Arguments go to `chromeball render` (--samples 32 for a quick look).
+# Builds and renders the demo scene. Arguments go to `chromeball render` (--samples 32: a quick look).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds and runs the tests; --quick leaves out the suites that take more than seconds. Other arguments
-# go to GoogleTest (--gtest_filter=PATTERN). The last line is "N passed, N failed".
+# Builds and runs the tests; --quick leaves out the suites that take more than seconds. Other
+# arguments go to GoogleTest (--gtest_filter=PATTERN). The last line is "N passed, N failed".
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,11 +1,12 @@
 """Error and time of chromeball and of Cycles for the same picture; see versus_cycles.sh.
 
-relMSE is measured against a reference by the same renderer, so that a small difference between the
-two (a filter, a Fresnel term) does not count as noise; the table's last line says how far apart the
-references are. A reference has noise too, which makes each relMSE larger by the factor 1 + samples /
-reference samples: the same for both, so the ratio keeps. Only rendering is timed: no loading, no building of the BVH or of the probe's tables.
-With relMSE ~ 1/samples, relMSE x seconds does not depend on the number of samples, and the ratio of the
-two renderers' products says how many times longer one takes for the error of the other.
+relMSE is measured against a reference by the same renderer, so that a small difference between
+the two (a filter, a Fresnel term) does not count as noise; the table's last line says how far
+apart the references are. A reference has noise too, which makes each relMSE larger by the factor
+1 + samples / reference samples: the same for both, so the ratio keeps. Only rendering is timed:
+no loading, no building of the BVH or of the probe's tables. With relMSE ~ 1/samples, relMSE x
+seconds does not depend on the number of samples, and the ratio of the two renderers' products
+says how many times longer one takes for the error of the other.
 """
 import argparse
 import hashlib
@@ -63,8 +64,8 @@ class Cycles:
     @staticmethod
     def render(options, model, output, samples, seed):
         """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
-        log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1, "--python",
-                  ROOT / "tools" / "cycles_picture.py", "--", model, options.probe, output,
+        log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1,
+                  "--python", ROOT / "tools" / "cycles_picture.py", "--", model, options.probe, output,
                   options.size, samples, seed, options.threads, options.depth)
         clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
         times = {}
@@ -114,7 +115,8 @@ def compare(options, scene):
         rate = width * height * options.samples / median_seconds / 1e6
         print(f"{r.name:12}{mean_error:12.3e}{median_seconds:10.2f}{rate:12.2f}{product[r]:12.3e}")
     apart = error(references[Chromeball], references[Cycles])
-    print(f"Cycles takes {product[Cycles] / product[Chromeball]:.2f} times as long for the same error. "
+    ratio = product[Cycles] / product[Chromeball]
+    print(f"Cycles takes {ratio:.2f} times as long for the same error. "
           f"References differ by {100 * apart['bias']:+.3f}% in their means, "
           f"relMSE {apart['relmse']:.2e}.", flush=True)
 

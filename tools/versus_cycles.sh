@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders the still life under a probe with chromeball and with Cycles (Debian's Blender 3.4, which is
-# installed where it may), and prints how long each takes for how much error. --help for the options.
+# Renders the still life under a probe with chromeball and with Cycles (Debian's Blender 3.4, which
+# is installed where it may), and prints how long each takes for how much error. See --help.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

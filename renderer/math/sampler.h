@@ -44,12 +44,12 @@ class PixelSampler {
   void startSample(uint32_t indexInBlock) {
     point_ = table_->point(indexInBlock);
     index_ = indexInBlock;
+    base_ = 0;
   }
-  // Dimensions asked for from here on are relative to `dimension`.
+  // Dimensions asked for from here on are the vertex's.
   void startVertex(int depth) {
     base_ = dimension::kVertex + depth * dimension::kPerVertex;
   }
-  void startCamera() { base_ = 0; }
 
   uint32_t bits(int d) const {
     d += base_;

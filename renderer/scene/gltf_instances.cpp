@@ -73,9 +73,11 @@ class InstanceReader {
         {mesh, plan.material, plan.node, shared ? roundToFloat(toWorld) : Transform{}});
   }
 
-  // Adds a mesh to the scene, moved by `transform` where there is one; -1 where it has no triangles.
+  // Adds a mesh to the scene, moved by `transform` where there is one; -1 where it has no
+  // triangles.
   int readMesh(const Plan& plan, const dmat4* transform) {
-    const auto& primitive = file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
+    const auto& primitive =
+        file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
     const std::string where = describe(plan.mesh, size_t(plan.primitive));
     std::optional<Mesh> mesh =
         readPrimitive(file_, primitive, poseOf(plan.node), where, materials_[plan.material]);

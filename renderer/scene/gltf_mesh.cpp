@@ -152,8 +152,7 @@ MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Mate
   for (const TextureSlot* slot : textureSlots(material))
     if (*slot) recipe.uvSets.push_back(slot->uvSet);
   std::sort(recipe.uvSets.begin(), recipe.uvSets.end());
-  recipe.uvSets.erase(std::unique(recipe.uvSets.begin(), recipe.uvSets.end()),
-                      recipe.uvSets.end());
+  recipe.uvSets.erase(std::unique(recipe.uvSets.begin(), recipe.uvSets.end()), recipe.uvSets.end());
   if (const TextureSlot& slot = material.normalTexture; slot) {
     recipe.normalMapSpace.push_back(uint32_t(slot.uvSet));
     for (const vec2& v : {slot.uvRow0, slot.uvRow1, slot.uvOffset})

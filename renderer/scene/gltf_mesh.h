@@ -39,8 +39,8 @@ struct MeshRecipe {
 };
 MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Material material);
 
-// Reads a primitive that has triangles, with what the material needs of it: normals mended, tangents
-// complete. Nothing where the indices make no triangle: a warning has then been said.
+// Reads a primitive that has triangles, with what the material needs of it: normals mended,
+// tangents complete. Nothing where the indices make no triangle: a warning has then been said.
 std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& primitive,
                                   const Pose& pose, const std::string& where,
                                   const Material& material);

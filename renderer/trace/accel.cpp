@@ -48,6 +48,14 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   if (query.transmittance > 0) arguments->valid[0] = 0;
 }
 
+// Embree knows no coordinates beyond 1.8e18, and as Debian builds it ends the program at a ray
+// beyond them or with a NaN.
+bool isTraceable(const Ray& ray) {
+  constexpr float kFarthest = 1e18f;
+  const vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
+  return sum.x + sum.y + sum.z < kFarthest && ray.tMax >= 0;
+}
+
 RTCScene newScene(RTCDevice device, bool hasAlpha) {
   RTCScene scene = rtcNewScene(device);
   // Robust: no ray slips between two triangles that share an edge.
@@ -150,6 +158,7 @@ void Accel::build(const Scene& scene) {
 }
 
 bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
+  if (!isTraceable(ray)) return false;
   Query query;
   initQueryContext(query.embree);
   query.key = key;
@@ -165,6 +174,7 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
 }
 
 float Accel::transmittance(const Ray& ray) const {
+  if (!isTraceable(ray)) return 1;
   Query query;
   initQueryContext(query.embree);
   RTCRay r{ray.origin.x, ray.origin.y, ray.origin.z, 0, ray.direction.x, ray.direction.y,

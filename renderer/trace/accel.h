@@ -23,8 +23,8 @@ class Accel {
   Accel(const Accel&) = delete;
   Accel& operator=(const Accel&) = delete;
 
-  // The closest hit. `key` decides where a blended surface lets the ray pass: it does so with
-  // probability 1 - alpha.
+  // The closest hit; none for a ray with NaN or coordinates beyond 1e18. `key` decides where a
+  // blended surface lets the ray pass: it does so with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit) const;
 
   // The share of light that passes along the ray up to tMax: 0, 1, or the product of 1 - alpha over
