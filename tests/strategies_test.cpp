@@ -51,8 +51,8 @@ std::vector<Named> threeScenes() {
     mirror.roughness = 0;
     addSphere(s, addMaterial(s, mirror), {-0.7f, 0.6f, 0}, 0.6f, 24);
     Material lamp = lambert(Rgb(0.2f));
-    lamp.emission = {8, 6, 4};
-    addSphere(s, addMaterial(s, lamp), {0.9f, 1.2f, 0}, 0.3f, 12);
+    lamp.emission = {4, 3, 2};
+    addSphere(s, addMaterial(s, lamp), {0.9f, 1.4f, 0}, 0.5f, 12);
     Material veil = lambert({0.9f, 0.4f, 0.4f});
     veil.alphaMode = AlphaMode::Blend;
     veil.baseColor.w = 0.4f;

@@ -1,12 +1,29 @@
 #include "film/film.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace chromeball {
 namespace {
 
-constexpr int kTile = 16;  // over which the two measures of error are compared
+constexpr int kReach = 3;  // the two measures of error are compared over 7 x 7 pixels
+
+// Adds to each entry its neighbours within kReach along an axis: `step` apart, `length` in a line.
+void boxSum(std::vector<glm::dvec4>& field, size_t first, size_t step, int length) {
+  std::vector<glm::dvec4> line(static_cast<size_t>(length));
+  for (int i = 0; i < length; ++i) line[size_t(i)] = field[first + size_t(i) * step];
+  for (int i = 0; i < length; ++i) {
+    glm::dvec4 sum(0);
+    for (int j = std::max(0, i - kReach); j <= std::min(length - 1, i + kReach); ++j)
+      sum += line[size_t(j)];
+    field[first + size_t(i) * step] = sum;
+  }
+}
+
+void boxSum(std::vector<glm::dvec4>& field, int width, int height) {
+  for (int y = 0; y < height; ++y) boxSum(field, size_t(y) * width, 1, width);
+  for (int x = 0; x < width; ++x) boxSum(field, size_t(x), size_t(width), height);
+}
 
 }  // namespace
 
@@ -41,34 +58,29 @@ Image Film::sampleCounts() const {
 }
 
 std::vector<glm::dvec4> Film::squaredErrors() const {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<glm::dvec4> errors(pixels_.size(), glm::dvec4(nan));
-  for (int top = 0; top < height_; top += kTile)
-    for (int left = 0; left < width_; left += kTile) {
-      const int bottom = std::min(top + kTile, height_), right = std::min(left + kTile, width_);
-      // Both estimate the variance of a sample: `among` blocks as they really scatter, `within`
-      // blocks as if samples were independent.
-      glm::dvec4 among(0), within(0);
-      for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x) {
-          const Pixel& p = pixel(x, y);
-          if (p.blocks < 2) continue;
-          const glm::dvec4 blockScatter(p.blockScatter);
-          among += blockScatter / double(p.blocks - 1);
-          within += (glm::dvec4(p.scatter) + blockScatter) / double(p.count - 1);
-        }
-      glm::dvec4 ratio(1);
-      for (int c = 0; c < 4; ++c)
-        if (within[c] > 0) ratio[c] = among[c] / within[c];
-      for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x) {
-          const Pixel& p = pixel(x, y);
-          if (p.blocks < 2) continue;
-          const glm::dvec4 variance =
-              glm::dvec4(p.scatter + p.blockScatter) / double(p.count - 1);
-          errors[size_t(y) * width_ + x] = ratio * variance / double(p.count);
-        }
-    }
+  // Both estimate the variance of a sample: `among` blocks as they really scatter, `within` blocks
+  // as if samples were independent. A pixel weighs as much as it adds to the noise, by the root of
+  // its variance, lest one firefly speak for all.
+  std::vector<glm::dvec4> among(pixels_.size(), glm::dvec4(0)), within = among;
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (p.blocks < 2) continue;
+    within[i] = glm::sqrt(p.sampleVariance());
+    for (int c = 0; c < 4; ++c)
+      if (within[i][c] > 0) among[i][c] = p.blockScatter[c] / (p.blocks - 1) / within[i][c];
+  }
+  boxSum(among, width_, height_);
+  boxSum(within, width_, height_);
+
+  std::vector<glm::dvec4> errors(pixels_.size(), glm::dvec4(std::nan("")));
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (p.blocks < 2) continue;
+    glm::dvec4 ratio(1);
+    for (int c = 0; c < 4; ++c)
+      if (within[i][c] > 0) ratio[c] = among[i][c] / within[i][c];
+    errors[i] = ratio * p.sampleVariance() / double(p.count);
+  }
   return errors;
 }
 

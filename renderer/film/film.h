@@ -27,8 +27,7 @@ struct SampleSums {
 //
 // The samples of a block are quasi-random, so their scatter overstates the error of their mean; the
 // scatter of independent blocks' means is true but rests on few numbers. So the standard error of a
-// pixel is its samples' scatter, times the ratio of both measures over the pixels of the tile
-// around it.
+// pixel is its samples' scatter, times the ratio of both measures over the 7 x 7 pixels around it.
 class Film {
  public:
   Film(int width, int height);
@@ -54,6 +53,11 @@ class Film {
     glm::dvec4 mean{0};
     glm::vec4 scatter{0};       // sum over samples of squared deviation from their block's mean
     glm::vec4 blockScatter{0};  // sum over blocks of count x squared deviation from the mean
+
+    // As if all samples were independent.
+    glm::dvec4 sampleVariance() const {
+      return glm::dvec4(scatter + blockScatter) / double(count - 1);
+    }
   };
   const Pixel& pixel(int x, int y) const { return pixels_[size_t(y) * width_ + x]; }
 
