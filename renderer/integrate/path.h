@@ -34,13 +34,11 @@ struct PathScene {
   bool hideProbe = false;  // from the camera
 };
 
-// Weight of a sample found with density `own` that the other technique finds with `other`.
+// Weight of a sample found with density `own` (> 0; infinite for a delta light) that the other
+// technique finds with `other`.
 inline float misWeight(Mis mis, float own, float other) {
-  if (mis == Mis::Power) {
-    const float r = other / own;
-    return 1 / (1 + r * r);
-  }
-  return own / (own + other);
+  const float ratio = other / own;
+  return 1 / (1 + (mis == Mis::Power ? ratio * ratio : ratio));
 }
 
 // Weight of what the BSDF's sample found. Density `pdf` 0 stands for a mirror (or the camera), with
@@ -68,8 +66,8 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
     ++counts.shadow;
     const float passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi});
     if (passed == 0) continue;
-    light += bsdf.fCos * s.radiance *
-             (passed * lightSampleWeight(path.mis, s.density, bsdf.pdf) / s.density);
+    light += bsdf.fCos * s.irradiance *
+             (passed * lightSampleWeight(path.mis, s.density, bsdf.pdf));
   }
   return light;
 }

@@ -91,8 +91,8 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   p.t = sampleLinear(float(v), w.w00 + w.w10, w.w01 + w.w11);
   p.s = sampleLinear(float(u), (1 - p.t) * w.w00 + p.t * w.w01, (1 - p.t) * w.w10 + p.t * w.w11);
   const vec3 wi = probe_.direction(p);
-  return {wi, Probe::interpolate(corners, p.s, p.t),
-          w.at(p.s, p.t) * scale_ / std::max(p.sinTheta, 1e-9f)};
+  const float density = w.at(p.s, p.t) * scale_ / std::max(p.sinTheta, 1e-9f);
+  return {wi, Probe::interpolate(corners, p.s, p.t) / density, density};
 }
 
 void Importance::sample(const LightPoint&, const PixelSampler& sampler,

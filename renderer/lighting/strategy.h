@@ -22,13 +22,15 @@ struct LightPoint {
   int depth;  // 0 at the first hit: a strategy may do less on later bounces
 };
 
-// One direction worth a shadow ray. `density` is the effective density over solid angle: the sum
-// over all samples that were taken together, so that the sum over samples of
-//   radiance * f cos / density
-// is the estimate, however many samples a strategy takes.
+// One direction worth a shadow ray, as a directional light: `irradiance`, on a surface that faces
+// it, is radiance / density. `density` is the effective density over solid angle, the sum over all
+// samples that were taken together, so that the sum over samples of
+//   f cos * irradiance
+// is the estimate, however many samples a strategy takes. A delta light has infinite density: MIS
+// then leaves it whole.
 struct DirectionSample {
   vec3 wi;  // unit, from the point to the light
-  Rgb radiance;
+  Rgb irradiance;
   float density;
 };
 

@@ -15,7 +15,7 @@ class Uniform : public LightingStrategy {
               std::vector<DirectionSample>& out) const override {
     const vec3 local = squareToUniformHemisphere(sampler.get2(dimension::kLight));
     const vec3 wi = Frame(point.normal).toWorld(local);
-    out.push_back({wi, probe_.radiance(wi), 0.5f * kInvPi});
+    out.push_back({wi, probe_.radiance(wi) * (2 * kPi), 0.5f * kInvPi});
   }
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
