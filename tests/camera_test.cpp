@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "math/error.h"
-#include "scene/scene.h"
+#include "scene/framing.h"
+#include "test_scene.h"
 
 namespace chromeball {
 namespace {
@@ -67,35 +68,39 @@ vec2 project(const Camera& camera, vec3 p, float aspect) {
           0.5f - 0.5f * glm::dot(q, camera.up) / (depth * tanHalf)};
 }
 
-TEST(Camera, FramingShowsAllOfTheBoundsAndFillsThePicture) {
+TEST(Camera, FramingShowsAllVerticesAndFillsThePicture) {
   for (const float aspect : {0.4f, 1.0f, 2.5f})
     for (const float size : {1e-3f, 1.0f, 1e4f})
       for (const vec3 shape : {vec3(1, 1, 1), vec3(10, 1, 1), vec3(1, 10, 0), vec3(0, 1, 10)}) {
-        const vec3 centre = size * vec3(3, -2, 1);
-        const Bounds box{centre - size * shape, centre + size * shape};
-        const Camera camera = framingCamera(box, aspect);
+        Scene scene;
+        addSphere(scene, addMaterial(scene, {}), vec3(0), 1);
+        for (vec3& p : scene.meshes[0].positions) p = size * (vec3(3, -2, 1) + shape * p);
+        const Camera camera = framingCamera(scene, aspect);
         EXPECT_GT(camera.back.z, 0.8f);  // from the front, above, from the right
         EXPECT_GT(camera.back.y, 0);
         EXPECT_GT(camera.back.x, 0);
-        float widest = 0;
-        for (int i = 0; i < 8; ++i) {
-          const vec3 corner{i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                            i & 4 ? box.max.z : box.min.z};
-          const vec2 off = glm::abs(project(camera, corner, aspect) - vec2(0.5f));
-          widest = std::max({widest, off.x, off.y});
+        vec2 least(1), most(0);
+        for (const vec3& p : scene.meshes[0].positions) {
+          least = glm::min(least, project(camera, p, aspect));
+          most = glm::max(most, project(camera, p, aspect));
         }
-        EXPECT_LT(widest, 0.5f);
-        EXPECT_GT(widest, 0.4f);
+        EXPECT_TRUE(glm::all(glm::greaterThan(least, vec2(0.02f)))) << least.x << " " << least.y;
+        EXPECT_TRUE(glm::all(glm::lessThan(most, vec2(0.98f)))) << most.x << " " << most.y;
+        EXPECT_NEAR(maxComponent(vec3(most - least, 0)), 1 / 1.05f, 1e-3f);
       }
 }
 
 TEST(Camera, FramingNothingOrAPointIsStillACamera) {
-  for (const Bounds& box : {Bounds{}, Bounds{vec3(7), vec3(7)}, Bounds{vec3(0), vec3(0)}}) {
-    const Camera camera = framingCamera(box, 1);
-    const vec3 target = box.empty() ? vec3(0) : box.min;
+  for (const vec3& point : {vec3(0), vec3(7)}) {
+    Scene scene;
+    if (point.x > 0) {
+      addMesh(scene, addMaterial(scene, {}), {});
+      scene.meshes[0].positions.assign(3, point);
+    }
+    const Camera camera = framingCamera(scene, 1);
     EXPECT_TRUE(isFinite(camera.position));
-    EXPECT_GT(glm::distance(camera.position, target), 0.1f);
-    expectNear(-camera.back, glm::normalize(target - camera.position), 1e-5f);
+    EXPECT_GT(glm::distance(camera.position, point), 0.1f);
+    expectNear(-camera.back, glm::normalize(point - camera.position), 1e-5f);
   }
 }
 

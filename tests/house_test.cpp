@@ -38,6 +38,8 @@ const std::map<std::string, std::string> kSeenBy = {
     {"OpenImageIO/", "renderer/image/"},
     {"tiny_gltf.h", "renderer/scene/gltf"},
     {"toml++/", "renderer/scene/scene_file.cpp"},
+    {"Eigen/", "renderer/lighting/"},
+    {"boost/", "renderer/measure/"},
     {"CLI/", "tools/"},
 };
 
@@ -92,6 +94,7 @@ TEST(House, CheckFindsWhatItShould) {
   EXPECT_EQ(count("renderer/scene/gltf_mesh.cpp", "#include <tiny_gltf.h>\n"), 0u);
   EXPECT_EQ(count("renderer/scene/scene_file.h", "#include <toml++/toml.h>\n"), 1u);
   EXPECT_EQ(count("renderer/film/a.cpp", "#include <CLI/CLI.hpp>\n"), 1u);
+  EXPECT_EQ(count("renderer/probe/a.cpp", "#include <Eigen/Core>\n"), 1u);
   EXPECT_EQ(count("tools/render.cpp", "#include <CLI/CLI.hpp>\n#include \"film/film.h\"\n"), 0u);
 }
 

@@ -16,6 +16,7 @@
 #include "probe/load.h"
 #include "progress.h"
 #include "render_job.h"
+#include "scene/framing.h"
 #include "scene/gltf.h"
 
 namespace chromeball {
@@ -67,9 +68,10 @@ LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
 
 void sayNotes(const LoadedProbe& probe, const std::string& path, bool quiet) {
   for (const std::string& line : warnings(probe, path)) warn(line);
-  if (probe.guessed && !quiet)
-    fmt::print(stderr, "chromeball: {}: taken for a {} probe, since {}\n", path,
-               mappingName(probe.mapping), probe.reason);
+  if (!probe.guessed || quiet) return;
+  const std::string_view mapping = mappingName(probe.mapping);
+  fmt::print(stderr, "chromeball: {}: taken for {} {} probe, since {}\n", path,
+             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
 }
 
 Camera chooseCamera(const RenderJob& job, const Scene& scene) {
@@ -85,7 +87,7 @@ Camera chooseCamera(const RenderJob& job, const Scene& scene) {
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
   const RenderSettings& s = job.settings;
-  return framingCamera(bounds(scene), float(s.width) / float(s.height));
+  return framingCamera(scene, float(s.width) / float(s.height));
 }
 
 // The size asked for; else the default height, as wide as the model's camera would have it.
@@ -128,13 +130,16 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
       {"height", result.film.height()},
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
-      {"threads",
-       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
+      {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
       {"seconds",
-       {{"load", seconds.load}, {"build", seconds.build}, {"prepare", seconds.prepare},
-        {"render", seconds.render}, {"write", seconds.write}}},
+       {{"load", seconds.load},
+        {"build", seconds.build},
+        {"prepare", seconds.prepare},
+        {"render", seconds.render},
+        {"write", seconds.write}}},
       {"rays",
-       {{"camera", result.rays.camera}, {"shadow", result.rays.shadow},
+       {{"camera", result.rays.camera},
+        {"shadow", result.rays.shadow},
         {"bounce", result.rays.bounce}}},
       {"invalid_samples", result.invalid.count},
       {"noise", noise},  // NaN becomes null
@@ -168,8 +173,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
   OutputImage output;
   if (settings.hideProbe)
     output.layers.push_back(
-        {"", "RGBA",
-         withAlpha(result.film.mean(), result.aovs.finished(Aov::Alpha))});
+        {"", "RGBA", withAlpha(result.film.mean(), result.aovs.finished(Aov::Alpha))});
   else
     output.layers.push_back({"", "RGB", result.film.mean()});
   for (Aov aov : settings.aovs) {
@@ -204,7 +208,8 @@ void render(const RenderOptions& options) {
   seconds.load = watch.lap();
   const Accel accel(scene);
   seconds.build = watch.lap();
-  const auto lighting = makeStrategy(job.strategy.name, probe, job.settings.mis, job.strategy.place);
+  const auto lighting =
+      makeStrategy(job.strategy.name, probe, job.settings.mis, job.strategy.place);
   seconds.prepare = watch.lap();
   // Said once nothing can be wrong any more, so that what is wrong stays one line.
   if (job.file.probe) sayNotes(loaded, *job.file.probe, options.quiet);
@@ -213,8 +218,9 @@ void render(const RenderOptions& options) {
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const RenderResult result = [&] {
     ProgressBar bar(options.progress || (ProgressBar::isTerminal() && !options.quiet));
-    return render(scene, accel, camera, *lighting, job.settings,
-                  [&](double share) { bar.update(share); }, interrupted);
+    return render(
+        scene, accel, camera, *lighting, job.settings, [&](double share) { bar.update(share); },
+        interrupted);
   }();
   seconds.render = watch.lap();
 
@@ -227,9 +233,10 @@ void render(const RenderOptions& options) {
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
   if (result.invalid.count)
-    warn(fmt::format("{} invalid samples (NaN, infinite or negative) were left out, one at pixel "
-                     "({}, {})",
-                     result.invalid.count, result.invalid.x, result.invalid.y));
+    warn(
+        fmt::format("{} invalid samples (NaN, infinite or negative) were left out, one at pixel "
+                    "({}, {})",
+                    result.invalid.count, result.invalid.x, result.invalid.y));
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
   if (!options.quiet)
     fmt::print("{} samples a pixel in {:.2f} s, noise {:.2f}%: {}\n", result.samples,
@@ -257,8 +264,7 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--noise", o.noise, "Stop at this noise, in percent");
   command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
   command->add_option("--mis", o.mis, "off, balance or power");
-  command->add_option("--max-depth", o.maxDepth,
-                      "Bounces: 0 emission, 1 direct light, ... (8)");
+  command->add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
   command->add_option("--camera", o.camera, "Name of one of the model's cameras");
   command->add_option("--seed", o.seed, "Another seed, another independent picture (0)");
   command->add_option("--threads", o.threads, "Number of threads (all)");

@@ -61,9 +61,6 @@ struct Bounds {
 };
 Bounds bounds(const Scene& scene);
 
-// A camera that frames the whole scene from the front, slightly above and to the right.
-Camera framingCamera(const Bounds& bounds, float aspectRatio);
-
 // Puts `other` into `scene` (a scene file may name several models).
 void append(Scene& scene, Scene&& other);
 
