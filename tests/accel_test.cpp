@@ -70,7 +70,7 @@ Leaks bounceAround(const Scene& scene, int rays) {
   for (int i = 0; i < rays; ++i) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    const vec3 corner = instance.toWorld.point(mesh.positions[mesh.triangles[hit.triangle].x]);
+    const vec3 corner = instance.point(mesh.positions[mesh.triangles[hit.triangle].x]);
     const Surface surface =
         surfaceAt(scene, instance, hit.triangle, hit.barycentric, glm::normalize(centre - corner));
     leaks.largestOffset = std::max(leaks.largestOffset, surface.rayOffset);
@@ -229,7 +229,7 @@ Scene layerScene(const std::vector<Material>& materials, bool instanced) {
       addQuad(scene, index, {-1, -1, instanced ? 0 : z}, {2, 0, 0}, {0, 2, 0});
     else
       scene.instances.push_back({0, index, 0, {}});
-    if (instanced) scene.instances.back().toWorld.translation.z = z;
+    if (instanced) scene.instances.back().toWorld = Transform{glm::mat3(1), {0, 0, z}};
   }
   return scene;
 }

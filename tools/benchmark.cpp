@@ -2,60 +2,13 @@
 // replayed by Embree alone. CHROMEBALL_PROBE names another probe than the project's own studio.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-#include <filesystem>
-
-#include "demo/still_life.h"
-#include "integrate/path.h"
+#include "benchmark_scene.h"
 #include "integrate/render.h"
-#include "probe/load.h"
-#include "probe/synth.h"
-#include "scene/gltf.h"
-#include "trace/accel.h"
 
 BENCHMARK_MAIN();
 
 namespace chromeball {
 namespace {
-
-constexpr int kWidth = 320, kHeight = 240, kSamples = 64, kDepth = 5;
-
-Image benchmarkProbe() {
-  if (const char* path = std::getenv("CHROMEBALL_PROBE")) return loadProbe(path).latLong;
-  return studioProbe({1024, 512});
-}
-
-struct Setting {
-  Scene scene;
-  Accel accel;
-  Probe probe;
-  std::unique_ptr<LightingStrategy> lighting;
-  std::unique_ptr<Emitters> emitters;
-
-  explicit Setting(Scene s)
-      : scene(std::move(s)),
-        accel(scene),
-        probe(benchmarkProbe()),
-        lighting(makeStrategy("importance", probe, Mis::Balance, "benchmark")),
-        emitters(Emitters::make(scene)) {
-    prepareBsdfs(scene);
-  }
-
-  static const Setting& get(demo::Finish finish) {
-    static const Setting lambertian(load(demo::Finish::Lambertian));
-    static const Setting conductors(load(demo::Finish::Conductors));
-    return finish == demo::Finish::Lambertian ? lambertian : conductors;
-  }
-
-  static Scene load(demo::Finish finish) {
-    const std::filesystem::path file =
-        std::filesystem::temp_directory_path() / "chromeball-benchmark.glb";
-    demo::writeStillLife(file, finish);
-    Scene scene = loadGltf(file, {}, [](const std::string&) {});
-    std::filesystem::remove(file);
-    return scene;
-  }
-};
 
 // Answers as Accel does, and remembers what it was asked.
 struct Recorder {
@@ -78,39 +31,26 @@ struct Recorder {
 
 // One thread's paths over the picture, `samples` a pixel.
 template <class Rays>
-Rgb tracePicture(const Setting& s, const Rays& rays, int samples) {
+Rgb tracePicture(const BenchmarkScene& s, const Rays& rays, int samples) {
   const PathScene<Rays> path{s.scene, rays, *s.lighting, s.emitters.get(), Mis::Balance, kDepth};
-  const CameraRays camera(s.scene.cameras.front(), float(kWidth) / kHeight);
-  const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * 6, 1);
-  PixelSampler sampler(table, 1);
   std::vector<DirectionSample> scratch;
   RayCounts counts;
-  Rgb sum(0);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      sampler.startPixel(uint32_t(x), uint32_t(y), 0);
-      for (int i = 0; i < samples; ++i) {
-        sampler.startSample(uint32_t(i));
-        const vec2 offset = sampler.get2(dimension::kPixel);
-        Ray ray;
-        camera.ray((float(x) + offset.x) / kWidth, (float(y) + offset.y) / kHeight, ray.origin,
-                   ray.direction);
-        sum += pathRadiance(path, ray, sampler, scratch, counts, nullptr);
-      }
-    }
-  return sum;
+  return sumOverPicture(s.scene.cameras.front(), samples,
+                        [&](const Ray& ray, PixelSampler& sampler) {
+                          return pathRadiance(path, ray, sampler, scratch, counts, nullptr);
+                        });
 }
 
 void render(benchmark::State& state, demo::Finish finish) {
-  const Setting& s = Setting::get(finish);
+  const BenchmarkScene& s = BenchmarkScene::get(finish);
   RenderSettings settings;
   settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
   settings.maxDepth = kDepth;
   const std::atomic<bool> stop = false;
   double samples = 0, rays = 0;
   for (auto _ : state) {
-    const RenderResult r = chromeball::render(s.scene, s.accel, s.scene.cameras.front(),
-                                              *s.lighting, settings, [](double) {}, stop);
+    const RenderResult r = chromeball::render(
+        s.scene, s.accel, s.scene.cameras.front(), *s.lighting, settings, [](double) {}, stop);
     samples += double(r.rays.camera);
     rays += double(r.rays.camera + r.rays.shadow + r.rays.bounce);
     settings.seed++;
@@ -121,16 +61,10 @@ void render(benchmark::State& state, demo::Finish finish) {
   state.counters["rays/sample"] = rays / samples;
 }
 
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 // Render time over the time of the same rays alone, both of one thread and in turn.
 void overhead(benchmark::State& state, demo::Finish finish) {
   constexpr int kTraced = 16;
-  const Setting& s = Setting::get(finish);
+  const BenchmarkScene& s = BenchmarkScene::get(finish);
   const Recorder recorder{s.accel, {}};
   benchmark::DoNotOptimize(tracePicture(s, recorder, kTraced));
   double whole = 0, alone = 0;
@@ -156,13 +90,17 @@ void overhead(benchmark::State& state, demo::Finish finish) {
 }
 
 BENCHMARK_CAPTURE(render, lambertian, demo::Finish::Lambertian)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(render, conductors, demo::Finish::Conductors)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(overhead, lambertian, demo::Finish::Lambertian)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(overhead, conductors, demo::Finish::Conductors)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace chromeball

@@ -37,9 +37,9 @@ std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
     const double radiance = radiances[instance.material];
     if (!(radiance > 0)) continue;
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const vec3 p0 = instance.toWorld.point(mesh.positions[mesh.triangles[t].x]);
-      const vec3 p1 = instance.toWorld.point(mesh.positions[mesh.triangles[t].y]);
-      const vec3 p2 = instance.toWorld.point(mesh.positions[mesh.triangles[t].z]);
+      const vec3 p0 = instance.point(mesh.positions[mesh.triangles[t].x]);
+      const vec3 p1 = instance.point(mesh.positions[mesh.triangles[t].y]);
+      const vec3 p2 = instance.point(mesh.positions[mesh.triangles[t].z]);
       const double area = 0.5 * glm::length(glm::cross(glm::dvec3(p1) - glm::dvec3(p0),
                                                        glm::dvec3(p2) - glm::dvec3(p0)));
       if (!(area > 0)) continue;

@@ -45,7 +45,7 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
   Reach across{slope * aspectRatio}, upwards{slope};
   for (const Instance& instance : scene.instances)
     for (const vec3& position : scene.meshes[instance.mesh].positions) {
-      const glm::dvec3 p = glm::dvec3(instance.toWorld.point(position)) - centre;
+      const glm::dvec3 p = glm::dvec3(instance.point(position)) - centre;
       const double z = glm::dot(p, back);
       across.add(glm::dot(p, right), z);
       upwards.add(glm::dot(p, up), z);

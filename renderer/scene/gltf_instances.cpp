@@ -70,7 +70,7 @@ class InstanceReader {
     if (mesh == -1) return;
     if (shared) plan.geometry->mesh = mesh;
     scene_.instances.push_back(
-        {mesh, plan.material, plan.node, shared ? roundToFloat(toWorld) : Transform{}});
+        {mesh, plan.material, plan.node, shared ? std::optional(roundToFloat(toWorld)) : std::nullopt});
   }
 
   // Adds a mesh to the scene, moved by `transform` where there is one; -1 where it has no

@@ -39,7 +39,7 @@ Bounds bounds(const Scene& scene) {
   Bounds box;
   for (const Instance& instance : scene.instances)
     for (const vec3& position : scene.meshes[instance.mesh].positions) {
-      const vec3 p = instance.toWorld.point(position);
+      const vec3 p = instance.point(position);
       box.min = glm::min(box.min, p);
       box.max = glm::max(box.max, p);
     }

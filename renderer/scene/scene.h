@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,16 +31,17 @@ struct Transform {
   vec3 translation{0};
 
   vec3 point(const vec3& p) const { return linear * p + translation; }
-  bool isIdentity() const { return linear == glm::mat3(1) && translation == vec3(0); }
 };
 
 // A mesh standing somewhere, made of something. A mesh with one instance is stored in world space
-// (identity here); one with several serves materials that need the same of its vertices.
+// and has no transform here; one with several serves materials that need the same of its vertices.
 struct Instance {
   int mesh = 0;
   int material = 0;
   int node = 0;  // index into Scene::nodeNames
-  Transform toWorld;
+  std::optional<Transform> toWorld;
+
+  vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
 };
 
 struct Scene {

@@ -24,10 +24,11 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
 
 // Tangent-space normal mapping (glTF 2.0, 3.9.3). Returns the shading normal unmapped where the
 // tangent is degenerate.
-vec3 mappedNormal(const Scene& scene, const Surface& s, const Transform& toWorld, float handedness,
+vec3 mappedNormal(const Scene& scene, const Surface& s, const Instance& instance, float handedness,
                   const vec3& normal) {
   const vec4 tangent4 = interpolate(s.mesh->tangents, s.triangle, s.barycentric);
-  vec3 tangent = toWorld.linear * vec3(tangent4);
+  vec3 tangent(tangent4);
+  if (instance.toWorld) tangent = instance.toWorld->linear * tangent;
   tangent -= normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(tangent, tangent);
   if (!(length2 > 0)) return normal;
@@ -66,14 +67,12 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   vec3 p0 = s.mesh->positions[s.triangle.x];
   vec3 p1 = s.mesh->positions[s.triangle.y];
   vec3 p2 = s.mesh->positions[s.triangle.z];
-  const Transform& toWorld = instance.toWorld;
-  const bool moved = !toWorld.isIdentity();
   float handedness = 1;
-  if (moved) {
-    p0 = toWorld.point(p0);
-    p1 = toWorld.point(p1);
-    p2 = toWorld.point(p2);
-    handedness = glm::determinant(toWorld.linear) < 0 ? -1.0f : 1.0f;
+  if (const auto& toWorld = instance.toWorld) {
+    p0 = toWorld->point(p0);
+    p1 = toWorld->point(p1);
+    p2 = toWorld->point(p2);
+    handedness = glm::determinant(toWorld->linear) < 0 ? -1.0f : 1.0f;
   }
 
   s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
@@ -87,8 +86,8 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   s.normal = s.geometricNormal;
   if (!s.mesh->normals.empty()) {
     vec3 n = interpolate(s.mesh->normals, s.triangle, barycentric);
-    if (moved) {
-      const mat3& m = toWorld.linear;  // normals turn by the matrix of cofactors
+    if (instance.toWorld) {
+      const mat3& m = instance.toWorld->linear;  // normals turn by the matrix of cofactors
       n = handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
                         n.z * glm::cross(m[0], m[1]));
     }
@@ -96,7 +95,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     if (length2 > 0) {
       n *= 1 / std::sqrt(length2);
       if (s.material->normalTexture && !s.mesh->tangents.empty())
-        n = mappedNormal(scene, s, toWorld, handedness, n);
+        n = mappedNormal(scene, s, instance, handedness, n);
       if (!s.frontFace) n = -n;
       if (glm::dot(n, s.geometricNormal) > 0) s.normal = n;
     }

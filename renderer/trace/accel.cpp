@@ -140,12 +140,12 @@ void Accel::build(const Scene& scene) {
   // Geometry i of the top scene is instance i of ours.
   for (const Instance& instance : scene.instances) {
     RTCGeometry geometry;
-    if (uses[instance.mesh] == 1 && instance.toWorld.isIdentity()) {
+    if (uses[instance.mesh] == 1 && !instance.toWorld) {
       geometry = meshGeometry(scene, instance.mesh);
     } else {
       geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
       rtcSetGeometryInstancedScene(geometry, meshScene(scene, instance.mesh));
-      const Transform& t = instance.toWorld;
+      const Transform t = instance.toWorld.value_or(Transform{});
       float columns[12];
       std::memcpy(columns, &t.linear, sizeof t.linear);
       std::memcpy(columns + 9, &t.translation, sizeof t.translation);
