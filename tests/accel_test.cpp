@@ -162,7 +162,7 @@ TEST(Accel, InstancesAreAsGoodAsBakedMeshes) {
   shared.nodeNames = {"node"};
   shared.meshes.push_back(tangentSphere());
   for (const glm::dmat4& t : transforms) {
-    shared.instances.push_back({0, material, 0, {glm::mat3(glm::dmat3(t)), vec3(t[3])}});
+    shared.instances.push_back({0, material, 0, Transform{glm::mat3(glm::dmat3(t)), vec3(t[3])}});
     Mesh mesh = tangentSphere();
     transformMesh(mesh, t);
     addMesh(baked, material, std::move(mesh));

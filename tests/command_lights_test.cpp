@@ -5,6 +5,7 @@
 
 #include "image/read.h"
 #include "image/write.h"
+#include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -58,6 +59,23 @@ TEST(CommandLights, EveryFormatAndThePreview) {
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.csv"});
   const std::string csv = fileContents(folder / "a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 9);
+}
+
+TEST(CommandLights, SunsHaveTheirAngle) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "two.exr", out = folder / "a.json";
+  Image map = constantProbe({256, 128}, Rgb(0.1f));
+  addSunDisc(map, {0, 0, -1}, 3, dvec3(5));
+  addSunDisc(map, {1, 0, 0}, 4, dvec3(9));
+  writeImage(probe, map);
+  run({"lights", probe, "--method", "suns", "-o", out});
+  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 2u);
+  run({"lights", probe, "--method", "suns", "--count", "1", "-o", out});
+  const json lights = json::parse(fileContents(out))["lights"];
+  ASSERT_EQ(lights.size(), 1u);
+  EXPECT_NEAR(lights[0]["direction"][0], 1, 1e-3);
+  EXPECT_NEAR(lights[0]["irradiance"][1], 9, 0.02);
+  EXPECT_NEAR(lights[0]["angle"], 4, 0.7);  // texels of 1.4 degrees blur it
 }
 
 TEST(SlowCommandLights, FitFindsItsNumberOfLights) {

@@ -47,6 +47,17 @@ TEST(Probe, rotationTurnsTheEnvironmentCounterClockwiseFromAbove) {
   }
 }
 
+TEST(Probe, givesBackWhatItWasMadeOf) {
+  const Image image = gradientProbe({16, 8}, Rgb(1, 2, 3), {0.3, 0.5, 0.1});
+  const Probe probe(image, -450, 4);
+  const Image copy = probe.latLong();
+  ASSERT_EQ(copy.width, 16);
+  ASSERT_EQ(copy.height, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x) EXPECT_EQ(copy.rgb(x, y), 4.0f * image.rgb(x, y));
+  EXPECT_EQ(probe.rotationDegrees(), -450);
+}
+
 TEST(Probe, locateInvertsDirectionEverywhere) {
   const Probe probe(constantProbe({512, 256}, Rgb(1)), 77);
   for (int i = 0; i < 200000; ++i) {

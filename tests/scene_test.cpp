@@ -44,7 +44,7 @@ TEST(Scene, BoundsFollowInstances) {
   Scene scene = makeScene("a");
   EXPECT_TRUE(bounds(Scene()).empty());
   EXPECT_EQ(bounds(scene).max, vec3(1, 1, 0));
-  scene.instances.push_back({0, 0, 0, {glm::mat3(-2), {0, 0, 5}}});
+  scene.instances.push_back({0, 0, 0, Transform{glm::mat3(-2), {0, 0, 5}}});
   EXPECT_EQ(bounds(scene).min, vec3(-2, -2, 0));
   EXPECT_EQ(bounds(scene).max, vec3(1, 1, 5));
 }

@@ -94,7 +94,9 @@ TEST(SlowStrategies, allUnbiasedOnesGiveTheSamePicture) {
   // "bsdf" takes no light samples, so MIS cannot change it; it is what all others are held to.
   const Choice choices[] = {{"uniform", Mis::Balance}, {"uniform", Mis::Off},
                             {"importance", Mis::Balance}, {"importance", Mis::Power},
-                            {"importance", Mis::Off}};
+                            {"importance", Mis::Off},
+                            {"kollig-keller-strata:16", Mis::Balance},
+                            {"kollig-keller-strata:16", Mis::Off}};
   const std::vector<Named> scenes = threeScenes();
   const int comparisons = int(scenes.size() * std::size(choices));
   for (const Named& named : scenes) {

@@ -6,16 +6,18 @@
 #include "lighting/irradiance_fit.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 
 namespace {
 
-constexpr std::string_view kFit = "irradiance-fit";
+constexpr std::string_view kFit = "irradiance-fit", kSuns = "suns";
 
 std::vector<std::string_view> methodNames() {
   std::vector<std::string_view> names = constellationNames();
   names.push_back(kFit);
+  names.push_back(kSuns);
   return names;
 }
 
@@ -24,6 +26,16 @@ int fitCount(int count) {
   if (count < 1 || count > kMost)
     throwInput("{}: a count of {} is out of range; give 1 to {}", kFit, count, kMost);
   return count;
+}
+
+Constellation sunLights(const Image& latLong, const std::optional<int>& most) {
+  if (most && *most < 1)
+    throwInput("{}: a count of {} is out of range; give 1 or more", kSuns, *most);
+  Constellation lights;
+  for (const Sun& sun : extractSuns(latLong).suns)
+    if (!most || lights.size() < size_t(*most))
+      lights.push_back({vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)});
+  return lights;
 }
 
 }  // namespace
@@ -42,7 +54,8 @@ void checkLightMethod(const std::string& name, std::string_view place) {
 }
 
 void checkLightOptions(const LightOptions& options) {
-  if (!options.count && !options.maxError) throwInput("--count: should say how many lights");
+  if (!options.count && !options.maxError && options.method != kSuns)
+    throwInput("--count: should say how many lights");
   if (options.method == kFit) return;
   if (options.ambient) throwInput("--ambient: only {} fits an ambient light", kFit);
   if (options.maxError) throwInput("--max-error: only {} finds its number of lights", kFit);
@@ -51,6 +64,10 @@ void checkLightOptions(const LightOptions& options) {
 MadeLights makeLights(const Image& latLong, const LightOptions& options) {
   MadeLights made;
   made.rig.method = options.method;
+  if (options.method == kSuns) {
+    made.rig.lights = sunLights(latLong, options.count);
+    return made;
+  }
   if (options.method != kFit) {
     made.rig.lights = makeConstellation(options.method, latLong, *options.count, options.seed);
     return made;

@@ -13,9 +13,9 @@ namespace chromeball {
 
 struct LightOptions {
   std::string method;
-  std::optional<int> count;
-  uint64_t seed = 0;     // of the methods that throw dice
-  bool ambient = false;  // irradiance-fit: with a constant radiance beside the lights
+  std::optional<int> count;  // suns: the most to keep, or all
+  uint64_t seed = 0;         // of the methods that throw dice
+  bool ambient = false;      // irradiance-fit: with a constant radiance beside the lights
   // irradiance-fit: the fewest lights, at most `count`, whose mean error is not above, percent.
   std::optional<double> maxError = {};
 };

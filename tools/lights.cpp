@@ -59,7 +59,8 @@ void addLightsCommand(CLI::App& app) {
   command->add_option("PROBE", arguments->probe, "the probe's image")->required();
   command->add_option("--method", arguments->options.method, lightMethodList())->required();
   command->add_option("--count", arguments->options.count,
-                      "how many lights; cube-grid: points along a face's edge");
+                      "how many lights; cube-grid: points along a face's edge; suns: the most to "
+                      "keep, else all");
   command
       ->add_option("-o,--output", arguments->output,
                    "the lights to write: .json, .gltf (KHR_lights_punctual) or .csv")

@@ -19,10 +19,10 @@ Json toJson(const Vector& v) {
 
 Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
   Json suns = Json::array(), shares = Json::array();
-  for (const FoundSun& sun : info.suns)
+  for (const Sun& sun : info.suns)
     suns.push_back({{"direction", toJson(sun.direction)},
                     {"irradiance", toJson(sun.irradiance)},
-                    {"angle", sun.angularDiameter}});
+                    {"angle", sun.angle}});
   for (const auto& [texels, share] : info.brightestShares)
     shares.push_back({{"texels", texels}, {"share", share}});
   return {{"file", file},
@@ -72,9 +72,9 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
   for (const auto& [texels, share] : info.brightestShares)
     fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", texels, 100 * share);
   if (info.suns.empty()) fmt::print("suns             none\n");
-  for (const FoundSun& sun : info.suns)
+  for (const Sun& sun : info.suns)
     fmt::print("sun              direction {}, irradiance {}, {:.3g} degrees wide\n",
-               triple(sun.direction), triple(sun.irradiance), sun.angularDiameter);
+               triple(sun.direction), triple(sun.irradiance), sun.angle);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Radiance along one path: path tracing with next-event estimation and multiple importance sampling.
+// Radiance along one path: path tracing with next-event estimation and multiple importance
+// sampling.
 #pragma once
 
 #include <cassert>
@@ -30,8 +31,9 @@ struct PathScene {
   const LightingStrategy& lighting;
   const Emitters* emitters;  // null where nothing emits
   Mis mis;
-  int maxDepth;  // 0: emission seen by the camera; 1: direct light; ...
+  int maxDepth;            // 0: emission seen by the camera; 1: direct light; ...
   bool hideProbe = false;  // from the camera
+  float mirrorAlpha = lighting.mirrorAlpha();
 };
 
 // Weight of a sample found with density `own` (> 0; infinite for a delta light) that the other
@@ -66,8 +68,7 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
     ++counts.shadow;
     const float passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi});
     if (passed == 0) continue;
-    light += bsdf.fCos * s.irradiance *
-             (passed * lightSampleWeight(path.mis, s.density, bsdf.pdf));
+    light += bsdf.fCos * s.irradiance * (passed * lightSampleWeight(path.mis, s.density, bsdf.pdf));
   }
   return light;
 }
@@ -97,8 +98,7 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   ++counts.shadow;
   const float passed = path.rays.transmittance({origin, (target - origin) / length, length});
   const float density = path.emitters->density(instance.material, distance, cosine);
-  return bsdf.fCos * radiance *
-         (passed * lightSampleWeight(path.mis, density, bsdf.pdf) / density);
+  return bsdf.fCos * radiance * (passed * lightSampleWeight(path.mis, density, bsdf.pdf) / density);
 }
 
 // Ends a path at random in proportion to what it can still carry; unbiased, since the survivors are
@@ -127,8 +127,8 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
       if (depth == 0 && path.hideProbe) return radiance;
       if (pdf == 0) return radiance + throughput * path.lighting.background(ray.direction);
       const auto escaped = path.lighting.escaped(from, ray.direction);
-      return radiance + throughput * escaped.radiance *
-                            bsdfSampleWeight(path.mis, pdf, escaped.density);
+      return radiance +
+             throughput * escaped.radiance * bsdfSampleWeight(path.mis, pdf, escaped.density);
     }
 
     const Instance& instance = path.scene.instances[hit.instance];
@@ -137,9 +137,9 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
     if (surface.material->emits()) {
       float density = 0;
       if (path.emitters && !surface.material->unlit)
-        density = path.emitters->density(
-            instance.material, glm::length(surface.position - from.position),
-            std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
+        density =
+            path.emitters->density(instance.material, glm::length(surface.position - from.position),
+                                   std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
       radiance += throughput * emittedRadiance(path.scene, surface) *
                   bsdfSampleWeight(path.mis, pdf, density);
     }
@@ -148,11 +148,15 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
 
     const MaterialPoint material = materialAt(path.scene, surface);
     if (first && depth == 0)
-      *first = {true, glm::length(surface.position - ray.origin), material.baseColor,
-                surface.normal, instance.material, instance.node};
+      *first = {true,
+                glm::length(surface.position - ray.origin),
+                material.baseColor,
+                surface.normal,
+                instance.material,
+                instance.node};
     if (ends) return radiance;
 
-    const Bsdf bsdf(material, surface, wo);
+    const Bsdf bsdf(material, surface, wo, path.mirrorAlpha);
     from = {surface.position, bsdf.normal(), wo, &bsdf, depth};
     if (bsdf.hasContinuousLobe()) {
       radiance += throughput * probeLight(path, from, surface, sampler, samples, counts);

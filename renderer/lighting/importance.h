@@ -2,6 +2,7 @@
 // 9.6.3), exactly as bright as the bilinear radiance function has it.
 #pragma once
 
+#include "lighting/luminance_field.h"
 #include "lighting/strategy.h"
 #include "math/cdf.h"
 
@@ -30,21 +31,13 @@ class Importance : public LightingStrategy {
   float density(const vec3& wi) const;
 
  private:
-  struct Weights {
-    float w00, w10, w01, w11;
-    float at(float s, float t) const {
-      return (1 - t) * ((1 - s) * w00 + s * w10) + t * ((1 - s) * w01 + s * w11);
-    }
-  };
-  Weights weights(const Probe::Corners& corners, int row) const;
   double tabulate();
 
   const Probe& probe_;
-  float offset_ = 0;            // luminance taken off by compensation
-  std::vector<float> rowSine_;  // sin(theta) of the corner rows
+  LuminanceField field_;
   CdfRows rows_, columns_;
   double total_;
-  float scale_;  // 1 / (total x jacobian)
+  float scale_;  // density over solid angle for each unit of the field's weight
 };
 
 }  // namespace chromeball

@@ -53,6 +53,10 @@ class LightingStrategy {
   // What the camera and mirrors see, for which sample() has no competing estimate.
   virtual Rgb background(const vec3& wi) const = 0;
 
+  // Specular lobes narrower than this (GGX's alpha) are not for sample(): they see background(), as
+  // perfect mirrors do.
+  virtual float mirrorAlpha() const { return 0; }
+
   // False for an approximation, whose error does not vanish with the number of samples.
   virtual bool unbiased() const = 0;
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "probe/solid_angle.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {
@@ -16,32 +17,6 @@ dvec3 centreDirection(const Image& image, int x, int y) {
 
 double fluxOf(const Image& image, int x, int y) {
   return luminance(image.rgb(x, y)) * texelSolidAngle(y, image.width, image.height);
-}
-
-struct Texel {
-  int x, y;
-};
-
-// All texels connected to `start`, over eight neighbours and the seam, that are brighter than
-// `threshold` and not yet `visited`.
-std::vector<Texel> gatherRegion(const Image& image, Texel start, float threshold,
-                                std::vector<bool>& visited) {
-  std::vector<Texel> region;
-  const auto visit = [&](int x, int y) {
-    x = (x + image.width) % image.width;
-    if (y < 0 || y >= image.height) return;
-    const size_t index = size_t(y) * image.width + x;
-    if (visited[index] || luminance(image.rgb(x, y)) <= threshold) return;
-    visited[index] = true;
-    region.push_back({x, y});
-  };
-  visit(start.x, start.y);
-  for (size_t i = 0; i < region.size(); ++i) {
-    const Texel t = region[i];
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, t.y + dy);
-  }
-  return region;
 }
 
 std::vector<BrightestShare> brightestShares(const Image& image) {
@@ -75,40 +50,6 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
 
 }  // namespace
 
-std::vector<FoundSun> findSuns(const Image& image) {
-  constexpr double kFarBrighter = 100, kLeastShare = 0.01, kWidest = 6;
-  const double meanLuminance = luminance(Rgb(meanRadiance(image)));
-  const float threshold = float(kFarBrighter * meanLuminance);
-  std::vector<bool> visited(size_t(image.width) * image.height);
-  std::vector<FoundSun> suns;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::vector<Texel> region = gatherRegion(image, {x, y}, threshold, visited);
-      if (region.empty()) continue;
-      double flux = 0, solidAngle = 0;
-      dvec3 centroid(0);
-      for (const Texel& t : region) {
-        flux += fluxOf(image, t.x, t.y);
-        centroid += centreDirection(image, t.x, t.y) * fluxOf(image, t.x, t.y);
-        solidAngle += texelSolidAngle(t.y, image.width, image.height);
-      }
-      FoundSun sun{};
-      sun.direction = glm::normalize(centroid);
-      sun.angularDiameter = 2 * std::acos(std::max(-1.0, 1 - solidAngle / (2 * kPiD))) * 180 / kPiD;
-      const bool small = sun.angularDiameter <= kWidest || region.size() == 1;
-      if (!small || flux < kLeastShare * 4 * kPiD * meanLuminance) continue;
-      for (const Texel& t : region)
-        sun.irradiance += dvec3(image.rgb(t.x, t.y)) *
-                          texelSolidAngle(t.y, image.width, image.height) *
-                          std::max(0.0, glm::dot(sun.direction, centreDirection(image, t.x, t.y)));
-      suns.push_back(sun);
-    }
-  std::sort(suns.begin(), suns.end(), [](const FoundSun& a, const FoundSun& b) {
-    return luminance(Rgb(a.irradiance)) > luminance(Rgb(b.irradiance));
-  });
-  return suns;
-}
-
 ProbeInfo probeInfo(const Image& image) {
   ProbeInfo info;
   info.min = Rgb(std::numeric_limits<float>::max());
@@ -130,7 +71,7 @@ ProbeInfo probeInfo(const Image& image) {
   info.mean /= double(image.width) * image.height;
   info.meanRadiance = meanRadiance(image);
   info.dynamicRange = brightest > 0 ? double(brightest) / darkest : 0;
-  info.suns = findSuns(image);
+  info.suns = extractSuns(image).suns;
   info.brightestShares = brightestShares(image);
   return info;
 }

@@ -5,15 +5,9 @@
 
 #include "image/image.h"
 #include "probe/mapping.h"
+#include "probe/sun.h"
 
 namespace chromeball {
-
-// A small region far brighter than the rest.
-struct FoundSun {
-  dvec3 direction;         // unit, the centroid of its flux
-  double angularDiameter;  // degrees, of the disc with its solid angle
-  dvec3 irradiance;        // on a surface that faces it
-};
 
 struct BrightestShare {
   size_t texels;
@@ -27,15 +21,11 @@ struct ProbeInfo {
   double dynamicRange = 0;  // largest luminance over the smallest positive one; 0 for a black probe
   dvec3 brightestDirection{0};
   Rgb brightest{0};
-  std::vector<FoundSun> suns;                   // by irradiance, the greatest first
+  std::vector<Sun> suns;  // sun_extraction.h: by irradiance, the greatest first
   std::vector<BrightestShare> brightestShares;  // of 1, 10 and 100 texels, and of 1% of all
 };
 
 // `latLong` is finite and not negative; its texels are taken as constant.
 ProbeInfo probeInfo(const Image& latLong);
-
-// Connected regions of texels more than 100 times as luminous as the mean over the sphere, that
-// hold at least 1% of its flux and are no wider than 6 degrees (or are a single texel).
-std::vector<FoundSun> findSuns(const Image& latLong);
 
 }  // namespace chromeball

@@ -7,6 +7,7 @@ namespace chromeball {
 Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
     : width_(latLong.width),
       height_(latLong.height),
+      rotationDegrees_(rotationDegrees),
       uShift_(-rotationDegrees / 360),
       grid_(size_t(width_ + 1) * (height_ + 2)) {
   if (!(scale >= 0) || !std::isfinite(scale))
@@ -38,6 +39,13 @@ Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
     corner(x, height_ + 1) = south;
   }
   for (int y = 0; y < height_ + 2; ++y) corner(width_, y) = corner(0, y);
+}
+
+Image Probe::latLong() const {
+  Image image(width_, height_, 3);
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) image.setRgb(x, y, corners(x, y + 1).c00);
+  return image;
 }
 
 }  // namespace chromeball

@@ -26,6 +26,10 @@ class Probe {
   int height() const { return height_; }
   int cellRows() const { return height_ + 1; }
 
+  // What the probe was made of: its texels times the scale, not rotated, and the rotation.
+  Image latLong() const;
+  float rotationDegrees() const { return rotationDegrees_; }
+
   // A point of the map: the cell, the position inside it in [0, 1], and the sine of the angle to
   // the pole there.
   struct Position {
@@ -58,6 +62,7 @@ class Probe {
 
  private:
   int width_, height_;
+  float rotationDegrees_;
   float uShift_;           // rotation, in turns
   std::vector<Rgb> grid_;  // (H + 2) rows of W + 1 corners; the last column repeats the first
 };

@@ -38,22 +38,23 @@ void prepareBsdfs(const Scene& scene) {
     }
 }
 
-Bsdf::Bsdf(const MaterialPoint& m, const Surface& surface, const vec3& wo)
+Bsdf::Bsdf(const MaterialPoint& m, const Surface& surface, const vec3& wo, float mirrorAlpha)
     : normal_(surface.normal),
       geometricNormal_(surface.geometricNormal),
       diffuse_(m.baseColor * (1 - m.metallic)),
       specular_(m.metallic > 0 || m.dielectricF90 > 0),
       frame_(normal_) {
-  if (specular_) initSpecular(m, wo);
+  if (specular_) initSpecular(m, wo, mirrorAlpha);
 }
 
-void Bsdf::initSpecular(const MaterialPoint& m, const vec3& wo) {
+void Bsdf::initSpecular(const MaterialPoint& m, const vec3& wo, float mirrorAlpha) {
   normal_ = normalThatReflects(normal_, geometricNormal_, wo);
   frame_ = Frame(normal_);
   wo_ = frame_.toLocal(wo);
   wo_.z = std::max(wo_.z, 1e-6f);
   alpha_ = m.roughness * m.roughness;
   smooth_ = alpha_ < kSmoothAlpha;
+  mirror_ = smooth_ || alpha_ < mirrorAlpha;
   f0_ = glm::mix(m.dielectricF0, m.baseColor, m.metallic);
   f90_ = Rgb(glm::mix(m.dielectricF90, 1.0f, m.metallic));
 
@@ -96,13 +97,13 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
   v.fCos = (diffuse_ * (1 - coating_.albedo(toLight)) + again_ * (1 - toLight.a - toLight.b)) *
            (cosine * kInvPi);
   v.pdf = (1 - specularShare_) * cosine * kInvPi;
-  if (smooth_) return v;
+  if (mirror_) return v;
 
   const vec3 h = glm::normalize(wo_ + wi);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   const float lambdaO = ggx::lambda(wo_.z, alpha_);
-  v.fCos += fresnel(std::min(glm::dot(wo_, h), 1.0f)) *
-            (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
+  v.fCos +=
+      fresnel(std::min(glm::dot(wo_, h), 1.0f)) * (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
   v.pdf += specularShare_ * d / (1 + lambdaO);
   return v;
 }
@@ -114,8 +115,14 @@ bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
     if (local.z <= 0) return false;
     out.wi = frame_.toWorld(local);
     if (glm::dot(geometricNormal_, out.wi) <= 0) return false;
-    if (smooth_) {
-      out.weight = fresnel(wo_.z) / specularShare_;
+    if (mirror_) {
+      // The density of h cancels all but Fresnel's term and G2 / G1.
+      float passed = 1;
+      if (!smooth_) {
+        const float lambdaO = ggx::lambda(wo_.z, alpha_);
+        passed = (1 + lambdaO) / (1 + lambdaO + ggx::lambda(local.z, alpha_));
+      }
+      out.weight = fresnel(std::min(glm::dot(wo_, h), 1.0f)) * (passed / specularShare_);
       out.pdf = 0;
       return true;
     }

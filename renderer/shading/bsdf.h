@@ -11,9 +11,9 @@ namespace chromeball {
 void prepareBsdfs(const Scene& scene);
 
 struct BsdfSample {
-  vec3 wi;       // unit, away from the surface
-  Rgb weight;    // f cos / pdf
-  float pdf;     // over solid angle; 0 for a mirror direction, which nothing else can sample
+  vec3 wi;     // unit, away from the surface
+  Rgb weight;  // f cos / pdf
+  float pdf;   // over solid angle; 0 for a mirror's direction, which nothing else is to sample
 };
 
 // glTF metallic-roughness (glTF 2.0, appendix B) at one point, seen from one direction. Reflection
@@ -25,8 +25,11 @@ struct BsdfSample {
 // specular reflection is Lambert's, and pays for nothing else.
 class Bsdf {
  public:
-  // `wo`: unit, towards the viewer; the surface's normals are on its side.
-  Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo);
+  // `wo`: unit, towards the viewer; the surface's normals are on its side. A specular lobe whose
+  // alpha (roughness squared) is less than `mirrorAlpha` counts as a perfect mirror's: sample()
+  // alone finds it, with pdf 0.
+  Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo,
+       float mirrorAlpha = 0);
 
   struct Value {
     Rgb fCos;   // f times |cos| at the shading normal
@@ -37,12 +40,12 @@ class Bsdf {
   // False where the sampled direction is absorbed. `lobe` in [0, 1) chooses the lobe.
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
 
-  // False for a perfect mirror, on which sampling lights is in vain.
-  bool hasContinuousLobe() const { return !(smooth_ && specularShare_ >= 1); }
+  // False for a mirror, on which sampling lights is in vain.
+  bool hasContinuousLobe() const { return !(mirror_ && specularShare_ >= 1); }
   const vec3& normal() const { return normal_; }
 
  private:
-  void initSpecular(const MaterialPoint& material, const vec3& wo);
+  void initSpecular(const MaterialPoint& material, const vec3& wo, float mirrorAlpha);
   Value evaluateLobes(const vec3& wi) const;  // in the frame of the normal
   Rgb fresnel(float cosine) const;
 
@@ -55,15 +58,16 @@ class Bsdf {
   };
 
   vec3 normal_, geometricNormal_;
-  Rgb diffuse_;                // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
-  bool specular_;              // the members below hold only where this is set
-  bool smooth_ = false;        // a mirror: the specular lobe is a delta
-  float specularShare_ = 0;    // probability of sampling the specular lobe
-  vec3 wo_;                    // in the frame of the normal
+  Rgb diffuse_;              // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
+  bool specular_;            // the members below hold only where this is set
+  bool smooth_ = false;      // the specular lobe is a delta
+  bool mirror_ = false;      // it is one, or counts as one
+  float specularShare_ = 0;  // probability of sampling the specular lobe
+  vec3 wo_;                  // in the frame of the normal
   Frame frame_;
   float alpha_;
   Rgb f0_, f90_;
-  Rgb again_;                  // multiple scattering, times (1 - E(wo)) / (1 - E_mean)
+  Rgb again_;  // multiple scattering, times (1 - E(wo)) / (1 - E_mean)
   Coating coating_;
   EnergyTable::Row energy_;
 };

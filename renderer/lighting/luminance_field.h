@@ -1,0 +1,84 @@
+// The probe's luminance as a density over its map, continuous as the radiance is.
+#pragma once
+
+#include <limits>
+
+#include "probe/probe.h"
+
+namespace chromeball {
+
+// w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, and its bilinear
+// interpolant between them: with offset 0 positive wherever the radiance is. Over solid angle the
+// density that goes with w is w / (integral of w x jacobian x sin(theta)).
+class LuminanceField {
+ public:
+  explicit LuminanceField(const Probe& probe, float offset = 0)
+      : probe_(&probe), offset_(offset), rowSine_(probe.height() + 2) {
+    for (int row = 1; row <= probe.height(); ++row)
+      rowSine_[row] = float(std::sin(kPiD * (row - 0.5) / probe.height()));
+    // The pole itself has no area, but must not have density 0 where it is lit.
+    rowSine_.front() = rowSine_[1] / 8;
+    rowSine_.back() = rowSine_[probe.height()] / 8;
+  }
+
+  // The integral of w over a cell, in cells; those next to a pole are half as high.
+  double integral(int column, int row) const {
+    const Weights w = weights(probe_->corners(column, row), row);
+    const bool cap = row == 0 || row == probe_->height();
+    return (double(w.w00) + w.w10 + w.w01 + w.w11) * (cap ? 0.125 : 0.25);
+  }
+
+  // What is in one direction: density over solid angle = weight / (sum of integrals x jacobian).
+  struct Point {
+    vec3 direction;
+    Rgb radiance;
+    float weight;  // w / sin(theta)
+  };
+  Point at(const vec3& direction, const Probe::Position& p) const {
+    const Probe::Corners corners = probe_->corners(p.column, p.row);
+    return {direction, Probe::interpolate(corners, p.s, p.t),
+            weights(corners, p.row).at(p.s, p.t) / std::max(p.sinTheta, 1e-9f)};
+  }
+
+  // A point of a cell with integral > 0, in proportion to w, from two numbers in [0, 1).
+  Point sample(int column, int row, float u, float v) const {
+    const Weights w = weights(probe_->corners(column, row), row);
+    Probe::Position p{column, row};
+    p.t = sampleLinear(v, w.w00 + w.w10, w.w01 + w.w11);
+    p.s = sampleLinear(u, (1 - p.t) * w.w00 + p.t * w.w01, (1 - p.t) * w.w10 + p.t * w.w11);
+    const vec3 direction = probe_->direction(p);
+    return at(direction, p);
+  }
+
+  // Solid angle = jacobian x sin(theta) x area in cells.
+  double jacobian() const { return 2 * kPiD * kPiD / (double(probe_->width()) * probe_->height()); }
+
+ private:
+  struct Weights {
+    float w00, w10, w01, w11;
+    float at(float s, float t) const {
+      return (1 - t) * ((1 - s) * w00 + s * w10) + t * ((1 - s) * w01 + s * w11);
+    }
+  };
+  Weights weights(const Probe::Corners& c, int row) const {
+    const float top = rowSine_[row], bottom = rowSine_[row + 1];
+    const auto weight = [&](const Rgb& radiance) {
+      return std::max(luminance(radiance) - offset_, 0.0f);
+    };
+    return {weight(c.c00) * top, weight(c.c10) * top, weight(c.c01) * bottom,
+            weight(c.c11) * bottom};
+  }
+
+  // A number in [0, 1) with density proportional to a (1 - x) + b x.
+  static float sampleLinear(float u, float a, float b) {
+    const float root = std::sqrt(std::max(a * a + u * (b * b - a * a), 0.0f));
+    return std::min(u * (a + b) / std::max(a + root, std::numeric_limits<float>::min()),
+                    0x1.fffffep-1f);
+  }
+
+  const Probe* probe_;
+  float offset_;
+  std::vector<float> rowSine_;  // sin(theta) of the corner rows
+};
+
+}  // namespace chromeball

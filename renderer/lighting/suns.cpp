@@ -1,0 +1,90 @@
+#include "lighting/suns.h"
+
+#include "math/trig.h"
+
+namespace chromeball {
+namespace {
+
+constexpr size_t kMostSampledEach = 2;
+
+// About +Y, as Probe does.
+vec3 rotated(const dvec3& d, double degrees) {
+  const double angle = degrees * kPiD / 180, sine = std::sin(angle), cosine = std::cos(angle);
+  return vec3(dvec3(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine));
+}
+
+}  // namespace
+
+Suns::Suns(const Probe& probe, bool compensated, std::optional<double> angle)
+    : Suns(extractSuns(probe.latLong()), probe.rotationDegrees(), compensated, angle) {}
+
+Suns::Suns(const SunExtraction& extraction, float rotationDegrees, bool compensated,
+           std::optional<double> angle)
+    : remainder_(extraction.remainder, rotationDegrees), importance_(remainder_, compensated) {
+  std::vector<double> powers;
+  double power = 0;
+  for (const Sun& sun : extraction.suns) {
+    powers.push_back(luminance(Rgb(sun.irradiance)));
+    power += powers.back();
+  }
+  const bool chooses = powers.size() > kMostSampledEach;
+  if (chooses) choice_.emplace(1, int(powers.size())).setRow(0, powers);
+  for (size_t i = 0; i < powers.size(); ++i) {
+    Sun sun = extraction.suns[i];
+    if (angle) sun.angle = *angle;
+    const double chord = 2 * std::sin(sun.angle * kPiD / 720);
+    const double chance = chooses ? powers[i] / power : 1;
+    discs_.push_back({Frame(rotated(sun.direction, rotationDegrees)), float(chord * chord),
+                      Rgb(sun.radiance()), float(chance / (kPiD * chord * chord))});
+  }
+}
+
+vec3 Suns::Disc::direction(float u, float v) const {
+  const float squared = u * squaredChord;
+  float sine, cosine;
+  sinCosTurns(v, sine, cosine);
+  const float r = std::sqrt(squared * (1 - squared / 4));
+  return frame.toWorld({r * cosine, r * sine, 1 - squared / 2});
+}
+
+void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
+                  std::vector<DirectionSample>& out) const {
+  const uint32_t u = sampler.bits(dimension::kLight), v = sampler.bits(dimension::kLight + 1);
+  const auto add = [&](const vec3& wi) {
+    const Escaped light = escaped(point, wi);
+    if (light.density > 0) out.push_back({wi, light.radiance / light.density, light.density});
+  };
+  const DirectionSample rest = importance_.sampleDirection(u * 0x1p-32, v * 0x1p-32);
+  if (rest.density > 0) add(rest.wi);
+
+  // The same point for each disc, moved by a digital shift of its own, which keeps its strata.
+  if (choice_) {
+    double position = (u ^ uint32_t(hash(0))) * 0x1p-32;
+    const int chosen = choice_->sample(0, position);
+    add(discs_[chosen].direction(float(position), toUnit(v ^ uint32_t(hash(1)))));
+    return;
+  }
+  for (size_t i = 0; i < discs_.size(); ++i) {
+    const uint64_t shift = hash(i);
+    add(discs_[i].direction(toUnit(u ^ uint32_t(shift)), toUnit(v ^ uint32_t(shift >> 32))));
+  }
+}
+
+LightingStrategy::Escaped Suns::escaped(const LightPoint& point, const vec3& wi) const {
+  Escaped light = importance_.escaped(point, wi);
+  for (const Disc& disc : discs_)
+    if (disc.contains(wi)) {
+      light.radiance += disc.radiance;
+      light.density += disc.density;
+    }
+  return light;
+}
+
+Rgb Suns::background(const vec3& wi) const {
+  Rgb radiance = remainder_.radiance(wi);
+  for (const Disc& disc : discs_)
+    if (disc.contains(wi)) radiance += disc.radiance;
+  return radiance;
+}
+
+}  // namespace chromeball

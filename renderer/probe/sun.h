@@ -1,0 +1,19 @@
+// A sun: a distant disc of even radiance.
+#pragma once
+
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+struct Sun {
+  dvec3 direction;   // unit, towards its centre
+  dvec3 irradiance;  // on a surface that faces it
+  double angle;      // angular diameter, degrees; above 0
+
+  dvec3 radiance() const;  // irradiance / (pi sin^2(angle / 2))
+
+  // On a surface with this unit normal, whose horizon may cut the disc.
+  dvec3 irradianceOn(const dvec3& normal) const;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,244 @@
+#include "probe/sun_extraction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "probe/sky.h"
+#include "probe/solid_angle.h"
+
+namespace chromeball {
+namespace {
+
+constexpr double kContrast = 2000, kLeastContrast = 10;  // times the mean luminance
+constexpr double kLeastShare = 0.01;                     // of the flux
+constexpr double kGlowContrast = 20;
+constexpr double kDegree = kPiD / 180;
+constexpr double kWidestCore = 3 * kDegree, kWidestGlow = 6 * kDegree;  // radii
+
+struct Texel {
+  int x, y;
+};
+
+dvec3 centreDirection(const Image& image, Texel t) {
+  return *uvToDirection(Mapping::LatLong, {(t.x + 0.5) / image.width, (t.y + 0.5) / image.height});
+}
+
+// Of two unit vectors; exact for small angles.
+double angleBetween(const dvec3& a, const dvec3& b) {
+  return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
+}
+
+double largestTexelSide(const Image& image) {
+  return std::max(2 * kPiD / image.width, kPiD / image.height);
+}
+
+// All texels connected to `start`, over eight neighbours and the seam, that are brighter than
+// `threshold` and not yet `visited`. A source that covers a pole fills the row there, which
+// connects it.
+std::vector<Texel> gatherRegion(const Image& image, Texel start, double threshold,
+                                std::vector<bool>& visited) {
+  std::vector<Texel> region;
+  const auto visit = [&](int x, int y) {
+    x = (x + image.width) % image.width;
+    const size_t index = size_t(y) * image.width + x;
+    if (visited[index] || luminance(image.rgb(x, y)) <= threshold) return;
+    visited[index] = true;
+    region.push_back({x, y});
+  };
+  visit(start.x, start.y);
+  for (size_t i = 0; i < region.size(); ++i) {
+    const Texel t = region[i];
+    for (int y = t.y - 1; y <= t.y + 1; ++y)
+      if (y >= 0 && y < image.height)
+        for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
+  }
+  return region;
+}
+
+// Where a sun may be.
+struct Core {
+  dvec3 centre;
+  double radius;  // to the centre of its furthest texel
+  double flux;
+  Texel brightest;
+};
+
+Core coreOf(const Image& image, const std::vector<Texel>& region) {
+  Core core{dvec3(0), 0, 0, region.front()};
+  const auto brightness = [&](Texel t) { return luminance(image.rgb(t.x, t.y)); };
+  for (const Texel t : region) {
+    const double flux = brightness(t) * texelSolidAngle(t.y, image.width, image.height);
+    core.flux += flux;
+    core.centre += centreDirection(image, t) * flux;
+    if (brightness(t) > brightness(core.brightest)) core.brightest = t;
+  }
+  core.centre = glm::normalize(core.centre);
+  for (const Texel t : region)
+    core.radius = std::max(core.radius, angleBetween(core.centre, centreDirection(image, t)));
+  return core;
+}
+
+// The greatest flux first, without those too wide for a sun.
+std::vector<Core> findCores(const Image& image, double threshold) {
+  const double widest = std::max(kWidestCore, largestTexelSide(image));
+  std::vector<bool> visited(size_t(image.width) * image.height);
+  std::vector<Core> cores;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::vector<Texel> region = gatherRegion(image, {x, y}, threshold, visited);
+      if (region.empty()) continue;
+      const Core core = coreOf(image, region);
+      if (core.radius <= widest) cores.push_back(core);
+    }
+  std::sort(cores.begin(), cores.end(),
+            [](const Core& a, const Core& b) { return a.flux > b.flux; });
+  return cores;
+}
+
+// The texels whose centres are more than `inner` and at most `outer` radians away from `centre`.
+std::vector<Texel> texelsAround(const Image& image, const dvec3& centre, double inner,
+                                double outer) {
+  const int w = image.width, h = image.height;
+  const double theta = std::acos(std::clamp(centre.y, -1.0, 1.0));
+  const int top = std::max(0, int((theta - outer) / kPiD * h));
+  const int bottom = std::min(h - 1, int((theta + outer) / kPiD * h));
+  const bool holdsPole = theta <= outer || theta + outer >= kPiD;
+  const double reach =
+      holdsPole ? 0.5 : std::asin(std::min(1.0, std::sin(outer) / std::sin(theta))) / (2 * kPiD);
+  const int first = int(std::floor((directionToUv(Mapping::LatLong, centre).x - reach) * w));
+  const int count = std::min(w, int(std::ceil(2 * reach * w)) + 1);
+  std::vector<Texel> texels;
+  for (int y = top; y <= bottom; ++y)
+    for (int i = 0; i < count; ++i) {
+      const Texel t{((first + i) % w + w) % w, y};
+      const double angle = angleBetween(centre, centreDirection(image, t));
+      if (angle > inner && angle <= outer) texels.push_back(t);
+    }
+  return texels;
+}
+
+double medianLuminance(const Image& image, const std::vector<Texel>& texels) {
+  std::vector<float> values;
+  for (const Texel t : texels) values.push_back(luminance(image.rgb(t.x, t.y)));
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+struct Glow {
+  std::vector<Texel> inside, ring;
+};
+
+Glow glowAround(const Image& image, const Core& core, double meanLuminance) {
+  const double texel = largestTexelSide(image);
+  for (double radius = core.radius + 2 * texel;; radius *= 1.2) {
+    std::vector<Texel> ring = texelsAround(image, core.centre, radius, radius + 1.5 * texel);
+    const double median = medianLuminance(image, ring);
+    if (radius * 1.2 <= kWidestGlow && median > kGlowContrast * meanLuminance) continue;
+    // What else shines on the ring, another sun say, is not to fill the inside.
+    std::erase_if(ring, [&](Texel t) { return luminance(image.rgb(t.x, t.y)) > 4 * median; });
+    return {texelsAround(image, core.centre, -1, radius), std::move(ring)};
+  }
+}
+
+// What the ring says of its inside: the mean weighted by the inverse square of the distance.
+struct RingTexel {
+  dvec3 direction, radiance;
+};
+dvec3 interpolate(const std::vector<RingTexel>& ring, const dvec3& direction) {
+  dvec3 sum(0);
+  double weights = 0;
+  for (const RingTexel& t : ring) {
+    const dvec3 to = t.direction - direction;
+    const double weight = 1 / glm::dot(to, to);
+    sum += t.radiance * weight;
+    weights += weight;
+  }
+  return weights > 0 ? sum / weights : sum;
+}
+
+// What a texel loses, spread evenly over it, and what it keeps.
+struct Removed {
+  Texel texel;
+  dvec3 radiance;
+  Rgb kept;
+};
+
+std::vector<Removed> lightInside(const Glow& glow, const Image& image) {
+  std::vector<RingTexel> ring;
+  for (const Texel t : glow.ring)
+    ring.push_back({centreDirection(image, t), dvec3(image.rgb(t.x, t.y))});
+  std::vector<Removed> removed;
+  for (const Texel t : glow.inside) {
+    const Rgb radiance = image.rgb(t.x, t.y);
+    const Rgb kept = glm::min(radiance, Rgb(interpolate(ring, centreDirection(image, t))));
+    removed.push_back({t, dvec3(radiance) - dvec3(kept), kept});
+  }
+  return removed;
+}
+
+// Calls f(direction, radiance, solid angle) for parts of the texels, of a w x h map, so small that
+// their centres may stand for them.
+template <class F>
+void forEachPart(const std::vector<Removed>& removed, int w, int h, F f) {
+  constexpr int kParts = 4;
+  for (const Removed& r : removed)
+    for (int j = 0; j < kParts; ++j)
+      for (int i = 0; i < kParts; ++i) {
+        const int x = r.texel.x * kParts + i, y = r.texel.y * kParts + j;
+        const dvec2 uv((x + 0.5) / (w * kParts), (y + 0.5) / (h * kParts));
+        f(*uvToDirection(Mapping::LatLong, uv), r.radiance,
+          texelSolidAngle(y, w * kParts, h * kParts));
+      }
+}
+
+Sun discOf(const std::vector<Removed>& removed, int w, int h) {
+  dvec3 moment[3] = {dvec3(0), dvec3(0), dvec3(0)};
+  forEachPart(removed, w, h, [&](const dvec3& d, const dvec3& radiance, double solidAngle) {
+    for (int c = 0; c < 3; ++c) moment[c] += d * (radiance[c] * solidAngle);
+  });
+  Sun sun{};
+  sun.direction = glm::normalize(0.2126 * moment[0] + 0.7152 * moment[1] + 0.0722 * moment[2]);
+  for (int c = 0; c < 3; ++c) sun.irradiance[c] = std::max(0.0, glm::dot(moment[c], sun.direction));
+
+  double flux = 0, distance = 0;
+  forEachPart(removed, w, h, [&](const dvec3& d, const dvec3& radiance, double solidAngle) {
+    const double part = luminance(Rgb(radiance)) * solidAngle;
+    flux += part;
+    distance += part * angleBetween(sun.direction, d);
+  });
+  sun.angle = 2 * 1.5 * distance / flux / kDegree;  // the mean over a disc is 2/3 of its radius
+  return sun;
+}
+
+}  // namespace
+
+SunExtraction extractSuns(const Image& latLong) {
+  const int w = latLong.width, h = latLong.height;
+  SunExtraction result;
+  Image& remainder = result.remainder = Image(w, h, 3);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) remainder.setRgb(x, y, latLong.rgb(x, y));
+
+  const double mean = luminance(Rgb(meanRadiance(latLong)));
+  const double sunRadius = 0.5 * kSunDiameter * kDegree;
+  const double diluted = kPiD * sunRadius * sunRadius / (2 * kPiD / w * kPiD / h);
+  const double threshold = mean * std::clamp(kContrast * diluted, kLeastContrast, kContrast);
+  for (const Core& core : findCores(remainder, threshold)) {
+    // A part of a sun that was removed with another part of it is dark by now.
+    if (luminance(remainder.rgb(core.brightest.x, core.brightest.y)) <= threshold) continue;
+    const std::vector<Removed> removed = lightInside(glowAround(remainder, core, mean), remainder);
+    double flux = 0;
+    for (const Removed& r : removed)
+      flux += luminance(Rgb(r.radiance)) * texelSolidAngle(r.texel.y, w, h);
+    if (flux < kLeastShare * 4 * kPiD * mean) continue;
+    result.suns.push_back(discOf(removed, w, h));
+    for (const Removed& r : removed) remainder.setRgb(r.texel.x, r.texel.y, r.kept);
+  }
+  std::sort(result.suns.begin(), result.suns.end(), [](const Sun& a, const Sun& b) {
+    return luminance(Rgb(a.irradiance)) > luminance(Rgb(b.irradiance));
+  });
+  return result;
+}
+
+}  // namespace chromeball

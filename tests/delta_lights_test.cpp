@@ -1,0 +1,244 @@
+// Rendering with directional lights in the probe's place: all of the light, and each of it once.
+#include "lighting/delta_lights.h"
+
+#include <gtest/gtest.h>
+
+#include "lighting/constellations.h"
+#include "lighting/irradiance_fit.h"
+#include "math/error.h"
+#include "measure/statistics.h"
+#include "probe/irradiance.h"
+#include "probe/solid_angle.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+Scene mattePlane(const Rgb& albedo) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(albedo)), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
+  return scene;
+}
+
+void expectNear(const Rgb& a, const dvec3& b, double relative) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], relative * b[c]);
+}
+
+// Sum over the samples at `point` of f(wi) x irradiance, averaged over many random numbers.
+template <class F>
+dvec3 meanEstimate(const LightingStrategy& lighting, const LightPoint& point, uint64_t seed, F f) {
+  constexpr uint32_t kSamples = 1024;
+  const SobolTable table(kSamples, dimension::kVertex + 2 * dimension::kPerVertex, seed);
+  PixelSampler sampler(table, seed);
+  sampler.startPixel(3, 5, 0);
+  dvec3 sum(0);
+  for (uint32_t i = 0; i < kSamples; ++i) {
+    sampler.startSample(i);
+    sampler.startVertex(point.depth);
+    std::vector<DirectionSample> samples;
+    lighting.sample(point, sampler, samples);
+    for (const DirectionSample& s : samples) sum += dvec3(s.irradiance) * double(f(s.wi));
+  }
+  return sum / double(kSamples);
+}
+
+TEST(DeltaLights, aMattePlaneHasTheIrradianceOfTheLights) {
+  const Image map = studioProbe({64, 32});
+  const Rgb albedo(0.8f, 0.5f, 0.2f);
+  dvec3 irradiance(0);
+  for (const DirectionalLight& light : makeConstellation("median-cut", map, 16, 0))
+    irradiance += dvec3(light.irradiance) * double(std::max(light.direction.y, 0.0f));
+  const RenderResult r = renderScene(mattePlane(albedo), topCamera(3, 40), Probe(map),
+                                     "median-cut:16", smallRender(4, 4, 4, 1));
+  expectNear(meanColor(r.film.mean()), irradiance * dvec3(albedo) / kPiD, 1e-5);
+}
+
+TEST(DeltaLights, fittedLightsGiveTheExactIrradianceWithinTheErrorOfTheFit) {
+  const Image map = studioProbe({64, 32});
+  const vec3 up[] = {{0, 1, 0}};
+  const dvec3 exact = exactIrradiance(map, up).front();
+  const dvec3 mean = kPiD * meanRadiance(map);  // irradiance, over all orientations
+  for (const bool ambient : {false, true}) {
+    const IrradianceFit fit = fitIrradiance(map, {.count = 16, .ambient = ambient});
+    ASSERT_LT(fit.maxError, 20);
+    const RenderResult r = renderScene(mattePlane(Rgb(1)), topCamera(3, 40), Probe(map),
+                                       ambient ? "irradiance-fit-ambient:16" : "irradiance-fit:16",
+                                       smallRender(4, 4, 64, 1));
+    const dvec3 error = kPiD * dvec3(meanColor(r.film.mean())) - exact;
+    EXPECT_LT(std::fabs(error.x) + std::fabs(error.y) + std::fabs(error.z),
+              (mean.x + mean.y + mean.z) * (fit.maxError / 100 + 1e-3));
+  }
+}
+
+TEST(DeltaLights, ambientLightIsSeenFromEveryPointOfAPlane) {
+  const Probe probe(constantProbe({8, 4}, Rgb(100)));
+  const DeltaLights lighting(probe, {{glm::normalize(vec3(1, 1, 0)), Rgb(2, 0, 1)}},
+                             Rgb(0.5f, 0.25f, 0));
+  const Scene scene = mattePlane(Rgb(1));
+  const Accel accel(scene);
+  const std::atomic<bool> stop = false;
+  for (Mis mis : {Mis::Off, Mis::Balance, Mis::Power}) {
+    RenderSettings settings = smallRender(4, 4, 16, 1);
+    settings.mis = mis;
+    const RenderResult r = render(
+        scene, accel, topCamera(3, 40), lighting, settings, [](double) {}, stop);
+    const double cosine = std::sqrt(0.5);
+    expectNear(meanColor(r.film.mean()), dvec3(0.5 + 2 * cosine / kPiD, 0.25, cosine / kPiD), 1e-5);
+  }
+}
+
+TEST(DeltaLights, perfectMirrorsSeeTheProbeAndNoLights) {
+  Scene scene;
+  Material mirror;
+  mirror.roughness = 0;
+  addSphere(scene, addMaterial(scene, mirror), vec3(0), 1);
+  const Camera camera = Camera::lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.7f);
+  const Probe probe(studioProbe({64, 32}), 40);
+  const RenderSettings settings = smallRender(16, 16, 4, 3);
+  const Image expected = renderScene(scene, camera, probe, "bsdf", settings).film.mean();
+  for (const char* strategy : {"median-cut:16", "irradiance-fit-ambient:2"})
+    EXPECT_EQ(renderScene(scene, camera, probe, strategy, settings).film.mean().texels,
+              expected.texels);
+}
+
+// A nearly perfect mirror, which the lights would leave black but for points: within the noise the
+// picture is the one of the unbiased strategy, and a white one keeps its energy.
+TEST(DeltaLights, nearMirrorsSeeTheProbe) {
+  const Camera camera = Camera::lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.7f);
+  const RenderSettings settings = smallRender(16, 16, 64, 3);
+  for (const float roughness : {0.03f, 0.15f}) {
+    Scene scene;
+    Material metal;
+    metal.roughness = roughness;
+    addSphere(scene, addMaterial(scene, metal), vec3(0), 1);
+    const Probe studio(studioProbe({64, 32}), 40);
+    const Image seen = renderScene(scene, camera, studio, "median-cut:16", settings).film.mean();
+    const Image expected = renderScene(scene, camera, studio, "importance", settings).film.mean();
+    double difference = 0, sum = 0;
+    for (size_t i = 0; i < expected.texels.size(); ++i) {
+      difference += std::fabs(seen.texels[i] - expected.texels[i]);
+      sum += expected.texels[i];
+    }
+    EXPECT_LT(difference, 0.1 * sum) << roughness;
+    const Probe white(constantProbe({8, 4}, Rgb(1)));
+    const Image furnace = renderScene(scene, camera, white, "median-cut:16", settings).film.mean();
+    EXPECT_NEAR(meanColor(furnace).y, 1, 0.005) << roughness;
+  }
+}
+
+// In a constant probe everything white is as bright as the probe, whatever bounces there are. Light
+// that counted twice, or never, would show by a multiple of what the lights are off by.
+TEST(DeltaLights, aWhiteFurnaceKeepsItsEnergy) {
+  Scene scene;
+  const int white = addMaterial(scene, lambert(Rgb(1)));
+  addQuad(scene, white, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+  addQuad(scene, white, {-1, 0, -1}, {2, 0, 0}, {0, 1.5f, 0});
+  addQuad(scene, white, {-1, 0, 1}, {0, 0, -2}, {0, 1.5f, 0});
+  Material metal;
+  metal.roughness = 0.7f;
+  addSphere(scene, addMaterial(scene, metal), {0.3f, 0.5f, 0}, 0.4f);
+  const Camera camera = Camera::lookAt({1, 2, 4}, {0, 0.6f, 0}, {0, 1, 0}, 0.6f);
+  const Probe probe(constantProbe({32, 16}, Rgb(1)));
+  for (const char* strategy : {"kollig-keller:512", "cube-grid:10", "irradiance-fit-ambient:1"}) {
+    const RenderResult r = renderScene(scene, camera, probe, strategy, smallRender(24, 24, 64, 64));
+    EXPECT_NEAR(meanColor(r.film.mean()).y, 1, 0.015) << strategy;
+  }
+}
+
+// Chosen in proportion to irradiance x cosine and raised by as much: the same light on average.
+TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
+  const Probe probe(studioProbe({64, 32}), 70);
+  const Constellation lights = makeConstellation("lightgen", probe.latLong(), 40, 1);
+  const DeltaLights lighting(probe, lights);
+  LightPoint point{};
+  point.normal = glm::normalize(vec3(0.5f, 0.3f, -0.4f));
+  const auto cosine = [&](const vec3& wi) { return std::max(glm::dot(wi, point.normal), 0.0f); };
+  // Half of the lights in shadow, and a lobe around a direction.
+  const auto other = [&](const vec3& wi) {
+    return wi.x > 0.2f ? cosine(wi) * std::pow(std::max(wi.y, 0.0f), 5.0f) : 0;
+  };
+  const dvec3 allCosine = meanEstimate(lighting, point, 1, cosine);
+  const dvec3 allOther = meanEstimate(lighting, point, 1, other);
+  std::vector<double> cosines[3], others[3];
+  point.depth = 1;
+  for (uint64_t seed = 10; seed < 26; ++seed)
+    for (int c = 0; c < 3; ++c) {
+      cosines[c].push_back(meanEstimate(lighting, point, seed, cosine)[c]);
+      others[c].push_back(meanEstimate(lighting, point, seed, other)[c]);
+    }
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GT(tTest(Moments::of(cosines[c]), allCosine[c]), sidak(1e-3, 6));
+    EXPECT_GT(tTest(Moments::of(others[c]), allOther[c]), sidak(1e-3, 6));
+    EXPECT_NEAR(Moments::of(cosines[c]).mean / allCosine[c], 1, 1e-2);
+  }
+}
+
+TEST(DeltaLights, turnWithTheProbe) {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, lambert(Rgb(0.8f))), vec3(0), 1, 32);
+  const Image map = studioProbe({64, 32});
+  const auto picture = [&](const vec3& eye, float rotation, const char* strategy) {
+    const Camera camera = Camera::lookAt(eye, vec3(0), {0, 1, 0}, 0.6f);
+    return meanColor(
+        renderScene(scene, camera, Probe(map, rotation), strategy, smallRender(16, 16, 16, 1))
+            .film.mean());
+  };
+  // Counter-clockwise seen from above, +Z goes to +X.
+  for (const char* strategy : {"median-cut:16", "kollig-keller-strata:16"}) {
+    const Rgb still = picture({0, 1, 4}, 0, strategy);
+    expectNear(picture({4, 1, 0}, 90, strategy), still, 5e-3);
+    EXPECT_GT(std::fabs(picture({4, 1, 0}, -90, strategy).y - still.y), 0.05 * still.y);
+  }
+}
+
+TEST(DeltaLights, blackProbesGiveBlackPictures) {
+  const Probe probe(constantProbe({8, 4}, Rgb(0)));
+  for (const char* strategy :
+       {"median-cut:4", "variance-cut:4", "lightgen:4", "kollig-keller:4", "kollig-keller-strata:4",
+        "cube-grid:2", "penrose:4", "irradiance-fit:2", "irradiance-fit-ambient:2"}) {
+    const RenderResult r =
+        renderScene(mattePlane(Rgb(1)), topCamera(3, 40), probe, strategy, smallRender(4, 4, 4, 2));
+    EXPECT_EQ(r.invalid.count, 0u) << strategy;
+    EXPECT_EQ(meanColor(r.film.mean()), Rgb(0)) << strategy;
+  }
+}
+
+std::string refusal(const std::string& name) {
+  const Probe probe(constantProbe({8, 4}, Rgb(1)));
+  try {
+    makeStrategy(name, probe, Mis::Balance, "scene.toml:7");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(StrategyTable, refusesBadCountsInOneLine) {
+  for (const char* name : {"median-cut:1", "median-cut:4097", "median-cut:", "median-cut:x",
+                           "median-cut:8x", "median-cut:-3", "median-cut:99999999999",
+                           "median-cut:8:8", "cube-grid:27", "irradiance-fit:0"}) {
+    const std::string message = refusal(name);
+    EXPECT_TRUE(message.starts_with("scene.toml:7: ")) << name;
+    EXPECT_NE(message.find("or no count for"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  EXPECT_NE(refusal("bsdf:3").find("takes no count"), std::string::npos);
+  EXPECT_NE(refusal("median-cud:3").find("did you mean `median-cut`"), std::string::npos);
+  EXPECT_NE(refusal("").find("known"), std::string::npos);
+}
+
+TEST(StrategyTable, namesAreSpelledOut) {
+  EXPECT_EQ(resolveStrategy("importance"), "importance");
+  EXPECT_EQ(resolveStrategy("median-cut:7"), "median-cut:7");
+  EXPECT_TRUE(resolveStrategy("median-cut").starts_with("median-cut:"));
+  const Probe probe(gradientProbe({16, 8}, Rgb(1), {0.3, 0.5, 0}));
+  for (const char* name : {"bsdf", "uniform", "importance", "kollig-keller-strata"})
+    EXPECT_TRUE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
+  for (const char* name : {"median-cut", "variance-cut", "lightgen", "kollig-keller", "cube-grid",
+                           "penrose", "irradiance-fit", "irradiance-fit-ambient"})
+    EXPECT_FALSE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,222 @@
+// The strategy `suns`: its densities, its light, and the shadows of its discs.
+#include <gtest/gtest.h>
+
+#include "lighting/suns.h"
+#include "probe/irradiance.h"
+#include "probe/sky.h"
+#include "probe/synth.h"
+#include "sphere_test.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+// A sky that is bright around its suns, so that samples of one technique are often found by others.
+Image sunnySky(int suns) {
+  Image map = gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1});
+  for (int i = 0; i < suns; ++i) {
+    const ClearSky place{.sunElevation = 80.0 - 15 * i, .sunAzimuth = 180.0 + 65 * i};
+    addSunDisc(map, sunDirection(place), 1.5, dvec3(2.0 + i, 2, 1.5));
+  }
+  return map;
+}
+
+// Independent samples at one point.
+class Samples {
+ public:
+  Samples(const LightingStrategy& strategy, const vec3& normal)
+      : strategy_(strategy), point_{{}, normal, normal, nullptr, 0} {}
+
+  const std::vector<DirectionSample>& take(int i) {
+    sampler_.startPixel(uint32_t(i), 0, 0);
+    sampler_.startSample(0);
+    sampler_.startVertex(0);
+    samples_.clear();
+    strategy_.sample(point_, sampler_, samples_);
+    return samples_;
+  }
+  const LightPoint& point() const { return point_; }
+
+ private:
+  const LightingStrategy& strategy_;
+  LightPoint point_;
+  SobolTable table_{1, 16, 5};
+  PixelSampler sampler_{table_, 7};
+  std::vector<DirectionSample> samples_;
+};
+
+TEST(Suns, DensityIsThatOfAllSamplesTogether) {
+  for (const int count : {2, 6}) {  // of six, one is chosen
+    SCOPED_TRACE(count);
+    const Probe probe(sunnySky(count), 40);
+    const Suns suns(probe, false, 25.0);  // wide enough to overlap one another and the bins
+    Samples samples(suns, {0, 1, 0});
+    const int each = count <= 2 ? count + 1 : 2;
+    const auto draw = [&](int i) -> std::optional<vec3> {
+      const auto& taken = samples.take(i / each);
+      EXPECT_EQ(int(taken.size()), each);
+      const DirectionSample& s = taken[size_t(i % each)];
+      const auto escaped = suns.escaped(samples.point(), s.wi);
+      EXPECT_EQ(s.density, escaped.density);
+      EXPECT_NEAR(s.irradiance.x * s.density / escaped.radiance.x, 1, 1e-5);
+      EXPECT_NEAR(escaped.radiance.y / suns.background(s.wi).y, 1, 1e-5);
+      return s.wi;
+    };
+    const SphereTest test = testDirections(
+        draw, [&](const vec3& wi) { return suns.escaped(samples.point(), wi).density / each; },
+        60000);
+    EXPECT_NEAR(test.totalProbability, 1, 2e-3);
+    EXPECT_GT(test.chiSquare.pValue, 1e-3);
+  }
+}
+
+// Irradiance of everything a strategy shows, by a fine grid.
+dvec3 irradianceOf(const LightingStrategy& strategy, const vec3& normal) {
+  constexpr int kWidth = 1600, kHeight = 800;
+  dvec3 sum(0);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double theta = kPiD * (y + 0.5) / kHeight, phi = 2 * kPiD * (x + 0.5) / kWidth;
+      const vec3 d(
+          dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
+      sum += dvec3(strategy.background(d)) * (std::sin(theta) * std::max(0.0f, dot(normal, d)));
+    }
+  return sum * (2 * kPiD * kPiD / (double(kWidth) * kHeight));
+}
+
+TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
+  for (const int count : {0, 1, 2, 6})
+    for (const bool compensated : {false, true}) {
+      SCOPED_TRACE(testing::Message() << count << " suns, compensated: " << compensated);
+      const Probe probe(sunnySky(count), -25);
+      const Suns suns(probe, compensated, 30.0);
+      const vec3 normal = glm::normalize(vec3(0.5f, 0.7f, -0.3f));
+      const Frame frame(normal);
+      Samples samples(suns, normal);
+      std::vector<double> estimates;
+      for (int i = 0; i < 20000; ++i) {
+        double sum = 0;
+        // The light's samples, and those of a white surface; the balance heuristic where a
+        // compensated table leaves it to the surface to find the rest.
+        for (const DirectionSample& s : samples.take(i)) {
+          const float cosine = std::max(0.0f, glm::dot(normal, s.wi));
+          const float weight = compensated ? misWeight(Mis::Balance, s.density, cosine / kPi) : 1;
+          sum += luminance(s.irradiance) * cosine * weight;
+        }
+        if (compensated) {
+          const vec3 wi = frame.toWorld(squareToCosineHemisphere(random2(i, 0)));
+          const float pdf = std::max(1e-6f, glm::dot(normal, wi) / kPi);
+          const auto escaped = suns.escaped(samples.point(), wi);
+          sum += kPi * luminance(escaped.radiance) *
+                 bsdfSampleWeight(Mis::Balance, pdf, escaped.density);
+        }
+        estimates.push_back(sum);
+      }
+      const double truth = luminance(Rgb(irradianceOf(suns, normal)));
+      const Moments moments = Moments::of(estimates);
+      EXPECT_GT(tTest(moments, truth), sidak(1e-3, 8)) << moments.mean << " and " << truth;
+    }
+}
+
+// What it shows is the probe, but for the shape of its suns.
+TEST(Suns, ShowTheProbesLight) {
+  const Probe probe(sunnySky(2), 70);
+  for (const vec3 n : {vec3(0, 1, 0), vec3(1, 3, 1), vec3(0.3f, 1, -0.2f)}) {
+    const vec3 normal = glm::normalize(n);
+    const dvec3 whole = irradianceOf(Importance(probe, false), normal);
+    for (const double angle : {15.0, 40.0}) {  // above the horizon, and wide beside the grid
+      const dvec3 found = irradianceOf(Suns(probe, false, angle), normal);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / whole[c], 1, 0.002);
+    }
+  }
+}
+
+TEST(Suns, WithoutSunsIsImportance) {
+  const Probe probe(overcastProbe({64, 32}, Rgb(1), 0.2), 33);
+  const Suns suns(probe, false);
+  const Importance importance(probe, false);
+  Samples a(suns, {0, 1, 0}), b(importance, {0, 1, 0});
+  for (int i = 0; i < 1000; ++i) {
+    const auto& sample = a.take(i);
+    ASSERT_EQ(sample.size(), 1u);
+    EXPECT_EQ(sample[0].wi, b.take(i)[0].wi);
+    EXPECT_EQ(sample[0].density, importance.density(sample[0].wi));
+    EXPECT_EQ(suns.background(sample[0].wi), probe.radiance(sample[0].wi));
+  }
+  const Probe black(constantProbe({8, 4}, Rgb(0)));
+  EXPECT_TRUE(Samples(Suns(black, false), {0, 1, 0}).take(0).empty());
+}
+
+// A straight edge at height h casts, from a sun overhead, a penumbra 2 h tan(angle / 2) wide; in
+// it the share of the disc that is seen is that of a circle cut by a chord.
+TEST(Suns, PenumbraOfAStraightEdge) {
+  constexpr float kHeight = 2, kView = 1;  // metres; the width of what the picture shows
+  constexpr int kWidth = 100;
+  Image map = constantProbe({256, 128}, Rgb(0));
+  addSunDisc(map, {0, 1, 0}, 3, {3, 2, 1});
+  const Probe probe(map);
+  Scene scene;
+  const int white = addMaterial(scene, lambert(Rgb(1)));
+  addQuad(scene, white, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
+  addQuad(scene, white, {-50, kHeight, 50}, {50, 0, 0}, {0, 0, -100});
+  const Accel accel(scene);
+  const std::atomic<bool> stop = false;
+  const float fov = 2 * std::atan(0.5f * kView) * 180 / kPi;  // seen from 1 m, below the edge
+  const Camera camera = topCamera(1, fov);
+  for (const double angle : {5.0, 20.0}) {
+    const Suns suns(probe, false, angle);
+    const RenderSettings settings = smallRender(kWidth, kWidth, 16, 1);
+    const Image image = render(
+                            scene, accel, camera, suns, settings, [](double) {}, stop)
+                            .film.mean();
+    const double halfWidth = kHeight * std::tan(angle * kPiD / 360);
+    std::vector<double> profile(kWidth);
+    for (int x = 0; x < kWidth; ++x)
+      for (int y = 0; y < kWidth; ++y) profile[size_t(x)] += image.rgb(x, y).y / kWidth;
+    const double lit = 2 / kPiD;  // irradiance / pi
+    for (int x = 0; x < kWidth; ++x) {
+      const double t = std::clamp(-kView * ((x + 0.5) / kWidth - 0.5) / halfWidth, -1.0, 1.0);
+      const double seen = (std::acos(t) - t * std::sqrt(1 - t * t)) / kPiD;
+      EXPECT_NEAR(profile[size_t(x)] / lit, seen, 0.02) << angle << ", column " << x;
+      if (t == 1) {
+        EXPECT_EQ(profile[size_t(x)], 0) << angle << ", column " << x;
+      }
+      if (t == -1) {
+        EXPECT_NEAR(profile[size_t(x)] / lit, 1, 0.01) << angle << ", column " << x;
+      }
+    }
+  }
+}
+
+// Full renders: what is sampled separately is the same light as what is sampled together.
+TEST(SlowSuns, PictureIsThatOfImportance) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert({0.7f, 0.6f, 0.5f})), {-3, 0, 3}, {6, 0, 0},
+          {0, 0, -6});
+  Material plastic = lambert({0.1f, 0.5f, 0.2f});
+  plastic.specular = 1;
+  plastic.roughness = 0.4f;
+  addSphere(scene, addMaterial(scene, plastic), {0, 0.6f, 0}, 0.6f, 24);
+  const Probe probe(sunnySky(2), 25);
+  const Suns suns(probe, true);
+  const Importance importance(probe, true);
+  const Accel accel(scene);
+  const std::atomic<bool> stop = false;
+  const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
+  const auto brightness = [&](const LightingStrategy& strategy, uint64_t seed) {
+    const RenderSettings settings = smallRender(48, 48, 64, 5, seed);
+    return double(
+        luminance(meanColor(render(
+                                scene, accel, camera, strategy, settings, [](double) {}, stop)
+                                .film.mean())));
+  };
+  double separate = 0, together = 0;
+  for (uint64_t seed = 0; seed < 4; ++seed) {
+    separate += brightness(suns, seed);
+    together += brightness(importance, 100 + seed);
+  }
+  EXPECT_NEAR(separate / together, 1, 0.005);
+}
+
+}  // namespace
+}  // namespace chromeball
