@@ -70,7 +70,7 @@ enum class Mis { Off, Balance, Power };
 std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
                                                const std::string& place);
 
-// The name that "auto" stands for.
+// The name in full: what "auto" stands for, and the count where one was left out.
 std::string resolveStrategy(const std::string& name);
 
 }  // namespace chromeball
