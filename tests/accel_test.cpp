@@ -301,5 +301,40 @@ TEST(Accel, NothingAndNonsenseAreMissed) {
   }
 }
 
+TEST(Accel, PacketsFindWhatSingleRaysFind) {
+  const Scene spheres = sphereScene(1, vec3(0));
+  const Scene veils = layerScene(std::vector(3, layer(AlphaMode::Blend, 0.4f)), true);
+  Random random;
+  for (const Scene* scene : {&spheres, &veils}) {
+    const Accel accel(*scene);
+    int found = 0, differing = 0;
+    for (int packet = 0; packet < 2000; ++packet) {
+      std::array<Ray, Accel::kPacket> rays;
+      std::array<uint32_t, Accel::kPacket> keys;
+      const size_t count = 1 + size_t(packet) % Accel::kPacket;
+      for (size_t i = 0; i < count; ++i) {
+        const vec3 aim = 2.0f * vec3(random.next(), random.next(), 0.5f) - 1.0f;
+        rays[i] = {{0, 0, -3}, glm::normalize(aim + vec3(0, 0, 3))};
+        keys[i] = uint32_t(packet * 8 + int(i));
+      }
+      if (packet % 5 == 0) rays[0].origin.x = NAN;
+      const Accel::Packet hits =
+          accel.intersect(std::span(rays).first(count), std::span(keys).first(count));
+      for (size_t i = 0; i < Accel::kPacket; ++i) {
+        Hit hit;
+        const bool meets = i < count && accel.intersect(rays[i], keys[i], hit);
+        found += meets;
+        // On an edge either triangle will do, and on a silhouette either answer.
+        differing +=
+            meets != hits[i].has_value() ||
+            (meets && (hit.instance != hits[i]->instance || hit.triangle != hits[i]->triangle ||
+                       glm::distance(hit.barycentric, hits[i]->barycentric) > 1e-3f));
+      }
+    }
+    EXPECT_GT(found, 3000);
+    EXPECT_LT(differing, 5);
+  }
+}
+
 }  // namespace
 }  // namespace chromeball

@@ -97,7 +97,8 @@ void unusedFeatures(benchmark::State& state) {
   for (auto _ : state) {
     const double start = cpuSeconds();
     fullSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return pathRadiance(full, ray, sampler, scratch, counts, nullptr);
+      return pathRadiance(full, ray, closestHit(s.accel, ray, sampler), sampler, scratch, counts,
+                          nullptr);
     });
     const double middle = cpuSeconds();
     leanSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {

@@ -2,7 +2,7 @@
 // sampling.
 #pragma once
 
-#include <cassert>
+#include <optional>
 #include <vector>
 
 #include "film/aov.h"
@@ -111,10 +111,19 @@ inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sam
   return true;
 }
 
-// Radiance towards the camera along `ray`. `samples` is scratch memory; `first` may be null.
 template <class Rays>
-Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
-                 std::vector<DirectionSample>& samples, RayCounts& counts, FirstHit* first) {
+std::optional<Hit> closestHit(const Rays& rays, const Ray& ray, const PixelSampler& sampler) {
+  Hit hit;
+  if (!rays.intersect(ray, sampler.sampleKey(), hit)) return std::nullopt;
+  return hit;
+}
+
+// Radiance towards the camera along `ray`, which meets `hit` first. `samples` is scratch memory;
+// `first` may be null.
+template <class Rays>
+Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, std::optional<Hit> hit,
+                 PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
+                 FirstHit* first) {
   Rgb radiance(0), throughput(1);
   LightPoint from{};
   float pdf = 0;  // of the ray's direction at `from`; 0 for the camera and mirrors
@@ -122,8 +131,8 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
 
   for (int depth = 0;; ++depth) {
     sampler.startVertex(depth);
-    Hit hit;
-    if (!path.rays.intersect(ray, sampler.sampleKey(), hit)) {
+    if (depth > 0) hit = closestHit(path.rays, ray, sampler);
+    if (!hit) {
       if (depth == 0 && path.hideProbe) return radiance;
       if (pdf == 0) return radiance + throughput * path.lighting.background(ray.direction);
       const auto escaped = path.lighting.escaped(from, ray.direction);
@@ -131,9 +140,9 @@ Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, PixelSampler& sampler,
              throughput * escaped.radiance * bsdfSampleWeight(path.mis, pdf, escaped.density);
     }
 
-    const Instance& instance = path.scene.instances[hit.instance];
+    const Instance& instance = path.scene.instances[hit->instance];
     const vec3 wo = -ray.direction;
-    const Surface surface = surfaceAt(path.scene, instance, hit.triangle, hit.barycentric, wo);
+    const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, wo);
     if (surface.material->emits()) {
       float density = 0;
       if (path.emitters && !surface.material->unlit)

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -90,7 +91,9 @@ class Renderer {
                dimension::kVertex +
                    dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
                settings.seed),
-        workers_([this] { return Worker{PixelSampler(table_, settings_.seed), {}, {}, {}}; }) {}
+        workers_([this] {
+          return Worker{PixelSampler(table_, settings_.seed), {}, {}, {}};
+        }) {}
 
   // Adds one block to every pixel. `progress` is told the share of the pass.
   void pass(uint32_t block, uint32_t samples, const Progress& progress,
@@ -116,8 +119,10 @@ class Renderer {
   void gather() {
     for (const Worker& worker : workers_) {
       result_.rays.add(worker.rays);
-      if (worker.invalid.count && !result_.invalid.count) result_.invalid = worker.invalid;
-      else result_.invalid.count += worker.invalid.count;
+      if (worker.invalid.count && !result_.invalid.count)
+        result_.invalid = worker.invalid;
+      else
+        result_.invalid.count += worker.invalid.count;
     }
   }
 
@@ -128,21 +133,37 @@ class Renderer {
         renderPixel(worker, x, y, block, samples);
   }
 
+  // Makes the camera's rays of the samples from `begin` on, as many as fit, and follows them.
+  Accel::Packet cameraHits(PixelSampler& sampler, int x, int y, uint32_t begin, uint32_t samples,
+                           std::array<Ray, Accel::kPacket>& rays) const {
+    std::array<uint32_t, Accel::kPacket> keys;
+    const uint32_t count = std::min(samples - begin, uint32_t(Accel::kPacket));
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      sampler.startSample(begin + lane);
+      const vec2 offset = sampler.get2(dimension::kPixel);
+      camera_.ray((float(x) + offset.x) / float(settings_.width),
+                  (float(y) + offset.y) / float(settings_.height), rays[lane].origin,
+                  rays[lane].direction);
+      keys[lane] = sampler.sampleKey();
+    }
+    return path_.rays.intersect(std::span(rays).first(count), std::span(keys).first(count));
+  }
+
   void renderPixel(Worker& worker, int x, int y, uint32_t block, uint32_t samples) {
-    const float width = float(settings_.width), height = float(settings_.height);
     FirstHit first;
     FirstHit* wantsFirst = result_.aovs.empty() ? nullptr : &first;
     SampleSums sums;
     worker.sampler.startPixel(uint32_t(x), uint32_t(y), block);
+    std::array<Ray, Accel::kPacket> rays;
+    Accel::Packet hits;
     for (uint32_t i = 0; i < samples; ++i) {
+      const uint32_t lane = i % Accel::kPacket;
+      if (lane == 0) hits = cameraHits(worker.sampler, x, y, i, samples, rays);
       worker.sampler.startSample(i);
-      const vec2 offset = worker.sampler.get2(dimension::kPixel);
-      Ray ray;
-      camera_.ray((float(x) + offset.x) / width, (float(y) + offset.y) / height, ray.origin,
-                  ray.direction);
+      const Ray& ray = rays[lane];
       first = {};
-      const Rgb radiance =
-          pathRadiance(path_, ray, worker.sampler, worker.samples, worker.rays, wantsFirst);
+      const Rgb radiance = pathRadiance(path_, ray, hits[lane], worker.sampler, worker.samples,
+                                        worker.rays, wantsFirst);
       if (isFinite(radiance) && glm::all(glm::greaterThanEqual(radiance, Rgb(0))))
         sums.add(radiance);
       else
@@ -178,11 +199,13 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                     const Progress& progress, const std::atomic<bool>& stop) {
   RenderResult result{Film(settings.width, settings.height),
                       AovFilm(settings.width, settings.height, settings.aovs),
-                      {}, {}, 0, false};
+                      {},
+                      {},
+                      0,
+                      false};
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
-  const PathScene<Accel> path{scene,          accel,        lighting,
-                              emitters.get(), settings.mis, settings.maxDepth,
-                              settings.hideProbe};
+  const PathScene<Accel> path{
+      scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth, settings.hideProbe};
   prepareBsdfs(scene);
   const Schedule schedule(settings);
   Renderer renderer(path, camera, settings, schedule.largest(), result);
@@ -190,8 +213,8 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
   uint32_t done = 0;
   for (uint32_t pass = 0; uint32_t samples = schedule.next(pass, done, result.film); ++pass) {
     renderer.pass(
-        pass, samples,
-        [&](double share) { progress(schedule.progress(done + share * samples)); }, stop);
+        pass, samples, [&](double share) { progress(schedule.progress(done + share * samples)); },
+        stop);
     if (stop) {
       result.interrupted = true;
       break;

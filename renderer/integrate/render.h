@@ -15,13 +15,13 @@ namespace chromeball {
 
 struct RenderSettings {
   int width = 800, height = 600;
-  int samples = 256;                     // per pixel; the most where a limit below is set
-  std::optional<double> timeLimit;       // seconds
-  std::optional<double> noiseLimit;      // fraction (film.h)
+  int samples = 256;                 // per pixel; the most where a limit below is set
+  std::optional<double> timeLimit;   // seconds
+  std::optional<double> noiseLimit;  // fraction (film.h)
   int maxDepth = 8;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
-  bool hideProbe = false;                // from the camera only: for compositing
+  bool hideProbe = false;  // from the camera only: for compositing
   std::vector<Aov> aovs;
 };
 

@@ -1,6 +1,7 @@
 #include "trace/accel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 #include "math/error.h"
@@ -73,8 +74,9 @@ void attach(RTCScene scene, RTCGeometry geometry) {
 
 void throwOnError(RTCDevice device) {
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-    throwRun("Embree cannot build the scene: {}",
-             error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
+    throwRun("Embree cannot build the scene: {}", error == RTC_ERROR_OUT_OF_MEMORY
+                                                      ? "out of memory"
+                                                      : fmt::format("error {}", int(error)));
 }
 
 }  // namespace
@@ -105,8 +107,7 @@ RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
   // Embree reads 16 bytes a vertex, past the end of an array of vec3: it gets its own copy.
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(vec3), mesh.positions.size());
-  if (vertices)
-    std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
+  if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
   if (needsAlpha_[index]) {
@@ -163,8 +164,18 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   initQueryContext(query.embree);
   query.key = key;
   RTCRayHit r;
-  r.ray = {ray.origin.x, ray.origin.y, ray.origin.z, 0, ray.direction.x, ray.direction.y,
-           ray.direction.z, 0, ray.tMax, ~0u, 0, 0};
+  r.ray = {ray.origin.x,
+           ray.origin.y,
+           ray.origin.z,
+           0,
+           ray.direction.x,
+           ray.direction.y,
+           ray.direction.z,
+           0,
+           ray.tMax,
+           ~0u,
+           0,
+           0};
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
@@ -173,12 +184,56 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   return true;
 }
 
+Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys) const {
+  assert(rays.size() <= kPacket && keys.size() == rays.size());
+  Packet hits;
+  if (hasAlpha_) {  // the filters answer one ray at a time
+    for (size_t i = 0; i < rays.size(); ++i)
+      if (Hit hit; intersect(rays[i], keys[i], hit)) hits[i] = hit;
+    return hits;
+  }
+  alignas(32) int valid[kPacket] = {};
+  alignas(32) RTCRayHit8 r;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    valid[i] = isTraceable(ray) ? -1 : 0;
+    r.ray.org_x[i] = ray.origin.x, r.ray.org_y[i] = ray.origin.y, r.ray.org_z[i] = ray.origin.z;
+    r.ray.dir_x[i] = ray.direction.x;
+    r.ray.dir_y[i] = ray.direction.y;
+    r.ray.dir_z[i] = ray.direction.z;
+    r.ray.tnear[i] = r.ray.time[i] = 0;
+    r.ray.tfar[i] = ray.tMax;
+    r.ray.mask[i] = ~0u;
+    r.ray.id[i] = r.ray.flags[i] = 0;
+    r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  Query query;
+  initQueryContext(query.embree);
+  rtcIntersect(scene_, valid, r, query.embree);
+  for (size_t i = 0; i < rays.size(); ++i)
+    if (valid[i] && r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+      hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
+                 r.hit.primID[i],
+                 {r.hit.u[i], r.hit.v[i]}};
+  return hits;
+}
+
 float Accel::transmittance(const Ray& ray) const {
   if (!isTraceable(ray)) return 1;
   Query query;
   initQueryContext(query.embree);
-  RTCRay r{ray.origin.x, ray.origin.y, ray.origin.z, 0, ray.direction.x, ray.direction.y,
-           ray.direction.z, 0, ray.tMax, ~0u, 0, 0};
+  RTCRay r{ray.origin.x,
+           ray.origin.y,
+           ray.origin.z,
+           0,
+           ray.direction.x,
+           ray.direction.y,
+           ray.direction.z,
+           0,
+           ray.tMax,
+           ~0u,
+           0,
+           0};
   rtcOccluded(scene_, r, query.embree);
   return r.tfar < 0 ? 0 : query.transmittance;
 }

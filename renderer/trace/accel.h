@@ -1,7 +1,10 @@
 // Which surface a ray meets first, and whether one stands in its way.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -26,6 +29,12 @@ class Accel {
   // The closest hit; none for a ray with NaN or coordinates beyond 1e18. `key` decides where a
   // blended surface lets the ray pass: it does so with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit) const;
+
+  // The closest hits of rays that run side by side, as those through one pixel do; sooner than one
+  // by one. `keys` as above, one for each ray.
+  static constexpr int kPacket = 8;
+  using Packet = std::array<std::optional<Hit>, kPacket>;
+  Packet intersect(std::span<const Ray> rays, std::span<const uint32_t> keys) const;
 
   // The share of light that passes along the ray up to tMax: 0, 1, or the product of 1 - alpha over
   // the blended surfaces between.

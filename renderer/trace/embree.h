@@ -28,6 +28,14 @@ inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   arguments.context = &context;
   rtcOccluded1(scene, &ray, &arguments);
 }
+inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays,
+                         QueryContext& context) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
 #else
 using QueryContext = RTCIntersectContext;
 inline void initQueryContext(QueryContext& context) { rtcInitIntersectContext(&context); }
@@ -37,6 +45,11 @@ inline void rtcIntersect(RTCScene scene, RTCRayHit& ray, QueryContext& context) 
 }
 inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   rtcOccluded1(scene, &context, &ray);
+}
+inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays,
+                         QueryContext& context) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
 }
 #endif
 
