@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,7 +101,7 @@ TEST(House, CheckFindsWhatItShould) {
 }
 
 TEST(House, IncludesGoOneWay) {
-  const fs::path root = CHROMEBALL_SOURCE_DIR;
+  const fs::path root = kSourceDir;
   int files = 0;
   for (const char* folder : {"renderer", "tools", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -116,7 +118,7 @@ TEST(House, IncludesGoOneWay) {
 TEST(House, TopLevelHoldsOnlyItsRooms) {
   const std::set<std::string> allowed = {"renderer", "tools",          "tests",    "scenes",
                                          "probes",   "CMakeLists.txt", "README.md"};
-  for (const auto& entry : fs::directory_iterator(CHROMEBALL_SOURCE_DIR)) {
+  for (const auto& entry : fs::directory_iterator(kSourceDir)) {
     const std::string name = entry.path().filename().string();
     const bool generated = name.starts_with("build") || name == "out";
     if (name.starts_with('.') || generated) continue;

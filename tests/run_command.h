@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
+
 // A folder of the running test's own, removed with its contents at the end.
 class TemporaryFolder {
  public:
@@ -57,7 +59,7 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
                                 const std::string& interruptAt = "") {
   const TemporaryFolder folder;
   const std::string outPath = folder / "out", errorPath = folder / "error";
-  std::vector<char*> argv{const_cast<char*>(CHROMEBALL_COMMAND)};
+  std::vector<char*> argv{const_cast<char*>(kCommand)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 

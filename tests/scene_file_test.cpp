@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "math/error.h"
+#include "paths.h"
 
 namespace chromeball {
 namespace {
@@ -235,7 +236,7 @@ TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
 }
 
 TEST(SceneFileOfTheDemo, IsValidAndItsFilesAreThere) {
-  const SceneFile scene = readSceneFile(CHROMEBALL_SOURCE_DIR "/scenes/demo.toml");
+  const SceneFile scene = readSceneFile(std::string(kSourceDir) + "/scenes/demo.toml");
   EXPECT_EQ(scene.models.size(), 1u);
   EXPECT_TRUE(scene.probe && scene.size && scene.samples);
 }

@@ -6,12 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "paths.h"
+
 // The folder is $CHROMEBALL_DATA, or ../shared/data beside the source tree. Tests that get nullopt
 // skip, and say so.
 inline std::optional<std::filesystem::path> sharedData(const std::string& relative) {
   const char* folder = std::getenv("CHROMEBALL_DATA");
   const std::filesystem::path root =
-      folder ? folder : std::filesystem::path(CHROMEBALL_SOURCE_DIR).parent_path() / "shared/data";
+      folder ? folder : std::filesystem::path(kSourceDir).parent_path() / "shared/data";
   const std::filesystem::path path = root / relative;
   if (!std::filesystem::exists(path)) return std::nullopt;
   return path;

@@ -1,0 +1,4 @@
+#include "paths.h"
+
+const char kSourceDir[] = CHROMEBALL_SOURCE_DIR;
+const char kCommand[] = CHROMEBALL_COMMAND;
