@@ -1,7 +1,6 @@
 // chromeball render: a scene becomes a picture.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -11,20 +10,15 @@
 #include "commands.h"
 #include "image/file.h"
 #include "image/write.h"
+#include "load_scene.h"
 #include "math/error.h"
-#include "math/suggest.h"
-#include "probe/load.h"
 #include "progress.h"
 #include "render_job.h"
-#include "scene/framing.h"
-#include "scene/gltf.h"
 
 namespace chromeball {
 namespace {
 
 std::atomic<bool> interrupted = false;
-
-void warn(const std::string& message) { fmt::print(stderr, "chromeball: warning: {}\n", message); }
 
 // Seconds since the last call.
 class Stopwatch {
@@ -41,73 +35,6 @@ class Stopwatch {
 struct Seconds {
   double load = 0, build = 0, prepare = 0, render = 0, write = 0;
 };
-
-Scene loadModels(const SceneFile& file) {
-  Scene scene;
-  for (const ModelEntry& model : file.models)
-    append(scene, loadGltf(model.file, model.placement, warn));
-  if (scene.instances.empty())
-    throwInput("{}: the model has no triangles to render", file.models.front().file);
-  return scene;
-}
-
-// The probe as a lat-long map; black where the scene lights itself.
-LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
-  const SceneFile& file = job.file;
-  if (!file.probe) {
-    const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const Material& m) { return m.unlit || !isBlack(m.emission); });
-    if (!lit) throwInput("{}: nothing lights the scene; give --probe FILE", file.models[0].file);
-    LoadedProbe black;
-    black.latLong = Image(2, 1, 3);
-    return black;
-  }
-  const NamedSetting mapping = file.probeMapping.value_or(NamedSetting{"auto", "--probe-mapping"});
-  return loadProbe(*file.probe, mapping.name, mapping.place);
-}
-
-void sayNotes(const LoadedProbe& probe, const std::string& path, bool quiet) {
-  for (const std::string& line : warnings(probe, path)) warn(line);
-  if (!probe.guessed || quiet) return;
-  const std::string_view mapping = mappingName(probe.mapping);
-  fmt::print(stderr, "chromeball: {}: taken for {} {} probe, since {}\n", path,
-             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
-}
-
-Camera chooseCamera(const RenderJob& job, const Scene& scene) {
-  if (job.file.camera) return *job.file.camera;
-  if (const auto& wanted = job.file.cameraName) {
-    std::vector<std::string_view> names;
-    for (const Camera& camera : scene.cameras) {
-      if (camera.name == wanted->name) return camera;
-      names.push_back(camera.name);
-    }
-    throwInput("{}: the model has no camera `{}`; {}", wanted->place, wanted->name,
-               names.empty() ? "it has none at all" : didYouMean(wanted->name, names));
-  }
-  if (!scene.cameras.empty()) return scene.cameras.front();
-  const RenderSettings& s = job.settings;
-  return framingCamera(scene, float(s.width) / float(s.height));
-}
-
-// The size asked for; else the default height, as wide as the model's camera would have it.
-void chooseSize(RenderJob& job, const Scene& scene) {
-  RenderSettings& settings = job.settings;
-  if (job.size) {
-    settings.width = job.size->width;
-    settings.height = job.size->height;
-  } else if (!job.file.camera && !scene.cameras.empty()) {
-    const float aspect = chooseCamera(job, scene).aspect;
-    if (aspect > 0.05f && aspect < 20)
-      settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
-  }
-  const double needed = double(settings.width) * settings.height *
-                        (Film::bytesPerPixel() + 16.0 * double(settings.aovs.size()));
-  const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (needed > 0.8 * available)
-    throwInput("--size: a picture of {}x{} needs {:.1f} GB of memory, and there are {:.1f}",
-               settings.width, settings.height, needed * 1e-9, available * 1e-9);
-}
 
 struct Report {
   nlohmann::json json;
@@ -193,34 +120,30 @@ void writeStats(const std::string& path, const nlohmann::json& json) {
 
 void render(const RenderOptions& options) {
   RenderJob job = planJob(options);
+  planOutputs(job, options);
   std::optional<tbb::global_control> threads;
   if (options.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
 
   Seconds seconds;
   Stopwatch watch;
-  const Scene scene = loadModels(job.file);
-  chooseSize(job, scene);
-  const Camera camera = chooseCamera(job, scene);
-  LoadedProbe loaded = loadProbeOf(job, scene);
-  const Probe probe(std::move(loaded.latLong), job.file.probeRotation.value_or(0),
-                    job.file.probeScale.value_or(1));
+  const LoadedScene loaded = loadScene(job);
+  const Scene& scene = loaded.scene;
   seconds.load = watch.lap();
   const Accel accel(scene);
   seconds.build = watch.lap();
   const auto lighting =
-      makeStrategy(job.strategy.name, probe, job.settings.mis, job.strategy.place);
+      makeStrategy(job.strategy.name, loaded.probe, job.settings.mis, job.strategy.place);
   seconds.prepare = watch.lap();
-  // Said once nothing can be wrong any more, so that what is wrong stays one line.
-  if (job.file.probe) sayNotes(loaded, *job.file.probe, options.quiet);
+  sayNotes(job, loaded, options.quiet);
 
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const RenderResult result = [&] {
     ProgressBar bar(options.progress || (ProgressBar::isTerminal() && !options.quiet));
     return render(
-        scene, accel, camera, *lighting, job.settings, [&](double share) { bar.update(share); },
-        interrupted);
+        scene, accel, loaded.camera, *lighting, job.settings,
+        [&](double share) { bar.update(share); }, interrupted);
   }();
   seconds.render = watch.lap();
 
@@ -249,33 +172,17 @@ void addRenderCommand(CLI::App& app) {
   auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
   CLI::App* command = app.add_subcommand("render", "Render a scene file or a model to a picture");
-  command->add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
+  addSceneOptions(*command, o);
   command->add_option("-o,--output", o.outputs, ".exr, .hdr, .pfm or .png; may be given repeatedly")
       ->take_all();
-  command->add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm");
-  command->add_option("--probe-mapping", o.mapping,
-                      "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
-  command->add_option("--probe-rotation", o.rotation,
-                      "Degrees the environment turns, counter-clockwise from above");
-  command->add_option("--probe-scale", o.scale, "Factor on the probe's radiance");
-  command->add_option("--size", o.size, "WxH in pixels");
   command->add_option("--samples", o.samples, "Samples a pixel (256)");
   command->add_option("--time", o.time, "Stop after about this many seconds");
   command->add_option("--noise", o.noise, "Stop at this noise, in percent");
   command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
-  command->add_option("--mis", o.mis, "off, balance or power");
-  command->add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
-  command->add_option("--camera", o.camera, "Name of one of the model's cameras");
-  command->add_option("--seed", o.seed, "Another seed, another independent picture (0)");
-  command->add_option("--threads", o.threads, "Number of threads (all)");
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');
   command->add_option("--stats", o.stats, "Write times, rays and noise to this .json");
-  command->add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
-  command->add_option("--exposure", o.exposure, "For .png: stops");
   command->add_flag("--transparent", o.transparent, "Hide the probe from the camera; write alpha");
-  command->add_flag("--progress", o.progress, "Show progress even where it is no terminal");
-  command->add_flag("--quiet", o.quiet, "Show neither progress nor notes");
   command->callback([options] { render(*options); });
 }
 

@@ -91,10 +91,6 @@ RenderJob planJob(const RenderOptions& o) {
     job.size = SceneFile::Size{size.width, size.height};
   }
   job.strategy = file.strategy.value_or(NamedSetting{"auto", "--strategy"});
-  job.outputs = o.outputs.empty() ? file.outputs : o.outputs;
-  if (job.outputs.empty())
-    throwInput("{}: nowhere to write the picture; give --output FILE", o.scene);
-  for (const std::string& output : job.outputs) checkWritable(output);
   job.display = {parseToneOperator(o.tonemap), o.exposure};
 
   RenderSettings& settings = job.settings;
@@ -115,6 +111,33 @@ RenderJob planJob(const RenderOptions& o) {
   if (settings.hideProbe && std::count(settings.aovs.begin(), settings.aovs.end(), Aov::Alpha) == 0)
     settings.aovs.push_back(Aov::Alpha);
   return job;
+}
+
+void planOutputs(RenderJob& job, const RenderOptions& options) {
+  job.outputs = options.outputs.empty() ? job.file.outputs : options.outputs;
+  if (job.outputs.empty())
+    throwInput("{}: nowhere to write the picture; give --output FILE", options.scene);
+  for (const std::string& output : job.outputs) checkWritable(output);
+}
+
+void addSceneOptions(CLI::App& command, RenderOptions& o) {
+  command.add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
+  command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm");
+  command.add_option("--probe-mapping", o.mapping,
+                     "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
+  command.add_option("--probe-rotation", o.rotation,
+                     "Degrees the environment turns, counter-clockwise from above");
+  command.add_option("--probe-scale", o.scale, "Factor on the probe's radiance");
+  command.add_option("--size", o.size, "WxH in pixels");
+  command.add_option("--mis", o.mis, "off, balance or power");
+  command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
+  command.add_option("--camera", o.camera, "Name of one of the model's cameras");
+  command.add_option("--seed", o.seed, "Another seed, another independent picture (0)");
+  command.add_option("--threads", o.threads, "Number of threads (all)");
+  command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
+  command.add_option("--exposure", o.exposure, "For .png: stops");
+  command.add_flag("--progress", o.progress, "Show progress even where it is no terminal");
+  command.add_flag("--quiet", o.quiet, "Show neither progress nor notes");
 }
 
 }  // namespace chromeball

@@ -1,6 +1,7 @@
 // What one render is to do: the command line laid over the scene file, laid over the defaults.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,8 +29,8 @@ struct RenderOptions {
 };
 
 struct RenderJob {
-  SceneFile file;               // models, camera, probe
-  RenderSettings settings;      // but for the size, which the camera may decide
+  SceneFile file;           // models, camera, probe
+  RenderSettings settings;  // but for the size, which the camera may decide
   std::optional<SceneFile::Size> size;
   NamedSetting strategy;
   std::vector<std::string> outputs;
@@ -37,6 +38,13 @@ struct RenderJob {
 };
 
 // Throws InputError for whatever the options or the scene file get wrong, before any work is done.
+// Leaves the outputs out.
 RenderJob planJob(const RenderOptions& options);
+
+// Where the pictures go. Throws InputError where there is no such place.
+void planOutputs(RenderJob& job, const RenderOptions& options);
+
+// The options of every command that renders a scene.
+void addSceneOptions(CLI::App& command, RenderOptions& options);
 
 }  // namespace chromeball

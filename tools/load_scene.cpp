@@ -1,0 +1,99 @@
+#include "load_scene.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "math/error.h"
+#include "math/suggest.h"
+#include "scene/framing.h"
+#include "scene/gltf.h"
+
+namespace chromeball {
+namespace {
+
+Scene loadModels(const SceneFile& file) {
+  Scene scene;
+  for (const ModelEntry& model : file.models)
+    append(scene, loadGltf(model.file, model.placement, warn));
+  if (scene.instances.empty())
+    throwInput("{}: the model has no triangles to render", file.models.front().file);
+  return scene;
+}
+
+// The probe as a lat-long map; black where the scene lights itself.
+LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
+  const SceneFile& file = job.file;
+  if (!file.probe) {
+    const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const Material& m) { return m.unlit || !isBlack(m.emission); });
+    if (!lit) throwInput("{}: nothing lights the scene; give --probe FILE", file.models[0].file);
+    LoadedProbe black;
+    black.latLong = Image(2, 1, 3);
+    return black;
+  }
+  const NamedSetting mapping = file.probeMapping.value_or(NamedSetting{"auto", "--probe-mapping"});
+  return loadProbe(*file.probe, mapping.name, mapping.place);
+}
+
+Camera chooseCamera(const RenderJob& job, const Scene& scene) {
+  if (job.file.camera) return *job.file.camera;
+  if (const auto& wanted = job.file.cameraName) {
+    std::vector<std::string_view> names;
+    for (const Camera& camera : scene.cameras) {
+      if (camera.name == wanted->name) return camera;
+      names.push_back(camera.name);
+    }
+    throwInput("{}: the model has no camera `{}`; {}", wanted->place, wanted->name,
+               names.empty() ? "it has none at all" : didYouMean(wanted->name, names));
+  }
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  const RenderSettings& s = job.settings;
+  return framingCamera(scene, float(s.width) / float(s.height));
+}
+
+// The size asked for; else the default height, as wide as the model's camera would have it.
+void chooseSize(RenderJob& job, const Scene& scene) {
+  RenderSettings& settings = job.settings;
+  if (job.size) {
+    settings.width = job.size->width;
+    settings.height = job.size->height;
+  } else if (!job.file.camera && !scene.cameras.empty()) {
+    const float aspect = chooseCamera(job, scene).aspect;
+    if (aspect > 0.05f && aspect < 20)
+      settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
+  }
+  const double needed = double(settings.width) * settings.height *
+                        (Film::bytesPerPixel() + 16.0 * double(settings.aovs.size()));
+  const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (needed > 0.8 * available)
+    throwInput("--size: a picture of {}x{} needs {:.1f} GB of memory, and there are {:.1f}",
+               settings.width, settings.height, needed * 1e-9, available * 1e-9);
+}
+
+}  // namespace
+
+LoadedScene loadScene(RenderJob& job) {
+  Scene scene = loadModels(job.file);
+  chooseSize(job, scene);
+  const Camera camera = chooseCamera(job, scene);
+  LoadedProbe loaded = loadProbeOf(job, scene);
+  Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
+  loaded.latLong = {};
+  return {std::move(scene), camera, std::move(loaded), std::move(probe)};
+}
+
+void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
+  if (!job.file.probe) return;
+  const std::string& path = *job.file.probe;
+  const LoadedProbe& probe = loaded.loadedProbe;
+  for (const std::string& line : warnings(probe, path)) warn(line);
+  if (!probe.guessed || quiet) return;
+  const std::string_view mapping = mappingName(probe.mapping);
+  fmt::print(stderr, "chromeball: {}: taken for {} {} probe, since {}\n", path,
+             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
+}
+
+void warn(const std::string& message) { fmt::print(stderr, "chromeball: warning: {}\n", message); }
+
+}  // namespace chromeball

@@ -1,0 +1,28 @@
+// What a job's files hold, ready to be rendered.
+#pragma once
+
+#include "probe/load.h"
+#include "render_job.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+struct LoadedScene {
+  Scene scene;
+  Camera camera;
+  LoadedProbe loadedProbe;  // what was found in its file; the map itself is in `probe`
+  Probe probe;              // black where the scene lights itself
+};
+
+// Reads models and probe, chooses the camera, and the size where the job left it to the camera.
+// Throws InputError.
+LoadedScene loadScene(RenderJob& job);
+
+// Says on standard error what was repaired in the probe and, unless quiet, what was guessed of it.
+// To be called once nothing can be wrong any more, so that what is wrong stays one line.
+void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet);
+
+// "chromeball: warning: ..." on standard error.
+void warn(const std::string& message);
+
+}  // namespace chromeball
