@@ -67,6 +67,19 @@ TEST_F(SceneFileTest, ModelAloneLeavesAllElseOpen) {
   EXPECT_TRUE(scene.outputs.empty() && scene.aovs.empty());
 }
 
+TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
+  const auto choice = [&](const std::string& keys) {
+    return read("[[model]]\nfile = '../ball.glb'\n" + keys).models.at(0).choice;
+  };
+  EXPECT_FALSE(choice("").animation);
+  const auto walk = choice("animation = 'Walk'\ntime = 1.5").animation;
+  ASSERT_TRUE(walk);
+  EXPECT_EQ(walk->name, "Walk");
+  EXPECT_EQ(walk->seconds, 1.5);
+  EXPECT_EQ(walk->place, scenePath() + ":3");
+  EXPECT_EQ(choice("time = 2").animation->name, "");
+}
+
 TEST_F(SceneFileTest, EveryKeyArrives) {
   const SceneFile scene = readWithModel(R"([camera]
 position = [0, 0, 5]

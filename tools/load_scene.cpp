@@ -15,7 +15,7 @@ namespace {
 Scene loadModels(const SceneFile& file) {
   Scene scene;
   for (const ModelEntry& model : file.models)
-    append(scene, loadGltf(model.file, model.placement, warn));
+    append(scene, loadGltf(model.file, model.placement, warn, model.choice));
   if (scene.instances.empty())
     throwInput("{}: the model has no triangles to render", file.models.front().file);
   return scene;

@@ -22,7 +22,7 @@ SceneFile openScene(const std::string& path) {
   if (extension != ".gltf" && extension != ".glb")
     throwInput("{}: not a scene; give a scene file (.toml) or a model (.gltf, .glb)", path);
   SceneFile file;
-  file.models.push_back({path, {}});
+  file.models.push_back({path, {}, {}});
   return file;
 }
 
@@ -59,8 +59,23 @@ void checkRanges(const RenderOptions& o) {
     require(*o.scale >= 0 && std::isfinite(*o.scale), "--probe-scale", *o.scale, "0 or more");
   if (o.rotation)
     require(std::isfinite(*o.rotation), "--probe-rotation", *o.rotation, "a finite angle");
+  if (o.animationTime)
+    require(std::isfinite(*o.animationTime), "--animation-time", *o.animationTime,
+            "a finite number of seconds");
   require(std::isfinite(o.exposure), "--exposure", o.exposure, "a finite number of stops");
   require(o.threads >= 0, "--threads", o.threads, "0 (all) or more");
+}
+
+void overlayAnimation(const RenderOptions& o, SceneFile& file) {
+  if (!o.animation && !o.animationTime) return;
+  for (ModelEntry& model : file.models) {
+    std::optional<AnimationTime>& when = model.choice.animation;
+    if (!when) when.emplace();
+    if (o.animation || when->place.empty())
+      when->place = o.animation ? "--animation" : "--animation-time";
+    if (o.animation) when->name = *o.animation;
+    if (o.animationTime) when->seconds = *o.animationTime;
+  }
 }
 
 }  // namespace
@@ -71,6 +86,7 @@ RenderJob planJob(const RenderOptions& o) {
   SceneFile& file = job.file = openScene(o.scene);
   if (o.camera) file.camera.reset();
   overlay(file.cameraName, o.camera, "--camera");
+  overlayAnimation(o, file);
   overlay(file.probe, o.probe);
   overlay(file.probeMapping, o.mapping, "--probe-mapping");
   overlay(file.probeRotation, o.rotation);
@@ -132,6 +148,8 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--mis", o.mis, "off, balance or power");
   command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
   command.add_option("--camera", o.camera, "Name of one of the model's cameras");
+  command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
+  command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");
   command.add_option("--seed", o.seed, "Another seed, another independent picture (0)");
   command.add_option("--threads", o.threads, "Number of threads (all)");
   command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");

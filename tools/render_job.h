@@ -16,10 +16,10 @@ namespace chromeball {
 struct RenderOptions {
   std::string scene;
   std::vector<std::string> outputs, aovs;
-  std::optional<std::string> probe, mapping, strategy, mis, camera, size;
+  std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation;
   std::optional<float> rotation, scale;
   std::optional<int> samples, maxDepth;
-  std::optional<double> time, noise;
+  std::optional<double> time, noise, animationTime;
   std::optional<uint64_t> seed;
   int threads = 0;
   std::string stats;

@@ -1,7 +1,6 @@
 #include "scene/gltf.h"
 
-#include <algorithm>
-
+#include "scene/gltf_animation.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_instances.h"
 #include "scene/gltf_node.h"
@@ -49,15 +48,6 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
   }
 }
 
-bool movesAtAll(const GltfFile& file) {
-  const auto hasTargets = [](const tinygltf::Mesh& mesh) {
-    return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
-                       [](const auto& primitive) { return !primitive.targets.empty(); });
-  };
-  return file.animated || !file.model.skins.empty() ||
-         std::any_of(file.model.meshes.begin(), file.model.meshes.end(), hasTargets);
-}
-
 // A file of meshes without any node still shows them, each once.
 void standMeshesUp(tinygltf::Model& model) {
   if (!model.nodes.empty() || !model.scenes.empty()) return;
@@ -66,15 +56,18 @@ void standMeshesUp(tinygltf::Model& model) {
 
 }  // namespace
 
-Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn) {
+Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
+               const GltfChoice& choice) {
   GltfFile file(path, warn);
+  if (choice.animation)
+    applyAnimation(file, *choice.animation);
+  else if (!file.model.animations.empty())
+    file.warnOnce("shown in its rest pose; --animation shows it at a time of an animation");
   standMeshesUp(file.model);
   const NodeTree tree = readNodes(file, placement);
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
   scene.nodeNames = tree.names;
-  if (movesAtAll(file))
-    file.warnOnce("shown in its rest pose: animations, skins and morph targets do not move");
   return scene;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "scene/scene.h"
@@ -11,9 +12,22 @@ namespace chromeball {
 // Takes one line of warning ("FILE: what was ignored"), each said once per file.
 using Warn = std::function<void(const std::string&)>;
 
+// An animation of the file and the time to show it at.
+struct AnimationTime {
+  std::string name;   // or its index where it has none; empty: the first
+  std::string place;  // where it was asked for, for the error where it does not exist
+  double seconds = 0;
+};
+
+// What of a file to show.
+struct GltfChoice {
+  std::optional<AnimationTime> animation;  // else the rest pose
+};
+
 // Reads the default scene of the file (the first where none is named), with `placement` applied to
 // its roots. Throws InputError (file and reason) for whatever is not well-formed, refers outside
 // its buffers, or requires an extension that is not supported.
-Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn);
+Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
+               const GltfChoice& choice = {});
 
 }  // namespace chromeball

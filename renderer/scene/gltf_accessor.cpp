@@ -178,6 +178,7 @@ std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor,
   return vectors;
 }
 
+template std::vector<glm::vec<1, float>> readVectors<1>(GltfFile&, int, const std::string&);
 template std::vector<vec2> readVectors<2>(GltfFile&, int, const std::string&);
 template std::vector<vec3> readVectors<3>(GltfFile&, int, const std::string&);
 template std::vector<vec4> readVectors<4>(GltfFile&, int, const std::string&);

@@ -111,7 +111,6 @@ GltfFile::GltfFile(const std::string& path, Warn warn) : path_(path), warn_(std:
       const bool inView = view != image.end() && view->is_number_integer();
       images.push_back({inView ? view->get<int>() : -1, stringMember(image, "uri")});
     }
-    animated = !takeArray(root, "animations").empty();
     readModel(root);
   } catch (const InputError&) {
     throw;

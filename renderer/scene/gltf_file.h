@@ -32,9 +32,8 @@ class GltfFile {
   // extension that is not supported, or names a buffer that is missing or not below its folder.
   GltfFile(const std::string& path, Warn warn);
 
-  tinygltf::Model model;  // without buffers, images and animations
+  tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
-  bool animated = false;
 
   // The bytes of a buffer view. `where` names the user of it in the message.
   std::span<const uint8_t> view(int bufferView, const std::string& where) const;

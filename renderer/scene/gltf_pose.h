@@ -1,4 +1,4 @@
-// Puts a mesh into its rest pose: morph targets at their stated weights, skins at their joints.
+// Puts a mesh into its pose: morph targets at their weights, skins at their joints.
 #pragma once
 
 #include <span>

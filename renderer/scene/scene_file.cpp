@@ -155,13 +155,13 @@ vec3 readScale(const Entry& entry) {
 }
 
 ModelEntry readModel(const Entry& entry) {
-  if (entry.node->is_string()) return {existing(entry), {}};
+  if (entry.node->is_string()) return {existing(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
   const Section model(entry.file, "model", *entry.node->as_table(),
-                      {"file", "translation", "rotation", "scale"});
+                      {"file", "translation", "rotation", "scale", "animation", "time"});
   if (!model["file"]) failAt(model.place(), "[model] has no `file`");
 
-  ModelEntry result{existing(model["file"]), {}};
+  ModelEntry result{existing(model["file"]), {}, {}};
   Transform& placement = result.placement;
   if (const Entry e = model["rotation"]) placement.linear = glm::mat3_cast(readRotation(e));
   if (const Entry e = model["scale"]) {
@@ -169,6 +169,13 @@ ModelEntry readModel(const Entry& entry) {
     for (int axis = 0; axis < 3; ++axis) placement.linear[axis] *= scale[axis];
   }
   if (const Entry e = model["translation"]) placement.translation = e.vector();
+  const Entry animation = model["animation"], time = model["time"];
+  if (animation || time) {
+    AnimationTime& when = result.choice.animation.emplace();
+    when.place = (animation ? animation : time).place();
+    if (animation) when.name = animation.text();
+    if (time) when.seconds = time.number();
+  }
   return result;
 }
 

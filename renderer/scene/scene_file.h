@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/gltf.h"
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -23,6 +24,7 @@ struct ModelEntry {
   // translation * rotation * scale. The file's `rotation` is three angles in degrees, about X, then
   // Y, then Z (fixed axes), or glTF's quaternion x, y, z, w; its `scale` is one number or three.
   Transform placement;
+  GltfChoice choice;
 };
 
 // What the file says; what it leaves out is nullopt or empty, for the command line or the default
