@@ -336,5 +336,24 @@ TEST(Accel, PacketsFindWhatSingleRaysFind) {
   }
 }
 
+// What is left out is as if it were not there, and the others keep their indices.
+TEST(Accel, ShowsOnlySomeInstances) {
+  Scene scene;
+  for (float height : {3.0f, 2.0f, 1.0f})
+    addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-1, height, 1}, {2, 0, 0}, {0, 0, -2});
+  const Ray down{{0.2f, 4, 0.1f}, {0, -1, 0}};
+  for (uint32_t left = 0; left < 3; ++left) {
+    std::vector<bool> shown(3, false);
+    shown[left] = true;
+    const Accel accel(scene, shown);
+    Hit hit;
+    ASSERT_TRUE(accel.intersect(down, 0, hit));
+    EXPECT_EQ(hit.instance, left);
+    EXPECT_EQ(accel.transmittance({{0.2f, 2.5f, 0.1f}, {0, -1, 0}}), left == 0 ? 1 : 0);
+  }
+  Hit hit;
+  EXPECT_FALSE(Accel(scene, {false, false, false}).intersect(down, 0, hit));
+}
+
 }  // namespace
 }  // namespace chromeball

@@ -59,7 +59,7 @@ TEST(Suns, DensityIsThatOfAllSamplesTogether) {
       const auto escaped = suns.escaped(samples.point(), s.wi);
       EXPECT_EQ(s.density, escaped.density);
       EXPECT_NEAR(s.irradiance.x * s.density / escaped.radiance.x, 1, 1e-5);
-      EXPECT_NEAR(escaped.radiance.y / suns.background(s.wi).y, 1, 1e-5);
+      EXPECT_NEAR(escaped.radiance.y / suns.background({}, s.wi).y, 1, 1e-5);
       return s.wi;
     };
     const SphereTest test = testDirections(
@@ -79,7 +79,7 @@ dvec3 irradianceOf(const LightingStrategy& strategy, const vec3& normal) {
       const double theta = kPiD * (y + 0.5) / kHeight, phi = 2 * kPiD * (x + 0.5) / kWidth;
       const vec3 d(
           dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
-      sum += dvec3(strategy.background(d)) * (std::sin(theta) * std::max(0.0f, dot(normal, d)));
+      sum += dvec3(strategy.background({}, d)) * (std::sin(theta) * std::max(0.0f, dot(normal, d)));
     }
   return sum * (2 * kPiD * kPiD / (double(kWidth) * kHeight));
 }
@@ -141,7 +141,7 @@ TEST(Suns, WithoutSunsIsImportance) {
     ASSERT_EQ(sample.size(), 1u);
     EXPECT_EQ(sample[0].wi, b.take(i)[0].wi);
     EXPECT_EQ(sample[0].density, importance.density(sample[0].wi));
-    EXPECT_EQ(suns.background(sample[0].wi), probe.radiance(sample[0].wi));
+    EXPECT_EQ(suns.background({}, sample[0].wi), probe.radiance(sample[0].wi));
   }
   const Probe black(constantProbe({8, 4}, Rgb(0)));
   EXPECT_TRUE(Samples(Suns(black, false), {0, 1, 0}).take(0).empty());

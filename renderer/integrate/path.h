@@ -118,71 +118,117 @@ std::optional<Hit> closestHit(const Rays& rays, const Ray& ray, const PixelSampl
   return hit;
 }
 
+// A path between two of its vertices, or before the first.
+struct PathState {
+  Ray ray;
+  Rgb throughput{1};
+  LightPoint from{};  // where the ray leaves; nowhere in particular for the camera's
+  float pdf = 0;      // of the ray's direction at `from`; 0 for the camera and mirrors
+  int depth = 0;      // of the vertex to come
+};
+
+// What the path finds where its ray meets nothing.
+template <class Rays>
+Rgb escapedRadiance(const PathScene<Rays>& path, const PathState& state) {
+  const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
+  if (state.depth == 0 && path.hideProbe) return Rgb(0);
+  if (state.pdf == 0) return state.throughput * path.lighting.background(origin, direction);
+  const auto escaped = path.lighting.escaped(state.from, direction);
+  return state.throughput * escaped.radiance *
+         bsdfSampleWeight(path.mis, state.pdf, escaped.density);
+}
+
+// What the path finds where its ray meets a surface that emits.
+template <class Rays>
+Rgb foundEmission(const PathScene<Rays>& path, const PathState& state, const Surface& surface,
+                  int material) {
+  float density = 0;
+  if (path.emitters && !surface.material->unlit)
+    density = path.emitters->density(
+        material, glm::length(surface.position - state.from.position),
+        std::max(-glm::dot(surface.geometricNormal, state.ray.direction), 1e-12f));
+  return state.throughput * emittedRadiance(path.scene, surface) *
+         bsdfSampleWeight(path.mis, state.pdf, density);
+}
+
+// Adds the light that comes straight to a vertex and chooses where the path goes on from there;
+// false where it ends.
+template <class Rays>
+bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surface,
+             const MaterialPoint& material, const PixelSampler& sampler,
+             std::vector<DirectionSample>& samples, RayCounts& counts, Rgb& radiance) {
+  const vec3 wo = -state.ray.direction;
+  const Bsdf bsdf(material, surface, wo, path.mirrorAlpha);
+  state.from = {surface.position, bsdf.normal(), wo, &bsdf, state.depth};
+  if (bsdf.hasContinuousLobe()) {
+    radiance += state.throughput * probeLight(path, state.from, surface, sampler, samples, counts);
+    if (path.emitters)
+      radiance += state.throughput * emitterLight(path, state.from, surface, sampler, counts);
+  }
+  state.from.bsdf = nullptr;  // it ends here
+
+  BsdfSample next;
+  if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
+    return false;
+  state.throughput *= next.weight;
+  if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
+  state.pdf = next.pdf;
+  state.ray = {surface.rayOrigin(next.wi), next.wi};
+  ++state.depth;
+  ++counts.bounce;
+  return true;
+}
+
+// The vertex at `hit`: adds to `radiance` what is found there and moves the path on; false where it
+// ends. `first` may be null.
+template <class Rays>
+bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::optional<Hit>& hit,
+                const PixelSampler& sampler, std::vector<DirectionSample>& samples,
+                RayCounts& counts, FirstHit* first, Rgb& radiance) {
+  if (!hit) {
+    radiance += escapedRadiance(path, state);
+    return false;
+  }
+  const Instance& instance = path.scene.instances[hit->instance];
+  const Surface surface =
+      surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
+  if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance.material);
+  const bool ends = state.depth == path.maxDepth || surface.material->unlit;
+  if (ends && !(first && state.depth == 0)) return false;
+
+  const MaterialPoint material = materialAt(path.scene, surface);
+  if (first && state.depth == 0)
+    *first = {true,
+              glm::length(surface.position - state.ray.origin),
+              material.baseColor,
+              surface.normal,
+              instance.material,
+              instance.node};
+  return !ends && scatter(path, state, surface, material, sampler, samples, counts, radiance);
+}
+
+// What a path that stands before `hit` goes on to find.
+template <class Rays>
+Rgb followPath(const PathScene<Rays>& path, PathState state, std::optional<Hit> hit,
+               PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
+               FirstHit* first) {
+  Rgb radiance(0);
+  sampler.startVertex(state.depth);
+  while (pathVertex(path, state, hit, sampler, samples, counts, first, radiance)) {
+    sampler.startVertex(state.depth);
+    hit = closestHit(path.rays, state.ray, sampler);
+  }
+  return radiance;
+}
+
 // Radiance towards the camera along `ray`, which meets `hit` first. `samples` is scratch memory;
 // `first` may be null.
 template <class Rays>
-Rgb pathRadiance(const PathScene<Rays>& path, Ray ray, std::optional<Hit> hit,
+Rgb pathRadiance(const PathScene<Rays>& path, const Ray& ray, const std::optional<Hit>& hit,
                  PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
                  FirstHit* first) {
-  Rgb radiance(0), throughput(1);
-  LightPoint from{};
-  float pdf = 0;  // of the ray's direction at `from`; 0 for the camera and mirrors
   ++counts.camera;
-
-  for (int depth = 0;; ++depth) {
-    sampler.startVertex(depth);
-    if (depth > 0) hit = closestHit(path.rays, ray, sampler);
-    if (!hit) {
-      if (depth == 0 && path.hideProbe) return radiance;
-      if (pdf == 0) return radiance + throughput * path.lighting.background(ray.direction);
-      const auto escaped = path.lighting.escaped(from, ray.direction);
-      return radiance +
-             throughput * escaped.radiance * bsdfSampleWeight(path.mis, pdf, escaped.density);
-    }
-
-    const Instance& instance = path.scene.instances[hit->instance];
-    const vec3 wo = -ray.direction;
-    const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, wo);
-    if (surface.material->emits()) {
-      float density = 0;
-      if (path.emitters && !surface.material->unlit)
-        density =
-            path.emitters->density(instance.material, glm::length(surface.position - from.position),
-                                   std::max(glm::dot(surface.geometricNormal, wo), 1e-12f));
-      radiance += throughput * emittedRadiance(path.scene, surface) *
-                  bsdfSampleWeight(path.mis, pdf, density);
-    }
-    const bool ends = depth == path.maxDepth || surface.material->unlit;
-    if (ends && !(first && depth == 0)) return radiance;
-
-    const MaterialPoint material = materialAt(path.scene, surface);
-    if (first && depth == 0)
-      *first = {true,
-                glm::length(surface.position - ray.origin),
-                material.baseColor,
-                surface.normal,
-                instance.material,
-                instance.node};
-    if (ends) return radiance;
-
-    const Bsdf bsdf(material, surface, wo, path.mirrorAlpha);
-    from = {surface.position, bsdf.normal(), wo, &bsdf, depth};
-    if (bsdf.hasContinuousLobe()) {
-      radiance += throughput * probeLight(path, from, surface, sampler, samples, counts);
-      if (path.emitters)
-        radiance += throughput * emitterLight(path, from, surface, sampler, counts);
-    }
-
-    BsdfSample next;
-    if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
-      return radiance;
-    throughput *= next.weight;
-    if (!survivesRoulette(throughput, depth, sampler)) return radiance;
-    pdf = next.pdf;
-    ray = {surface.rayOrigin(next.wi), next.wi};
-    from.bsdf = nullptr;  // it ends with this turn of the loop
-    ++counts.bounce;
-  }
+  return followPath(path, PathState{ray}, hit, sampler, samples, counts, first);
 }
 
 }  // namespace chromeball

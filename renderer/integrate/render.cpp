@@ -71,19 +71,17 @@ class Schedule {
   std::vector<uint32_t> plan_;
 };
 
-// What a thread needs of its own.
 struct Worker {
-  PixelSampler sampler;
-  std::vector<DirectionSample> samples;
-  RayCounts rays;
+  PathMemory memory;
   InvalidSamples invalid;
 };
 
 class Renderer {
  public:
-  Renderer(const PathScene<Accel>& path, const Camera& camera, const RenderSettings& settings,
-           uint32_t largestBlock, RenderResult& result)
-      : path_(path),
+  Renderer(const Integrator& integrator, const Accel& accel, const Camera& camera,
+           const RenderSettings& settings, uint32_t largestBlock, RenderResult& result)
+      : integrator_(integrator),
+        accel_(accel),
         camera_(camera, float(settings.width) / float(settings.height)),
         settings_(settings),
         result_(result),
@@ -92,7 +90,7 @@ class Renderer {
                    dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
                settings.seed),
         workers_([this] {
-          return Worker{PixelSampler(table_, settings_.seed), {}, {}, {}};
+          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}};
         }) {}
 
   // Adds one block to every pixel. `progress` is told the share of the pass.
@@ -118,7 +116,7 @@ class Renderer {
 
   void gather() {
     for (const Worker& worker : workers_) {
-      result_.rays.add(worker.rays);
+      result_.rays.add(worker.memory.rays);
       if (worker.invalid.count && !result_.invalid.count)
         result_.invalid = worker.invalid;
       else
@@ -146,37 +144,43 @@ class Renderer {
                   rays[lane].direction);
       keys[lane] = sampler.sampleKey();
     }
-    return path_.rays.intersect(std::span(rays).first(count), std::span(keys).first(count));
+    return accel_.intersect(std::span(rays).first(count), std::span(keys).first(count));
   }
 
   void renderPixel(Worker& worker, int x, int y, uint32_t block, uint32_t samples) {
     FirstHit first;
     FirstHit* wantsFirst = result_.aovs.empty() ? nullptr : &first;
     SampleSums sums;
-    worker.sampler.startPixel(uint32_t(x), uint32_t(y), block);
+    PixelSampler& sampler = worker.memory.sampler;
+    sampler.startPixel(uint32_t(x), uint32_t(y), block);
     std::array<Ray, Accel::kPacket> rays;
     Accel::Packet hits;
     for (uint32_t i = 0; i < samples; ++i) {
       const uint32_t lane = i % Accel::kPacket;
-      if (lane == 0) hits = cameraHits(worker.sampler, x, y, i, samples, rays);
-      worker.sampler.startSample(i);
-      const Ray& ray = rays[lane];
+      if (lane == 0) hits = cameraHits(sampler, x, y, i, samples, rays);
+      sampler.startSample(i);
       first = {};
-      const Rgb radiance = pathRadiance(path_, ray, hits[lane], worker.sampler, worker.samples,
-                                        worker.rays, wantsFirst);
-      if (isFinite(radiance) && glm::all(glm::greaterThanEqual(radiance, Rgb(0))))
+      const CameraSample sample{x, y, rays[lane], hits[lane]};
+      const Rgb radiance = integrator_.radiance(sample, worker.memory, wantsFirst);
+      if (isValid(radiance))
         sums.add(radiance);
       else
         worker.invalid = {worker.invalid.count + 1, x, y};
       if (wantsFirst) {
-        first.depth = camera_.depth(ray.direction, first.depth);
+        first.depth = camera_.depth(sample.ray.direction, first.depth);
         result_.aovs.add(x, y, first);
       }
     }
     result_.film.addBlock(x, y, sums);
   }
 
-  const PathScene<Accel>& path_;
+  bool isValid(const Rgb& radiance) const {
+    return isFinite(radiance) &&
+           (integrator_.isSigned() || glm::all(glm::greaterThanEqual(radiance, Rgb(0))));
+  }
+
+  const Integrator& integrator_;
+  const Accel& accel_;
   CameraRays camera_;
   const RenderSettings& settings_;
   RenderResult& result_;
@@ -197,18 +201,24 @@ std::vector<uint32_t> planBlocks(uint32_t samples) {
 RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop) {
+  const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
+  const PathScene<Accel> path{
+      scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth, settings.hideProbe};
+  prepareBsdfs(scene);
+  return render(PathIntegrator(path), accel, camera, settings, progress, stop);
+}
+
+RenderResult render(const Integrator& integrator, const Accel& accel, const Camera& camera,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop) {
   RenderResult result{Film(settings.width, settings.height),
                       AovFilm(settings.width, settings.height, settings.aovs),
                       {},
                       {},
                       0,
                       false};
-  const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
-  const PathScene<Accel> path{
-      scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth, settings.hideProbe};
-  prepareBsdfs(scene);
   const Schedule schedule(settings);
-  Renderer renderer(path, camera, settings, schedule.largest(), result);
+  Renderer renderer(integrator, accel, camera, settings, schedule.largest(), result);
 
   uint32_t done = 0;
   for (uint32_t pass = 0; uint32_t samples = schedule.next(pass, done, result.film); ++pass) {

@@ -7,9 +7,8 @@
 
 #include "film/aov.h"
 #include "film/film.h"
-#include "integrate/path.h"
+#include "integrate/integrator.h"
 #include "scene/camera.h"
-#include "trace/accel.h"
 
 namespace chromeball {
 
@@ -48,6 +47,11 @@ using Progress = std::function<void(double)>;
 RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop);
+
+// The same for what another integrator estimates. The camera's rays are traced through `accel`.
+RenderResult render(const Integrator& integrator, const Accel& accel, const Camera& camera,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop);
 
 // Sizes of the blocks, each a power of two, that make up exactly `samples`: two equal ones as large
 // as will fit (the error is estimated from how they differ), then what is left.

@@ -14,7 +14,7 @@ class BsdfOnly : public LightingStrategy {
   Escaped escaped(const LightPoint&, const vec3& wi) const override {
     return {probe_.radiance(wi), 0};
   }
-  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
  private:

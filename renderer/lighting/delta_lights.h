@@ -23,7 +23,7 @@ class DeltaLights : public LightingStrategy {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint&, const vec3&) const override { return {ambient_, 0}; }
-  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   // A lobe narrower than the share of the sphere that a light stands for, 4 pi alpha^2 < 4 pi / N,
   // would show the lights one by one.
   float mirrorAlpha() const override {

@@ -50,8 +50,8 @@ class LightingStrategy {
   };
   virtual Escaped escaped(const LightPoint& point, const vec3& wi) const = 0;
 
-  // What the camera and mirrors see, for which sample() has no competing estimate.
-  virtual Rgb background(const vec3& wi) const = 0;
+  // What the camera and mirrors at `origin` see, for which sample() has no competing estimate.
+  virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;
 
   // Specular lobes narrower than this (GGX's alpha) are not for sample(): they see background(), as
   // perfect mirrors do.

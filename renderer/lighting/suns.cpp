@@ -80,7 +80,7 @@ LightingStrategy::Escaped Suns::escaped(const LightPoint& point, const vec3& wi)
   return light;
 }
 
-Rgb Suns::background(const vec3& wi) const {
+Rgb Suns::background(const vec3&, const vec3& wi) const {
   Rgb radiance = remainder_.radiance(wi);
   for (const Disc& disc : discs_)
     if (disc.contains(wi)) radiance += disc.radiance;

@@ -31,7 +31,7 @@ class Suns : public LightingStrategy {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  Rgb background(const vec3& wi) const override;
+  Rgb background(const vec3&, const vec3& wi) const override;
   bool unbiased() const override { return true; }
 
  private:

@@ -20,7 +20,7 @@ class Uniform : public LightingStrategy {
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
   }
-  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
  private:

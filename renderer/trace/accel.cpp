@@ -66,9 +66,9 @@ RTCScene newScene(RTCDevice device, bool hasAlpha) {
   return scene;
 }
 
-void attach(RTCScene scene, RTCGeometry geometry) {
+void attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
   rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
@@ -81,11 +81,11 @@ void throwOnError(RTCDevice device) {
 
 }  // namespace
 
-Accel::Accel(const Scene& scene) {
+Accel::Accel(const Scene& scene, const std::vector<bool>& shown) {
   device_ = rtcNewDevice(nullptr);
   if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   try {
-    build(scene);
+    build(scene, shown);
   } catch (...) {
     release();
     throw;
@@ -121,25 +121,29 @@ RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
 RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
   if (!meshScenes_[mesh]) {
     meshScenes_[mesh] = newScene(device_, hasAlpha_);
-    attach(meshScenes_[mesh], meshGeometry(scene, mesh));
+    attach(meshScenes_[mesh], meshGeometry(scene, mesh), 0);
     rtcCommitScene(meshScenes_[mesh]);
   }
   return meshScenes_[mesh];
 }
 
-void Accel::build(const Scene& scene) {
+void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
+  const auto isShown = [&](size_t instance) { return shown.empty() || shown[instance]; };
   std::vector<int> uses(scene.meshes.size());
   needsAlpha_.resize(scene.meshes.size());
-  for (const Instance& instance : scene.instances) {
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
     ++uses[instance.mesh];
-    if (scene.materials[instance.material].alphaMode == AlphaMode::Opaque) continue;
+    if (!isShown(i) || scene.materials[instance.material].alphaMode == AlphaMode::Opaque) continue;
     needsAlpha_[instance.mesh] = hasAlpha_ = true;
   }
 
   meshScenes_.resize(scene.meshes.size());
   scene_ = newScene(device_, hasAlpha_);
   // Geometry i of the top scene is instance i of ours.
-  for (const Instance& instance : scene.instances) {
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    if (!isShown(i)) continue;
+    const Instance& instance = scene.instances[i];
     RTCGeometry geometry;
     if (uses[instance.mesh] == 1 && !instance.toWorld) {
       geometry = meshGeometry(scene, instance.mesh);
@@ -152,7 +156,7 @@ void Accel::build(const Scene& scene) {
       std::memcpy(columns + 9, &t.translation, sizeof t.translation);
       rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     }
-    attach(scene_, geometry);
+    attach(scene_, geometry, uint32_t(i));
   }
   rtcCommitScene(scene_);
   throwOnError(device_);

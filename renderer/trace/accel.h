@@ -21,7 +21,9 @@ namespace chromeball {
 // scenes without them carry no filter.
 class Accel {
  public:
-  explicit Accel(const Scene& scene);  // the scene must outlive this; throws RunError
+  // Of the instances `shown` (by index) says so for; all where it is empty. The scene must outlive
+  // this. Throws RunError.
+  explicit Accel(const Scene& scene, const std::vector<bool>& shown = {});
   ~Accel();
   Accel(const Accel&) = delete;
   Accel& operator=(const Accel&) = delete;
@@ -41,7 +43,7 @@ class Accel {
   float transmittance(const Ray& ray) const;
 
  private:
-  void build(const Scene& scene);
+  void build(const Scene& scene, const std::vector<bool>& shown);
   void release();
   RTCGeometryTy* meshGeometry(const Scene& scene, int mesh) const;
   RTCSceneTy* meshScene(const Scene& scene, int mesh);
