@@ -83,9 +83,35 @@ TEST(Decode, RefusesSizesBeforeDecoding) {
 }
 
 TEST(Decode, RefusesOtherFormatsByName) {
-  EXPECT_EQ(refusal({}), "x: is neither PNG nor JPEG");
+  EXPECT_EQ(refusal({}), "x: is neither PNG, JPEG nor WebP");
   EXPECT_EQ(refusal({0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb}),
-            "x: is KTX2; PNG and JPEG can be read");
+            "x: is KTX2; PNG, JPEG and WebP can be read");
+}
+
+// Lossless, of the texels (255 0 0 255) (0 128 255 64).
+const Bytes kWebp = {0x52, 0x49, 0x46, 0x46, 0x20, 0x00, 0x00, 0x00, 0x57, 0x45,
+                     0x42, 0x50, 0x56, 0x50, 0x38, 0x4c, 0x14, 0x00, 0x00, 0x00,
+                     0x2f, 0x01, 0x00, 0x00, 0x10, 0x0f, 0x30, 0x80, 0xfb, 0x3f,
+                     0xff, 0x0f, 0xfa, 0x0f, 0x2d, 0x54, 0x20, 0xa2, 0xff, 0x01};
+
+TEST(Decode, WebpKeepsTheColourOfTransparentTexels) {
+  const DecodedImage image = decodeImage(kWebp, "x");
+  EXPECT_EQ(image.width, 2);
+  EXPECT_EQ(image.height, 1);
+  const std::vector<std::array<uint8_t, 4>> texels{{255, 0, 0, 255}, {0, 128, 255, 64}};
+  EXPECT_EQ(image.texels8, texels);
+}
+
+TEST(Decode, DamagedWebpIsRefusedOrRead) {
+  for (size_t i = 12; i < kWebp.size(); ++i) {
+    Bytes cut(kWebp.begin(), kWebp.begin() + long(i)), turned = kWebp;
+    turned[i] = uint8_t(~turned[i]);
+    EXPECT_NE(refusal(cut), "");
+    refusal(turned);
+  }
+  Bytes large = kWebp;  // 16384 x 16384, say the 28 bits of its header
+  large[21] = large[22] = large[23] = 0xff, large[24] = 0x1f;
+  EXPECT_NE(refusal(large).find("cannot be held by 40 bytes"), std::string::npos);
 }
 
 TEST(Decode, DamagedFilesAreRefusedOrRead) {

@@ -79,10 +79,10 @@ TEST(GltfFile, VersionsAndExtensions) {
   ASSERT_EQ(w.warnings.size(), 1u);
   EXPECT_TRUE(
       w.warnings[0].ends_with(": ignored extensions: KHR_materials_sheen, KHR_xmp_json_ld"));
-  w.root["extensionsRequired"] = json::array({"KHR_draco_mesh_compression"});
+  w.root["extensionsRequired"] = json::array({"KHR_texture_basisu"});
   EXPECT_EQ(w.refusal(),
-            "requires the extension KHR_draco_mesh_compression, which is not supported; export it "
-            "again without mesh compression");
+            "requires the extension KHR_texture_basisu, which is not supported; turn its KTX2 "
+            "textures into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)");
 }
 
 TEST(GltfFile, BuffersByUri) {

@@ -159,6 +159,18 @@ TEST(GltfMaterial, RefusesAndClamps) {
   EXPECT_EQ(w.warnings.size(), 1u);
 }
 
+TEST(GltfMaterial, TexturesByExtension) {
+  GltfWriter w;
+  loadWith(w, {{"normalTexture", {{"index", 0}}}});
+  json& texture = w.root["textures"][0];
+  texture = {{"source", 99}, {"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  EXPECT_EQ(w.load().textures.at(0).grid->width, 2);
+  texture = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  EXPECT_NE(w.refusal().find("textures[0]: has only a KTX2 image"), std::string::npos);
+  texture["source"] = 0;  // for those that cannot read KTX2
+  EXPECT_EQ(w.refusal(), "");
+}
+
 TEST(GltfMaterial, RefusesImagesThatCannotBe) {
   const auto refusal = [](const std::vector<uint8_t>& image) {
     GltfWriter w;
@@ -167,8 +179,8 @@ TEST(GltfMaterial, RefusesImagesThatCannotBe) {
     return w.refusal();
   };
   EXPECT_EQ(refusal(kPng), "");
-  EXPECT_EQ(refusal({}), "images[0] (a.png): is neither PNG nor JPEG");
-  EXPECT_NE(refusal({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("is WebP"),
+  EXPECT_EQ(refusal({}), "images[0] (a.png): is neither PNG, JPEG nor WebP");
+  EXPECT_NE(refusal({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("not a WebP"),
             std::string::npos);
   EXPECT_NE(refusal({kPng.begin(), kPng.begin() + 50}).find("damaged image"), std::string::npos);
 }

@@ -38,6 +38,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 const std::map<std::string, std::string> kSeenBy = {
     {"rtcore.h", "renderer/trace/"},
     {"OpenImageIO/", "renderer/image/"},
+    {"webp/", "renderer/image/webp.cpp"},
+    {"draco/", "renderer/scene/gltf_draco.cpp"},
+    {"meshoptimizer.h", "renderer/scene/gltf_meshopt.cpp"},
     {"tiny_gltf.h", "renderer/scene/gltf"},
     {"toml++/", "renderer/scene/scene_file.cpp"},
     {"Eigen/", "renderer/lighting/"},

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(build-essential cmake pkg-config
-  libembree-dev libopenimageio-dev libtinygltf-dev libtomlplusplus-dev libcli11-dev
+  libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libtomlplusplus-dev libcli11-dev
   libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
 
 needs() {

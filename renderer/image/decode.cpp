@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "image/quiet.h"
+#include "image/webp.h"
 #include "math/error.h"
 
 namespace chromeball {
@@ -30,13 +31,12 @@ std::string firstLine(const std::string& text) { return text.substr(0, text.find
 const char* formatOf(std::span<const uint8_t> file, const std::string& name) {
   if (startsWith(file, "\x89PNG\r\n\x1a\n")) return "texture.png";
   if (startsWith(file, "\xff\xd8\xff")) return "texture.jpg";
-  const char* found = startsWith(file, "\xabKTX 20")                            ? "KTX2"
-                      : startsWith(file, "RIFF") && startsWith(file, "WEBP", 8) ? "WebP"
-                      : startsWith(file, "DDS ")                                ? "DDS"
+  const char* found = startsWith(file, "\xabKTX 20")                ? "KTX2"
+                      : startsWith(file, "DDS ")                    ? "DDS"
                       : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
                                                                     : nullptr;
-  if (found) throwInput("{}: is {}; PNG and JPEG can be read", name, found);
-  throwInput("{}: is neither PNG nor JPEG", name);
+  if (found) throwInput("{}: is {}; PNG, JPEG and WebP can be read", name, found);
+  throwInput("{}: is neither PNG, JPEG nor WebP", name);
 }
 
 void checkSize(const ImageSpec& spec, size_t fileBytes, const std::string& name) {
@@ -70,6 +70,7 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 }  // namespace
 
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
+  if (startsWith(file, "RIFF") && startsWith(file, "WEBP", 8)) return decodeWebp(file, name);
   const char* format = formatOf(file, name);
   const QuietStandardError quiet;
   OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());

@@ -22,8 +22,9 @@ struct DecodedImage {
 
 inline constexpr int kMaxImageSide = 16384;
 
-// `file` holds a PNG or a JPEG; `name` is for messages. Throws InputError for another format, an
-// image larger than kMaxImageSide on a side or than its bytes can hold, and for damaged data.
+// `file` holds a PNG, a JPEG or a WebP; `name` is for messages. Throws InputError for another
+// format, an image larger than kMaxImageSide on a side or than its bytes can hold, and for damaged
+// data.
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name);
 
 }  // namespace chromeball

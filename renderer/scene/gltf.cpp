@@ -1,8 +1,10 @@
 #include "scene/gltf.h"
 
 #include "scene/gltf_animation.h"
+#include "scene/gltf_draco.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_instances.h"
+#include "scene/gltf_meshopt.h"
 #include "scene/gltf_node.h"
 
 namespace chromeball {
@@ -59,6 +61,8 @@ void standMeshesUp(tinygltf::Model& model) {
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice) {
   GltfFile file(path, warn);
+  decodeMeshopt(file);
+  decodeDraco(file);
   if (choice.animation)
     applyAnimation(file, *choice.animation);
   else if (!file.model.animations.empty())

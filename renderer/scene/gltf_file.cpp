@@ -12,17 +12,18 @@ namespace {
 using nlohmann::json;
 
 const std::set<std::string> kSupportedExtensions = {
-    "KHR_texture_transform", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",     "KHR_materials_specular",
-    "KHR_materials_unlit",   "KHR_mesh_quantization"};
+    "KHR_texture_transform",      "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_unlit",        "KHR_mesh_quantization",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+    "EXT_mesh_gpu_instancing",    "EXT_texture_webp"};
 
 // What the user can do about a required extension.
 const char* adviceFor(const std::string& extension) {
-  if (extension == "KHR_draco_mesh_compression" || extension.find("meshopt") != std::string::npos)
-    return "export it again without mesh compression";
-  if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp" ||
-      extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
-    return "export it again with PNG or JPEG textures";
+  if (extension == "KHR_texture_basisu")
+    return "turn its KTX2 textures into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)";
+  if (extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
+    return "export it again with PNG, JPEG or WebP textures";
   if (extension == "KHR_materials_pbrSpecularGlossiness")
     return "convert it to metallic-roughness materials";
   return "export it again without it";
@@ -167,13 +168,28 @@ void GltfFile::readModel(json& root) {
 
 std::span<const uint8_t> GltfFile::view(int bufferView, const std::string& where) const {
   const tinygltf::BufferView& v = at(model.bufferViews, bufferView, "bufferViews", where);
-  const std::span<const uint8_t> buffer = at(buffers_, v.buffer, "buffers", where);
-  if (buffer.empty()) fail("{}: buffers[{}] has no bytes", where, v.buffer);
-  if (v.byteOffset > buffer.size() || v.byteLength > buffer.size() - v.byteOffset)
-    fail("{}: bufferViews[{}] covers bytes {} to {} of buffers[{}], which has {}", where,
-         bufferView, v.byteOffset, double(v.byteOffset) + double(v.byteLength), v.buffer,
-         buffer.size());
-  return buffer.subspan(v.byteOffset, v.byteLength);
+  return bytes(v.buffer, v.byteOffset, v.byteLength,
+               fmt::format("{}: bufferViews[{}]", where, bufferView));
+}
+
+std::span<const uint8_t> GltfFile::bytes(int index, size_t offset, size_t length,
+                                         const std::string& where) const {
+  const std::span<const uint8_t> buffer = at(buffers_, index, "buffers", where);
+  if (buffer.empty()) fail("{}: buffers[{}] has no bytes", where, index);
+  if (offset > buffer.size() || length > buffer.size() - offset)
+    fail("{} covers bytes {} to {} of buffers[{}], which has {}", where, offset,
+         double(offset) + double(length), index, buffer.size());
+  return buffer.subspan(offset, length);
+}
+
+int GltfFile::addView(Bytes bytes) {
+  storage_.push_back(std::move(bytes));
+  buffers_.push_back(storage_.back());
+  tinygltf::BufferView view;
+  view.buffer = int(buffers_.size()) - 1;
+  view.byteLength = storage_.back().size();
+  model.bufferViews.push_back(view);
+  return int(model.bufferViews.size()) - 1;
 }
 
 std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {

@@ -35,6 +35,13 @@ class GltfFile {
   tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
 
+  // A part of a buffer. `where` names the user of it in the message.
+  std::span<const uint8_t> bytes(int buffer, size_t offset, size_t length,
+                                 const std::string& where) const;
+
+  // Appends a buffer view of its own buffer to the model; returns its index.
+  int addView(Bytes bytes);
+
   // The bytes of a buffer view. `where` names the user of it in the message.
   std::span<const uint8_t> view(int bufferView, const std::string& where) const;
 

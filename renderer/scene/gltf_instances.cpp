@@ -4,6 +4,7 @@
 #include <map>
 
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_instancing.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/mesh_attributes.h"
@@ -33,10 +34,11 @@ class InstanceReader {
     int mesh = -1;  // in the scene, once it has been read for several users
   };
 
-  // A primitive that a node shows.
+  // A primitive that a node shows, at one of its places.
   struct Plan {
     int node, mesh, primitive, material;
     Geometry* geometry;  // null: skinned, which puts it into world space
+    dmat4 toWorld;
   };
 
   void planNode(int index) {
@@ -46,31 +48,33 @@ class InstanceReader {
     const tinygltf::Mesh& mesh = file_.at(file_.model.meshes, node.mesh, "meshes", where + ".mesh");
     if (node.skin != -1) readJoints(node.skin, where + ".skin");
     const Pose pose = poseOf(index);
+    const std::vector<dmat4> places = placesOf(index, where);
     for (size_t i = 0; i < mesh.primitives.size(); ++i) {
       const tinygltf::Primitive& primitive = mesh.primitives[i];
       const bool skinned = isSkinned(primitive, pose);
       const std::string at = describe(node.mesh, i);
-      if (!hasTriangles(file_, primitive, at) || !(skinned || mayPlace(index))) continue;
-      file_.spend(sizeof(Plan) + sizeof(Instance));
+      if (!hasTriangles(file_, primitive, at) || !(skinned || !places.empty())) continue;
+      file_.spend((sizeof(Plan) + sizeof(Instance)) * std::max<size_t>(places.size(), 1));
       const int material = materials_.use(primitive.material, at + ".material");
-      Geometry* geometry = nullptr;
-      if (!skinned) {
-        geometry = &geometries_[recipeOf(primitive, pose, materials_[material])];
-        ++geometry->users;
+      if (skinned) {
+        plans_.push_back({index, node.mesh, int(i), material, nullptr, dmat4(1)});
+        continue;
       }
-      plans_.push_back({index, node.mesh, int(i), material, geometry});
+      Geometry& geometry = geometries_[recipeOf(primitive, pose, materials_[material])];
+      geometry.users += int(places.size());
+      for (const dmat4& toWorld : places)
+        plans_.push_back({index, node.mesh, int(i), material, &geometry, toWorld});
     }
   }
 
   void place(const Plan& plan) {
-    const dmat4& toWorld = tree_.toWorld[size_t(plan.node)];
     const bool shared = plan.geometry && plan.geometry->users > 1;
     int mesh = shared ? plan.geometry->mesh : -1;
-    if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &toWorld);
+    if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
     if (mesh == -1) return;
     if (shared) plan.geometry->mesh = mesh;
-    scene_.instances.push_back(
-        {mesh, plan.material, plan.node, shared ? std::optional(roundToFloat(toWorld)) : std::nullopt});
+    scene_.instances.push_back({mesh, plan.material, plan.node,
+                                shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt});
   }
 
   // Adds a mesh to the scene, moved by `transform` where there is one; -1 where it has no
@@ -93,11 +97,17 @@ class InstanceReader {
     return fmt::format("meshes[{}].primitives[{}]", mesh, primitive);
   }
 
-  bool mayPlace(int node) {
-    if (isInvertible(tree_.toWorld[size_t(node)])) return true;
-    file_.warnOnce("nodes without an invertible transform (\"" + tree_.names[size_t(node)] +
-                   "\", say) are left out");
-    return false;
+  // The invertible ones of the node's transforms; several where it is instanced.
+  std::vector<dmat4> placesOf(int index, const std::string& where) {
+    std::vector<dmat4> places =
+        readInstanceTransforms(file_, file_.model.nodes[size_t(index)], where);
+    for (dmat4& place : places) place = tree_.toWorld[size_t(index)] * place;
+    const size_t all = places.size();
+    std::erase_if(places, [](const dmat4& place) { return !isInvertible(place); });
+    if (places.size() < all)
+      file_.warnOnce("nodes without an invertible transform (\"" + tree_.names[size_t(index)] +
+                     "\", say) are left out");
+    return places;
   }
 
   Pose poseOf(int index) const {

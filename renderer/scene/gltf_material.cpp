@@ -158,8 +158,16 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
 
 int MaterialReader::texture(int index, bool srgb, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
-  if (source.source == -1) {
-    file_.warnOnce("textures without a PNG or JPEG image are left out");
+  int image = source.source;
+  if (const Value* e = find(source.extensions, "EXT_texture_webp"))
+    image = e->Get("source").IsInt() ? e->Get("source").GetNumberAsInt() : -1;
+  if (image == -1 && find(source.extensions, "KHR_texture_basisu"))
+    file_.fail(
+        "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "
+        "turn it into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)",
+        index);
+  if (image == -1) {
+    file_.warnOnce("textures without an image are left out");
     return -1;
   }
   Texture t;
@@ -171,10 +179,10 @@ int MaterialReader::texture(int index, bool srgb, const std::string& where) {
     t.wrapT = wrapOf(sampler.wrapT);
     if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) t.filter = Filter::Nearest;
   }
-  file_.at(file_.images, source.source, "images", where);
-  const TextureKey key{source.source, t.wrapS, t.wrapT, t.filter, srgb};
+  file_.at(file_.images, image, "images", where);
+  const TextureKey key{image, t.wrapS, t.wrapT, t.filter, srgb};
   if (const auto found = textureOf_.find(key); found != textureOf_.end()) return found->second;
-  t.grid = grid(source.source);
+  t.grid = grid(image);
   textures_.push_back(t);
   return textureOf_[key] = int(textures_.size()) - 1;
 }

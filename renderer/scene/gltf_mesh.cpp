@@ -63,18 +63,6 @@ class AttributeReader {
   size_t vertexCount_ = 0;
 };
 
-// Without the extension's data, its accessors would read as zeros.
-void refuseCompressed(const GltfFile& file, const tinygltf::Primitive& primitive,
-                      const std::string& where) {
-  constexpr const char* kDraco = "KHR_draco_mesh_compression";
-  const int positions = primitive.attributes.at("POSITION");
-  const auto& accessors = file.model.accessors;
-  if (primitive.extensions.contains(kDraco) && positions >= 0 &&
-      size_t(positions) < accessors.size() && accessors[size_t(positions)].bufferView < 0)
-    file.fail("{}: is compressed by {}, which is not supported; export it again without", where,
-              kDraco);
-}
-
 void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, Material material,
                             Mesh& mesh) {
   for (const TextureSlot* slot : textureSlots(material)) {
@@ -164,7 +152,6 @@ MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Mate
 std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& primitive,
                                   const Pose& pose, const std::string& where,
                                   const Material& material) {
-  refuseCompressed(file, primitive, where);
   AttributeReader attributes(file, primitive, where);
   Mesh mesh;
   mesh.positions = attributes.read("POSITION", readVectors<3>);
