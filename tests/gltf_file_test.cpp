@@ -31,9 +31,10 @@ std::vector<uint8_t> glb(uint32_t version, const std::string& text,
   return bytes;
 }
 
-std::string refusalOf(const std::filesystem::path& path) {
+std::string refusalOf(const std::filesystem::path& path,
+                      ExternalFiles external = ExternalFiles::Refuse) {
   try {
-    loadGltf(path.string(), {}, nullptr);
+    loadGltf(path.string(), {}, nullptr, {.external = external});
   } catch (const InputError& e) {
     return std::string(e.what()).substr(path.string().size() + 2);
   }
@@ -105,10 +106,42 @@ TEST(GltfFile, BuffersByUri) {
   EXPECT_EQ(refusal("data:application/octet-stream;base64,AA*A"),
             "buffers[0].uri: is not a well-formed data URI");
   EXPECT_EQ(refusal("none.bin"), "buffers[0].uri: \"none.bin\" does not exist");
-  for (const char* outside : {"../data.bin", "sub%20dir/../../x", "%2e%2e/x", "/etc/passwd",
-                              "file:///etc/passwd", "https://example.org/x.bin", "..\\x", "C:\\x"})
-    EXPECT_NE(refusal(outside).find("is not below the model's folder"), std::string::npos)
-        << outside;
+}
+
+TEST(GltfFile, FilesOutsideTheFolderAskForPermission) {
+  GltfWriter w, elsewhere;
+  addTriangle(elsewhere);
+  elsewhere.save();
+  addTriangle(w);
+  const auto refusal = [&](const std::string& uri, ExternalFiles external) {
+    w.save();
+    w.root["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
+    std::ofstream(w.folder() / "model.gltf") << w.root;
+    return refusalOf(w.folder() / "model.gltf", external);
+  };
+  std::filesystem::create_directory(w.folder() / "sub");
+  std::filesystem::create_symlink(elsewhere.folder(), w.folder() / "link");
+  std::filesystem::create_symlink("../data.bin", w.folder() / "sub/inside.bin");
+  EXPECT_EQ(refusal("sub/inside.bin", ExternalFiles::Refuse), "");
+
+  const std::string other = elsewhere.folder().filename().string() + "/data.bin";
+  const std::pair<std::string, const char*> outside[] = {
+      {"../" + other, "leaves the model's folder by \"..\""},
+      {"sub/../../" + other, "leaves the model's folder by \"..\""},
+      {"%2e%2e/" + other, "leaves the model's folder by \"..\""},
+      {(elsewhere.folder() / "data.bin").string(), "is an absolute path"},
+      {"link/data.bin", "leaves the model's folder through a link"}};
+  for (const auto& [uri, reason] : outside) {
+    const std::string said = refusal(uri, ExternalFiles::Refuse);
+    EXPECT_NE(said.find(reason), std::string::npos) << uri << ": " << said;
+    EXPECT_NE(said.find("--allow-external"), std::string::npos) << said;
+    EXPECT_EQ(refusal(uri, ExternalFiles::Allow), "") << uri;
+  }
+  for (const char* uri : {"file:///etc/passwd", "https://example.org/x.bin", "C:/x", "data%3ax"})
+    EXPECT_NE(refusal(uri, ExternalFiles::Allow).find("has the scheme"), std::string::npos) << uri;
+  for (const char* uri : {"..\\x", "a\nb", "%00"})
+    EXPECT_NE(refusal(uri, ExternalFiles::Allow).find("backslash or a control"), std::string::npos)
+        << uri;
 }
 
 TEST(GltfFile, BuffersWithoutBytesAreRefusedOnlyWhenUsed) {

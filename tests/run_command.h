@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -54,9 +55,22 @@ inline std::string fileContents(const std::string& path) {
   return text.str();
 }
 
-// Where `interruptAt` is given, sends SIGINT as soon as standard error holds it.
+// What the command is given to live on, in bytes; 0 is as much as there is.
+struct CommandLimits {
+  size_t memory = 0;    // address space
+  size_t fileSize = 0;  // of each file it writes, as on a disk that fills up
+
+  void apply() const {
+    const rlimit addressSpace{memory, memory}, file{fileSize, fileSize};
+    if (memory) setrlimit(RLIMIT_AS, &addressSpace);
+    if (fileSize) setrlimit(RLIMIT_FSIZE, &file);
+  }
+};
+
+// Where `signalAt` is given, sends `signal` as soon as standard error holds it.
 inline CommandResult runCommand(const std::vector<std::string>& arguments,
-                                const std::string& interruptAt = "") {
+                                const std::string& signalAt = "", int signal = SIGINT,
+                                const CommandLimits& limits = {}) {
   const TemporaryFolder folder;
   const std::string outPath = folder / "out", errorPath = folder / "error";
   std::vector<char*> argv{const_cast<char*>(kCommand)};
@@ -65,6 +79,7 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
 
   const pid_t child = fork();
   if (child == 0) {
+    limits.apply();
     dup2(open(outPath.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(errorPath.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     execv(argv[0], argv.data());
@@ -72,12 +87,12 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
   }
   int status = 0;
   bool ended = false;
-  while (!interruptAt.empty() && !ended &&
-         fileContents(errorPath).find(interruptAt) == std::string::npos) {
+  while (!signalAt.empty() && !ended &&
+         fileContents(errorPath).find(signalAt) == std::string::npos) {
     usleep(10000);
     ended = waitpid(child, &status, WNOHANG) == child;
   }
-  if (!interruptAt.empty() && !ended) kill(child, SIGINT);
+  if (!signalAt.empty() && !ended) kill(child, signal);
   if (!ended) waitpid(child, &status, 0);
   CommandResult result;
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
@@ -89,8 +104,8 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
 // The input was refused as the command line promises: status 2, nothing on standard output, and one
 // line `chromeball: ...` that holds `reason`.
 inline CommandResult expectRefused(const std::vector<std::string>& arguments,
-                                   const std::string& reason) {
-  const CommandResult result = runCommand(arguments);
+                                   const std::string& reason, const CommandLimits& limits = {}) {
+  const CommandResult result = runCommand(arguments, "", SIGINT, limits);
   EXPECT_EQ(result.status, 2) << result.error;
   EXPECT_EQ(result.out, "");
   EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;

@@ -12,10 +12,11 @@
 namespace chromeball {
 namespace {
 
-Scene loadModels(const SceneFile& file) {
+Scene loadModels(const SceneFile& file, std::vector<std::string>& notes) {
   Scene scene;
+  const auto note = [&](const std::string& line) { notes.push_back(line); };
   for (const ModelEntry& model : file.models)
-    append(scene, loadGltf(model.file, model.placement, warn, model.choice));
+    append(scene, loadGltf(model.file, model.placement, note, model.choice));
   if (scene.instances.empty())
     throwInput("{}: the model has no triangles to render", file.models.front().file);
   return scene;
@@ -74,16 +75,18 @@ void chooseSize(RenderJob& job, const Scene& scene) {
 }  // namespace
 
 LoadedScene loadScene(RenderJob& job) {
-  Scene scene = loadModels(job.file);
+  std::vector<std::string> notes;
+  Scene scene = loadModels(job.file, notes);
   chooseSize(job, scene);
   const Camera camera = chooseCamera(job, scene);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
-  return {std::move(scene), camera, std::move(loaded), std::move(probe)};
+  return {std::move(scene), camera, std::move(loaded), std::move(probe), std::move(notes)};
 }
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
+  for (const std::string& note : loaded.modelNotes) warn(note);
   if (!job.file.probe) return;
   const std::string& path = *job.file.probe;
   const LoadedProbe& probe = loaded.loadedProbe;

@@ -10,15 +10,17 @@ namespace chromeball {
 struct LoadedScene {
   Scene scene;
   Camera camera;
-  LoadedProbe loadedProbe;  // what was found in its file; the map itself is in `probe`
-  Probe probe;              // black where the scene lights itself
+  LoadedProbe loadedProbe;              // what was found in its file; the map itself is in `probe`
+  Probe probe;                          // black where the scene lights itself
+  std::vector<std::string> modelNotes;  // what the models' files hold that is not rendered
 };
 
 // Reads models and probe, chooses the camera, and the size where the job left it to the camera.
 // Throws InputError.
 LoadedScene loadScene(RenderJob& job);
 
-// Says on standard error what was repaired in the probe and, unless quiet, what was guessed of it.
+// Says on standard error what is left out of the models, what was repaired in the probe and, unless
+// quiet, what was guessed of it.
 // To be called once nothing can be wrong any more, so that what is wrong stays one line.
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet);
 

@@ -117,6 +117,8 @@ RenderJob planJob(const RenderOptions& o) {
   settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
   settings.seed = file.seed.value_or(0);
   settings.hideProbe = o.transparent;
+  if (o.allowExternal)
+    for (ModelEntry& model : file.models) model.choice.external = ExternalFiles::Allow;
   if (file.mis) settings.mis = parseMis(*file.mis);
   std::vector<NamedSetting> aovs = file.aovs;
   if (!o.aovs.empty()) {
@@ -154,6 +156,8 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--threads", o.threads, "Number of threads (all)");
   command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
   command.add_option("--exposure", o.exposure, "For .png: stops");
+  command.add_flag("--allow-external", o.allowExternal,
+                   "Let models name files outside their own folders");
   command.add_flag("--progress", o.progress, "Show progress even where it is no terminal");
   command.add_flag("--quiet", o.quiet, "Show neither progress nor notes");
 }

@@ -19,11 +19,17 @@ namespace {
 namespace fs = std::filesystem;
 
 // OpenImageIO's message about `path`, as one line of ours. What its message says up to the path is
-// said by ours; a damaged file's names may hold anything.
+// said by ours, unless the path is its end; a damaged file's names may hold anything.
 [[noreturn]] void fail(const fs::path& path, std::string reason) {
+  constexpr const char* kPunctuation = "\"'.:() \n";
   const size_t repeated = reason.rfind(path.string());
-  if (repeated != std::string::npos) reason.erase(0, repeated + path.string().size());
-  reason.erase(0, reason.find_first_not_of("\". "));
+  if (repeated != std::string::npos) {
+    const std::string after = reason.substr(repeated + path.string().size());
+    const bool saysMore = after.find_first_not_of(kPunctuation) != std::string::npos;
+    reason = saysMore ? after : reason.substr(0, repeated);
+  }
+  reason.erase(0, reason.find_first_not_of(kPunctuation));
+  reason.erase(reason.find_last_not_of(kPunctuation) + 1);
   for (char& c : reason)
     if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
   throwInput("{}: cannot be read: {}", path.string(),
@@ -52,10 +58,13 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
 }
 
 // No encoding packs texels tighter than this; a header that asks for more in a large image lies.
-void checkPlausible(const fs::path& path, const OIIO::ImageSpec& spec) {
-  constexpr uint64_t kMaxRatio = 100'000, kAlwaysAllowed = 64 << 20;
+// Deflate shrinks at most 1032 times, JPEG's Huffman codes less; OpenEXR's wavelets know no such
+// bound.
+void checkPlausible(const fs::path& path, const std::string& format, const OIIO::ImageSpec& spec) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20;
+  const uint64_t maxRatio = format == "png" || format == "jpeg" ? 1032 : 100'000;
   const uint64_t decoded = spec.image_bytes(true);
-  if (decoded > kAlwaysAllowed && decoded / kMaxRatio > fs::file_size(path))
+  if (decoded > kAlwaysAllowed && decoded / maxRatio > fs::file_size(path))
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
@@ -65,7 +74,7 @@ ImageFile readThroughLibrary(const fs::path& path, IntegerTexels integers) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
   checkImageSize(path, spec.width, spec.height, spec.nchannels);
-  checkPlausible(path, spec);
+  checkPlausible(path, input->format_name(), spec);
 
   ImageFile file;
   file.channels = spec.channelnames;

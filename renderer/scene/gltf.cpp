@@ -60,7 +60,7 @@ void standMeshesUp(tinygltf::Model& model) {
 
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice) {
-  GltfFile file(path, warn);
+  GltfFile file(path, warn, choice.external);
   decodeMeshopt(file);
   decodeDraco(file);
   if (choice.animation)

@@ -12,6 +12,10 @@ namespace chromeball {
 // Takes one line of warning ("FILE: what was ignored"), each said once per file.
 using Warn = std::function<void(const std::string&)>;
 
+// Whether a model may name files outside its own folder: by an absolute path, by "..", or through a
+// link. URIs with a scheme (http:, file:) are refused in any case.
+enum class ExternalFiles { Refuse, Allow };
+
 // An animation of the file and the time to show it at.
 struct AnimationTime {
   std::string name;   // or its index where it has none; empty: the first
@@ -19,9 +23,10 @@ struct AnimationTime {
   double seconds = 0;
 };
 
-// What of a file to show.
+// What of a file to show, and what it may ask for.
 struct GltfChoice {
   std::optional<AnimationTime> animation;  // else the rest pose
+  ExternalFiles external = ExternalFiles::Refuse;
 };
 
 // Reads the default scene of the file (the first where none is named), with `placement` applied to

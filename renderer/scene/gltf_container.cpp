@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 namespace chromeball {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
@@ -51,6 +53,17 @@ int nesting(std::span<const uint8_t> text) {
     if (c == ']' || c == '}') --depth;
   }
   return deepest;
+}
+
+// A whole number stays one when it is written 2.0 or 2e0, as JSON and glTF have it.
+void makeIntegersWhole(json& value) {
+  if (value.is_structured())
+    for (json& element : value) makeIntegersWhole(element);
+  if (!value.is_number_float()) return;
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  const double x = value.get<double>();
+  if (x >= 0 && x < kExact && x == std::floor(x)) value = uint64_t(x);
+  if (x < 0 && x > -kExact && x == std::floor(x)) value = int64_t(x);
 }
 
 }  // namespace
@@ -102,6 +115,7 @@ json parseJson(std::span<const uint8_t> text) {
     fail("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());
   }
   if (!root.is_object()) fail("is not a JSON object");
+  makeIntegersWhole(root);
   return root;
 }
 
@@ -138,13 +152,26 @@ std::string decodePercent(const std::string& uri) {
   return path;
 }
 
-bool staysBelow(const std::string& path) {
-  if (path.empty() || path[0] == '/' || path.find('\\') != std::string::npos) return false;
-  if (std::any_of(path.begin(), path.end(), [](unsigned char c) { return c < 0x20; })) return false;
-  const size_t colon = path.find(':');
-  if (colon != std::string::npos && colon < path.find('/')) return false;
-  const std::filesystem::path parts(path);
-  return std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part == ".."; });
+void checkFileName(const std::string& name) {
+  if (name.empty()) fail("names no file");
+  const size_t colon = name.find(':');
+  if (colon != std::string::npos && colon < name.find('/'))
+    fail("has the scheme {}; only relative paths are read", name.substr(0, colon + 1));
+  const auto isForeign = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '\\'; };
+  if (std::any_of(name.begin(), name.end(), isForeign))
+    fail("has a backslash or a control character; only relative paths with / are read");
+}
+
+void checkInside(const fs::path& folder, const std::string& name) {
+  constexpr const char* kRemedy = "which --allow-external permits";
+  const fs::path path(name);
+  if (path.is_absolute()) fail("is an absolute path, {}", kRemedy);
+  if (std::find(path.begin(), path.end(), "..") != path.end())
+    fail("leaves the model's folder by \"..\", {}", kRemedy);
+  const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
+  const fs::path target = fs::weakly_canonical(root / path);
+  const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
+  if (end != root.end()) fail("leaves the model's folder through a link, {}", kRemedy);
 }
 
 }  // namespace chromeball

@@ -20,7 +20,8 @@ struct GltfChunks {
 // Splits a .glb into its chunks; whatever does not begin with the GLB magic is all JSON.
 GltfChunks splitContainer(std::span<const uint8_t> file);
 
-// Parses an object that nests at most 128 levels (everyone downstream recurses).
+// Parses an object that nests at most 128 levels (everyone downstream recurses). Numbers without a
+// fractional part come out as integers, however they are written.
 nlohmann::json parseJson(std::span<const uint8_t> text);
 
 // The bytes of a data URI, in base64 or percent-encoded. False where it is not well-formed.
@@ -29,7 +30,11 @@ bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes);
 // Replaces %XX by the byte it stands for.
 std::string decodePercent(const std::string& uri);
 
-// Whether a path is relative, has no "..", no scheme and no control characters.
-bool staysBelow(const std::string& path);
+// Throws where a decoded URI has a scheme, or characters that no file should have in its name.
+void checkFileName(const std::string& name);
+
+// Throws where `folder / name` is not below the folder: by an absolute path, by "..", or because a
+// link leads out.
+void checkInside(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace chromeball

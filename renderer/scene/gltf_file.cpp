@@ -99,7 +99,8 @@ std::string oneLine(std::string text) {
   return text;
 }
 
-GltfFile::GltfFile(const std::string& path, Warn warn) : path_(path), warn_(std::move(warn)) {
+GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
+    : path_(path), warn_(std::move(warn)), external_(external) {
   try {
     file_ = readWholeFile(path);
     const GltfChunks chunks = splitContainer(file_);
@@ -213,15 +214,14 @@ Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const 
     if (!decodeDataUri(uri, bytes)) fail("{}: is not a well-formed data URI", where);
     return bytes;
   }
-  const std::string relative = decodePercent(uri);
-  if (!staysBelow(relative))
-    fail("{}: \"{}\" is not below the model's folder; only relative paths without '..' can be read",
-         where, uri);
-  const std::filesystem::path file = std::filesystem::path(path_).parent_path() / relative;
+  const std::string name = decodePercent(uri);
   try {
-    return readWholeFile(file);
+    checkFileName(name);
+    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+    if (external_ == ExternalFiles::Refuse) checkInside(folder, name);
+    return readWholeFile(folder / name);
   } catch (const std::exception& e) {
-    fail("{}: \"{}\" {}", where, relative, e.what());
+    fail("{}: \"{}\" {}", where, name, e.what());
   }
 }
 

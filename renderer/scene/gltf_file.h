@@ -29,8 +29,8 @@ std::string oneLine(std::string text);
 class GltfFile {
  public:
   // Reads the file and its buffers. Throws InputError where it is not glTF 2.0, requires an
-  // extension that is not supported, or names a buffer that is missing or not below its folder.
-  GltfFile(const std::string& path, Warn warn);
+  // extension that is not supported, or names a buffer that is missing or where `external` forbids.
+  GltfFile(const std::string& path, Warn warn, ExternalFiles external);
 
   tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
@@ -78,6 +78,7 @@ class GltfFile {
 
   std::string path_;
   Warn warn_;
+  ExternalFiles external_;
   std::set<std::string> said_;
   Bytes file_;                  // the GLB's buffer lies in here
   std::vector<Bytes> storage_;  // of buffers outside it

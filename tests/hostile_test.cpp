@@ -1,0 +1,184 @@
+// Files that should not be: collections of malformed models and damaged images, and size bombs.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gltf_writer.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/load.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "scene/framing.h"
+#include "shared_data.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+#ifdef __SANITIZE_ADDRESS__
+const CommandLimits kGibibyte;  // the sanitizer reserves terabytes of address space
+#else
+const CommandLimits kGibibyte{.memory = size_t(1) << 30};
+#endif
+
+std::vector<fs::path> filesBelow(const fs::path& root, const std::set<std::string>& extensions) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(root))
+    if (entry.is_regular_file() && extensions.contains(entry.path().extension().string()))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Why the file is refused, or "" where it renders, by all samples valid. Anything but an InputError
+// fails the test; a crash or a hang fails all of them.
+std::string refusalOfModel(const fs::path& path) {
+  try {
+    const Scene scene = loadGltf(path.string(), {}, nullptr);
+    if (scene.instances.empty()) return "";
+    const Probe probe(constantProbe({8, 4}, Rgb(1)));
+    const RenderResult result =
+        renderScene(scene, framingCamera(scene, 1), probe, "importance", smallRender(8, 8, 2, 4));
+    EXPECT_EQ(result.invalid.count, 0u) << path;
+    return "";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message.substr(std::min(message.size(), path.string().size() + 2));
+  }
+}
+
+std::string refusalOfImage(const fs::path& path) {
+  try {
+    const ImageFile file = readImageFile(path);
+    for (const std::string& layer : layerNames(file)) findLayer(file, layer);
+    const LoadedProbe loaded = loadProbe(path, "auto", "");
+    const Probe probe(loaded.latLong);
+    EXPECT_TRUE(isFinite(probe.radiance({0, 1, 0}))) << path;
+    return "";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+}
+
+TEST(SlowHostile, MalformedModelsAreRefusedOrRendered) {
+  const auto root = sharedData("bad");
+  if (!root) GTEST_SKIP() << "../shared/data/bad is not there";
+  int refused = 0, rendered = 0;
+  for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"}))
+    ++(refusalOfModel(path).empty() ? rendered : refused);
+  EXPECT_GT(refused, 50);
+  EXPECT_GT(rendered, 20);
+}
+
+// What Khronos's validator finds no error in is read.
+TEST(SlowHostile, ValidModelsAreRead) {
+  const auto root = sharedData("bad/gltf-validator/base");
+  if (!root) GTEST_SKIP() << "../shared/data/bad/gltf-validator is not there";
+  // Warnings to the validator: a scheme, a file to come, an accessor of no type.
+  const std::set<std::string> kRefused = {"non_relative_uri.gltf", "min_version_valid.gltf",
+                                          "unknown_type.gltf"};
+  int valid = 0;
+  for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"})) {
+    const fs::path report = path.string() + ".report.json";
+    if (!fs::exists(report)) continue;
+    const auto issues = nlohmann::json::parse(fileContents(report)).at("issues");
+    if (issues.at("numErrors") != 0) continue;
+    const std::string refusal = refusalOfModel(path);
+    EXPECT_EQ(refusal.empty(), !kRefused.contains(path.filename())) << path << ": " << refusal;
+    ++valid;
+  }
+  EXPECT_GT(valid, 30);
+}
+
+TEST(SlowHostile, DamagedImagesAreRefusedOrRead) {
+  const auto root = sharedData("bad/images");
+  if (!root) GTEST_SKIP() << "../shared/data/bad/images is not there";
+  int refused = 0;
+  for (const fs::path& path : filesBelow(*root, {".exr", ".png"})) {
+    const bool isRefused = !refusalOfImage(path).empty();
+    refused += isRefused;
+    if (path.parent_path().filename() == "openexr-damaged") {
+      EXPECT_TRUE(isRefused) << path;
+    }
+    if (path.parent_path().filename() == "openexr-values") {
+      EXPECT_FALSE(isRefused) << path;
+    }
+  }
+  EXPECT_GT(refused, 60);
+}
+
+// The command says one line and takes no more than a gibibyte, whatever it is given.
+TEST(SlowHostile, TheCommandRefusesInOneLine) {
+  const auto root = sharedData("bad");
+  if (!root) GTEST_SKIP() << "../shared/data/bad is not there";
+  const TemporaryFolder out;
+  const std::string probe = out / "probe.hdr";
+  writeImage(probe, constantProbe({8, 4}, Rgb(1)));
+  for (const char* model : {"assimp/RecursiveNodes/RecursiveNodes.gltf",
+                            "assimp/IndexOutOfRange/IndexOutOfRange.gltf", "tinygltf/issue-492.glb",
+                            "asset-generator-negative/Mesh_NoPosition/Mesh_NoPosition_00.gltf",
+                            "tinygltf/BoundsChecking/integer-out-of-bounds.gltf"})
+    expectRefused({"render", (*root / model).string(), "--probe", probe, "-o", out / "a.exr"},
+                  model, kGibibyte);
+  for (const char* image : {"memory_DOS_2.1.exr", "oom_exr.exr", "heap_overflow_exr.exr"})
+    expectRefused({"probe", "info", (*root / "images/openexr-damaged" / image).string()}, image,
+                  kGibibyte);
+  for (const char* image : {"xs1n0g01.png", "x_unexpected_eof.png"})
+    expectRefused({"image", "view", (*root / "images/png" / image).string(), out / "a.png"}, image,
+                  kGibibyte);
+  EXPECT_EQ(out.files(), Words{"probe.hdr"});
+}
+
+// Headers that promise more texels than their file can hold are refused before anything is
+// allocated.
+TEST(Hostile, SizeBombsAreRefusedByTheirHeaders) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& bytes) {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return folder / name;
+  };
+  const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 40000 +X 40000\n";
+  expectRefused({"probe", "info", write("a.hdr", hdr + std::string(150, '\1'))},
+                "40000 x 40000 texels", kGibibyte);
+  const std::string pfm = "PF\n20000 8000\n-1\n";
+  expectRefused({"probe", "info", write("a.pfm", pfm + std::string(100, '\1'))}, "20000 x 8000",
+                kGibibyte);
+  // A PNG whose header says 16000 x 8000, its data two texels.
+  std::string png(kPng.begin(), kPng.end());
+  png.replace(16, 17,
+              std::string("\x00\x00\x3e\x80\x00\x00\x1f\x40\x08\x02\x00\x00\x00", 13) +
+                  std::string("\xb6\x3e\x64\x15", 4));
+  expectRefused({"probe", "info", write("a.png", png)}, "too short for 16000 x 8000", kGibibyte);
+  // A JPEG's headers: 65500 x 65500, three components, one table of quantisation for all.
+  const std::string jpeg =
+      std::string(
+          "\xff\xd8\xff\xe0\x00\x10JFIF\x00\x01\x01\x00\x00\x01\x00\x01\x00\x00"
+          "\xff\xdb\x00\x43\x00",
+          25) +
+      std::string(64, '\1') +
+      std::string(
+          "\xff\xc0\x00\x11\x08\xff\xdc\xff\xdc\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00"
+          "\xff\xda\x00\x0c\x03\x01\x00\x02\x11\x03\x11\x00\x3f\x00\xff\xd9",
+          35);
+  expectRefused({"probe", "info", write("a.jpg", jpeg)}, "65500 x 65500", kGibibyte);
+
+  GltfWriter model;
+  model.write("bomb.jpg", {jpeg.begin(), jpeg.end()});
+  model.add("images", {{"uri", "bomb.jpg"}});
+  model.add("textures", {{"source", 0}});
+  model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  addTriangle(model, {{"material", 0}});
+  expectRefused({"render", model.save(), "-o", folder / "out.exr"}, "bomb.jpg): 65500 x 65500",
+                kGibibyte);
+}
+
+}  // namespace
+}  // namespace chromeball
