@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "lighting/cosine_pattern.h"
 #include "lighting/light_descent.h"
@@ -290,21 +289,22 @@ void expectErrorsToFall(const Image& probe, const std::vector<int>& counts) {
 }
 
 TEST(SlowIrradianceFit, ErrorNeverGrowsInAStudio) {
-  std::vector<int> counts(24);
-  std::iota(counts.begin(), counts.end(), 1);
-  counts.insert(counts.end(), {32, 48, 64});
-  expectErrorsToFall(studioProbe(kSize), counts);
+  expectErrorsToFall(studioProbe(kSize), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 15, 16, 17, 18, 32, 64});
 }
 
 TEST(SlowIrradianceFit, ErrorNeverGrowsUnderTheSky) {
-  expectErrorsToFall(clearSkyProbe(kSize, {}), {1, 2, 3, 4, 5, 6, 7, 8, 16, 24, 32, 48, 64});
+  expectErrorsToFall(clearSkyProbe(kSize, {}), {1, 2, 3, 4, 5, 6, 7, 8, 16, 17, 32, 64});
 }
 
 TEST(SlowIrradianceFit, GalileosTombNeedsFewLights) {
   const auto path = sharedData("probes/debevec/galileo_probe.hdr");
   if (!path) GTEST_SKIP() << "no Galileo probe";
   const Image probe = smaller(loadProbe(*path).latLong, 8);
-  expectErrorsToFall(probe, {1, 2, 4, 8, 16, 24, 32, 48, 64});
+  expectErrorsToFall(probe, {1, 2, 4, 16, 32, 64});
+  // What an independent least-squares fit from many starts reached.
+  const std::pair<int, double> reached[] = {{3, 10.1}, {5, 2.6}, {8, 1.4}, {12, 0.80}};
+  for (const auto& [count, mean] : reached)
+    EXPECT_LE(fitIrradiance(probe, {.count = count}).meanError, mean) << count << " lights";
   FitOptions options;
   options.maxErrorPercent = 5;
   // Madsen and Laursen's optimisation needs five to six.

@@ -16,15 +16,18 @@
 namespace chromeball {
 namespace {
 
-// Of the probe's merged points. Twice as many cost four times as much, and take a thirtieth off the
-// error of 64 lights and a seventh off that of 128 (Galileo's tomb).
-constexpr int kPointRows = 64;
+// Rows of the probe's merged points. Twice as many cost four times as much, and take a thirtieth
+// off the error of 64 lights and a seventh off that of 128 (Galileo's tomb). Few rows do to tell a
+// promising arrangement from a poor one.
+constexpr int kPointRows = 64, kRoughPointRows = 16;
 
-// Few lights get stuck in a poor arrangement more easily than many. Up to here several places are
-// tried for each new light, and from the best of them all lights move until they rest.
+// Few lights get stuck in a poor arrangement more easily than many: the one for five in Galileo's
+// tomb is a fifth better than where the best for four leads. Up to kFewLights the best arrangements
+// of each number are all carried on, each with several places for the next light.
 constexpr int kFewLights = 16;
-constexpr int kPlacesForFew = 12;
+constexpr int kArrangements = 16, kPlaces = 6;
 constexpr int kStepsToTry = 10, kStepsToRest = 90;
+constexpr double kSame = 1e-8;  // arrangements whose misfits differ by less, relatively, are one
 
 constexpr double kApart = 0.9;        // cosine of the least angle between places that are tried
 constexpr double kNegligible = 1e-6;  // of the probe's product with a light, relative to its mean
@@ -78,26 +81,66 @@ void removeBlack(FittedLights& lights) {
     }
 }
 
-// The best of the fits with one more light, black ones removed. Where no place promises anything,
-// `lights` themselves.
-FittedLights withOneMore(const FittedLights& lights, const RadiancePoints& probe,
-                         const Places& places, bool ambient) {
-  const bool few = int(lights.directions.size()) < kFewLights;
-  const std::vector<dvec3> tried = places.best(lights, few ? kPlacesForFew : 1);
-  std::vector<FittedLights> fits(tried.size(), lights);
-  tbb::parallel_for(size_t(0), tried.size(), [&](size_t i) {
-    fits[i].directions.push_back(tried[i]);
-    fits[i].irradiances.emplace_back(0);
-    descend(fits[i], probe, ambient, kStepsToTry);
-  });
-  const auto best = std::min_element(
-      fits.begin(), fits.end(),
-      [](const FittedLights& a, const FittedLights& b) { return a.misfit < b.misfit; });
-  if (best == fits.end()) return lights;
-  if (few) descend(*best, probe, ambient, kStepsToRest);
-  removeBlack(*best);
-  return *best;
-}
+// One light after another, the best arrangements side by side.
+class Search {
+ public:
+  Search(const Image& latLong, double scale, bool ambient)
+      : probe_(latLong, kPointRows, scale),
+        rough_(latLong, kRoughPointRows, scale),
+        places_(probe_),
+        ambient_(ambient) {
+    FittedLights none;
+    solveColors(none, probe_, ambient);
+    best_ = {none};
+  }
+
+  const std::vector<FittedLights>& best() const { return best_; }
+
+  // Gives each arrangement one more light, and keeps the best. Where no place promises anything,
+  // all stay as they are.
+  void grow() {
+    const bool few = int(best_.front().directions.size()) < kFewLights;
+    if (!few) best_.resize(1);
+    std::vector<FittedLights> tried;
+    for (const FittedLights& lights : best_)
+      for (const dvec3& place : places_.best(lights, few ? kPlaces : 1)) {
+        tried.push_back(lights);
+        tried.back().directions.push_back(place);
+        tried.back().irradiances.emplace_back(0);
+      }
+    if (tried.empty()) return;
+    if (few) {
+      descendAll(tried, rough_, kStepsToTry);
+      keepBest(tried);
+      descendAll(tried, rough_, kStepsToRest);
+    }
+    descendAll(tried, probe_, kStepsToTry);
+    keepBest(tried);
+    for (FittedLights& lights : tried) removeBlack(lights);
+    best_ = std::move(tried);
+  }
+
+ private:
+  void descendAll(std::vector<FittedLights>& all, const RadiancePoints& probe, int steps) const {
+    tbb::parallel_for(size_t(0), all.size(),
+                      [&](size_t i) { descend(all[i], probe, ambient_, steps); });
+  }
+
+  static void keepBest(std::vector<FittedLights>& all) {
+    std::sort(all.begin(), all.end(),
+              [](const FittedLights& a, const FittedLights& b) { return a.misfit < b.misfit; });
+    const auto same = [](const FittedLights& a, const FittedLights& b) {
+      return b.misfit - a.misfit <= kSame * std::fabs(a.misfit);
+    };
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
+    if (int(all.size()) > kArrangements) all.resize(kArrangements);
+  }
+
+  RadiancePoints probe_, rough_;
+  Places places_;
+  bool ambient_;
+  std::vector<FittedLights> best_;
+};
 
 // The probe as what fits are measured by.
 class Measure {
@@ -131,20 +174,18 @@ IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
   const dvec3 mean = meanRadiance(latLong);
   // Of a black probe every scale is as good.
   const double level = mean == dvec3(0) ? 1 : (mean.x + mean.y + mean.z) / 3;
-  const RadiancePoints probe(latLong, kPointRows, 1 / level);
-  const Places places(probe);
   const Measure measure(latLong);
-
-  FittedLights lights;
-  solveColors(lights, probe, options.ambient);
-  IrradianceFit best = measure(lights, level);
+  Search search(latLong, 1 / level, options.ambient);
+  IrradianceFit best = measure(search.best().front(), level);
   int count = 0;
   while (count < limit &&
          !(options.maxErrorPercent && best.meanError <= *options.maxErrorPercent)) {
     ++count;
-    lights = withOneMore(lights, probe, places, options.ambient);
-    IrradianceFit fit = measure(lights, level);
-    if (fit.meanError < best.meanError) best = std::move(fit);
+    search.grow();
+    for (const FittedLights& lights : search.best()) {
+      IrradianceFit fit = measure(lights, level);
+      if (fit.meanError < best.meanError) best = std::move(fit);
+    }
   }
   best.lights.resize(count, {vec3(0, 1, 0), Rgb(0)});
   return best;
