@@ -5,16 +5,10 @@
 #include "probe/mapping.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
+#include "test_probes.h"
 
 namespace chromeball {
 namespace {
-
-// One texel above the rest, or one texel alone.
-Image spot(int width, int height, int x, int y, float radiance, float rest) {
-  Image image = constantProbe({width, height}, Rgb(rest));
-  image.setRgb(x, y, Rgb(radiance));
-  return image;
-}
 
 TEST(Probe, isTheTexelAtItsCentreAndHalfwayBetweenTwo) {
   Image image(8, 4, 3);
@@ -31,8 +25,8 @@ TEST(Probe, isTheTexelAtItsCentreAndHalfwayBetweenTwo) {
         EXPECT_NEAR(at((x + 1.0) / 8, (y + 0.5) / 4), x + 8 * y + 0.5, 1e-4);
       }
     }
-  EXPECT_NEAR(at(0, 0.375), 8 + 3.5, 1e-4);         // the seam: between 8 and 15
-  EXPECT_NEAR(at(0.3, 1e-7), 3.5, 1e-3);            // the poles: their rows' means
+  EXPECT_NEAR(at(0, 0.375), 8 + 3.5, 1e-4);  // the seam: between 8 and 15
+  EXPECT_NEAR(at(0.3, 1e-7), 3.5, 1e-3);     // the poles: their rows' means
   EXPECT_NEAR(at(0.7, 1 - 1e-7), 24 + 3.5, 1e-3);
 }
 
@@ -84,31 +78,10 @@ TEST(Probe, refusesScalesThatLeaveTheRangeOfFloat) {
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);
 }
 
-struct Case {
-  const char* name;
-  Image image;
-};
-
-std::vector<Case> cases() {
-  std::vector<Case> all;
-  all.push_back({"constant", constantProbe({16, 8}, Rgb(0.3f))});
-  all.push_back({"one texel", spot(32, 16, 11, 5, 1, 0)});
-  all.push_back({"seam, last column", spot(32, 16, 31, 8, 1, 0)});
-  all.push_back({"seam, first column", spot(32, 16, 0, 8, 1, 0)});
-  all.push_back({"north pole", spot(32, 16, 3, 0, 1, 0)});
-  all.push_back({"south pole", spot(32, 16, 20, 15, 1, 0)});
-  all.push_back({"sun over a grey sky", spot(64, 32, 40, 9, 2000, 0.5f)});
-  all.push_back({"3x2", gradientProbe({3, 2}, Rgb(1), {0.3, 0.5, 0.2})});
-  all.push_back({"1x1", constantProbe({1, 1}, Rgb(2))});
-  all.push_back({"2x1", spot(2, 1, 0, 0, 1, 0)});
-  all.push_back({"gradient", gradientProbe({64, 32}, Rgb(1, 2, 3), {0.5, 0.5, 0.5})});
-  return all;
-}
-
 TEST(Importance, samplesItsDensityOnEveryProbe) {
-  const std::vector<Case> all = cases();
+  const std::vector<HardProbe> all = hardProbes();
   for (bool compensated : {false, true})
-    for (const Case& c : all) {
+    for (const HardProbe& c : all) {
       SCOPED_TRACE(std::string(c.name) + (compensated ? ", compensated" : ""));
       const Probe probe(c.image, 33);
       const Importance importance(probe, compensated);
@@ -124,7 +97,7 @@ TEST(Importance, samplesItsDensityOnEveryProbe) {
 }
 
 TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
-  for (const Case& c : cases()) {
+  for (const HardProbe& c : hardProbes()) {
     SCOPED_TRACE(c.name);
     const Probe probe(c.image);
     const Importance importance(probe, false);
@@ -140,8 +113,8 @@ TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
   }
 }
 
-// The density follows the radiance inside texels too, so on a grey probe every sample carries almost
-// the same weight: the estimate of the mean radiance has next to no variance.
+// The density follows the radiance inside texels too, so on a grey probe every sample carries
+// almost the same weight: the estimate of the mean radiance has next to no variance.
 TEST(Importance, weightsAreConstantOnAGreyProbe) {
   Image image = constantProbe({512, 256}, Rgb(1));
   for (int i = 0; i < 512 * 256; ++i)

@@ -92,9 +92,13 @@ TEST(SlowStrategies, allUnbiasedOnesGiveTheSamePicture) {
     Mis mis;
   };
   // "bsdf" takes no light samples, so MIS cannot change it; it is what all others are held to.
-  const Choice choices[] = {{"uniform", Mis::Balance}, {"uniform", Mis::Off},
-                            {"importance", Mis::Balance}, {"importance", Mis::Power},
+  const Choice choices[] = {{"uniform", Mis::Balance},
+                            {"uniform", Mis::Off},
+                            {"importance", Mis::Balance},
+                            {"importance", Mis::Power},
                             {"importance", Mis::Off},
+                            {"product", Mis::Balance},
+                            {"product", Mis::Off},
                             {"kollig-keller-strata:16", Mis::Balance},
                             {"kollig-keller-strata:16", Mis::Off}};
   const std::vector<Named> scenes = threeScenes();

@@ -7,6 +7,7 @@
 #include "lighting/delta_lights.h"
 #include "lighting/importance.h"
 #include "lighting/irradiance_fit.h"
+#include "lighting/product.h"
 #include "lighting/strata.h"
 #include "lighting/strategy.h"
 #include "lighting/suns.h"
@@ -54,6 +55,9 @@ const std::vector<Entry>& strategies() {
        [](const Probe& probe, Mis mis, int) {
          return std::make_unique<Importance>(probe, mis != Mis::Off);
        }},
+      {"product",
+       {},
+       [](const Probe& probe, Mis, int) { return std::make_unique<Product>(probe); }},
       {"suns",
        {},
        [](const Probe& probe, Mis mis, int) {

@@ -1,0 +1,54 @@
+// The luminance field cut into blocks of cells, each to be sampled on its own.
+#pragma once
+
+#include <vector>
+
+#include "lighting/luminance_field.h"
+
+namespace chromeball {
+
+class BlockedField {
+ public:
+  explicit BlockedField(const Probe& probe);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  int blocks() const { return rows_ * columns_; }
+  int blockOf(const Probe::Position& p) const {
+    return p.row / blockHeight_ * columns_ + p.column / blockWidth_;
+  }
+
+  // The integral of the field's weight over a block, or over everything.
+  double integral(int block) const;
+  double total() const { return total_; }
+
+  // A point of a block with integral > 0, in proportion to the field's weight, from two numbers in
+  // [0, 1).
+  LuminanceField::Point sample(int block, double u, double v) const;
+  LuminanceField::Point at(const vec3& direction, const Probe::Position& p) const {
+    return field_.at(direction, p);
+  }
+
+  // Density over solid angle for each unit of a point's weight, over everything.
+  float scale() const { return scale_; }
+
+  // Directions spread over a block.
+  std::vector<vec3> directions(int block) const;
+
+ private:
+  struct Span {
+    int begin, end;
+  };
+  Span rowsOf(int block) const;
+  Span columnsOf(int block) const;
+
+  const Probe* probe_;
+  LuminanceField field_;
+  int blockWidth_, blockHeight_, columns_, rows_;
+  std::vector<double> down_;    // by column of blocks: sums over its cells in the rows above
+  std::vector<double> across_;  // by row of cells: sums over the cells to the left
+  double total_ = 0;
+  float scale_ = 0;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,93 @@
+// `product` samples what it says, and leaves a Lambertian surface little noise.
+#include "lighting/product.h"
+
+#include <gtest/gtest.h>
+
+#include "lighting/importance.h"
+#include "sphere_test.h"
+#include "test_probes.h"
+
+namespace chromeball {
+namespace {
+
+LightPoint pointWith(const vec3& normal) {
+  LightPoint point{};
+  point.normal = normal;
+  return point;
+}
+
+TEST(SlowProduct, samplesItsDensityOnEveryProbe) {
+  const std::vector<HardProbe> all = hardProbes();
+  for (size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(all[k].name);
+    const vec3 normal = squareToUniformSphere(random2(int(k), 11));
+    const Probe probe(all[k].image, 33);
+    const Product product(probe);
+    const SphereTest test = testDirections(
+        [&](int i) {
+          return std::optional(
+              product.sampleDirection(normal, double(random1(i, 0)), double(random1(i, 1))).wi);
+        },
+        [&](const vec3& w) { return product.escaped(pointWith(normal), w).density; }, 100000, 4, 12,
+        24);
+    EXPECT_NEAR(test.totalProbability, 1, 5e-3);
+    EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, int(all.size())));
+  }
+}
+
+TEST(Product, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
+  for (const HardProbe& c : hardProbes()) {
+    SCOPED_TRACE(c.name);
+    const Probe probe(c.image);
+    const Product product(probe);
+    for (int i = 0; i < 20000; ++i) {
+      const vec3 normal = squareToUniformSphere(random2(i, 0));
+      const LightPoint point = pointWith(normal);
+      const DirectionSample s = product.sampleDirection(normal, random1(i, 2), random1(i, 3));
+      ASSERT_GT(s.density, 0);
+      const vec3 w = squareToUniformSphere(random2(i, 4));
+      if (luminance(probe.radiance(w)) > 0) {
+        ASSERT_GT(product.escaped(point, w).density, 0);
+      }
+    }
+  }
+}
+
+// Relative variance of the irradiance that single samples estimate.
+double irradianceVariance(const std::function<DirectionSample(double, double)>& draw,
+                          const vec3& normal) {
+  constexpr int kSamples = 100000;
+  double sum = 0, sumOfSquares = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const DirectionSample s = draw(random1(i, 0), random1(i, 1));
+    const double e = luminance(s.irradiance) * std::max(glm::dot(normal, s.wi), 0.0f);
+    sum += e;
+    sumOfSquares += e * e;
+  }
+  const double mean = sum / kSamples;
+  return (sumOfSquares / kSamples - mean * mean) / (mean * mean);
+}
+
+TEST(Product, leavesATenthOfTheVarianceThatLuminanceAloneLeaves) {
+  const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, -0.7, 0.3}));
+  const Product product(probe);
+  const Importance importance(probe, false);
+  for (int i = 0; i < 10; ++i) {
+    const vec3 normal = squareToUniformSphere(random2(i, 7));
+    EXPECT_LT(
+        irradianceVariance(
+            [&](double u, double v) { return product.sampleDirection(normal, u, v); }, normal),
+        0.1 * irradianceVariance(
+                  [&](double u, double v) { return importance.sampleDirection(u, v); }, normal));
+  }
+}
+
+TEST(Product, blackProbesGiveNoSamples) {
+  const Probe probe(constantProbe({8, 4}, Rgb(0)));
+  const Product product(probe);
+  EXPECT_EQ(product.sampleDirection(vec3(0, 1, 0), 0.3, 0.4).density, 0);
+  EXPECT_EQ(product.escaped(pointWith(vec3(0, 1, 0)), vec3(0, 1, 0)).density, 0);
+}
+
+}  // namespace
+}  // namespace chromeball
