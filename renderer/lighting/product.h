@@ -21,7 +21,7 @@ class Product : public LightingStrategy {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  Rgb background(const vec3& wi) const override { return probe_.radiance(wi); }
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
   // In terms of two numbers in [0, 1), for tests. Black probes give density 0.
