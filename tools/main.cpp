@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
   app.require_subcommand(1);
   addRenderCommand(app);
+  addCompareCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
   addLightsCommand(app);

@@ -88,12 +88,6 @@ const Entry* findStrategy(std::string_view name) {
   return nullptr;
 }
 
-std::vector<std::string_view> strategyNames() {
-  std::vector<std::string_view> names{"auto"};
-  for (const Entry& entry : strategies()) names.push_back(entry.name);
-  return names;
-}
-
 int parseCount(std::string_view text, const Entry& entry, const std::string& place) {
   const auto& [least, most, usual] = entry.counts;
   if (most == 0)
@@ -107,7 +101,19 @@ int parseCount(std::string_view text, const Entry& entry, const std::string& pla
   return count;
 }
 
+std::vector<std::string_view> namesAndAuto() {
+  std::vector<std::string_view> names = strategyNames();
+  names.insert(names.begin(), "auto");
+  return names;
+}
+
 }  // namespace
+
+std::vector<std::string_view> strategyNames() {
+  std::vector<std::string_view> names;
+  for (const Entry& entry : strategies()) names.push_back(entry.name);
+  return names;
+}
 
 std::string resolveStrategy(const std::string& name) {
   if (name == "auto") return "importance";
@@ -122,7 +128,7 @@ std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Pr
   const Entry* entry = findStrategy(std::string_view(resolved).substr(0, colon));
   if (!entry)
     throwInput("{}: strategy `{}` is not known; {}", place, name,
-               didYouMean(resolved.substr(0, colon), strategyNames()));
+               didYouMean(resolved.substr(0, colon), namesAndAuto()));
   int count = 0;
   if (colon != std::string::npos)
     count = parseCount(std::string_view(resolved).substr(colon + 1), *entry, place);

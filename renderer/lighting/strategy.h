@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "math/sampler.h"
@@ -72,5 +73,8 @@ std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Pr
 
 // The name in full: what "auto" stands for, and the count where one was left out.
 std::string resolveStrategy(const std::string& name);
+
+// Every name but "auto", without counts.
+std::vector<std::string_view> strategyNames();
 
 }  // namespace chromeball

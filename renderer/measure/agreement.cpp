@@ -1,0 +1,65 @@
+#include "measure/agreement.h"
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "measure/statistics.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kTile = Agreement::kTile;
+// Rounding alone makes means differ by less than this, relatively.
+constexpr double kRounding = 1e-5;
+
+double meanLuminance(const Image& image, int left, int top) {
+  double sum = 0;
+  int count = 0;
+  for (int y = top; y < std::min(top + kTile, image.height); ++y)
+    for (int x = left; x < std::min(left + kTile, image.width); ++x, ++count)
+      sum += luminance(image.rgb(x, y));
+  return sum / count;
+}
+
+Moments tileMoments(std::span<const Image> images, int left, int top) {
+  std::vector<double> means;
+  for (const Image& image : images) means.push_back(meanLuminance(image, left, top));
+  return Moments::of(means);
+}
+
+double pValueOf(const Moments& a, const Moments& b) {
+  if (std::fabs(a.mean - b.mean) <= kRounding * std::fabs(b.mean)) return 1;
+  return welchTest(a, b);
+}
+
+// The two-sided normal deviate of chance `p`, of the sign of `difference`.
+double deviate(double p, double difference) {
+  constexpr double kLeast = 1e-300;  // a chance of 0 would be infinitely far
+  const double z = quantile(complement(boost::math::normal(), std::max(p, kLeast) / 2));
+  return std::copysign(z, difference);
+}
+
+}  // namespace
+
+Agreement agreement(std::span<const Image> a, std::span<const Image> b) {
+  const int columns = (a[0].width + kTile - 1) / kTile, rows = (a[0].height + kTile - 1) / kTile;
+  Agreement result;
+  result.z = Image(columns, rows, 1);
+  result.tiles = result.z.texels.size();
+  const double significance = sidak(0.05, int(result.tiles));
+  double least = 1;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const Moments ma = tileMoments(a, x * kTile, y * kTile);
+      const Moments mb = tileMoments(b, x * kTile, y * kTile);
+      const double p = pValueOf(ma, mb);
+      *result.z.at(x, y) = float(deviate(p, ma.mean - mb.mean));
+      result.share += (p < significance) / double(result.tiles);
+      least = std::min(least, p);
+    }
+  // The chance that the least of so many p-values is this small.
+  result.pValue = -std::expm1(double(result.tiles) * std::log1p(-least));
+  return result;
+}
+
+}  // namespace chromeball

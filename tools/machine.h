@@ -1,0 +1,15 @@
+// On what, with what and when something was measured.
+#pragma once
+
+#include <string>
+
+namespace chromeball {
+
+struct Machine {
+  std::string processor, system, compiler, date;  // date: UTC
+  int threads = 0;                                // that this run uses
+  std::string command;                            // as a shell would take it
+};
+Machine thisMachine();
+
+}  // namespace chromeball

@@ -1,0 +1,37 @@
+// The renders of a study on disk, one EXR each, so that a run that was stopped goes on where it
+// was.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "image/image.h"
+#include "study.h"
+
+namespace chromeball {
+
+struct StoredRender {
+  Image image;  // RGB
+  double samples = 0, seconds = 0, prepareSeconds = 0;
+  double noise = 0;  // as the render itself estimates it
+  double rays = 0, invalidSamples = 0;
+};
+
+class RenderStore {
+ public:
+  explicit RenderStore(const Study& study) : study_(study) {}
+
+  // Makes the folder where there is none. Throws InputError where it cannot.
+  void makeFolder() const;
+
+  std::string path(const RenderKey& key) const;  // FOLDER/renders/median-cut.64-16spp-1.exr
+
+  // nullopt where it is not there yet. Throws InputError where the file is another study's.
+  std::optional<StoredRender> find(const RenderKey& key) const;
+  void save(const RenderKey& key, const StoredRender& render) const;
+
+ private:
+  const Study& study_;
+};
+
+}  // namespace chromeball

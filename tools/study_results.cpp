@@ -1,0 +1,213 @@
+#include "study_results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/read.h"
+#include "math/error.h"
+
+namespace chromeball {
+namespace {
+
+// The reference's own variance should be below this share of what is measured with it.
+constexpr double kSmallShare = 0.1;
+
+Estimate estimateOf(const std::vector<double>& numbers) {
+  double mean = 0, scatter = 0;
+  const double n = double(numbers.size());
+  for (const double x : numbers) mean += x / n;
+  for (const double x : numbers) scatter += (x - mean) * (x - mean);
+  return {mean, n > 1 ? std::sqrt(scatter / (n - 1) / n) : 0};
+}
+
+double mean(const std::vector<StoredRender>& renders, double StoredRender::*member) {
+  double sum = 0;
+  for (const StoredRender& render : renders) sum += render.*member;
+  return sum / double(renders.size());
+}
+
+// All repeats; empty where one is missing.
+std::vector<StoredRender> loadRepeats(const Study& study, const RenderStore& store,
+                                      const std::string& strategy, const Budget& budget) {
+  std::vector<StoredRender> renders;
+  for (int repeat = 0; repeat < study.repeats; ++repeat) {
+    std::optional<StoredRender> render = store.find({strategy, budget, repeat});
+    if (!render) return {};
+    renders.push_back(*std::move(render));
+  }
+  return renders;
+}
+
+std::vector<Image> images(std::vector<StoredRender> renders) {
+  std::vector<Image> result;
+  for (StoredRender& render : renders) result.push_back(std::move(render.image));
+  return result;
+}
+
+Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<StoredRender> renders,
+            const Reference& reference) {
+  Cell cell{strategy, budget, {}, 0, {}, 0, 0, 0, {}};
+  std::vector<double> seconds;
+  for (const StoredRender& render : renders) seconds.push_back(render.seconds);
+  cell.samples = mean(renders, &StoredRender::samples);
+  cell.seconds = estimateOf(seconds);
+  cell.prepareSeconds = mean(renders, &StoredRender::prepareSeconds);
+  cell.noise = mean(renders, &StoredRender::noise);
+  cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
+  cell.error = cellError(images(std::move(renders)), reference);
+  return cell;
+}
+
+// The ratio of both products, with the relative errors of all four factors.
+Estimate efficiency(const Cell& cell, const Cell& baseline) {
+  double squaredError = 0;
+  for (const Estimate& e :
+       {cell.error.relMse, cell.seconds, baseline.error.relMse, baseline.seconds})
+    squaredError += std::pow(e.standardError / e.mean, 2);
+  const double ratio = baseline.error.relMse.mean * baseline.seconds.mean /
+                       (cell.error.relMse.mean * cell.seconds.mean);
+  return &cell == &baseline ? Estimate{1, 0} : Estimate{ratio, ratio * std::sqrt(squaredError)};
+}
+
+void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::string& baseline) {
+  const auto base = std::find_if(strategies.begin(), strategies.end(),
+                                 [&](const StrategyResult& s) { return s.name == baseline; });
+  for (StrategyResult& strategy : strategies)
+    for (Cell& cell : strategy.cells) {
+      const Cell* other = findCell(*base, cell.budget);
+      cell.efficiency = other ? efficiency(cell, *other) : Estimate{std::nan(""), 0};
+    }
+}
+
+void fitConvergence(StrategyResult& strategy) {
+  std::vector<ConvergencePoint> variances, errors;
+  std::vector<Estimate> biases;
+  for (const Cell& cell : strategy.cells) {
+    variances.push_back({cell.samples, cell.error.variance});
+    errors.push_back({cell.samples, cell.error.relMse});
+    biases.push_back(cell.error.squaredBias);
+  }
+  strategy.variance = fitPowerLaw(variances);
+  strategy.relMse = fitPowerLaw(errors);
+  strategy.squaredBias = combine(biases);
+  if (strategy.variance && !strategy.unbiased)
+    strategy.biasEqualsNoise = biasEqualsNoise(*strategy.variance, strategy.squaredBias);
+}
+
+std::vector<PairResult> comparePairs(const Study& study, const RenderStore& store,
+                                     const StudyResults& results) {
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  std::vector<PairResult> pairs;
+  std::vector<std::pair<std::string, std::vector<Image>>> sets;
+  for (const StrategyResult& strategy : results.strategies)
+    if (budget && strategy.unbiased)
+      sets.emplace_back(strategy.name, images(loadRepeats(study, store, strategy.name, *budget)));
+  for (size_t i = 0; i < sets.size(); ++i)
+    for (size_t j = i + 1; j < sets.size(); ++j)
+      pairs.push_back(
+          {sets[i].first, sets[j].first, *budget, agreement(sets[i].second, sets[j].second)});
+  return pairs;
+}
+
+// Squared standard error of the mean of the parts, from how they scatter.
+Reference combineParts(const std::vector<Image>& parts) {
+  Reference reference{parts[0], parts[0]};
+  for (size_t i = 0; i < parts[0].texels.size(); ++i) {
+    std::vector<double> numbers;
+    for (const Image& part : parts) numbers.push_back(part.texels[i]);
+    const Estimate e = estimateOf(numbers);
+    reference.mean.texels[i] = float(e.mean);
+    reference.squaredError.texels[i] = float(e.standardError * e.standardError);
+  }
+  return reference;
+}
+
+std::vector<std::string> warningsOf(const Study& study, const StudyResults& results) {
+  std::vector<std::string> warnings;
+  if (!results.complete)
+    warnings.push_back("The comparison is not complete: some strategies lack some budgets.");
+  if (!results.referenceErrorKnown)
+    warnings.push_back(
+        fmt::format("{} has no variance layer: it is taken for exact.", study.referenceFile));
+  double worst = 0, invalid = 0;
+  std::string where;
+  for (const StrategyResult& strategy : results.strategies)
+    for (const Cell& cell : strategy.cells) {
+      invalid += cell.invalidSamples;
+      const double share = cell.error.reference / cell.error.relMse.mean;
+      if (share <= worst) continue;
+      worst = share;
+      where = fmt::format("{} at {}", strategy.name, cell.budget.label());
+    }
+  if (worst > kSmallShare)
+    warnings.push_back(fmt::format(
+        "The reference's own error is not small: its variance is {:.0f}% of the relMSE of {}. It "
+        "was removed, but intervals of small numbers are wide; give --reference-samples more.",
+        100 * worst, where));
+  if (invalid > 0)
+    warnings.push_back(fmt::format(
+        "{:.0f} samples were invalid (NaN, infinite or negative) and left out.", invalid));
+  return warnings;
+}
+
+}  // namespace
+
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height) {
+  if (study.referenceFile.empty()) {
+    std::vector<Image> parts;
+    for (int part = 0; part < Study::kReferenceParts; ++part)
+      parts.push_back(store.find(study.referencePart(part)).value().image);
+    return combineParts(parts);
+  }
+  const ImageFile file = readImageFile(study.referenceFile);
+  const std::optional<Image> color = findColor(file);
+  if (!color) throwInput("--reference: {}: has no colour", study.referenceFile);
+  if (color->width != width || color->height != height)
+    throwInput("--reference: {} is {} x {}, but the picture is {} x {}; give --size {}x{}",
+               study.referenceFile, color->width, color->height, width, height, color->width,
+               color->height);
+  const std::optional<Image> variance = findLayer(file, "variance");
+  return {*color, variance && variance->channels == 3 ? *variance : Image()};
+}
+
+StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference,
+                          const std::set<std::string>& unbiased) {
+  StudyResults results;
+  results.reference = reference;
+  results.referenceErrorKnown = !reference.squaredError.empty();
+  for (const std::string& name : study.strategies) {
+    StrategyResult& strategy = results.strategies.emplace_back();
+    strategy.name = name;
+    strategy.unbiased = unbiased.contains(name);
+    for (const Budget& budget : study.budgets) {
+      std::vector<StoredRender> renders = loadRepeats(study, store, name, budget);
+      if (renders.empty())
+        results.complete = false;
+      else
+        strategy.cells.push_back(cellOf(name, budget, std::move(renders), reference));
+    }
+    fitConvergence(strategy);
+    for (const Cell& cell : strategy.cells)
+      results.referenceNoise = std::sqrt(cell.error.reference);
+  }
+  compareWithBaseline(results.strategies, study.baseline);
+  results.pairs = comparePairs(study, store, results);
+  results.warnings = warningsOf(study, results);
+  return results;
+}
+
+const Cell* findCell(const StrategyResult& strategy, const Budget& budget) {
+  for (const Cell& cell : strategy.cells)
+    if (cell.budget == budget) return &cell;
+  return nullptr;
+}
+
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results) {
+  for (auto budget = study.budgets.rbegin(); budget != study.budgets.rend(); ++budget)
+    if (std::all_of(results.strategies.begin(), results.strategies.end(),
+                    [&](const StrategyResult& s) { return findCell(s, *budget); }))
+      return *budget;
+  return std::nullopt;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,68 @@
+// What the renders of a study say.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "measure/agreement.h"
+#include "measure/slope.h"
+#include "render_store.h"
+
+namespace chromeball {
+
+// All repeats of a strategy on a budget.
+struct Cell {
+  std::string strategy;
+  Budget budget;
+  CellError error;
+  double samples = 0;         // mean over the repeats
+  Estimate seconds;           // of rendering
+  double prepareSeconds = 0;  // of building the strategy, which all its renders share
+  double noise = 0;           // mean of what the renders themselves report
+  double invalidSamples = 0;
+  Estimate efficiency;  // 1 / (relMse seconds), relative to the baseline on the same budget
+};
+
+struct StrategyResult {
+  std::string name;
+  bool unbiased = true;
+  std::vector<Cell> cells;                   // in the order of the budgets
+  std::optional<PowerLaw> variance, relMse;  // against samples
+  Estimate squaredBias;                      // from all cells
+  std::optional<Crossing> biasEqualsNoise;
+};
+
+struct PairResult {
+  std::string a, b;
+  Budget budget;
+  Agreement agreement;
+};
+
+struct StudyResults {
+  Reference reference;
+  bool referenceErrorKnown = true;
+  double referenceNoise = 0;  // relative standard error of its mean pixel
+  std::vector<StrategyResult> strategies;
+  std::vector<PairResult> pairs;      // of unbiased strategies, on the largest budget all have
+  std::vector<std::string> warnings;  // what a reader should know before trusting the numbers
+  bool complete = true;               // every cell of the study is here
+};
+
+// The reference as it is on file, or as its parts make it. Throws InputError where its file does
+// not fit the picture's size.
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height);
+
+// From those cells whose every repeat is stored. `unbiased` names the strategies that are.
+StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference,
+                          const std::set<std::string>& unbiased);
+
+// The cell of a strategy on a budget; null where it is not there yet.
+const Cell* findCell(const StrategyResult& strategy, const Budget& budget);
+
+// The largest budget on which every strategy has its cell; nullopt where there is none.
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results);
+
+}  // namespace chromeball
