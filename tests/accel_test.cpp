@@ -248,7 +248,7 @@ TEST(Accel, TransmittanceIsTheProductOfWhatLayersLetPass) {
                 mixedScene = layerScene(mixed, instanced);
     const Accel blend(blendScene), mix(mixedScene);
     const auto upTo = [](const Accel& accel, float tMax) {
-      return accel.transmittance({kThroughLayers.origin, kThroughLayers.direction, tMax});
+      return accel.transmittance({kThroughLayers.origin, kThroughLayers.direction, tMax}).x;
     };
     float expected = 1;
     EXPECT_EQ(upTo(blend, 0.5f), 1);
@@ -256,11 +256,11 @@ TEST(Accel, TransmittanceIsTheProductOfWhatLayersLetPass) {
       expected *= 1 - alphas[i];
       EXPECT_NEAR(upTo(blend, float(i) + 1.5f), expected, 1e-6f) << instanced;
     }
-    EXPECT_NEAR(blend.transmittance(kThroughLayers), expected, 1e-6f);
+    EXPECT_NEAR(blend.transmittance(kThroughLayers).y, expected, 1e-6f);
     EXPECT_NEAR(upTo(mix, 2.5f), 0.5f, 1e-6f) << instanced;  // a mask below its cutoff is a hole
     EXPECT_NEAR(upTo(mix, 3.5f), 0.4f, 1e-6f) << instanced;
     EXPECT_EQ(upTo(mix, 4.5f), 0) << instanced;
-    EXPECT_EQ(mix.transmittance(kThroughLayers), 0);
+    EXPECT_EQ(mix.transmittance(kThroughLayers), Rgb(0));
   }
 }
 
@@ -291,13 +291,13 @@ TEST(Accel, NothingAndNonsenseAreMissed) {
   const Accel nothing(empty), something(box);
   Hit hit;
   EXPECT_FALSE(nothing.intersect({{0, 0, 0}, {0, 0, 1}}, 0, hit));
-  EXPECT_EQ(nothing.transmittance({{0, 0, 0}, {0, 0, 1}}), 1);
+  EXPECT_EQ(nothing.transmittance({{0, 0, 0}, {0, 0, 1}}), Rgb(1));
   const float nan = std::nanf("");
   for (const Ray& ray :
        {Ray{vec3(nan), {0, 0, 1}}, Ray{{0, 0, 0}, vec3(nan)}, Ray{{0, 0, 0}, {0, 0, 1}, nan},
         Ray{vec3(INFINITY), {0, 0, 1}}, Ray{{0, 0, 0}, {0, 0, 0}}}) {
     EXPECT_FALSE(something.intersect(ray, 0, hit));
-    EXPECT_EQ(something.transmittance(ray), 1);
+    EXPECT_EQ(something.transmittance(ray), Rgb(1));
   }
 }
 
@@ -349,7 +349,7 @@ TEST(Accel, ShowsOnlySomeInstances) {
     Hit hit;
     ASSERT_TRUE(accel.intersect(down, 0, hit));
     EXPECT_EQ(hit.instance, left);
-    EXPECT_EQ(accel.transmittance({{0.2f, 2.5f, 0.1f}, {0, -1, 0}}), left == 0 ? 1 : 0);
+    EXPECT_EQ(accel.transmittance({{0.2f, 2.5f, 0.1f}, {0, -1, 0}}), Rgb(left == 0 ? 1 : 0));
   }
   Hit hit;
   EXPECT_FALSE(Accel(scene, {false, false, false}).intersect(down, 0, hit));

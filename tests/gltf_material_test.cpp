@@ -71,6 +71,57 @@ TEST(GltfMaterial, FactorsAndExtensions) {
   EXPECT_EQ(m.specularColor, Rgb(1, 2, .5f));
 }
 
+TEST(GltfMaterial, ExtendedMaterials) {
+  GltfWriter w;
+  const Scene scene = loadWith(
+      w, {{"extensions",
+           {{"KHR_materials_transmission",
+             {{"transmissionFactor", .75}, {"transmissionTexture", {{"index", 0}}}}},
+            {"KHR_materials_volume",
+             {{"thicknessFactor", 2},
+              {"attenuationDistance", .5},
+              {"attenuationColor", {.25, .5, 1}}}},
+            {"KHR_materials_dispersion", {{"dispersion", .3}}},
+            {"KHR_materials_clearcoat",
+             {{"clearcoatFactor", .5},
+              {"clearcoatRoughnessFactor", .25},
+              {"clearcoatNormalTexture", {{"index", 0}, {"scale", 2}}}}}}}});
+  ASSERT_TRUE(scene.materials[0].extended);
+  const ExtendedMaterial& m = *scene.materials[0].extended;
+  EXPECT_EQ(m.transmission, .75f);
+  EXPECT_TRUE(m.transmissionTexture);
+  EXPECT_FALSE(m.thinWalled);
+  for (int c = 0; c < 3; ++c)  // half the distance lets the square root pass
+    EXPECT_NEAR(std::exp(-m.attenuation[c] * 0.25f), std::sqrt(.25f * float(1 << c)), 1e-5f);
+  EXPECT_EQ(m.dispersion, .3f);
+  EXPECT_EQ(m.clearcoat, .5f);
+  EXPECT_EQ(m.clearcoatRoughness, .25f);
+  EXPECT_EQ(m.clearcoatNormalScale, 2);
+  EXPECT_EQ(scene.meshes[0].tangents.size(), 3u);  // for the coat's normal map
+}
+
+TEST(GltfMaterial, ExtensionsThatChangeNothingCostNothing) {
+  GltfWriter w;
+  const Scene scene =
+      loadWith(w, {{"extensions",
+                    {{"KHR_materials_transmission", {{"transmissionFactor", 0}}},
+                     {"KHR_materials_clearcoat", json::object()},
+                     {"KHR_materials_volume", {{"thicknessFactor", 1}}}}}});
+  EXPECT_FALSE(scene.materials[0].extended);
+}
+
+TEST(GltfMaterial, MediaGrowWithTheModel) {
+  GltfWriter w;
+  loadWith(w, {{"extensions",
+                {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                 {"KHR_materials_volume",
+                  {{"thicknessFactor", 1},
+                   {"attenuationDistance", 1},
+                   {"attenuationColor", {.5, .5, .5}}}}}}});
+  const Scene scene = w.load({mat3(4), vec3(0)});
+  EXPECT_NEAR(scene.materials[0].extended->attenuation.x, std::log(2) / 4, 1e-6);
+}
+
 TEST(GltfMaterial, OneImageServesBothEncodings) {
   GltfWriter w;
   const Scene scene = loadWith(

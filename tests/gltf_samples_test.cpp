@@ -49,7 +49,7 @@ void expectSound(const Scene& scene) {
     ASSERT_LT(size_t(instance.material), scene.materials.size());
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
     Material material = scene.materials[size_t(instance.material)];
-    EXPECT_EQ(!mesh.tangents.empty(), bool(material.normalTexture));
+    EXPECT_EQ(!mesh.tangents.empty(), tangentSpace(material).has_value());
     for (const TextureSlot* slot : textureSlots(material)) {
       if (!*slot) continue;
       ASSERT_LT(size_t(slot->texture), scene.textures.size());

@@ -23,7 +23,7 @@ struct Recorder {
     queries.push_back({ray, false});
     return accel.intersect(ray, key, hit);
   }
-  float transmittance(const Ray& ray) const {
+  Rgb transmittance(const Ray& ray) const {
     queries.push_back({ray, true});
     return accel.transmittance(ray);
   }

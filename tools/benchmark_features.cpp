@@ -68,7 +68,7 @@ Rgb leanRadiance(const LeanScene& lean, Ray ray, PixelSampler& sampler) {
         sampler.bits(dimension::kLight) * 0x1p-32, sampler.bits(dimension::kLight + 1) * 0x1p-32);
     const float cosine = glm::dot(s.normal, light.wi) * kInvPi;
     if (light.density > 0 && cosine > 0 && glm::dot(s.geometricNormal, light.wi) > 0 &&
-        lean.accel.transmittance({s.origin(light.wi), light.wi}) > 0)
+        !isBlack(lean.accel.transmittance({s.origin(light.wi), light.wi})))
       radiance += throughput * albedo * light.irradiance *
                   (cosine * misWeight(Mis::Balance, light.density, cosine));
 

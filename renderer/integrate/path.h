@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "film/aov.h"
+#include "integrate/media.h"
 #include "lighting/emitters.h"
 #include "lighting/strategy.h"
 #include "scene/surface.h"
-#include "shading/bsdf.h"
+#include "scene/thin_wall.h"
+#include "shading/extended_bsdf.h"
 #include "trace/ray.h"
 
 namespace chromeball {
@@ -66,17 +68,23 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
     const Bsdf::Value bsdf = point.bsdf->evaluate(s.wi);
     if (isBlack(bsdf.fCos)) continue;
     ++counts.shadow;
-    const float passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi});
-    if (passed == 0) continue;
-    light += bsdf.fCos * s.irradiance * (passed * lightSampleWeight(path.mis, s.density, bsdf.pdf));
+    const Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi});
+    if (isBlack(passed)) continue;
+    light += bsdf.fCos * s.irradiance * passed * lightSampleWeight(path.mis, s.density, bsdf.pdf);
   }
   return light;
+}
+
+// Whether a ray towards wi goes into the body behind the surface, or out of it.
+inline bool crosses(const Surface& surface, const vec3& wi) {
+  const auto& extended = surface.material->extended;
+  return extended && !extended->thinWalled && glm::dot(surface.geometricNormal, wi) < 0;
 }
 
 // Light from one point on an emissive triangle.
 template <class Rays>
 Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
-                 const PixelSampler& sampler, RayCounts& counts) {
+                 Media media, const PixelSampler& sampler, RayCounts& counts) {
   const Emitters::Point emitter = path.emitters->sample(sampler.get2(dimension::kEmitter));
   const vec3 to = emitter.position - surface.position;
   const float distance = glm::length(to);
@@ -96,9 +104,11 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const vec3 origin = surface.rayOrigin(wi), target = source.rayOrigin(-wi);
   const float length = glm::length(target - origin);
   ++counts.shadow;
-  const float passed = path.rays.transmittance({origin, (target - origin) / length, length});
+  Rgb passed = path.rays.transmittance({origin, (target - origin) / length, length});
+  if (crosses(surface, wi)) media.cross(surface);
+  if (media.inside()) passed *= media.transmittance(length);
   const float density = path.emitters->density(instance.material, distance, cosine);
-  return bsdf.fCos * radiance * (passed * lightSampleWeight(path.mis, density, bsdf.pdf) / density);
+  return bsdf.fCos * radiance * passed * (lightSampleWeight(path.mis, density, bsdf.pdf) / density);
 }
 
 // Ends a path at random in proportion to what it can still carry; unbiased, since the survivors are
@@ -125,6 +135,8 @@ struct PathState {
   LightPoint from{};  // where the ray leaves; nowhere in particular for the camera's
   float pdf = 0;      // of the ray's direction at `from`; 0 for the camera and mirrors
   int depth = 0;      // of the vertex to come
+  int straight = 0;   // vertices so far where the ray just went on; they are no bounces
+  Media media{};      // that the ray is in
 };
 
 // What the path finds where its ray meets nothing.
@@ -151,31 +163,62 @@ Rgb foundEmission(const PathScene<Rays>& path, const PathState& state, const Sur
          bsdfSampleWeight(path.mis, state.pdf, density);
 }
 
+// Takes the path straight through a smooth sheet. Light samples at `from` see through it too, so
+// that they still compete with the ray.
+inline void goOn(PathState& state, const Surface& surface) {
+  state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
+  ++state.straight;
+}
+
 // Adds the light that comes straight to a vertex and chooses where the path goes on from there;
 // false where it ends.
 template <class Rays>
-bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surface,
-             const MaterialPoint& material, const PixelSampler& sampler,
+bool scatter(const PathScene<Rays>& path, PathState& state, const Instance& instance,
+             const Surface& surface, const MaterialPoint& material, const PixelSampler& sampler,
              std::vector<DirectionSample>& samples, RayCounts& counts, Rgb& radiance) {
   const vec3 wo = -state.ray.direction;
-  const Bsdf bsdf(material, surface, wo, path.mirrorAlpha);
-  state.from = {surface.position, bsdf.normal(), wo, &bsdf, state.depth};
+  std::optional<ExtendedBsdf> extended;
+  if (surface.material->extended) [[unlikely]]
+    extended.emplace(material, extendedMaterialAt(path.scene, instance, surface),
+                     state.media.refractiveIndex(surface, state.throughput), surface, wo,
+                     path.mirrorAlpha);
+  const Bsdf bsdf = extended ? Bsdf(*extended) : Bsdf(material, surface, wo, path.mirrorAlpha);
+  const LightPoint point = {surface.position, bsdf.normal(), wo, &bsdf, state.depth};
   if (bsdf.hasContinuousLobe()) {
-    radiance += state.throughput * probeLight(path, state.from, surface, sampler, samples, counts);
+    radiance += state.throughput * probeLight(path, point, surface, sampler, samples, counts);
     if (path.emitters)
-      radiance += state.throughput * emitterLight(path, state.from, surface, sampler, counts);
+      radiance +=
+          state.throughput * emitterLight(path, point, surface, state.media, sampler, counts);
   }
-  state.from.bsdf = nullptr;  // it ends here
 
   BsdfSample next;
   if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
     return false;
   state.throughput *= next.weight;
   if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
-  state.pdf = next.pdf;
-  state.ray = {surface.rayOrigin(next.wi), next.wi};
   ++state.depth;
   ++counts.bounce;
+  if (extended && next.wi == state.ray.direction && passesStraight(*surface.material)) {
+    goOn(state, surface);
+    return true;
+  }
+  if (crosses(surface, next.wi)) state.media.cross(surface);
+  state.pdf = next.pdf;
+  state.ray = {surface.rayOrigin(next.wi), next.wi};
+  state.from = point;
+  state.from.bsdf = nullptr;  // it ends here
+  return true;
+}
+
+// Where bounces are used up, what passes straight through a surface still reaches the vertex
+// before. False where nothing does.
+inline bool passThrough(const Scene& scene, PathState& state, const Instance& instance,
+                        const Surface& surface) {
+  if (!surface.material->extended) return false;
+  state.throughput *= straightTransmittance(scene, instance, surface, state.ray.direction);
+  if (isBlack(state.throughput)) return false;
+  ++state.depth;
+  goOn(state, surface);
   return true;
 }
 
@@ -192,9 +235,12 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
   const Instance& instance = path.scene.instances[hit->instance];
   const Surface surface =
       surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
+  if (state.media.inside())
+    state.throughput *= state.media.transmittance(glm::length(surface.position - state.ray.origin));
   if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance.material);
-  const bool ends = state.depth == path.maxDepth || surface.material->unlit;
-  if (ends && !(first && state.depth == 0)) return false;
+  const bool ends = state.depth - state.straight == path.maxDepth || surface.material->unlit;
+  if (ends && !(first && state.depth == 0))
+    return passThrough(path.scene, state, instance, surface);
 
   const MaterialPoint material = materialAt(path.scene, surface);
   if (first && state.depth == 0)
@@ -204,7 +250,8 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
               surface.normal,
               instance.material,
               instance.node};
-  return !ends && scatter(path, state, surface, material, sampler, samples, counts, radiance);
+  if (ends) return passThrough(path.scene, state, instance, surface);
+  return scatter(path, state, instance, surface, material, sampler, samples, counts, radiance);
 }
 
 // What a path that stands before `hit` goes on to find.

@@ -50,6 +50,13 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
   }
 }
 
+// Distances in a medium grow with the model that `placement` enlarges.
+void scaleMedia(const Transform& placement, Scene& scene) {
+  const float scale = std::cbrt(std::fabs(glm::determinant(placement.linear)));
+  for (Material& m : scene.materials)
+    if (m.extended && scale > 0) m.extended->attenuation /= scale;
+}
+
 // A file of meshes without any node still shows them, each once.
 void standMeshesUp(tinygltf::Model& model) {
   if (!model.nodes.empty() || !model.scenes.empty()) return;
@@ -71,6 +78,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   const NodeTree tree = readNodes(file, placement);
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
+  scaleMedia(placement, scene);
   scene.nodeNames = tree.names;
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "image/decode.h"
+#include "scene/gltf_value.h"
 
 namespace chromeball {
 namespace {
@@ -12,39 +13,6 @@ namespace {
 using tinygltf::Value;
 
 constexpr int kMaxUvSet = 15;
-
-const Value* find(const tinygltf::ExtensionMap& extensions, const char* name) {
-  const auto found = extensions.find(name);
-  return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
-}
-
-// A number of the file, clamped to the range the specification gives it.
-float number(GltfFile& file, double x, double low, double high, const std::string& where) {
-  if (!std::isfinite(x)) file.fail("{}: is not a finite number", where);
-  if (x < low || x > high)
-    file.warnOnce(fmt::format("{}: {} is clamped to the range {} to {}", where, x, low, high));
-  return float(std::clamp(x, low, high));
-}
-
-float member(GltfFile& file, const Value& object, const char* key, double fallback, double low,
-             double high, const std::string& where) {
-  const Value& v = object.Get(key);
-  return number(file, v.IsNumber() ? v.GetNumberAsDouble() : fallback, low, high,
-                where + "." + key);
-}
-
-template <int N>
-glm::vec<N, float> vectorMember(GltfFile& file, const Value& object, const char* key,
-                                glm::vec<N, float> fallback, double low, const std::string& where) {
-  const Value& v = object.Get(key);
-  if (!v.IsArray()) return fallback;
-  if (v.ArrayLen() != N) file.fail("{}.{}: has {} numbers, not {}", where, key, v.ArrayLen(), N);
-  for (int i = 0; i < N; ++i) {
-    if (!v.Get(i).IsNumber()) file.fail("{}.{}: holds something that is no number", where, key);
-    fallback[i] = number(file, v.Get(i).GetNumberAsDouble(), low, INFINITY, where + "." + key);
-  }
-  return fallback;
-}
 
 Wrap wrapOf(int code) {
   if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::ClampToEdge;
@@ -83,7 +51,7 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
     m.alphaMode = AlphaMode::Blend;
   else if (source.alphaMode != "OPAQUE")
     file_.fail("{}.alphaMode: \"{}\" is not OPAQUE, MASK or BLEND", where, source.alphaMode);
-  if (find(source.extensions, "KHR_materials_unlit")) {
+  if (findExtension(source.extensions, "KHR_materials_unlit")) {
     m.unlit = true;
     return m;
   }
@@ -98,7 +66,7 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
                          source.normalTexture.extensions, false, where + ".normalTexture");
 
   float strength = 1;
-  if (const Value* e = find(source.extensions, "KHR_materials_emissive_strength"))
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_emissive_strength"))
     strength = member(file_, *e, "emissiveStrength", 1, 0, 1e30, where);
   for (int i = 0; i < 3; ++i)
     m.emission[i] =
@@ -107,18 +75,21 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
     m.emissiveTexture = slot(source.emissiveTexture.index, source.emissiveTexture.texCoord,
                              source.emissiveTexture.extensions, true, where + ".emissiveTexture");
 
-  if (const Value* e = find(source.extensions, "KHR_materials_ior")) {
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_ior")) {
     m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
     if (m.ior != 0) m.ior = std::max(m.ior, 1.0f);
   }
-  if (const Value* e = find(source.extensions, "KHR_materials_specular"))
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"))
     readSpecular(*e, where, m);
+  m.extended = readExtensions(source.extensions, where);
+  if (m.extended && m.ior == 0) m.extended->transmission = 0;  // reflects all
   return m;
 }
 
 void MaterialReader::readSpecular(const Value& extension, const std::string& where, Material& m) {
   m.specular = member(file_, extension, "specularFactor", 1, 0, 1, where);
-  m.specularColor = vectorMember<3>(file_, extension, "specularColorFactor", vec3(1), 0, where);
+  m.specularColor =
+      vectorMember<3>(file_, extension, "specularColorFactor", vec3(1), 0, INFINITY, where);
   m.specularTexture = slot(extension.Get("specularTexture"), false, where + ".specularTexture");
   m.specularColorTexture =
       slot(extension.Get("specularColorTexture"), true, where + ".specularColorTexture");
@@ -140,15 +111,15 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
   if (index == -1) return s;
   s.texture = texture(index, srgb, where);
   s.uvSet = uvSet;
-  if (const Value* e = find(extensions, "KHR_texture_transform")) {
+  if (const Value* e = findExtension(extensions, "KHR_texture_transform")) {
     const std::string at = where + ".KHR_texture_transform";
     const float angle = member(file_, *e, "rotation", 0, -1e6, 1e6, at);
-    const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -INFINITY, at);
+    const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -INFINITY, INFINITY, at);
     const float c = std::cos(angle), sn = std::sin(angle);
     // Counter-clockwise as seen, with v pointing down.
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
-    s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, at);
+    s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
     if (e->Get("texCoord").IsInt()) s.uvSet = e->Get("texCoord").GetNumberAsInt();
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
@@ -159,9 +130,9 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
 int MaterialReader::texture(int index, bool srgb, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
   int image = source.source;
-  if (const Value* e = find(source.extensions, "EXT_texture_webp"))
+  if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
     image = e->Get("source").IsInt() ? e->Get("source").GetNumberAsInt() : -1;
-  if (image == -1 && find(source.extensions, "KHR_texture_basisu"))
+  if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
     file_.fail(
         "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "
         "turn it into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)",

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -33,6 +34,13 @@ class MaterialReader {
   int texture(int index, bool srgb, const std::string& where);
   TexelGrid* grid(int image);
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
+  // Nothing where the extensions change nothing.
+  std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,
+                                                 const std::string& where);
+  void readTransmission(const tinygltf::ExtensionMap& extensions, const std::string& where,
+                        ExtendedMaterial& m);
+  void readClearcoat(const tinygltf::Value& extension, const std::string& where,
+                     ExtendedMaterial& m);
 
   GltfFile& file_;
   std::map<int, int> materialOf_;  // glTF's index to ours

@@ -7,6 +7,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_pose.h"
 #include "scene/mesh_attributes.h"
+#include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {
@@ -93,12 +94,12 @@ void readVertexColors(GltfFile& file, AttributeReader& attributes, const std::st
 
 // Whoever reads a normal map needs normals and tangents.
 void completeTangents(const Material& material, Mesh& mesh) {
-  const TextureSlot& slot = material.normalTexture;
+  const std::optional<TextureSlot> slot = tangentSpace(material);
   if (!slot) return;
   if (mesh.normals.empty()) makeFlat(mesh);
   if (!mesh.tangents.empty()) return mendTangents(mesh);
-  std::vector<vec2> uv = mesh.uvs[size_t(slot.uvSet)];
-  for (vec2& coordinates : uv) coordinates = slot.transform(coordinates);
+  std::vector<vec2> uv = mesh.uvs[size_t(slot->uvSet)];
+  for (vec2& coordinates : uv) coordinates = slot->transform(coordinates);
   computeTangents(mesh, uv);
 }
 
@@ -128,23 +129,24 @@ bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const st
 }
 
 MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Material material) {
-  MeshRecipe recipe{.mode = primitive.mode,
-                    .indices = primitive.indices,
-                    .attributes = primitive.attributes,
-                    .targets = primitive.targets,
-                    .weights = {},
-                    .uvSets = {},
-                    .normalMapSpace = {},
-                    .hasAlpha = material.alphaMode != AlphaMode::Opaque};
+  MeshRecipe recipe{
+      .mode = primitive.mode,
+      .indices = primitive.indices,
+      .attributes = primitive.attributes,
+      .targets = primitive.targets,
+      .weights = {},
+      .uvSets = {},
+      .tangentSpace = {},
+      .hasAlpha = material.alphaMode != AlphaMode::Opaque || passesStraight(material)};
   if (!primitive.targets.empty()) recipe.weights.assign(pose.weights.begin(), pose.weights.end());
   for (const TextureSlot* slot : textureSlots(material))
     if (*slot) recipe.uvSets.push_back(slot->uvSet);
   std::sort(recipe.uvSets.begin(), recipe.uvSets.end());
   recipe.uvSets.erase(std::unique(recipe.uvSets.begin(), recipe.uvSets.end()), recipe.uvSets.end());
-  if (const TextureSlot& slot = material.normalTexture; slot) {
-    recipe.normalMapSpace.push_back(uint32_t(slot.uvSet));
-    for (const vec2& v : {slot.uvRow0, slot.uvRow1, slot.uvOffset})
-      for (int k = 0; k < 2; ++k) recipe.normalMapSpace.push_back(std::bit_cast<uint32_t>(v[k]));
+  if (const std::optional<TextureSlot> slot = tangentSpace(material)) {
+    recipe.tangentSpace.push_back(uint32_t(slot->uvSet));
+    for (const vec2& v : {slot->uvRow0, slot->uvRow1, slot->uvOffset})
+      for (int k = 0; k < 2; ++k) recipe.tangentSpace.push_back(std::bit_cast<uint32_t>(v[k]));
   }
   return recipe;
 }
@@ -171,7 +173,7 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
     file.warnOnce("indices beyond the last whole triangle are left out");
 
   mesh.normals = attributes.read("NORMAL", readVectors<3>);
-  if (material.normalTexture && !mesh.normals.empty())
+  if (tangentSpace(material) && !mesh.normals.empty())
     mesh.tangents = attributes.read("TANGENT", readVectors<4>);
   readTextureCoordinates(file, attributes, material, mesh);
   readVertexColors(file, attributes, where, mesh);

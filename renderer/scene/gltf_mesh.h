@@ -31,9 +31,9 @@ struct MeshRecipe {
   std::map<std::string, int> attributes;
   std::vector<std::map<std::string, int>> targets;
   std::vector<double> weights;
-  std::vector<int> uvSets;               // that the material reads
-  std::vector<uint32_t> normalMapSpace;  // UV set and the bits of the transform; empty: none
-  bool hasAlpha;                         // opaque surfaces are traced faster among themselves
+  std::vector<int> uvSets;             // that the material reads
+  std::vector<uint32_t> tangentSpace;  // UV set and the bits of the transform; empty: none
+  bool hasAlpha;                       // opaque surfaces are traced faster among themselves
 
   auto operator<=>(const MeshRecipe&) const = default;
 };

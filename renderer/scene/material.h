@@ -1,8 +1,10 @@
 // glTF 2.0 metallic-roughness material, as the file states it.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "scene/extended_material.h"
 #include "scene/texture.h"
 
 namespace chromeball {
@@ -11,32 +13,34 @@ enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
 struct Material {
   std::string name;
-  vec4 baseColor{1};                // linear RGB and alpha; times texture, times vertex colour
+  vec4 baseColor{1};                  // linear RGB and alpha; times texture, times vertex colour
   float metallic = 1, roughness = 1;  // perceptual roughness; alpha of GGX is its square
-  Rgb emission{0};                  // emissiveFactor * emissiveStrength, radiance
-  float ior = 1.5f;                 // KHR_materials_ior; 0 means infinite (F0 = 1)
-  float specular = 1;               // KHR_materials_specular: weight of the dielectric lobe
+  Rgb emission{0};                    // emissiveFactor * emissiveStrength, radiance
+  float ior = 1.5f;                   // KHR_materials_ior; 0 means infinite (F0 = 1)
+  float specular = 1;                 // KHR_materials_specular: weight of the dielectric lobe
   Rgb specularColor{1};
   float normalScale = 1;
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
-  bool unlit = false;               // KHR_materials_unlit: emits its base colour, reflects nothing
+  bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
 
   bool emits() const { return unlit || emission != Rgb(0); }
 
-  TextureSlot baseColorTexture;      // sRGB
+  TextureSlot baseColorTexture;          // sRGB
   TextureSlot metallicRoughnessTexture;  // G roughness, B metallic
   TextureSlot normalTexture;
   TextureSlot emissiveTexture;       // sRGB
   TextureSlot specularTexture;       // A
   TextureSlot specularColorTexture;  // sRGB
+
+  std::optional<ExtendedMaterial> extended;
 };
 
 // Every slot of a material, for what treats them alike.
-inline std::array<TextureSlot*, 6> textureSlots(Material& m) {
-  return {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
-          &m.emissiveTexture,  &m.specularTexture,          &m.specularColorTexture};
-}
+std::vector<TextureSlot*> textureSlots(Material& m);
+
+// The slot whose coordinates the tangents follow, where the material needs tangents at all.
+std::optional<TextureSlot> tangentSpace(const Material& m);
 
 }  // namespace chromeball

@@ -18,29 +18,31 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Mesh& mesh, const
   return scene.textures[slot.texture].lookup(slot.transform(uv));
 }
 
-vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
-  return lookup(scene, slot, *s.mesh, s.triangle, s.barycentric);
+float handednessOf(const Instance& instance) {
+  return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0 ? -1.0f : 1.0f;
 }
 
-// Tangent-space normal mapping (glTF 2.0, 3.9.3). Returns the shading normal unmapped where the
-// tangent is degenerate.
-vec3 mappedNormal(const Scene& scene, const Surface& s, const Instance& instance, float handedness,
-                  const vec3& normal) {
+// The vertices' normals between them, in world space and on the front; not unit.
+vec3 interpolatedNormal(const Mesh& mesh, const Instance& instance, const Triangle& triangle,
+                        vec2 barycentric, float handedness) {
+  const vec3 n = interpolate(mesh.normals, triangle, barycentric);
+  if (!instance.toWorld) return n;
+  const mat3& m = instance.toWorld->linear;  // normals turn by the matrix of cofactors
+  return handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
+                       n.z * glm::cross(m[0], m[1]));
+}
+
+std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& instance,
+                                         float handedness, const vec3& normal) {
   const vec4 tangent4 = interpolate(s.mesh->tangents, s.triangle, s.barycentric);
   vec3 tangent(tangent4);
   if (instance.toWorld) tangent = instance.toWorld->linear * tangent;
   tangent -= normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(tangent, tangent);
-  if (!(length2 > 0)) return normal;
+  if (!(length2 > 0)) return std::nullopt;
   tangent *= 1 / std::sqrt(length2);
-  const vec3 bitangent = handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent);
-
-  vec3 n = vec3(lookup(scene, s.material->normalTexture, s)) * 2.0f - 1.0f;
-  n.x *= s.material->normalScale;
-  n.y *= s.material->normalScale;
-  const vec3 mapped = n.x * tangent + n.y * bitangent + n.z * normal;
-  const float mapped2 = glm::dot(mapped, mapped);
-  return mapped2 > 0 ? mapped * (1 / std::sqrt(mapped2)) : normal;
+  return TangentFrame{
+      tangent, handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent), normal};
 }
 
 // The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
@@ -56,8 +58,8 @@ float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& norm
 
 }  // namespace
 
-Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle,
-                  vec2 barycentric, const vec3& wo) {
+Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
+                  const vec3& wo) {
   Surface s;
   s.mesh = &scene.meshes[instance.mesh];
   s.material = &scene.materials[instance.material];
@@ -72,7 +74,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     p0 = toWorld->point(p0);
     p1 = toWorld->point(p1);
     p2 = toWorld->point(p2);
-    handedness = glm::determinant(toWorld->linear) < 0 ? -1.0f : 1.0f;
+    handedness = handednessOf(instance);
   }
 
   s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
@@ -85,22 +87,42 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
 
   s.normal = s.geometricNormal;
   if (!s.mesh->normals.empty()) {
-    vec3 n = interpolate(s.mesh->normals, s.triangle, barycentric);
-    if (instance.toWorld) {
-      const mat3& m = instance.toWorld->linear;  // normals turn by the matrix of cofactors
-      n = handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
-                        n.z * glm::cross(m[0], m[1]));
-    }
+    vec3 n = interpolatedNormal(*s.mesh, instance, s.triangle, barycentric, handedness);
     const float length2 = glm::dot(n, n);
     if (length2 > 0) {
       n *= 1 / std::sqrt(length2);
       if (s.material->normalTexture && !s.mesh->tangents.empty())
-        n = mappedNormal(scene, s, instance, handedness, n);
+        if (const auto frame = tangentFrame(s, instance, handedness, n))
+          n = mappedNormal(scene, s.material->normalTexture, s.material->normalScale, s, *frame);
       if (!s.frontFace) n = -n;
       if (glm::dot(n, s.geometricNormal) > 0) s.normal = n;
     }
   }
   return s;
+}
+
+std::optional<TangentFrame> tangentFrameAt(const Surface& s, const Instance& instance) {
+  if (s.mesh->tangents.empty()) return std::nullopt;
+  const float handedness = handednessOf(instance);
+  const vec3 n = interpolatedNormal(*s.mesh, instance, s.triangle, s.barycentric, handedness);
+  const float length2 = glm::dot(n, n);
+  if (!(length2 > 0)) return std::nullopt;
+  return tangentFrame(s, instance, handedness, n * (1 / std::sqrt(length2)));
+}
+
+// Tangent-space normal mapping (glTF 2.0, 3.9.3).
+vec3 mappedNormal(const Scene& scene, const TextureSlot& map, float scale, const Surface& surface,
+                  const TangentFrame& frame) {
+  vec3 n = vec3(lookup(scene, map, surface)) * 2.0f - 1.0f;
+  n.x *= scale;
+  n.y *= scale;
+  const vec3 mapped = n.x * frame.tangent + n.y * frame.bitangent + n.z * frame.normal;
+  const float mapped2 = glm::dot(mapped, mapped);
+  return mapped2 > 0 ? mapped * (1 / std::sqrt(mapped2)) : frame.normal;
+}
+
+vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
+  return lookup(scene, slot, *s.mesh, s.triangle, s.barycentric);
 }
 
 MaterialPoint materialAt(const Scene& scene, const Surface& s) {

@@ -26,8 +26,22 @@ struct Surface {
 };
 
 // `wo`: unit, towards the viewer.
-Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle,
-                  vec2 barycentric, const vec3& wo);
+Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
+                  const vec3& wo);
+
+// The smooth normal before any map, and the axes about it that normal maps are written in, all on
+// the front. Right angles; unit. Nothing where the mesh has no tangents or a degenerate one.
+struct TangentFrame {
+  vec3 tangent, bitangent, normal;
+};
+std::optional<TangentFrame> tangentFrameAt(const Surface& surface, const Instance& instance);
+
+// A normal map's normal, unit.
+vec3 mappedNormal(const Scene& scene, const TextureSlot& map, float scale, const Surface& surface,
+                  const TangentFrame& frame);
+
+// A texture's value at a surface.
+vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& surface);
 
 // The metallic-roughness parameters at a point: factors x textures x vertex colours.
 struct MaterialPoint {

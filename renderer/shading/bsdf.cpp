@@ -1,25 +1,12 @@
 #include "shading/bsdf.h"
 
 #include "math/warp.h"
+#include "shading/extended_bsdf.h"
 #include "shading/ggx.h"
+#include "shading/shading_normal.h"
 
 namespace chromeball {
 namespace {
-
-// Below this width the highlight is narrower than the sun by a factor of 50: a mirror.
-constexpr float kSmoothAlpha = 1e-4f;
-
-// Turns the shading normal towards the geometric one as far as needed for the mirrored view to
-// leave the surface; otherwise smooth normals on coarse meshes leave black rims.
-// Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System".
-vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, const vec3& wo) {
-  const vec3 mirrored = 2 * glm::dot(normal, wo) * normal - wo;
-  const float height = glm::dot(mirrored, geometricNormal);
-  const float least = 0.1f * std::min(glm::dot(wo, geometricNormal), 1.0f);
-  if (height >= least) return normal;
-  const vec3 lifted = glm::normalize(mirrored + (least - height) * geometricNormal);
-  return glm::normalize(lifted + wo);
-}
 
 // Fraction that leaves after two or more bounces between microfacets (Kulla and Conty 2017).
 template <class T>
@@ -31,51 +18,60 @@ T scatteredAgain(const T& f0, const T& f90, float meanAlbedo) {
 }  // namespace
 
 void prepareBsdfs(const Scene& scene) {
-  for (const Material& m : scene.materials)
-    if (m.metallic > 0 || m.specular > 0) {
-      EnergyTable::get();
-      return;
-    }
+  for (const Material& m : scene.materials) {
+    if (m.metallic > 0 || m.specular > 0) EnergyTable::get();
+    if (m.extended) prepareExtendedBsdf(m);
+  }
 }
 
-Bsdf::Bsdf(const MaterialPoint& m, const Surface& surface, const vec3& wo, float mirrorAlpha)
+Bsdf::Bsdf(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0, const Surface& surface,
+           const vec3& wo, float mirrorAlpha)
     : normal_(surface.normal),
       geometricNormal_(surface.geometricNormal),
-      diffuse_(m.baseColor * (1 - m.metallic)),
+      diffuse_(diffuse),
       specular_(m.metallic > 0 || m.dielectricF90 > 0),
       frame_(normal_) {
-  if (specular_) initSpecular(m, wo, mirrorAlpha);
+  if (specular_) initSpecular(m, metalF0, wo, mirrorAlpha);
 }
 
-void Bsdf::initSpecular(const MaterialPoint& m, const vec3& wo, float mirrorAlpha) {
+Bsdf::Bsdf(const ExtendedBsdf& extended)
+    : extended_(&extended), normal_(extended.normal()), specular_(false), frame_(normal_) {
+  mirror_ = !extended.hasContinuousLobe();
+  specularShare_ = 1;
+}
+
+void Bsdf::initSpecular(const MaterialPoint& m, const Rgb& metalF0, const vec3& wo,
+                        float mirrorAlpha) {
   normal_ = normalThatReflects(normal_, geometricNormal_, wo);
   frame_ = Frame(normal_);
   wo_ = frame_.toLocal(wo);
   wo_.z = std::max(wo_.z, 1e-6f);
   alpha_ = m.roughness * m.roughness;
-  smooth_ = alpha_ < kSmoothAlpha;
+  smooth_ = alpha_ < ggx::kSmoothAlpha;
   mirror_ = smooth_ || alpha_ < mirrorAlpha;
-  f0_ = glm::mix(m.dielectricF0, m.baseColor, m.metallic);
+  f0_ = glm::mix(m.dielectricF0, metalF0, m.metallic);
   f90_ = Rgb(glm::mix(m.dielectricF90, 1.0f, m.metallic));
 
   energy_ = EnergyTable::get().row(m.roughness);
   const SpecularAlbedo toViewer = energy_.at(wo_.z), mean = energy_.average();
   const float meanAlbedo = mean.a + mean.b;
   const Rgb again = glm::mix(scatteredAgain(m.dielectricF0, Rgb(m.dielectricF90), meanAlbedo),
-                             scatteredAgain(m.baseColor, Rgb(1), meanAlbedo), m.metallic);
+                             scatteredAgain(metalF0, Rgb(1), meanAlbedo), m.metallic);
   const float lost = 1 - toViewer.a - toViewer.b, meanLost = 1 - meanAlbedo;
   const Rgb againAlbedo = again * lost;
   again_ = meanLost > 1e-5f ? againAlbedo / meanLost : Rgb(0);
 
   const float coatF0 = maxComponent(m.dielectricF0);
   coating_ = {coatF0, m.dielectricF90, scatteredAgain(coatF0, m.dielectricF90, meanAlbedo)};
-  const Rgb diffuseAlbedo = diffuse_ * (1 - coating_.albedo(toViewer));
+  surfaceAlbedo_ = coating_.albedo(toViewer);
+  const Rgb diffuseAlbedo = diffuse_ * (1 - surfaceAlbedo_);
   const float through = 1 - coating_.albedo(mean);
   diffuse_ = through > 1e-5f ? diffuseAlbedo / through : Rgb(0);
 
   const float specular = luminance(f0_ * toViewer.a + f90_ * toViewer.b);
   const float rest = luminance(diffuseAlbedo + againAlbedo);
-  specularShare_ = specular + rest > 0 ? specular / (specular + rest) : 1;
+  albedo_ = specular + rest;
+  specularShare_ = albedo_ > 0 ? specular / albedo_ : 1;
 }
 
 Rgb Bsdf::fresnel(float cosine) const {
@@ -84,6 +80,8 @@ Rgb Bsdf::fresnel(float cosine) const {
 }
 
 Bsdf::Value Bsdf::evaluate(const vec3& wi) const {
+  if (extended_) [[unlikely]]
+    return extended_->evaluate(wi);
   const float cosine = glm::dot(normal_, wi);
   if (cosine <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
   if (!specular_) return {diffuse_ * (cosine * kInvPi), cosine * kInvPi};
@@ -109,6 +107,8 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
 }
 
 bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
+  if (extended_) [[unlikely]]
+    return extended_->sample(u, lobe, out);
   if (specular_ && lobe < specularShare_) {
     const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;

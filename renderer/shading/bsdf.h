@@ -16,20 +16,31 @@ struct BsdfSample {
   float pdf;   // over solid angle; 0 for a mirror's direction, which nothing else is to sample
 };
 
+class ExtendedBsdf;
+
 // glTF metallic-roughness (glTF 2.0, appendix B) at one point, seen from one direction. Reflection
 // only, and reciprocal:
 //   f = specular + diffuse (1 - S(wo))(1 - S(wi)) / (pi (1 - S_mean)) + multiple scattering
 // The specular lobe is GGX; what its microfacets scatter again comes back as a diffuse-like lobe
 // (Kulla and Conty 2017), and the diffuse base gets what the coating lets through (Kelemen and
 // Szirmay-Kalos 2001), so that a white material reflects exactly all light. A material without
-// specular reflection is Lambert's, and pays for nothing else.
+// specular reflection is Lambert's, and pays for nothing else. An extended material hides behind
+// the same interface, and its sampled directions may lie on either side of the surface.
 class Bsdf {
  public:
   // `wo`: unit, towards the viewer; the surface's normals are on its side. A specular lobe whose
   // alpha (roughness squared) is less than `mirrorAlpha` counts as a perfect mirror's: sample()
   // alone finds it, with pdf 0.
-  Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo,
-       float mirrorAlpha = 0);
+  Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo, float mirrorAlpha = 0)
+      : Bsdf(material, material.baseColor * (1 - material.metallic), material.baseColor, surface,
+             wo, mirrorAlpha) {}
+
+  // With the diffuse albedo and the metal's F0 in the base colour's stead.
+  Bsdf(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
+       const Surface& surface, const vec3& wo, float mirrorAlpha);
+
+  // Stands for `extended`, which must outlive it.
+  explicit Bsdf(const ExtendedBsdf& extended);
 
   struct Value {
     Rgb fCos;   // f times |cos| at the shading normal
@@ -44,8 +55,15 @@ class Bsdf {
   bool hasContinuousLobe() const { return !(mirror_ && specularShare_ >= 1); }
   const vec3& normal() const { return normal_; }
 
+  // Luminance that is reflected of a uniform white surrounding.
+  float albedo() const { return specular_ ? albedo_ : luminance(diffuse_); }
+  // Share that the dielectric surface reflects, multiple scattering included: what a layer beneath
+  // does not get.
+  float surfaceAlbedo() const { return specular_ ? surfaceAlbedo_ : 0; }
+
  private:
-  void initSpecular(const MaterialPoint& material, const vec3& wo, float mirrorAlpha);
+  void initSpecular(const MaterialPoint& material, const Rgb& metalF0, const vec3& wo,
+                    float mirrorAlpha);
   Value evaluateLobes(const vec3& wi) const;  // in the frame of the normal
   Rgb fresnel(float cosine) const;
 
@@ -57,6 +75,7 @@ class Bsdf {
     }
   };
 
+  const ExtendedBsdf* extended_ = nullptr;  // answers in this one's stead where it is set
   vec3 normal_, geometricNormal_;
   Rgb diffuse_;              // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
   bool specular_;            // the members below hold only where this is set
@@ -69,6 +88,7 @@ class Bsdf {
   Rgb f0_, f90_;
   Rgb again_;  // multiple scattering, times (1 - E(wo)) / (1 - E_mean)
   Coating coating_;
+  float albedo_, surfaceAlbedo_;
   EnergyTable::Row energy_;
 };
 

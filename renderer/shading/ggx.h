@@ -5,6 +5,9 @@
 
 namespace chromeball::ggx {
 
+// Below this width the highlight is narrower than the sun by a factor of 50: a mirror.
+inline constexpr float kSmoothAlpha = 1e-4f;
+
 // D(h): density of microfacet normals per solid angle and projected area. `alpha` is the width,
 // the square of glTF's perceptual roughness. Written so that it holds for alpha down to 1e-4.
 inline float distribution(const vec3& h, float alpha) {

@@ -7,6 +7,7 @@
 #include "math/error.h"
 #include "math/hash.h"
 #include "scene/surface.h"
+#include "scene/thin_wall.h"
 #include "trace/embree.h"
 
 namespace chromeball {
@@ -15,7 +16,8 @@ namespace {
 struct Query {
   QueryContext embree;  // first, so that a filter can cast back
   uint32_t key = 0;
-  float transmittance = 1;
+  vec3 direction{0};
+  Rgb transmittance{1};
 };
 
 // Index into Scene::instances, since geometry i of the top scene is instance i.
@@ -45,8 +47,18 @@ void filterClosest(const RTCFilterFunctionNArguments* arguments) {
 
 void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   auto& query = *reinterpret_cast<Query*>(arguments->context);
-  query.transmittance *= 1 - alphaAt(arguments, hitOf(arguments));
-  if (query.transmittance > 0) arguments->valid[0] = 0;
+  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  const Hit hit = hitOf(arguments);
+  const Instance& instance = scene.instances[hit.instance];
+  const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
+  Rgb passed(1 - alpha);
+  if (alpha > 0 && passesStraight(scene.materials[instance.material])) {
+    const Surface surface =
+        surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction);
+    passed += alpha * straightTransmittance(scene, instance, surface, query.direction);
+  }
+  query.transmittance *= passed;
+  if (!isBlack(query.transmittance)) arguments->valid[0] = 0;
 }
 
 // Embree knows no coordinates beyond 1.8e18, and as Debian builds it ends the program at a ray
@@ -57,12 +69,12 @@ bool isTraceable(const Ray& ray) {
   return sum.x + sum.y + sum.z < kFarthest && ray.tMax >= 0;
 }
 
-RTCScene newScene(RTCDevice device, bool hasAlpha) {
+RTCScene newScene(RTCDevice device, bool hasFilter) {
   RTCScene scene = rtcNewScene(device);
   // Robust: no ray slips between two triangles that share an edge.
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   // Spatial splits may report a hit to the shadow filter twice, which would darken it twice.
-  rtcSetSceneBuildQuality(scene, hasAlpha ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneBuildQuality(scene, hasFilter ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
 
@@ -110,9 +122,9 @@ RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
   if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
-  if (needsAlpha_[index]) {
+  if (needsFilter_[index]) {
     rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
-    rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
+    if (hasAlpha_) rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
     rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
   }
   return geometry;
@@ -120,7 +132,7 @@ RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
 
 RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
   if (!meshScenes_[mesh]) {
-    meshScenes_[mesh] = newScene(device_, hasAlpha_);
+    meshScenes_[mesh] = newScene(device_, hasFilter_);
     attach(meshScenes_[mesh], meshGeometry(scene, mesh), 0);
     rtcCommitScene(meshScenes_[mesh]);
   }
@@ -130,16 +142,19 @@ RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
 void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
   const auto isShown = [&](size_t instance) { return shown.empty() || shown[instance]; };
   std::vector<int> uses(scene.meshes.size());
-  needsAlpha_.resize(scene.meshes.size());
+  needsFilter_.resize(scene.meshes.size());
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     ++uses[instance.mesh];
-    if (!isShown(i) || scene.materials[instance.material].alphaMode == AlphaMode::Opaque) continue;
-    needsAlpha_[instance.mesh] = hasAlpha_ = true;
+    const Material& material = scene.materials[instance.material];
+    const bool alpha = material.alphaMode != AlphaMode::Opaque;
+    if (!isShown(i) || !(alpha || passesStraight(material))) continue;
+    needsFilter_[instance.mesh] = hasFilter_ = true;
+    hasAlpha_ = hasAlpha_ || alpha;
   }
 
   meshScenes_.resize(scene.meshes.size());
-  scene_ = newScene(device_, hasAlpha_);
+  scene_ = newScene(device_, hasFilter_);
   // Geometry i of the top scene is instance i of ours.
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     if (!isShown(i)) continue;
@@ -222,10 +237,11 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
   return hits;
 }
 
-float Accel::transmittance(const Ray& ray) const {
-  if (!isTraceable(ray)) return 1;
+Rgb Accel::transmittance(const Ray& ray) const {
+  if (!isTraceable(ray)) return Rgb(1);
   Query query;
   initQueryContext(query.embree);
+  query.direction = ray.direction;
   RTCRay r{ray.origin.x,
            ray.origin.y,
            ray.origin.z,
@@ -239,7 +255,7 @@ float Accel::transmittance(const Ray& ray) const {
            0,
            0};
   rtcOccluded(scene_, r, query.embree);
-  return r.tfar < 0 ? 0 : query.transmittance;
+  return r.tfar < 0 ? Rgb(0) : query.transmittance;
 }
 
 }  // namespace chromeball

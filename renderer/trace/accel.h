@@ -17,8 +17,8 @@ struct RTCSceneTy;
 namespace chromeball {
 
 // Embree's hierarchy over a scene's instances. A mesh that stands in several places is built once.
-// Surfaces with alpha (masked or blended) are resolved here, so that the path loop never sees them;
-// scenes without them carry no filter.
+// Surfaces with alpha (masked or blended) are resolved here, so that the path loop never sees them,
+// and smooth thin walls let shadow rays pass; scenes without them carry no filter.
 class Accel {
  public:
   // Of the instances `shown` (by index) says so for; all where it is empty. The scene must outlive
@@ -38,9 +38,9 @@ class Accel {
   using Packet = std::array<std::optional<Hit>, kPacket>;
   Packet intersect(std::span<const Ray> rays, std::span<const uint32_t> keys) const;
 
-  // The share of light that passes along the ray up to tMax: 0, 1, or the product of 1 - alpha over
-  // the blended surfaces between.
-  float transmittance(const Ray& ray) const;
+  // The share of light that passes along the ray up to tMax: 0, 1, or the product over the blended
+  // surfaces (1 - alpha) and the smooth thin walls (scene/thin_wall.h) between.
+  Rgb transmittance(const Ray& ray) const;
 
  private:
   void build(const Scene& scene, const std::vector<bool>& shown);
@@ -51,8 +51,8 @@ class Accel {
   RTCDeviceTy* device_ = nullptr;
   RTCSceneTy* scene_ = nullptr;
   std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null where a mesh stands in one place only
-  std::vector<bool> needsAlpha_;         // by mesh: whether an instance has a surface with alpha
-  bool hasAlpha_ = false;
+  std::vector<bool> needsFilter_;        // by mesh: whether an instance lets some light pass
+  bool hasFilter_ = false, hasAlpha_ = false;
 };
 
 }  // namespace chromeball

@@ -1,0 +1,51 @@
+#include "integrate/media.h"
+
+namespace chromeball {
+namespace {
+
+// KHR_materials_dispersion: red bends less and blue more, by (ior - 1) / Abbe number between them.
+Rgb indexByChannel(const Material& m) {
+  const float half = (m.ior - 1) * 0.025f * m.extended->dispersion;
+  return glm::max(Rgb(m.ior - half, m.ior, m.ior + half), Rgb(1));
+}
+
+// The one channel that is not black; -1 where there are several.
+int onlyChannel(const Rgb& c) {
+  if (int(c.x != 0) + int(c.y != 0) + int(c.z != 0) != 1) return -1;
+  return c.x != 0 ? 0 : c.y != 0 ? 1 : 2;
+}
+
+}  // namespace
+
+int Media::find(const Material* body) const {
+  int i = count_ - 1;
+  while (i >= 0 && bodies_[size_t(i)] != body) --i;
+  return i;
+}
+
+RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) const {
+  const Material& m = *s.material;
+  Rgb own = indexByChannel(m);
+  if (const int c = onlyChannel(throughput); c >= 0) own = Rgb(own[c]);
+  if (s.frontFace) {
+    const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
+    return {own / outer, m.ior};
+  }
+  const int place = find(&m);
+  if (place >= 0 && place < count_ - 1) return {Rgb(1), m.ior};  // within another: nothing changes
+  const float outer = place > 0 ? bodies_[size_t(place - 1)]->ior : 1;
+  return {outer / own, m.ior};
+}
+
+void Media::cross(const Surface& s) {
+  if (s.frontFace) {
+    if (count_ < int(bodies_.size())) bodies_[size_t(count_++)] = s.material;
+    return;
+  }
+  const int place = find(s.material);
+  if (place < 0) return;
+  for (int i = place; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
+  --count_;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,23 @@
+// What the glTF material extensions add to metallic-roughness. A plain material has none of it.
+#pragma once
+
+#include "scene/texture.h"
+
+namespace chromeball {
+
+struct ExtendedMaterial {
+  // KHR_materials_transmission, _volume and _dispersion
+  float transmission = 0;  // share of the dielectric's base that lets light through
+  bool thinWalled = true;  // a sheet; else the mesh is the boundary of a body, and refracts
+  Rgb attenuation{0};      // in the body, 1/m: a share exp(-attenuation s) passes s metres
+  float dispersion = 0;    // 20 / Abbe number
+  TextureSlot transmissionTexture;  // R
+
+  // KHR_materials_clearcoat: a dielectric layer of index 1.5 on top of all else
+  float clearcoat = 0, clearcoatRoughness = 0, clearcoatNormalScale = 1;
+  TextureSlot clearcoatTexture;           // R
+  TextureSlot clearcoatRoughnessTexture;  // G
+  TextureSlot clearcoatNormalTexture;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,127 @@
+#include "shading/extended_bsdf.h"
+
+#include "scene/thin_wall.h"
+#include "shading/ggx.h"
+#include "shading/glass_table.h"
+
+namespace chromeball {
+namespace {
+
+// The coat as a black dielectric of index 1.5, with its own normal.
+Bsdf coatBsdf(const ExtendedPoint& e, Surface surface, const vec3& wo, float mirrorAlpha) {
+  constexpr float kF0 = 0.04f;
+  surface.normal = e.clearcoatNormal;
+  return Bsdf({Rgb(0), 0, e.clearcoatRoughness, Rgb(kF0 * e.clearcoat), e.clearcoat}, surface, wo,
+              mirrorAlpha);
+}
+
+bool isMirror(const Bsdf& bsdf) { return !bsdf.hasContinuousLobe(); }
+template <class Lobe>
+bool isMirror(const Lobe& lobe) {
+  return lobe.isMirror();
+}
+
+}  // namespace
+
+void prepareExtendedBsdf(const Material& m) {
+  EnergyTable::get();
+  if (m.extended->transmission > 0 && !m.extended->thinWalled && m.roughness > 0) GlassTable::get();
+}
+
+template <class Self, class Function>
+void ExtendedBsdf::forEachPart(Self& self, Function&& function) {
+  if (self.coat_) function(*self.coat_);
+  if (self.base_) function(*self.base_);
+  if (self.glass_) function(*self.glass_);
+  if (self.sheet_) function(*self.sheet_);
+}
+
+ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
+                           const RefractiveIndex& index, const Surface& surface, const vec3& wo,
+                           float mirrorAlpha)
+    : normal_(surface.normal) {
+  const bool inside = e.transmission > 0 && !e.thinWalled && !surface.frontFace;
+  float through = 1;
+  if (e.clearcoat > 0 && !inside) {
+    const Bsdf coat = coatBsdf(e, surface, wo, mirrorAlpha);
+    coat_ = {coat, 1, coat.albedo()};
+    through -= coat.surfaceAlbedo();
+  }
+  addBase(m, e, index, surface, wo, mirrorAlpha, through);
+
+  float total = 0;
+  forEachPart(*this, [&](auto& part) { total += part.share; });
+  forEachPart(*this, [&](auto& part) {
+    part.share = total > 0 ? part.share / total : 0;
+    continuous_ = continuous_ || !isMirror(part.lobe);
+  });
+}
+
+void ExtendedBsdf::addBase(const MaterialPoint& m, const ExtendedPoint& e,
+                           const RefractiveIndex& index, const Surface& surface, const vec3& wo,
+                           float mirrorAlpha, float factor) {
+  const float transmission = e.transmission * (1 - m.metallic);
+  if (e.thinWalled) {
+    const Bsdf base(m, m.baseColor * (1 - m.metallic - transmission), m.baseColor, surface, wo,
+                    mirrorAlpha);
+    base_ = {base, factor, factor * base.albedo()};
+    normal_ = base.normal();
+    if (transmission == 0) return;
+    const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha;
+    const Rgb share = smooth ? sheetTransmittance(m, e.transmission, glm::dot(surface.normal, wo))
+                             : m.baseColor * (transmission * (1 - base.surfaceAlbedo()));
+    const Sheet sheet(share, m.roughness, surface, wo, mirrorAlpha);
+    sheet_ = {sheet, factor, factor * sheet.albedo()};
+    return;
+  }
+  if (transmission > 0) {
+    const Glass glass(m, index, surface, wo, mirrorAlpha);
+    glass_ = {glass, factor * transmission, factor * transmission * glass.albedo()};
+    normal_ = glass.normal();
+  }
+  if (transmission < 1) {
+    MaterialPoint rest = m;  // of the same amount of metal, and less of the dielectric
+    rest.metallic = m.metallic / (1 - transmission);
+    const Bsdf base(rest, surface, wo, mirrorAlpha);
+    base_ = {base, factor * (1 - transmission), factor * (1 - transmission) * base.albedo()};
+    normal_ = base.normal();
+  }
+}
+
+Bsdf::Value ExtendedBsdf::evaluate(const vec3& wi) const {
+  Bsdf::Value sum{Rgb(0), 0};
+  forEachPart(*this, [&](const auto& part) {
+    const Bsdf::Value v = part.lobe.evaluate(wi);
+    sum.fCos += part.factor * v.fCos;
+    sum.pdf += part.share * v.pdf;
+  });
+  return sum;
+}
+
+template <class Lobe>
+bool ExtendedBsdf::samplePart(const Part<Lobe>& part, vec2 u, float lobe, BsdfSample& out) const {
+  if (!part.lobe.sample(u, lobe, out)) return false;
+  if (out.pdf == 0) {
+    out.weight *= part.factor / part.share;
+    return true;
+  }
+  const Bsdf::Value v = evaluate(out.wi);
+  out.weight = v.fCos / v.pdf;
+  out.pdf = v.pdf;
+  return v.pdf > 0;
+}
+
+bool ExtendedBsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
+  bool chosen = false, passed = false;
+  forEachPart(*this, [&](const auto& part) {
+    if (chosen) return;
+    if (lobe < part.share) {
+      chosen = true;
+      passed = samplePart(part, u, lobe / part.share, out);
+    }
+    lobe -= part.share;
+  });
+  return passed;
+}
+
+}  // namespace chromeball

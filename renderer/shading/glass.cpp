@@ -1,0 +1,136 @@
+#include "shading/glass.h"
+
+#include "math/warp.h"
+#include "shading/dielectric.h"
+#include "shading/ggx.h"
+#include "shading/glass_table.h"
+#include "shading/shading_normal.h"
+
+namespace chromeball {
+namespace {
+
+constexpr float kUnbending = 1e-3f;  // |eta - 1| below which facets turn nothing aside
+
+}  // namespace
+
+Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface& surface,
+             const vec3& wo, float mirrorAlpha)
+    : frame_(normalThatReflects(surface.normal, surface.geometricNormal, wo)),
+      geometricNormal_(surface.geometricNormal),
+      wo_(frame_.toLocal(wo)),
+      eta_(index.eta),
+      dispersive_(eta_.x != eta_.y || eta_.y != eta_.z),
+      tint_(m.baseColor),
+      f0_(m.dielectricF0),
+      f90_(m.dielectricF90),
+      alpha_(m.roughness * m.roughness),
+      gain_(1) {
+  wo_.z = std::max(wo_.z, 1e-6f);
+  const float r = (index.front - 1) / (index.front + 1);
+  own_ = r * r;
+  smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kUnbending;
+  mirror_ = smooth_ || alpha_ < mirrorAlpha;
+  lambdaO_ = ggx::lambda(wo_.z, alpha_);
+  if (smooth_) return;
+  const GlassTable& table = GlassTable::get();
+  for (int c = 0; c < 3; ++c)
+    gain_[c] = c > 0 && !dispersive_ ? gain_[0] : 1 / table.albedo(wo_.z, m.roughness, eta_[c]);
+}
+
+// Fresnel's equations, stretched so that they reach F0 and F90 of KHR_materials_specular.
+float Glass::fresnel(float cosine, int c) const {
+  const float exact = fresnelDielectric(cosine, eta_[c]);
+  if (exact >= 1) return 1;
+  return glm::clamp(f0_[c] + (f90_ - f0_[c]) * (exact - own_) / (1 - own_), 0.0f, 1.0f);
+}
+
+Rgb Glass::fresnel(float cosine) const {
+  return {fresnel(cosine, 0), fresnel(cosine, 1), fresnel(cosine, 2)};
+}
+
+float Glass::albedo() const {
+  const Rgb reflectance = fresnel(wo_.z);
+  return luminance(reflectance + (1.0f - reflectance) * tint_);
+}
+
+Bsdf::Value Glass::evaluate(const vec3& wi) const {
+  if (mirror_) return {Rgb(0), 0};
+  const vec3 local = frame_.toLocal(wi);
+  const bool above = local.z > 0;
+  if (local.z == 0 || above != (glm::dot(geometricNormal_, wi) > 0)) return {Rgb(0), 0};
+  if (above) return reflect(local);
+  if (!dispersive_) return refract(local, 0);
+  Bsdf::Value sum{Rgb(0), 0};
+  for (int c = 0; c < 3; ++c) {
+    const Bsdf::Value v = refract(local, c);
+    sum.fCos[c] = v.fCos[c];
+    sum.pdf += v.pdf / 3;
+  }
+  return sum;
+}
+
+Bsdf::Value Glass::reflect(const vec3& wi) const {
+  const vec3 h = glm::normalize(wo_ + wi);
+  const Rgb reflectance = fresnel(std::min(glm::dot(wo_, h), 1.0f));
+  const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
+  return {reflectance * (gain_ * d / (1 + lambdaO_ + ggx::lambda(wi.z, alpha_))),
+          reflectShare(reflectance) * d / (1 + lambdaO_)};
+}
+
+// Walter et al. 2007, eq. 16, 17 and 21: h = -(wo + eta wi), and
+//   dh/dwi = eta^2 |wi.h| / (wo.h + eta wi.h)^2.
+Bsdf::Value Glass::refract(const vec3& wi, int c) const {
+  vec3 h = wo_ + eta_[c] * wi;
+  h *= (h.z < 0 ? -1 : 1) / glm::length(h);
+  const float woH = glm::dot(wo_, h), wiH = glm::dot(wi, h);
+  if (!(woH > 0 && wiH < 0)) return {Rgb(0), 0};
+  const float sum = woH + eta_[c] * wiH;
+  const float jacobian = eta_[c] * eta_[c] * -wiH / (sum * sum);
+  const float d = ggx::distribution(h, alpha_) * woH / wo_.z * jacobian;
+  const Rgb reflectance = fresnel(std::min(woH, 1.0f));
+  const float g2 = 1 / (1 + lambdaO_ + ggx::lambda(-wi.z, alpha_));
+  return {tint_ * (1.0f - reflectance) * (gain_ * d * g2),
+          (1 - reflectShare(reflectance)) * d / (1 + lambdaO_)};
+}
+
+bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
+  const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
+  const float woH = glm::dot(wo_, h);
+  const Rgb reflectance = fresnel(std::min(woH, 1.0f));
+  const float reflected = reflectShare(reflectance);
+  vec3 local;
+  Rgb weight;
+  if (lobe < reflected) {
+    local = 2 * woH * h - wo_;
+    if (local.z <= 0) return false;
+    weight = reflectance / reflected;
+  } else {
+    const float choice = (lobe - reflected) / (1 - reflected);
+    const int c = dispersive_ ? std::min(int(3 * choice), 2) : 0;
+    if (reflectance[c] >= 1) return false;
+    local = refracted(wo_, h, eta_[c]);
+    if (local.z >= 0) return false;
+    weight = tint_ * (1.0f - reflectance) / (1 - reflected);
+    if (dispersive_) {
+      const float own = 3 * weight[c];
+      weight = Rgb(0);
+      weight[c] = own;
+    }
+  }
+  out.wi = frame_.toWorld(local);
+  if ((local.z > 0) != (glm::dot(geometricNormal_, out.wi) > 0)) return false;
+  if (mirror_) {
+    const float passed =
+        smooth_ ? 1 : (1 + lambdaO_) / (1 + lambdaO_ + ggx::lambda(std::fabs(local.z), alpha_));
+    out.weight = weight * (gain_ * passed);
+    out.pdf = 0;
+    return true;
+  }
+  const Bsdf::Value v = evaluate(out.wi);
+  if (!(v.pdf > 0)) return false;
+  out.weight = v.fCos / v.pdf;
+  out.pdf = v.pdf;
+  return true;
+}
+
+}  // namespace chromeball

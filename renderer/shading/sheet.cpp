@@ -1,0 +1,50 @@
+#include "shading/sheet.h"
+
+#include "shading/ggx.h"
+
+namespace chromeball {
+
+Sheet::Sheet(const Rgb& share, float roughness, const Surface& surface, const vec3& wo,
+             float mirrorAlpha)
+    : frame_(surface.normal),
+      geometricNormal_(surface.geometricNormal),
+      wo_(wo),
+      localWo_(frame_.toLocal(wo)),
+      share_(share),
+      alpha_(roughness * roughness),
+      smooth_(alpha_ < ggx::kSmoothAlpha),
+      mirror_(smooth_ || alpha_ < mirrorAlpha),
+      gain_(1) {
+  localWo_.z = std::max(localWo_.z, 1e-6f);
+  lambdaO_ = ggx::lambda(localWo_.z, alpha_);
+  if (smooth_) return;
+  const SpecularAlbedo white = EnergyTable::get().row(roughness).at(localWo_.z);
+  gain_ = 1 / (white.a + white.b);
+}
+
+Bsdf::Value Sheet::evaluate(const vec3& wi) const {
+  vec3 local = frame_.toLocal(wi);
+  if (mirror_ || local.z >= 0 || glm::dot(geometricNormal_, wi) >= 0) return {Rgb(0), 0};
+  local.z = -local.z;
+  const vec3 h = glm::normalize(localWo_ + local);
+  const float d = ggx::distribution(h, alpha_) / (4 * localWo_.z);
+  return {share_ * (gain_ * d / (1 + lambdaO_ + ggx::lambda(local.z, alpha_))), d / (1 + lambdaO_)};
+}
+
+bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
+  if (smooth_) {
+    out = {-wo_, share_, 0};
+    return true;
+  }
+  const vec3 h = ggx::sampleVisibleNormal(localWo_, alpha_, u);
+  vec3 local = 2 * glm::dot(localWo_, h) * h - localWo_;
+  if (local.z <= 0) return false;
+  local.z = -local.z;
+  out.wi = frame_.toWorld(local);
+  if (glm::dot(geometricNormal_, out.wi) >= 0) return false;
+  out.weight = share_ * (gain_ * (1 + lambdaO_) / (1 + lambdaO_ + ggx::lambda(-local.z, alpha_)));
+  out.pdf = mirror_ ? 0 : evaluate(out.wi).pdf;
+  return mirror_ || out.pdf > 0;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,201 @@
+// BSDFs of extended materials: their samplers, their energy, where they are reciprocal.
+#include <gtest/gtest.h>
+
+#include "math/sobol.h"
+#include "shading/dielectric.h"
+#include "shading/extended_bsdf.h"
+#include "sphere_test.h"
+
+namespace chromeball {
+namespace {
+
+Surface flatSurface(bool frontFace = true) {
+  Surface s{};
+  s.geometricNormal = s.normal = {0, 0, 1};
+  s.frontFace = frontFace;
+  return s;
+}
+
+vec3 directionAt(float degrees) {
+  const float a = degrees * kPi / 180;
+  return {std::sin(a), 0, std::cos(a)};
+}
+
+MaterialPoint dielectric(float roughness, float ior = 1.5f, Rgb color = Rgb(1)) {
+  const float r = (ior - 1) / (ior + 1);
+  return {color, 0, roughness, Rgb(r * r), 1};
+}
+
+// One corner of the space of extended materials.
+struct Case {
+  std::string name;
+  MaterialPoint material;
+  ExtendedPoint extended;
+  RefractiveIndex index{Rgb(1.5f), 1.5f};
+  bool frontFace = true;
+
+  ExtendedBsdf from(float degrees) const {
+    return ExtendedBsdf(material, extended, index, flatSurface(frontFace), directionAt(degrees), 0);
+  }
+};
+
+ExtendedPoint transmissive(float share, bool thinWalled) {
+  ExtendedPoint e;
+  e.transmission = share;
+  e.thinWalled = thinWalled;
+  return e;
+}
+
+ExtendedPoint coated(float clearcoat, float roughness, vec3 normal = {0, 0, 1}) {
+  ExtendedPoint e;
+  e.clearcoat = clearcoat;
+  e.clearcoatRoughness = roughness;
+  e.clearcoatNormal = normal;
+  return e;
+}
+
+// White in every part, so that nothing is to be lost.
+std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
+  std::vector<Case> cases;
+  for (float r : roughnesses) {
+    const std::string at = " roughness " + std::to_string(r);
+    for (float ior : {1.1f, 1.5f, 2.4f}) {
+      const std::string of = at + " ior " + std::to_string(ior);
+      const MaterialPoint glass = dielectric(r, ior);
+      cases.push_back({"into glass" + of, glass, transmissive(1, false), {Rgb(ior), ior}});
+      cases.push_back(
+          {"out of glass" + of, glass, transmissive(1, false), {Rgb(1 / ior), ior}, false});
+      cases.push_back({"sheet" + of, glass, transmissive(1, true)});
+    }
+    cases.push_back({"half glass" + at, dielectric(r), transmissive(0.5f, false)});
+    cases.push_back({"half sheet" + at, dielectric(r), transmissive(0.5f, true)});
+    MaterialPoint halfMetal = dielectric(r);
+    halfMetal.metallic = 0.5f;
+    cases.push_back({"half metal, half glass" + at, halfMetal, transmissive(0.5f, false)});
+    cases.push_back(
+        {"prism" + at, dielectric(r, 1.6f), transmissive(1, false), {{1.5f, 1.6f, 1.7f}, 1.6f}});
+    cases.push_back({"coat" + at, dielectric(0.5f), coated(1, r)});
+    MaterialPoint metal = dielectric(0.3f);
+    metal.metallic = 1;
+    cases.push_back({"thin coat on metal" + at, metal, coated(0.5f, r)});
+    Case coatedGlass{"coated glass" + at, dielectric(0.4f), coated(1, r)};
+    coatedGlass.extended.transmission = 1;
+    coatedGlass.extended.thinWalled = false;
+    cases.push_back(coatedGlass);
+  }
+  return cases;
+}
+
+TEST(SlowExtendedBsdf, samplesItsPdfOverTheGrid) {
+  const std::vector<Case> cases = whiteCases({0.3f, 1});
+  constexpr float kAngles[] = {25, 75};
+  const int tests = int(cases.size() * std::size(kAngles));
+  for (const Case& c : cases)
+    for (float angle : kAngles) {
+      const ExtendedBsdf bsdf = c.from(angle);
+      const SphereTest test = testDirections(
+          [&](int i) -> std::optional<vec3> {
+            BsdfSample s;
+            if (!bsdf.sample(random2(i, 0), random1(i, 2), s)) return std::nullopt;
+            return s.wi;
+          },
+          [&](const vec3& wi) { return bsdf.evaluate(wi).pdf; }, 40000, 3);
+      EXPECT_LT(test.totalProbability, 1 + 3e-3) << c.name << " angle " << angle;
+      EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, tests)) << c.name << " angle " << angle;
+    }
+}
+
+Rgb albedo(const ExtendedBsdf& bsdf, int samples) {
+  glm::dvec3 sum(0);
+  for (int i = 0; i < samples; ++i) {
+    BsdfSample s;
+    const vec2 u(toUnit(sobol(uint32_t(i), 0)), toUnit(sobol(uint32_t(i), 1)));
+    if (bsdf.sample(u, toUnit(sobol(uint32_t(i), 2)), s)) sum += glm::dvec3(s.weight);
+  }
+  return Rgb(sum / double(samples));
+}
+
+TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
+  for (const Case& c : whiteCases({0, 0.02f, 0.1f, 0.25f, 0.5f, 0.8f, 1}))
+    for (float angle : {0.0f, 30.0f, 60.0f, 80.0f, 88.0f}) {
+      const Rgb a = albedo(c.from(angle), 1 << 13);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_GT(a[k], 0.99f) << c.name << " angle " << angle;
+        EXPECT_LT(a[k], 1.01f) << c.name << " angle " << angle;
+      }
+    }
+}
+
+TEST(ExtendedBsdf, weightsAreValueOverDensity) {
+  for (const Case& c : whiteCases({0.3f, 0.7f})) {
+    const ExtendedBsdf bsdf = c.from(50);
+    for (int i = 0; i < 300; ++i) {
+      BsdfSample s;
+      if (!bsdf.sample(random2(i, 0), random1(i, 2), s) || s.pdf == 0) continue;
+      const Bsdf::Value v = bsdf.evaluate(s.wi);
+      ASSERT_NEAR(v.pdf, s.pdf, 1e-3f * s.pdf) << c.name;
+      for (int k = 0; k < 3; ++k)
+        ASSERT_NEAR(v.fCos[k] / v.pdf, s.weight[k], 1e-3f * (s.weight[k] + 1e-3f)) << c.name;
+    }
+  }
+}
+
+// Fresnel at normal incidence and at Brewster's angle, total reflection, and Snell's law.
+TEST(Dielectric, followsFresnelAndSnell) {
+  for (float ior : {1.1f, 1.5f, 2.4f}) {
+    const float r = (ior - 1) / (ior + 1);
+    EXPECT_NEAR(fresnelDielectric(1, ior), r * r, 1e-6f);
+    EXPECT_NEAR(fresnelDielectric(1, 1 / ior), r * r, 1e-6f);
+    const float brewster = std::cos(std::atan(ior));  // p-light is not reflected, s-light is by
+    const float s = (1 - ior * ior) / (1 + ior * ior);
+    EXPECT_NEAR(fresnelDielectric(brewster, ior), s * s / 2, 1e-6f);
+    const float critical = std::sqrt(1 - 1 / (ior * ior));
+    EXPECT_EQ(fresnelDielectric(critical - 1e-3f, 1 / ior), 1);
+    EXPECT_LT(fresnelDielectric(critical + 1e-3f, 1 / ior), 1);
+    const vec3 wo = directionAt(40), wi = refracted(wo, {0, 0, 1}, ior);
+    EXPECT_NEAR(glm::length(wi), 1, 1e-6f);
+    EXPECT_NEAR(-wi.x * ior, wo.x, 1e-6f);
+    EXPECT_LT(wi.z, 0);
+  }
+}
+
+// For basic radiance: f(a to b) / n_a^2 is the same both ways, where no energy is made up for.
+TEST(ExtendedBsdf, smootherGlassIsReciprocal) {
+  constexpr float kIor = 1.5f, kRoughness = 0.2f;
+  int compared = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const vec3 above = squareToUniformHemisphere(random2(i, 0));
+    const vec3 bent = refracted(above, {0, 0, 1}, kIor);
+    const vec3 below = glm::normalize(bent + 0.03f * squareToUniformSphere(random2(i, 2)));
+    if (above.z < 0.5f || below.z > -0.5f) continue;
+    Surface back = flatSurface(false);
+    back.normal = back.geometricNormal = {0, 0, -1};
+    const ExtendedBsdf in(dielectric(kRoughness, kIor), transmissive(1, false), {Rgb(kIor), kIor},
+                          flatSurface(), above, 0);
+    const ExtendedBsdf out(dielectric(kRoughness, kIor), transmissive(1, false),
+                           {Rgb(1 / kIor), kIor}, back, below, 0);
+    const float f = in.evaluate(below).fCos.x / -below.z;
+    const float g = out.evaluate(above).fCos.x / above.z;
+    if (f < 1e-3f) continue;
+    ++compared;
+    // Light from below is seen through the boundary with n = 1 above.
+    ASSERT_NEAR(f / (kIor * kIor), g, 0.02f * g);
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(ExtendedBsdf, sheetMirrorsItsHighlightBelow) {
+  const ExtendedBsdf bsdf(dielectric(0.4f), transmissive(1, true), {Rgb(1.5f), 1.5f}, flatSurface(),
+                          directionAt(30), 0);
+  // The brightest direction below is straight on.
+  float most = 0, at = 0;
+  for (float angle = 0; angle < 80; angle += 1) {
+    const vec3 wi = directionAt(-angle);
+    const float f = bsdf.evaluate({wi.x, 0, -wi.z}).fCos.x;
+    if (f > most) most = f, at = angle;
+  }
+  EXPECT_NEAR(at, 30, 6);
+}
+
+}  // namespace
+}  // namespace chromeball
