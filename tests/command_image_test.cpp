@@ -59,6 +59,33 @@ TEST(CommandImage, ErrorInSigmas) {
   EXPECT_EQ(z["count"], 36);
   EXPECT_NEAR(double(z["mean"]), 0.5 / std::sqrt(0.0125), 1e-5);
   EXPECT_EQ(z["beyond_3_sigma"], 1.0);
+  EXPECT_NEAR(double(z["largest"]), 0.5 / std::sqrt(0.0125), 1e-5);
+  // The chance that one of 36 normal deviates is beyond 4.472: 36 x 7.7e-6.
+  EXPECT_NEAR(double(z["p_value"]), 36 * 7.744e-6, 1e-6);
+  const std::string map = folder / "map.png";
+  run({"image", "error", folder / "a.exr", folder / "b.exr", "-o", map, "--map", "z"});
+  EXPECT_GT(luminance(readImage(map).rgb(1, 1)), 0.5f) << "4.5 of 5 sigma";
+}
+
+TEST(CommandImage, ErrorAsAPicture) {
+  const TemporaryFolder folder;
+  Image a = filled(16, 8, 3, 1);
+  writeImage(folder / "b.exr", a);
+  for (int x = 0; x < 8; ++x) a.setRgb(x, 3, Rgb(3));
+  writeImage(folder / "a.exr", a);
+  const std::string map = folder / "map.png";
+  const auto isHot = [&](int x, int y) { return luminance(readImage(map).rgb(x, y)) > 0.5f; };
+  for (const char* kind : {"relative", "flip"}) {
+    const std::string out =
+        run({"image", "error", folder / "a.exr", folder / "b.exr", "-o", map, "--map", kind}).out;
+    EXPECT_NE(out.find("map             " + std::string(kind)), std::string::npos) << out;
+    EXPECT_FALSE(isHot(15, 7)) << kind;
+    EXPECT_EQ(isHot(2, 3), kind == std::string("relative"));
+  }
+  const json error = json::parse(
+      run({"image", "error", folder / "a.exr", folder / "b.exr", "--json", "--flip"}).out);
+  EXPECT_GT(error["flip"], 0.01);
+  EXPECT_LT(error["flip"], 1);
 }
 
 TEST(CommandImage, ViewAppliesExposureAndTransfer) {
@@ -97,6 +124,9 @@ TEST(SlowCommandImage, BadInputIsRefused) {
   expectRefused({"image", "error", a, folder / "b.exr"}, "one size");
   expectRefused({"image", "error", a}, "B");
   expectRefused({"image", "error", a, folder / "none.exr"}, "no such file");
+  expectRefused({"image", "error", a, a, "--map", "z", "-o", png}, "--aov variance");
+  expectRefused({"image", "error", a, a, "--map", "flipp", "-o", png}, "`flip`");
+  expectRefused({"image", "error", a, a, "-o", folder / "map.exr"}, ".png");
   expectRefused({"image", "view", a, folder / "a.gif"}, ".png");
   expectRefused({"image", "view", a, png, "--tonemap", "reinhart"}, "`reinhard`");
   expectRefused({"image", "view", a, png, "--exposure", "nan"}, "--exposure");

@@ -11,7 +11,9 @@
 #include "math/error.h"
 #include "math/hash.h"
 #include "output_file.h"
+#include "probe_dots.h"
 #include "progress.h"
+#include "report.h"
 #include "study_run.h"
 #include "study_tables.h"
 
@@ -108,20 +110,21 @@ uint64_t fingerprint(const std::string& path) {
 
 // What decides a render beside strategy, budget and repeat. (Buffers and textures beside a .gltf
 // are not looked into.)
-std::string identityOf(const RenderJob& job) {
+std::string identityOf(const RenderOptions& options, const RenderJob& job) {
   const SceneFile& file = job.file;
   const RenderSettings& s = job.settings;
-  uint64_t content = 0;
+  uint64_t content = fingerprint(options.scene);
   for (const ModelEntry& model : file.models) content = hash(content, fingerprint(model.file));
   if (file.probe) content = hash(content, fingerprint(*file.probe));
   return fmt::format(
       "content {:016x}, {}x{}, camera {}, probe turned {} scaled {}, mis {}, depth {}, seed {}, "
-      "threads {}",
+      "animation {} at {}, threads {}",
       content, s.width, s.height,
       file.camera       ? "of the scene file"
       : file.cameraName ? file.cameraName->name
                         : "first",
       file.probeRotation.value_or(0), file.probeScale.value_or(1), int(s.mis), s.maxDepth, s.seed,
+      options.animation.value_or(""), options.animationTime.value_or(0),
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
@@ -141,7 +144,7 @@ void compare(const Arguments& a) {
   job.settings.aovs.clear();
   job.settings.noiseLimit.reset();
   study.seed = job.settings.seed;
-  study.identity = identityOf(job);
+  study.identity = identityOf(a.scene, job);
 
   const RenderStore store(study);
   StudyRun run(study, store, loaded, job.settings);
@@ -155,11 +158,16 @@ void compare(const Arguments& a) {
     return studyResults(study, store, loadReference(study, store, s.width, s.height),
                         run.unbiased());
   };
+  ReportScene about{
+      fs::path(a.scene.scene).filename().string(), &loaded.probe, a.scene.exposure, {}};
+  for (const std::string& name : study.strategies)
+    about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
     const fs::path folder = study.folder;
+    const Machine machine = thisMachine();
     writeText((folder / "results.csv").string(), resultsCsv(r));
-    writeText((folder / "results.json").string(),
-              resultsJson(study, r, thisMachine()).dump(2) + "\n");
+    writeText((folder / "results.json").string(), resultsJson(study, r, machine).dump(2) + "\n");
+    writeText((folder / "index.html").string(), reportHtml(study, store, r, about, machine));
   };
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });

@@ -1,7 +1,6 @@
 #include "light_preview.h"
 
 #include "image/tonemap.h"
-#include "probe/probe.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
@@ -36,16 +35,20 @@ void drawDot(Image& image, dvec2 uv) {
 
 }  // namespace
 
-Image lightPreview(const Image& latLong, const Constellation& lights) {
-  const Probe probe(latLong);
-  const DisplayTransform transform = transformFor(latLong);
-  Image preview(kWidth, kHeight, 3);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+Image probePicture(const Probe& probe, int width) {
+  const DisplayTransform transform = transformFor(probe.latLong());
+  Image picture(width, width / 2, 3);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < width; ++x) {
       const auto direction =
-          uvToDirection(Mapping::LatLong, {(x + 0.5) / kWidth, (y + 0.5) / kHeight});
-      preview.setRgb(x, y, display(transform, probe.radiance(vec3(*direction))));
+          uvToDirection(Mapping::LatLong, {(x + 0.5) / width, (y + 0.5) / picture.height});
+      picture.setRgb(x, y, display(transform, probe.radiance(vec3(*direction))));
     }
+  return picture;
+}
+
+Image lightPreview(const Image& latLong, const Constellation& lights) {
+  Image preview = probePicture(Probe(latLong), kWidth);
   for (const DirectionalLight& light : lights)
     drawDot(preview, directionToUv(Mapping::LatLong, dvec3(light.direction)));
   return preview;

@@ -3,8 +3,13 @@
 
 #include "image/image.h"
 #include "lighting/directional_light.h"
+#include "probe/probe.h"
 
 namespace chromeball {
+
+// The probe as the scene sees it, rotated: a lat-long map of width / 2 rows, tone mapped, in
+// display-linear colours.
+Image probePicture(const Probe& probe, int width);
 
 // The lat-long map, tone mapped to what a PNG may hold, 1024 x 512, with a white dot at each light.
 Image lightPreview(const Image& latLong, const Constellation& lights);

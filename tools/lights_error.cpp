@@ -65,8 +65,8 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
     PlotSeries& maxima = max.series.emplace_back(PlotSeries{method, {}});
     for (const Row& row : rows)
       if (row.method == method) {
-        means.points.emplace_back(row.lights, row.error.mean);
-        maxima.points.emplace_back(row.lights, row.error.max);
+        means.points.push_back({double(row.lights), row.error.mean});
+        maxima.points.push_back({double(row.lights), row.error.max});
       }
   }
   return logLogPlot(std::filesystem::path(arguments.probe).filename().string(),

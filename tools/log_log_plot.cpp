@@ -25,9 +25,8 @@ Style styleOf(size_t series) {
   return {kColors[series % kColors.size()], kDashes[series % kDashes.size()], int(series % kMarks)};
 }
 
-bool canShow(const std::pair<double, double>& point) {
-  return point.first > 0 && point.second > 0 && std::isfinite(point.first) &&
-         std::isfinite(point.second);
+bool canShow(const PlotPoint& point) {
+  return point.x > 0 && point.y > 0 && std::isfinite(point.x) && std::isfinite(point.y);
 }
 
 // A logarithmic axis over [least, most], on `length` pixels.
@@ -55,13 +54,20 @@ struct Axis {
       ticks.push_back(tick);
     return ticks;
   }
-  // 1, 2 and 5 times powers of ten.
+  // 1, 2 and 5 times powers of ten; where these crowd, powers of ten alone.
   std::vector<double> decimalTicks() const {
     std::vector<double> ticks;
-    for (double decade = std::pow(10, std::floor(std::log10(least))); decade <= most; decade *= 10)
-      for (const double tick : {decade, 2 * decade, 5 * decade})
-        if (tick >= least && tick <= most) ticks.push_back(tick);
+    const bool crowded = most > 2e3 * least;
+    const int first = int(std::floor(std::log10(least))), last = int(std::ceil(std::log10(most)));
+    for (int exponent = first; exponent <= last; ++exponent)
+      for (const double factor : {1.0, 2.0, 5.0}) {
+        const double tick = factor * std::pow(10, exponent);
+        if (tick >= least && tick <= most && (factor == 1 || !crowded)) ticks.push_back(tick);
+      }
     return ticks;
+  }
+  std::vector<double> ticks(Ticks kind) const {
+    return kind == Ticks::Binary ? binaryTicks() : decimalTicks();
   }
 };
 
@@ -91,15 +97,16 @@ std::string mark(const Style& style, double x, double y) {
                      kPaths[style.mark], style.color);
 }
 
-std::string frameOf(const Axis& x, const Axis& y, const std::string& title, bool labelY) {
+std::string frameOf(const Axis& x, Ticks xTicks, const Axis& y, const std::string& title,
+                    bool labelY) {
   std::string svg = "<g stroke=\"#ddd\">";
-  for (const double tick : x.binaryTicks())
+  for (const double tick : x.ticks(xTicks))
     svg += fmt::format("<path d=\"M{:.1f} 0v{}\"/>", x(tick), kPanelHeight);
   for (const double tick : y.decimalTicks())
     svg += fmt::format("<path d=\"M0 {:.1f}h{}\"/>", kPanelHeight - y(tick), kPanelWidth);
   svg += fmt::format("</g>\n<rect width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#333\"/>\n",
                      kPanelWidth, kPanelHeight);
-  for (const double tick : x.binaryTicks())
+  for (const double tick : x.ticks(xTicks))
     svg += textAt(x(tick), kPanelHeight + 18, "middle", fmt::format("{:g}", tick));
   if (labelY)
     for (const double tick : y.decimalTicks())
@@ -108,19 +115,23 @@ std::string frameOf(const Axis& x, const Axis& y, const std::string& title, bool
 }
 
 std::string lineOf(const PlotSeries& series, const Style& style, const Axis& x, const Axis& y) {
-  std::string path, marks;
+  std::string path, intervals, marks;
   for (const auto& point : series.points) {
     if (!canShow(point)) continue;
-    const double px = x(point.first), py = kPanelHeight - y(point.second);
+    const double px = x(point.x), py = kPanelHeight - y(point.y);
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', px, py);
+    if (point.low < point.high) {
+      const double top = kPanelHeight - y(std::min(point.high, y.most));
+      const double bottom = kPanelHeight - y(std::max(point.low, y.least));
+      intervals += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, top, bottom);
+    }
     marks += mark(style, px, py);
   }
   if (path.empty()) return "";
   return fmt::format(
-             "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" "
-             "stroke-dasharray=\"{}\"/>\n",
-             path, style.color, style.dash) +
-         marks;
+      "<g class=\"series\"><path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" "
+      "stroke-dasharray=\"{}\"/>\n<path d=\"{}\" stroke=\"{}\"/>\n{}</g>\n",
+      path, style.color, style.dash, intervals, style.color, marks);
 }
 
 std::string legendOf(const std::vector<PlotSeries>& series) {
@@ -140,12 +151,13 @@ std::string legendOf(const std::vector<PlotSeries>& series) {
 }  // namespace
 
 std::string logLogPlot(const std::string& title, const std::string& xLabel,
-                       const std::string& yLabel, const std::vector<PlotPanel>& panels) {
+                       const std::string& yLabel, const std::vector<PlotPanel>& panels,
+                       Ticks xTicks) {
   Axis x{.length = kPanelWidth}, y{.length = kPanelHeight};
   for (const PlotPanel& panel : panels)
     for (const PlotSeries& series : panel.series)
       for (const auto& point : series.points)
-        if (canShow(point)) x.cover(point.first), y.cover(point.second);
+        if (canShow(point)) x.cover(point.x), y.cover(point.y);
   x.finish();
   y.finish();
 
@@ -163,7 +175,7 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
   for (size_t i = 0; i < panels.size(); ++i) {
     svg += fmt::format("<g transform=\"translate({} {})\">\n",
                        kLeft + double(i) * (kPanelWidth + kGap), kTop);
-    svg += frameOf(x, y, panels[i].title, i == 0);
+    svg += frameOf(x, xTicks, y, panels[i].title, i == 0);
     for (size_t s = 0; s < panels[i].series.size(); ++s)
       svg += lineOf(panels[i].series[s], styleOf(s), x, y);
     svg += "</g>\n";

@@ -1,6 +1,7 @@
 #include "measure/image_error.h"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 
@@ -15,15 +16,23 @@ void checkSameShape(const Image& a, const Image& b, const char* what) {
                a.channels, b.width, b.height, b.channels);
 }
 
+// NaN where no variance is known.
+double zScore(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB,
+              size_t i) {
+  const double variance = (varianceA ? double(varianceA->texels[i]) : 0) +
+                          (varianceB ? double(varianceB->texels[i]) : 0);
+  const double z = (double(a.texels[i]) - b.texels[i]) / std::sqrt(variance);
+  return variance > 0 && std::isfinite(z) ? z : std::nan("");
+}
+
 ZScores zScores(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB) {
   ZScores scores;
   double sum = 0, sumOfSquares = 0;
   size_t beyond = 0;
   for (size_t i = 0; i < a.texels.size(); ++i) {
-    const double variance = (varianceA ? double(varianceA->texels[i]) : 0) +
-                            (varianceB ? double(varianceB->texels[i]) : 0);
-    const double z = (double(a.texels[i]) - b.texels[i]) / std::sqrt(variance);
-    if (!(variance > 0) || !std::isfinite(z)) continue;
+    const double z = zScore(a, b, varianceA, varianceB, i);
+    if (std::isnan(z)) continue;
+    scores.largest = std::max(scores.largest, std::fabs(z));
     ++scores.count;
     sum += z;
     sumOfSquares += z * z;
@@ -34,6 +43,8 @@ ZScores zScores(const Image& a, const Image& b, const Image* varianceA, const Im
   scores.mean = sum / n;
   scores.standardDeviation = std::sqrt(std::max(0.0, sumOfSquares / n - scores.mean * scores.mean));
   scores.shareBeyond3 = double(beyond) / n;
+  const double least = 2 * cdf(complement(boost::math::normal(), scores.largest));
+  scores.pValue = -std::expm1(n * std::log1p(-least));
   return scores;
 }
 
@@ -69,6 +80,29 @@ ImageError imageError(const Image& a, const Image& b, const Image* varianceA,
   error.psnr = 10 * std::log10(peak * peak / error.mse);
   if (error.mse == 0) error.psnr = std::numeric_limits<double>::infinity();
   if (varianceA || varianceB) error.zScores = zScores(a, b, varianceA, varianceB);
+  return error;
+}
+
+Image zScoreImage(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB) {
+  checkSameShape(a, b, "the images");
+  Image scores(a.width, a.height, 1);
+  for (size_t i = 0; i < a.texels.size(); ++i) {
+    const double z = zScore(a, b, varianceA, varianceB, i);
+    float& score = scores.texels[i / size_t(a.channels)];
+    if (!std::isnan(z)) score = std::max(score, float(std::fabs(z)));
+  }
+  return scores;
+}
+
+Image relativeErrorImage(const Image& a, const Image& b) {
+  checkSameShape(a, b, "the images");
+  Image error(a.width, a.height, 1);
+  for (size_t i = 0; i < a.texels.size(); ++i) {
+    const double difference = double(a.texels[i]) - b.texels[i], truth = b.texels[i];
+    error.texels[i / size_t(a.channels)] +=
+        float(difference * difference / (truth * truth + 0.01) / a.channels);
+  }
+  for (float& number : error.texels) number = std::sqrt(number);
   return error;
 }
 

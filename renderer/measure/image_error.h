@@ -8,10 +8,13 @@
 namespace chromeball {
 
 // Of z = (a - b) / sqrt(variance a + variance b), over numbers whose variance is positive. Where
-// the images agree but for noise: mean 0, deviation 1, and 0.27% beyond 3.
+// the images agree but for noise: mean 0, deviation 1, and 0.27% beyond 3. Variances are estimates,
+// so that a few pixels lie farther out than normal deviates would.
 struct ZScores {
   size_t count = 0;
   double mean = 0, standardDeviation = 0, shareBeyond3 = 0;
+  double largest = 0;  // |z|
+  double pValue = 1;   // chance of one as large among so many (Sidak), were they normal
 };
 
 // Over pixels and channels; pairs in which a number is not finite are counted and left out.
@@ -30,5 +33,11 @@ struct ImageError {
 // or channels differ.
 ImageError imageError(const Image& a, const Image& b, const Image* varianceA = nullptr,
                       const Image* varianceB = nullptr);
+
+// |z| of every pixel: the largest of its channels, one channel; 0 where no variance is known.
+Image zScoreImage(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB);
+
+// Per pixel: the root of the mean over channels of (a - b)^2 / (b^2 + 0.01), one channel.
+Image relativeErrorImage(const Image& a, const Image& b);
 
 }  // namespace chromeball

@@ -1,0 +1,21 @@
+#include "image/png.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "math/error.h"
+
+namespace chromeball {
+
+std::vector<uint8_t> encodePng(int width, int height, int channels,
+                               std::span<const uint8_t> bytes) {
+  OIIO::Filesystem::IOVecOutput encoded;
+  const auto output = OIIO::ImageOutput::create("png");
+  const OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+  if (!output || !output->set_ioproxy(&encoded) || !output->open("memory.png", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+    throwRun("a PNG could not be made: {}", output ? output->geterror() : OIIO::geterror());
+  return encoded.buffer();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,126 @@
+// The report of `chromeball compare` in a browser, where one is installed.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "small_model.h"
+
+namespace chromeball {
+namespace {
+
+// Catches errors of the page's scripts.
+constexpr const char* kWatch = R"(<script>
+  window.failures = [];
+  addEventListener('error', e => failures.push(e.message));
+  addEventListener('unhandledrejection', e => failures.push(String(e.reason)));
+</script>)";
+
+// When the page is ready: flips, moves over the viewer and a map, and writes down what it saw.
+constexpr const char* kUse = R"(<script>
+  const picture = () => {
+    const canvas = document.querySelector('#viewer canvas');
+    return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.join();
+  };
+  const move = element => {
+    const box = element.getBoundingClientRect();
+    element.dispatchEvent(new MouseEvent('mousemove', {
+      clientX: box.left + box.width / 2, clientY: box.top + box.height / 2, bubbles: true}));
+    return document.getElementById('tip').textContent;
+  };
+  const wait = setInterval(() => {
+    if (document.body.dataset.ready !== 'yes' && failures.length === 0) return;
+    clearInterval(wait);
+    const verdict = {};
+    const divided = picture();
+    document.getElementById('flip').click();
+    const a = picture(), nameA = document.getElementById('nameA').textContent;
+    document.getElementById('flip').click();
+    const b = picture(), nameB = document.getElementById('nameB').textContent;
+    document.getElementById('flip').click();
+    verdict.flips = a !== b && a !== divided && picture() === a;
+    verdict.names = nameA + ' | ' + nameB;
+    const stops = document.getElementById('exposure');
+    stops.value = 3;
+    stops.dispatchEvent(new Event('input'));
+    verdict.exposes = picture() !== a;
+    verdict.tip = move(document.querySelector('#viewer canvas'));
+    verdict.mapTip = move(document.querySelector('#errors canvas'));
+    verdict.curves = [...document.querySelectorAll('#plots svg')]
+        .map(svg => svg.querySelectorAll('.series').length).join();
+    verdict.rows = document.querySelectorAll('#results tbody tr').length;
+    verdict.maps = document.querySelectorAll('#errors canvas').length;
+    verdict.biases = document.querySelectorAll('#bias canvas').length;
+    verdict.probes = document.querySelectorAll('.probe svg').length;
+    verdict.failures = failures.join('; ');
+    const pre = document.createElement('pre');
+    pre.id = 'verdict';
+    pre.textContent = Object.entries(verdict).map(([k, v]) => `<${k}: ${v}>`).join('\n');
+    document.body.append(pre);
+  }, 20);
+</script>)";
+
+std::string findChromium() {
+  for (const char* path :
+       {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
+    if (std::filesystem::exists(path)) return path;
+  return "";
+}
+
+std::string dumpedPage(const std::string& chromium, const TemporaryFolder& folder,
+                       const std::string& page) {
+  const std::string command =
+      chromium +
+      " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
+      " --disable-background-networking --disable-component-update --disable-sync"
+      " --user-data-dir=" +
+      folder / "profile" + " --virtual-time-budget=20000 --dump-dom file://" + page + " > " +
+      folder / "dom.html" + " 2> " + folder / "log";
+  EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "log");
+  return fileContents(folder / "dom.html");
+}
+
+TEST(SlowReport, worksInABrowser) {
+  const std::string chromium = findChromium();
+  if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
+  const TemporaryFolder folder;
+  writeSmallModel(folder / "plate.gltf");
+  writeImage(folder / "probe.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.3, 0.6, 0.6}));
+  ASSERT_EQ(runCommand({"compare", folder / "plate.gltf", "--probe", folder / "probe.exr", "--size",
+                        "24x16", "-o", folder / "report", "--quiet", "--strategies",
+                        "bsdf,importance,median-cut:4", "--samples", "1,4", "--repeats", "3",
+                        "--reference-samples", "64"})
+                .status,
+            0);
+  std::string page = fileContents(folder / "report/index.html");
+  EXPECT_EQ(page.find("{{"), std::string::npos) << "a part was left out";
+  EXPECT_FALSE(std::regex_search(page, std::regex(R"((src|href)="?(http|//))")))
+      << "it should need no other file";
+  page.replace(page.find("<head>"), 6, std::string("<head>") + kWatch);
+  page.replace(page.rfind("</body>"), 7, std::string(kUse) + "</body>");
+  std::ofstream(folder / "page.html") << page;
+
+  const std::string dom = dumpedPage(chromium, folder, folder / "page.html");
+  const auto saw = [&](const std::string& verdict) {
+    return dom.find("&lt;" + verdict) != std::string::npos;
+  };
+  const size_t verdict = dom.find("<pre id=\"verdict\">");
+  ASSERT_NE(verdict, std::string::npos) << fileContents(folder / "log");
+  SCOPED_TRACE(dom.substr(verdict));
+  EXPECT_TRUE(saw("failures: &gt;"));
+  EXPECT_TRUE(saw("flips: true"));
+  EXPECT_TRUE(saw("names: bsdf, "));
+  EXPECT_TRUE(saw("exposes: true"));
+  EXPECT_TRUE(saw("tip: pixel 12, 7\nreference ") || saw("tip: pixel 11, 7\nreference "));
+  EXPECT_TRUE(saw("mapTip: pixel 12, 7\nerror ") || saw("mapTip: pixel 11, 7\nerror "));
+  EXPECT_TRUE(saw("curves: 3,3"));
+  EXPECT_TRUE(saw("rows: 3"));
+  EXPECT_TRUE(saw("maps: 3"));
+  EXPECT_TRUE(saw("biases: 1"));
+  EXPECT_TRUE(saw("probes: 3"));
+}
+
+}  // namespace
+}  // namespace chromeball

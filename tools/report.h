@@ -1,0 +1,24 @@
+// The page people look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machine.h"
+#include "probe/probe.h"
+#include "study_results.h"
+
+namespace chromeball {
+
+struct ReportScene {
+  std::string name;  // what the page is about
+  const Probe* probe;
+  float exposure = 0;                                                 // stops, at first
+  std::vector<std::pair<std::string, std::vector<vec3>>> directions;  // that strategies sample
+};
+
+// One HTML file that needs no other.
+std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
+                       const ReportScene& scene, const Machine& machine);
+
+}  // namespace chromeball
