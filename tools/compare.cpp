@@ -167,6 +167,8 @@ void compare(const Arguments& a) {
     const Machine machine = thisMachine();
     writeText((folder / "results.csv").string(), resultsCsv(r));
     writeText((folder / "results.json").string(), resultsJson(study, r, machine).dump(2) + "\n");
+    writeText((folder / "samples.svg").string(), samplesPlot(r));
+    writeText((folder / "seconds.svg").string(), secondsPlot(r));
     writeText((folder / "index.html").string(), reportHtml(study, store, r, about, machine));
   };
   std::signal(SIGINT, [](int) { interrupted = true; });

@@ -13,13 +13,16 @@ mkdir -p "$folder"
 [[ -e $folder/sun.exr ]] || build/chromeball probe synth sun-sky "$folder/sun.exr" --size 1024x512
 [[ -e $folder/overcast.exr ]] || build/chromeball probe synth overcast "$folder/overcast.exr" --size 1024x512
 
+compare() {  # MODEL PROBE options
+  local name
+  name=$(basename "${1%.*}")-$(basename "${2%.*}" _probe)
+  echo "$name"
+  build/chromeball compare "scenes/models/$1" --probe "$2" --camera Front --strategies all \
+    --baseline uniform --samples 1,4,16 --output "$folder/$name" "${@:3}"
+}
+
 for probe in "$folder/sun.exr" "$folder/overcast.exr" "$data/galileo_probe.hdr" "$data/grace_probe.hdr"; do
   [[ -e $probe ]] || { echo "no $probe" >&2; continue; }
-  for model in scenes/models/pillars.gltf scenes/models/still-life.glb; do
-    name=$(basename "${model%.*}")-$(basename "${probe%.*}" _probe)
-    echo "$name"
-    build/chromeball compare "$model" --probe "$probe" --camera Front --size 96x64 \
-      --strategies all --baseline uniform --samples 1,4,16 --repeats 4 --reference-samples 1024 \
-      --output "$folder/$name" "$@"
-  done
+  compare pillars.gltf "$probe" --size 96x64 --repeats 4 --reference-samples 1024 "$@"
+  compare still-life.glb "$probe" --size 72x48 --repeats 3 --reference-samples 768 "$@"
 done

@@ -11,7 +11,7 @@ namespace chromeball {
 namespace {
 
 constexpr double kPanelWidth = 360, kPanelHeight = 320, kLeft = 64, kTop = 56, kGap = 28;
-constexpr double kLegendWidth = 190, kBottom = 56;
+constexpr double kLegendWidth = 210, kBottom = 56;
 
 struct Style {
   const char *color, *dash;

@@ -47,9 +47,16 @@ std::string plot(const StudyResults& results, const char* title, const char* xLa
   return logLogPlot(title, xLabel, "relMSE", {panel}, ticks);
 }
 
+// Three digits, and no powers of ten where people can do without.
+std::string number(double x, int digits = 3) {
+  const double size = std::fabs(x);
+  if (size >= std::pow(10, digits) && size < 1e7) return fmt::format("{:.0f}", x);
+  return fmt::format("{:.{}g}", x, digits);
+}
+
 std::string plusMinus(const Estimate& e) {
-  return fmt::format("{:.3g} <span class=\"soft\">&plusmn; {:.1g}</span>", e.mean,
-                     1.96 * e.standardError);
+  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", number(e.mean),
+                     number(1.96 * e.standardError, 1));
 }
 
 std::string row(const Cell& cell, const StrategyResult& strategy, double mostEfficient) {
@@ -57,11 +64,12 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
   std::string equal = "none seen";
   if (strategy.unbiased) equal = "unbiased";
   if (const auto& c = strategy.biasEqualsNoise)
-    equal = fmt::format("{:.2g} <span class=\"soft\">({:.1g} to {:.1g})</span>", c->samples, c->low,
-                        c->high);
+    equal = fmt::format("{} <span class=\"soft\">({} to {})</span>", number(c->samples, 2),
+                        number(c->low, 2), number(c->high, 2));
   return fmt::format(
-      "<tr data-strategy=\"{0}\"><td>{0}</td><td><span class=\"bar\" style=\"width:{1:.0f}px\">"
-      "</span>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3g}</td><td>{6}</td><td>{7}</td><td>{8}</td>"
+      "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
+      "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
+      "td><td>{6}</td><td>{7}</td><td>{8}</td>"
       "<td>{9}</td></tr>\n",
       escaped(cell.strategy), width, plusMinus(cell.efficiency), plusMinus(cell.error.relMse),
       plusMinus(cell.seconds), cell.prepareSeconds,
@@ -72,7 +80,8 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
 
 std::string table(const Study& study, const StudyResults& results) {
   std::string html =
-      "<table id=\"results\"><thead><tr><th>strategy</th><th>efficiency</th><th>relMSE</th>"
+      "<table "
+      "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</th>"
       "<th>seconds</th><th>to prepare</th><th>bias, %</th><th>slope of<br>variance</th>"
       "<th>slope of<br>relMSE</th><th>bias = noise<br>at samples</th></tr></thead><tbody>\n";
   const std::vector<const Cell*> cells = ranking(study, results);
@@ -134,6 +143,16 @@ std::string referenceText(const Study& study, const StudyResults& results) {
 
 }  // namespace
 
+std::string samplesPlot(const StudyResults& results) {
+  return plot(results, "error against samples", "samples a pixel", Ticks::Binary,
+              [](const Cell& cell) { return cell.samples; });
+}
+
+std::string secondsPlot(const StudyResults& results) {
+  return plot(results, "error against time", "seconds", Ticks::Decimal,
+              [](const Cell& cell) { return cell.seconds.mean; });
+}
+
 std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
                        const ReportScene& scene, const Machine& machine) {
   const std::optional<Budget> budget = largestCommonBudget(study, results);
@@ -147,11 +166,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
                            results.reference.mean.width, results.reference.mean.height,
                            study.repeats, referenceText(study, results))));
   fill(page, "warnings", paragraphs(results.warnings));
-  fill(page, "plots",
-       plot(results, "error against samples", "samples a pixel", Ticks::Binary,
-            [](const Cell& cell) { return cell.samples; }) +
-           plot(results, "error against time", "seconds", Ticks::Decimal,
-                [](const Cell& cell) { return cell.seconds.mean; }));
+  fill(page, "plots", samplesPlot(results) + secondsPlot(results));
   fill(page, "tableNote",
        escaped(fmt::format(
            "At {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), {} being 1: of "
@@ -165,8 +180,9 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
            "Unbiased strategies must agree but for noise. Welch's t-test on each tile of {0} x {0} "
            "pixels at {1}; p is the chance that the tile which differs most would do so by "
            "accident, corrected for the number of tiles (Sidak). Of twenty such pairs one falls "
-           "below 0.05 by chance.",
-           Agreement::kTile, at)));
+           "below 0.05 by chance. Strategies of a relMSE above {2:g} are left out: they have not "
+           "met all the light yet.",
+           Agreement::kTile, at, kMostNoiseOfPairs)));
   fill(page, "pairs", pairsTable(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);

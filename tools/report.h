@@ -17,6 +17,10 @@ struct ReportScene {
   std::vector<std::pair<std::string, std::vector<vec3>>> directions;  // that strategies sample
 };
 
+// SVG: relMSE against samples, or against seconds.
+std::string samplesPlot(const StudyResults& results);
+std::string secondsPlot(const StudyResults& results);
+
 // One HTML file that needs no other.
 std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
                        const ReportScene& scene, const Machine& machine);

@@ -46,11 +46,10 @@ std::vector<Image> images(std::vector<StoredRender> renders) {
 
 Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<StoredRender> renders,
             const Reference& reference) {
-  Cell cell{strategy, budget, {}, 0, {}, 0, 0, 0, {}};
-  std::vector<double> seconds;
-  for (const StoredRender& render : renders) seconds.push_back(render.seconds);
+  Cell cell{.strategy = strategy, .budget = budget};
+  for (const StoredRender& render : renders) cell.repeatSeconds.push_back(render.seconds);
   cell.samples = mean(renders, &StoredRender::samples);
-  cell.seconds = estimateOf(seconds);
+  cell.seconds = estimateOf(cell.repeatSeconds);
   cell.prepareSeconds = mean(renders, &StoredRender::prepareSeconds);
   cell.noise = mean(renders, &StoredRender::noise);
   cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
@@ -58,15 +57,17 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   return cell;
 }
 
-// The ratio of both products, with the relative errors of all four factors.
 Estimate efficiency(const Cell& cell, const Cell& baseline) {
-  double squaredError = 0;
-  for (const Estimate& e :
-       {cell.error.relMse, cell.seconds, baseline.error.relMse, baseline.seconds})
-    squaredError += std::pow(e.standardError / e.mean, 2);
-  const double ratio = baseline.error.relMse.mean * baseline.seconds.mean /
-                       (cell.error.relMse.mean * cell.seconds.mean);
-  return &cell == &baseline ? Estimate{1, 0} : Estimate{ratio, ratio * std::sqrt(squaredError)};
+  if (&cell == &baseline) return {1, 0};
+  std::vector<double> logRatios;
+  for (size_t r = 0; r < cell.repeatSeconds.size(); ++r)
+    logRatios.push_back(std::log(baseline.repeatSeconds[r] / cell.repeatSeconds[r]));
+  const Estimate logSpeed = estimateOf(logRatios);
+  const Estimate &here = cell.error.relMse, &there = baseline.error.relMse;
+  const double ratio = there.mean / here.mean * std::exp(logSpeed.mean);
+  return {ratio, ratio * std::sqrt(std::pow(here.standardError / here.mean, 2) +
+                                   std::pow(there.standardError / there.mean, 2) +
+                                   std::pow(logSpeed.standardError, 2))};
 }
 
 void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::string& baseline) {
@@ -100,7 +101,8 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   std::vector<PairResult> pairs;
   std::vector<std::pair<std::string, std::vector<Image>>> sets;
   for (const StrategyResult& strategy : results.strategies)
-    if (budget && strategy.unbiased)
+    if (budget && strategy.unbiased &&
+        findCell(strategy, *budget)->error.relMse.mean < kMostNoiseOfPairs)
       sets.emplace_back(strategy.name, images(loadRepeats(study, store, strategy.name, *budget)));
   for (size_t i = 0; i < sets.size(); ++i)
     for (size_t j = i + 1; j < sets.size(); ++j)

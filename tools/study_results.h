@@ -18,12 +18,15 @@ struct Cell {
   std::string strategy;
   Budget budget;
   CellError error;
-  double samples = 0;         // mean over the repeats
-  Estimate seconds;           // of rendering
-  double prepareSeconds = 0;  // of building the strategy, which all its renders share
-  double noise = 0;           // mean of what the renders themselves report
+  double samples = 0;                 // mean over the repeats
+  std::vector<double> repeatSeconds;  // of rendering, in order
+  Estimate seconds;                   // their mean
+  double prepareSeconds = 0;          // of building the strategy, which all its renders share
+  double noise = 0;                   // mean of what the renders themselves report
   double invalidSamples = 0;
-  Estimate efficiency;  // 1 / (relMse seconds), relative to the baseline on the same budget
+  // 1 / (relMse seconds), relative to the baseline on the same budget. Seconds are compared repeat
+  // by repeat: strategies take turns, so a machine that drifts slows a turn's renders alike.
+  Estimate efficiency;
 };
 
 struct StrategyResult {
@@ -41,12 +44,16 @@ struct PairResult {
   Agreement agreement;
 };
 
+// Unbiased strategies are compared on the largest budget that all have. One whose relMSE is above
+// this has not met all the light: its repeats agree on what they have not seen.
+inline constexpr double kMostNoiseOfPairs = 0.25;
+
 struct StudyResults {
   Reference reference;
   bool referenceErrorKnown = true;
   double referenceNoise = 0;  // relative standard error of its mean pixel
   std::vector<StrategyResult> strategies;
-  std::vector<PairResult> pairs;      // of unbiased strategies, on the largest budget all have
+  std::vector<PairResult> pairs;      // of strategies that can be compared, on that budget
   std::vector<std::string> warnings;  // what a reader should know before trusting the numbers
   bool complete = true;               // every cell of the study is here
 };

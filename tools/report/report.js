@@ -27,8 +27,8 @@ async function pixelsOf(uri, width, height) {
 
 // Radiance, three floats a pixel, from mantissas and exponents.
 async function radianceOf(picture) {
-  const rgb = await pixelsOf(picture.rgb, data.width, data.height);
-  const exponent = await pixelsOf(picture.exponent, data.width, data.height);
+  const [rgb, exponent] = await Promise.all(
+      [picture.rgb, picture.exponent].map(uri => pixelsOf(uri, data.width, data.height)));
   const radiance = new Float32Array(3 * data.width * data.height);
   for (let i = 0; i < data.width * data.height; ++i) {
     const scale = exponent[4 * i] ? 2 ** (exponent[4 * i] - 136) : 0;
@@ -61,13 +61,9 @@ function pixelUnder(event, element, width, height) {
 }
 
 async function makeViewer() {
-  const pictures = [{name: 'reference', label: 'reference', radiance: await radianceOf(data.reference)}];
-  for (const p of data.pictures)
-    pictures.push({
-      name: p.name,
-      label: `${p.name}, ${+p.samples.toPrecision(4)} samples, ${p.seconds.toPrecision(3)} s`,
-      radiance: await radianceOf(p)
-    });
+  const label = p => `${p.name}, ${+p.samples.toPrecision(4)} samples, ${p.seconds.toPrecision(3)} s`;
+  const pictures = await Promise.all([data.reference, ...data.pictures].map(
+      async p => ({label: p.name ? label(p) : 'reference', radiance: await radianceOf(p)})));
   const canvas = document.querySelector('#viewer canvas'), context = canvas.getContext('2d');
   canvas.width = data.width;
   canvas.height = data.height;
