@@ -26,8 +26,9 @@ Scene loadModels(const SceneFile& file, std::vector<std::string>& notes) {
 LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
   const SceneFile& file = job.file;
   if (!file.probe) {
-    const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const Material& m) { return m.unlit || !isBlack(m.emission); });
+    const bool lit =
+        !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(),
+                                             [](const Material& m) { return m.emits(); });
     if (!lit) throwInput("{}: nothing lights the scene; give --probe FILE", file.models[0].file);
     LoadedProbe black;
     black.latLong = Image(2, 1, 3);
@@ -87,7 +88,12 @@ LoadedScene loadScene(RenderJob& job) {
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
   for (const std::string& note : loaded.modelNotes) warn(note);
-  if (!job.file.probe) return;
+  if (!job.file.probe) {
+    if (!quiet && !loaded.scene.lights.empty())
+      fmt::print(stderr, "chromeball: {}: no probe; its {} lights shine alone\n",
+                 job.file.models[0].file, loaded.scene.lights.size());
+    return;
+  }
   const std::string& path = *job.file.probe;
   const LoadedProbe& probe = loaded.loadedProbe;
   for (const std::string& line : warnings(probe, path)) warn(line);

@@ -8,6 +8,7 @@
 #include "film/aov.h"
 #include "integrate/media.h"
 #include "lighting/emitters.h"
+#include "lighting/punctual.h"
 #include "lighting/strategy.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
@@ -33,8 +34,9 @@ struct PathScene {
   const LightingStrategy& lighting;
   const Emitters* emitters;  // null where nothing emits
   Mis mis;
-  int maxDepth;            // 0: emission seen by the camera; 1: direct light; ...
-  bool hideProbe = false;  // from the camera
+  int maxDepth;                              // 0: emission seen by the camera; 1: direct light; ...
+  bool hideProbe = false;                    // from the camera
+  const PunctualLights* punctual = nullptr;  // null where there are none
   float mirrorAlpha = lighting.mirrorAlpha();
 };
 
@@ -109,6 +111,24 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   if (media.inside()) passed *= media.transmittance(length);
   const float density = path.emitters->density(instance.material, distance, cosine);
   return bsdf.fCos * radiance * passed * (lightSampleWeight(path.mis, density, bsdf.pdf) / density);
+}
+
+// Light from the lamps without extent.
+template <class Rays>
+Rgb punctualLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
+                  const Media& here, const PixelSampler& sampler, RayCounts& counts) {
+  Rgb light(0);
+  path.punctual->sample(point, sampler, [&](const PunctualSample& s) {
+    const Rgb fCos = point.bsdf->evaluate(s.wi).fCos;
+    if (isBlack(fCos)) return;
+    ++counts.shadow;
+    Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi, s.distance});
+    Media media = here;
+    if (crosses(surface, s.wi)) media.cross(surface);
+    if (media.inside()) passed *= media.transmittance(s.distance);
+    light += fCos * s.irradiance * passed;
+  });
+  return light;
 }
 
 // Ends a path at random in proportion to what it can still carry; unbiased, since the survivors are
@@ -189,6 +209,9 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Instance& inst
     if (path.emitters)
       radiance +=
           state.throughput * emitterLight(path, point, surface, state.media, sampler, counts);
+    if (path.punctual)
+      radiance +=
+          state.throughput * punctualLight(path, point, surface, state.media, sampler, counts);
   }
 
   BsdfSample next;

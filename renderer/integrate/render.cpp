@@ -202,8 +202,15 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop) {
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
-  const PathScene<Accel> path{
-      scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth, settings.hideProbe};
+  const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
+  const PathScene<Accel> path{scene,
+                              accel,
+                              lighting,
+                              emitters.get(),
+                              settings.mis,
+                              settings.maxDepth,
+                              settings.hideProbe,
+                              punctual.get()};
   prepareBsdfs(scene);
   return render(PathIntegrator(path), accel, camera, settings, progress, stop);
 }

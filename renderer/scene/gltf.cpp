@@ -4,6 +4,7 @@
 #include "scene/gltf_draco.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_instances.h"
+#include "scene/gltf_lights.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_node.h"
 
@@ -79,6 +80,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
+  scene.lights = readLights(file, tree);
   scene.nodeNames = tree.names;
   return scene;
 }

@@ -64,6 +64,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.textures, other.textures);
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
+  moveToEnd(scene.lights, other.lights);
   moveToEnd(scene.nodeNames, other.nodeNames);
 }
 

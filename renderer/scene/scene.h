@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/light.h"
 #include "scene/material.h"
 
 namespace chromeball {
@@ -51,6 +52,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<std::unique_ptr<TexelGrid>> grids;  // owns the texels that textures point to
   std::vector<Camera> cameras;
+  std::vector<PunctualLight> lights;
   std::vector<std::string> nodeNames;
 
   size_t triangleCount() const;  // instanced triangles count once per instance
