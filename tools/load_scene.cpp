@@ -54,6 +54,17 @@ Camera chooseCamera(const RenderJob& job, const Scene& scene) {
   return framingCamera(scene, float(s.width) / float(s.height));
 }
 
+Camera withLens(const RenderJob& job, Camera camera) {
+  const auto& lens = job.file.lens;
+  if (!lens) return camera;
+  if (camera.orthographic)
+    throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
+               lens->place);
+  camera.lensRadius = 0.5f * lens->aperture;
+  camera.focus = lens->focus;
+  return camera;
+}
+
 // The size asked for; else the default height, as wide as the model's camera would have it.
 void chooseSize(RenderJob& job, const Scene& scene) {
   RenderSettings& settings = job.settings;
@@ -79,7 +90,7 @@ LoadedScene loadScene(RenderJob& job) {
   std::vector<std::string> notes;
   Scene scene = loadModels(job.file, notes);
   chooseSize(job, scene);
-  const Camera camera = chooseCamera(job, scene);
+  const Camera camera = withLens(job, chooseCamera(job, scene));
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};

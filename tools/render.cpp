@@ -72,6 +72,7 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
       {"noise", noise},  // NaN becomes null
       {"triangles", scene.triangleCount()},
       {"scene_bytes", scene.byteCount()},
+      {"texture_bytes", scene.texelByteCount()},
       {"peak_memory_bytes", uint64_t(usage.ru_maxrss) * 1024},
       {"interrupted", result.interrupted},
   };

@@ -10,6 +10,7 @@
 #include "lighting/emitters.h"
 #include "lighting/punctual.h"
 #include "lighting/strategy.h"
+#include "scene/camera.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
 #include "shading/extended_bsdf.h"
@@ -37,6 +38,7 @@ struct PathScene {
   int maxDepth;                              // 0: emission seen by the camera; 1: direct light; ...
   bool hideProbe = false;                    // from the camera
   const PunctualLights* punctual = nullptr;  // null where there are none
+  Beam beam{};                               // of the camera's rays, where the scene has textures
   float mirrorAlpha = lighting.mirrorAlpha();
 };
 
@@ -157,6 +159,7 @@ struct PathState {
   int depth = 0;      // of the vertex to come
   int straight = 0;   // vertices so far where the ray just went on; they are no bounces
   Media media{};      // that the ray is in
+  float length = 0;   // metres from the camera
 };
 
 // What the path finds where its ray meets nothing.
@@ -256,10 +259,16 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     return false;
   }
   const Instance& instance = path.scene.instances[hit->instance];
-  const Surface surface =
-      surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
-  if (state.media.inside())
-    state.throughput *= state.media.transmittance(glm::length(surface.position - state.ray.origin));
+  // Bounces leave the beam as it is: on rough surfaces it would widen, and what follows blur.
+  state.length += hit->distance;
+  const float crossSection = path.beam ? path.beam.crossSection(state.length) : 0;
+  const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric,
+                                    -state.ray.direction, crossSection);
+  if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
+  if (state.pdf == 0 && !surface.frontFace && surface.material->hidesBack()) [[unlikely]] {
+    state.ray.origin = surface.rayOrigin(state.ray.direction);
+    return true;
+  }
   if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance.material);
   const bool ends = state.depth - state.straight == path.maxDepth || surface.material->unlit;
   if (ends && !(first && state.depth == 0))
@@ -267,12 +276,8 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
 
   const MaterialPoint material = materialAt(path.scene, surface);
   if (first && state.depth == 0)
-    *first = {true,
-              glm::length(surface.position - state.ray.origin),
-              material.baseColor,
-              surface.normal,
-              instance.material,
-              instance.node};
+    *first = {true,           state.length,      material.baseColor,
+              surface.normal, instance.material, instance.node};
   if (ends) return passThrough(path.scene, state, instance, surface);
   return scatter(path, state, instance, surface, material, sampler, samples, counts, radiance);
 }

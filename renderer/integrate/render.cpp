@@ -139,9 +139,13 @@ class Renderer {
     for (uint32_t lane = 0; lane < count; ++lane) {
       sampler.startSample(begin + lane);
       const vec2 offset = sampler.get2(dimension::kPixel);
-      camera_.ray((float(x) + offset.x) / float(settings_.width),
-                  (float(y) + offset.y) / float(settings_.height), rays[lane].origin,
-                  rays[lane].direction);
+      const float u = (float(x) + offset.x) / float(settings_.width);
+      const float v = (float(y) + offset.y) / float(settings_.height);
+      Ray& ray = rays[lane];
+      if (camera_.hasLens())
+        camera_.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
+      else
+        camera_.ray(u, v, ray.origin, ray.direction);
       keys[lane] = sampler.sampleKey();
     }
     return accel_.intersect(std::span(rays).first(count), std::span(keys).first(count));
@@ -203,6 +207,12 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                     const Progress& progress, const std::atomic<bool>& stop) {
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
+  // Where the number of samples is open, textures are sharp enough for many and smooth for few.
+  constexpr double kOpenSamples = 16;
+  const bool open = settings.timeLimit || settings.noiseLimit;
+  const Beam beam = scene.textures.empty()
+                        ? Beam{}
+                        : beamOf(camera, settings.height, open ? kOpenSamples : settings.samples);
   const PathScene<Accel> path{scene,
                               accel,
                               lighting,
@@ -210,7 +220,8 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                               settings.mis,
                               settings.maxDepth,
                               settings.hideProbe,
-                              punctual.get()};
+                              punctual.get(),
+                              beam};
   prepareBsdfs(scene);
   return render(PathIntegrator(path), accel, camera, settings, progress, stop);
 }
