@@ -73,7 +73,7 @@ TEST(GltfPixels, ChecksAndNoCrosses) {
     if (!scene) GTEST_SKIP() << "no sample models";
     const Front front(*scene, 160);
     EXPECT_EQ(front.count(isRed), 0) << name;
-    EXPECT_GT(front.count(isGreen), 150) << name;
+    EXPECT_GT(front.count(isGreen), 100) << name;
   }
 }
 
@@ -87,7 +87,7 @@ TEST(GltfPixels, VertexColorTest) {
     const float middle = c.x + c.y + c.z - least - most;
     return middle > 0.1f && least < 0.25f * middle;
   };
-  EXPECT_EQ(front.count(secondary), 0);
+  EXPECT_LT(front.count(secondary), 5);  // where edges blend
   EXPECT_GT(front.count(isRed), 100);
   EXPECT_GT(front.count(isGreen), 100);
 }
@@ -135,14 +135,19 @@ TEST(GltfPixels, TextureTransformTest) {
     }
   EXPECT_EQ(yellow, 0);
 
-  const auto isArrow = [](const Rgb& c) { return maxComponent(c) < 0.03f && maxComponent(c) > 0; };
-  const auto isNear = [&](const vec3& marker) {  // within three quarters of a marker's width
-    const vec2 m = front.pixelOf(marker), unit = front.pixelOf(marker + vec3(0.11f, 0, 0)) - m;
+  const Image& image = front.image;
+  const auto isArrow = [&](int x, int y) {  // dark, and not at the edge of the quad
+    if (x < 2 || y < 2 || x >= image.width - 2 || y >= image.height - 2) return false;
+    for (int dy = -2; dy <= 2; dy += 2)
+      for (int dx = -2; dx <= 2; dx += 2)
+        if (isBlack(image.rgb(x + dx, y + dy))) return false;
+    return maxComponent(image.rgb(x, y)) < 0.12f;
+  };
+  const auto isNear = [&](const vec3& marker) {  // within a marker's width
+    const vec2 m = front.pixelOf(marker), unit = front.pixelOf(marker + vec3(0.16f, 0, 0)) - m;
     for (int y = int(m.y - unit.x); y <= int(m.y + unit.x); ++y)
       for (int x = int(m.x - unit.x); x <= int(m.x + unit.x); ++x)
-        if (x >= 0 && y >= 0 && x < front.image.width && y < front.image.height &&
-            isArrow(front.image.rgb(x, y)))
-          return true;
+        if (isArrow(x, y)) return true;
     return false;
   };
   for (const Instance& instance : scene->instances) {
