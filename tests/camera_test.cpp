@@ -42,6 +42,73 @@ TEST(Camera, OrthographicRaysAreParallel) {
   expectNear(direction, {0, 0, -1});
 }
 
+TEST(Camera, RaysThroughTheLensMeetInThePlaneInFocus) {
+  Camera camera = Camera::lookAt({1, 2, 3}, {-4, 0, 1}, {0, 1, 0}, 0.7f);
+  camera.lensRadius = 0.3f;
+  camera.focus = 5;
+  const CameraRays rays(camera, 1.5f);
+  ASSERT_TRUE(rays.hasLens());
+  EXPECT_FALSE(CameraRays(Camera(), 1).hasLens());
+  for (const vec2 uv : {vec2(0.5f, 0.5f), vec2(0.1f, 0.8f)}) {
+    vec3 origin, direction;
+    rays.ray(uv.x, uv.y, origin, direction);
+    const vec3 inFocus = origin + direction * (5 / -glm::dot(direction, camera.back));
+    for (const vec2 lens : {vec2(0.2f, 0.9f), vec2(0.99f, 0.3f), vec2(0.5f, 0.5f)}) {
+      rays.ray(uv.x, uv.y, lens, origin, direction);
+      EXPECT_NEAR(glm::length(direction), 1, 1e-6);
+      EXPECT_LE(glm::distance(origin, camera.position), 0.3f + 1e-6f);
+      EXPECT_NEAR(glm::dot(origin - camera.position, camera.back), 0, 1e-6);
+      const vec3 to = inFocus - origin;
+      EXPECT_NEAR(glm::length(glm::cross(to, direction)), 0, 2e-6);
+    }
+  }
+}
+
+// A small disc of light at distance z is seen as a disc of aperture |z - focus| / z in the plane in
+// focus; a disc of diameter D has the variance D^2 / 16 along each axis.
+TEST(Camera, CircleOfConfusion) {
+  constexpr float kAperture = 0.4f, kFocus = 4, kFov = 0.5f;
+  constexpr int kSize = 64;
+  for (const float z : {2.5f, 4.0f, 8.0f}) {
+    Scene scene;
+    Material glow = lambert(Rgb(0));
+    glow.emission = Rgb(1);
+    const float half = 0.04f * z;
+    addQuad(scene, addMaterial(scene, glow), {-half, -half, -z}, {2 * half, 0, 0},
+            {0, 2 * half, 0});
+    Camera camera;
+    camera.fov = kFov;
+    camera.lensRadius = kAperture / 2;
+    camera.focus = kFocus;
+    const Probe black(Image(2, 1, 3));
+    const Image image =
+        renderScene(scene, camera, black, "bsdf", smallRender(kSize, kSize, 256, 0)).film.mean();
+    double sum = 0, variance = 0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double dx = x + 0.5 - kSize / 2.0;
+        sum += image.rgb(x, y).x;
+        variance += image.rgb(x, y).x * dx * dx;
+      }
+    const double pixel = 2 * kFocus * std::tan(kFov / 2.0) / kSize;  // metres in the plane in focus
+    const double blur = kAperture * std::fabs(z - kFocus) / z / pixel;
+    const double source = 2 * half * kFocus / z / pixel;  // the variance of a square is side^2 / 12
+    const double expected = blur * blur / 16 + source * source / 12 + 1 / 12.0;
+    EXPECT_NEAR(variance / sum / expected, 1, 0.03) << z;
+    EXPECT_NEAR(sum / (source * source), 1, 0.02) << z;  // out of focus, no light is lost
+  }
+}
+
+TEST(Camera, BeamsCoverThePictureOnce) {
+  Camera camera;
+  camera.fov = kPi / 2;
+  EXPECT_NEAR(beamOf(camera, 100, 16).crossSection(3) * 16 * 100 * 100, 4 * 36, 1e-4);
+  camera.orthographic = true;
+  camera.halfHeight = 5;
+  EXPECT_NEAR(beamOf(camera, 100, 8).crossSection(3) * 8 * 100 * 100, 4 * 100, 1e-4);
+  EXPECT_FALSE(Beam{});
+}
+
 TEST(Camera, LookAtIsOrthonormalAndAims) {
   const Camera camera = Camera::lookAt({3, 4, 5}, {-1, 2, 0.5f}, {0, 2, 0}, 0.8f);
   expectNear(-camera.back, glm::normalize(vec3(-4, -2, -4.5f)));

@@ -80,6 +80,22 @@ TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
   EXPECT_EQ(choice("time = 2").animation->name, "");
 }
 
+TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
+  const std::string place = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+  const SceneFile parallel = readWithModel(place + "orthographic = 3");
+  EXPECT_TRUE(parallel.camera->orthographic);
+  EXPECT_EQ(parallel.camera->halfHeight, 1.5f);
+  EXPECT_FALSE(parallel.lens);
+  const SceneFile lens = readWithModel("[camera]\naperture = 0.05\nfocus = 2");
+  EXPECT_FALSE(lens.camera);
+  EXPECT_EQ(lens.lens->aperture, 0.05f);
+  EXPECT_EQ(lens.lens->focus, 2);
+  expectError("[camera]\naperture = 0.05", 3, {"`focus`", "go together"});
+  expectError("[camera]\naperture = 0\nfocus = 1", 3, {"`aperture`", "above 0"});
+  expectError(place + "fov = 40\northographic = 3", 5, {"orthographic", "no `fov`"});
+  expectError(place + "orthographic = -3", 5, {"`orthographic`", "above 0"});
+}
+
 TEST_F(SceneFileTest, EveryKeyArrives) {
   const SceneFile scene = readWithModel(R"([camera]
 position = [0, 0, 5]

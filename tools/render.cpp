@@ -68,16 +68,11 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
        {{"camera", result.rays.camera},
         {"shadow", result.rays.shadow},
         {"bounce", result.rays.bounce}}},
-      {"invalid_samples", result.invalid.total()},
-      {"invalid",
-       {{"nan", result.invalid.of(Defect::Nan)},
-        {"infinite", result.invalid.of(Defect::Infinite)},
-        {"negative", result.invalid.of(Defect::Negative)}}},
-      {"clamped",
-       {{"samples", result.clamped.count}, {"light_removed", result.clamped.shareRemoved()}}},
+      {"invalid_samples", result.invalid.count},
       {"noise", noise},  // NaN becomes null
       {"triangles", scene.triangleCount()},
       {"scene_bytes", scene.byteCount()},
+      {"texture_bytes", scene.texelByteCount()},
       {"peak_memory_bytes", uint64_t(usage.ru_maxrss) * 1024},
       {"interrupted", result.interrupted},
   };
@@ -89,10 +84,6 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
                 {"seconds", float(seconds.render)},
                 {"rays", std::to_string(rays)},
                 {"noise", float(noise)}};
-  if (job.settings.clamp) {
-    r.metadata["clamp"] = *job.settings.clamp;
-    r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
-  }
   return r;
 }
 
@@ -126,19 +117,6 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
 void writeStats(const std::string& path, const nlohmann::json& json) {
   const std::string text = json.dump(2) + "\n";
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-}
-
-// Light that the picture lacks is never passed over in silence.
-void sayWhatIsMissing(const RenderResult& result) {
-  if (const InvalidSamples& invalid = result.invalid; invalid.total())
-    warn(fmt::format(
-        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
-        "first at pixel ({}, {}); --aov invalid shows where",
-        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
-        invalid.of(Defect::Negative), invalid.x, invalid.y));
-  if (result.clamped.count)
-    warn(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the picture's light",
-                     result.clamped.count, 100 * result.clamped.shareRemoved()));
 }
 
 void render(const RenderOptions& options) {
@@ -178,7 +156,11 @@ void render(const RenderOptions& options) {
   const Report report = describe(job, options, scene, result, seconds, noise);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
-  sayWhatIsMissing(result);
+  if (result.invalid.count)
+    warn(
+        fmt::format("{} invalid samples (NaN, infinite or negative) were left out, one at pixel "
+                    "({}, {})",
+                    result.invalid.count, result.invalid.x, result.invalid.y));
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
   if (!options.quiet)
     fmt::print("{} samples a pixel in {:.2f} s, noise {:.2f}%: {}\n", result.samples,
@@ -200,8 +182,6 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');
-  command->add_option("--clamp", o.clamp,
-                      "Scale samples down whose largest channel exceeds this (none is clamped)");
   command->add_option("--stats", o.stats, "Write times, rays and noise to this .json");
   command->add_flag("--transparent", o.transparent, "Hide the probe from the camera; write alpha");
   command->callback([options] { render(*options); });

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "film/invalid.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -12,19 +11,17 @@ namespace chromeball {
 // What a camera ray met first.
 struct FirstHit {
   bool hit = false;
-  float depth = 0;  // metres along the camera's axis
-  Rgb albedo{0};    // base colour
-  vec3 normal{0};   // unit shading normal, world space
+  float depth = 0;             // metres along the camera's axis
+  Rgb albedo{0};               // base colour
+  vec3 normal{0};              // unit shading normal, world space
   int material = -1, node = -1;
 };
 
 // The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
 //   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
-//   alpha           share that hit something    material, node  index + 1 at the first sample; else
-//   0 variance        squared standard error of the pixel (Film)        samples  their number
-//   (Film) invalid         number of samples left out: R those with a NaN, G infinite, B negative
-//   ones
-enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node, Invalid };
+//   alpha           share that hit something    material, node  index + 1 at the first sample; else 0
+//   variance        squared standard error of the pixel (Film)        samples  their number (Film)
+enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node };
 
 struct AovInfo {
   Aov aov;
@@ -36,31 +33,25 @@ const AovInfo& aovInfo(Aov aov);
 // `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& place);
 
-// Gathers those that come from the first hit, and the defects. Sums are doubles: in float they
-// would stall after some million samples.
+// Gathers those that come from the first hit.
 class AovFilm {
  public:
   AovFilm(int width, int height, const std::vector<Aov>& wanted);
 
   bool empty() const { return sums_.empty(); }
 
-  // Adds a sample, or the defect of one. Concurrently for different pixels.
+  // Adds a sample. Concurrently for different pixels.
   void add(int x, int y, const FirstHit& first);
-  void add(int x, int y, Defect defect);
 
   Image finished(Aov aov) const;
 
  private:
   struct Sum {
     Aov aov;
-    int channels;
-    std::vector<double> sums;
+    Image image;
   };
-  size_t pixel(int x, int y) const { return size_t(y) * width_ + x; }
-
-  int width_, height_;
   std::vector<Sum> sums_;
-  std::vector<uint32_t> samples_, hits_;  // number of samples, and of those that hit something
+  Image samples_, hits_;  // number of samples, and of those that hit something
 };
 
 }  // namespace chromeball

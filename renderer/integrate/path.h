@@ -8,7 +8,9 @@
 #include "film/aov.h"
 #include "integrate/media.h"
 #include "lighting/emitters.h"
+#include "lighting/punctual.h"
 #include "lighting/strategy.h"
+#include "scene/camera.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
 #include "shading/extended_bsdf.h"
@@ -33,8 +35,10 @@ struct PathScene {
   const LightingStrategy& lighting;
   const Emitters* emitters;  // null where nothing emits
   Mis mis;
-  int maxDepth;            // 0: emission seen by the camera; 1: direct light; ...
-  bool hideProbe = false;  // from the camera
+  int maxDepth;                              // 0: emission seen by the camera; 1: direct light; ...
+  bool hideProbe = false;                    // from the camera
+  const PunctualLights* punctual = nullptr;  // null where there are none
+  Beam beam{};                               // of the camera's rays, where the scene has textures
   float mirrorAlpha = lighting.mirrorAlpha();
 };
 
@@ -111,12 +115,30 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   return bsdf.fCos * radiance * passed * (lightSampleWeight(path.mis, density, bsdf.pdf) / density);
 }
 
+// Light from the lamps without extent.
+template <class Rays>
+Rgb punctualLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
+                  const Media& here, const PixelSampler& sampler, RayCounts& counts) {
+  Rgb light(0);
+  path.punctual->sample(point, sampler, [&](const PunctualSample& s) {
+    const Rgb fCos = point.bsdf->evaluate(s.wi).fCos;
+    if (isBlack(fCos)) return;
+    ++counts.shadow;
+    Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi, s.distance});
+    Media media = here;
+    if (crosses(surface, s.wi)) media.cross(surface);
+    if (media.inside()) passed *= media.transmittance(s.distance);
+    light += fCos * s.irradiance * passed;
+  });
+  return light;
+}
+
 // Ends a path at random in proportion to what it can still carry; unbiased, since the survivors are
 // raised by as much. The first two bounces always go on: they carry most of the picture.
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
-  const float survival = std::min(maxComponent(throughput), 1.0f);
-  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN goes on, to be counted
+  const float survival = std::min(maxComponent(throughput), 0.95f);
+  if (!(sampler.get1(dimension::kRoulette) < survival)) return false;
   throughput /= survival;
   return true;
 }
@@ -137,6 +159,7 @@ struct PathState {
   int depth = 0;      // of the vertex to come
   int straight = 0;   // vertices so far where the ray just went on; they are no bounces
   Media media{};      // that the ray is in
+  float length = 0;   // metres from the camera
 };
 
 // What the path finds where its ray meets nothing.
@@ -189,6 +212,9 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Instance& inst
     if (path.emitters)
       radiance +=
           state.throughput * emitterLight(path, point, surface, state.media, sampler, counts);
+    if (path.punctual)
+      radiance +=
+          state.throughput * punctualLight(path, point, surface, state.media, sampler, counts);
   }
 
   BsdfSample next;
@@ -233,10 +259,16 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     return false;
   }
   const Instance& instance = path.scene.instances[hit->instance];
-  const Surface surface =
-      surfaceAt(path.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
-  if (state.media.inside())
-    state.throughput *= state.media.transmittance(glm::length(surface.position - state.ray.origin));
+  // Bounces leave the beam as it is: on rough surfaces it would widen, and what follows blur.
+  state.length += hit->distance;
+  const float crossSection = path.beam ? path.beam.crossSection(state.length) : 0;
+  const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric,
+                                    -state.ray.direction, crossSection);
+  if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
+  if (state.pdf == 0 && !surface.frontFace && surface.material->hidesBack()) [[unlikely]] {
+    state.ray.origin = surface.rayOrigin(state.ray.direction);
+    return true;
+  }
   if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance.material);
   const bool ends = state.depth - state.straight == path.maxDepth || surface.material->unlit;
   if (ends && !(first && state.depth == 0))
@@ -244,12 +276,8 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
 
   const MaterialPoint material = materialAt(path.scene, surface);
   if (first && state.depth == 0)
-    *first = {true,
-              glm::length(surface.position - state.ray.origin),
-              material.baseColor,
-              surface.normal,
-              instance.material,
-              instance.node};
+    *first = {true,           state.length,      material.baseColor,
+              surface.normal, instance.material, instance.node};
   if (ends) return passThrough(path.scene, state, instance, surface);
   return scatter(path, state, instance, surface, material, sampler, samples, counts, radiance);
 }

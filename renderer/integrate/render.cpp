@@ -74,7 +74,6 @@ class Schedule {
 struct Worker {
   PathMemory memory;
   InvalidSamples invalid;
-  ClampedSamples clamped;
 };
 
 class Renderer {
@@ -91,7 +90,7 @@ class Renderer {
                    dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
                settings.seed),
         workers_([this] {
-          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}, {}};
+          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}};
         }) {}
 
   // Adds one block to every pixel. `progress` is told the share of the pass.
@@ -118,8 +117,10 @@ class Renderer {
   void gather() {
     for (const Worker& worker : workers_) {
       result_.rays.add(worker.memory.rays);
-      result_.invalid.add(worker.invalid);
-      result_.clamped.add(worker.clamped);
+      if (worker.invalid.count && !result_.invalid.count)
+        result_.invalid = worker.invalid;
+      else
+        result_.invalid.count += worker.invalid.count;
     }
   }
 
@@ -138,9 +139,13 @@ class Renderer {
     for (uint32_t lane = 0; lane < count; ++lane) {
       sampler.startSample(begin + lane);
       const vec2 offset = sampler.get2(dimension::kPixel);
-      camera_.ray((float(x) + offset.x) / float(settings_.width),
-                  (float(y) + offset.y) / float(settings_.height), rays[lane].origin,
-                  rays[lane].direction);
+      const float u = (float(x) + offset.x) / float(settings_.width);
+      const float v = (float(y) + offset.y) / float(settings_.height);
+      Ray& ray = rays[lane];
+      if (camera_.hasLens())
+        camera_.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
+      else
+        camera_.ray(u, v, ray.origin, ray.direction);
       keys[lane] = sampler.sampleKey();
     }
     return accel_.intersect(std::span(rays).first(count), std::span(keys).first(count));
@@ -161,12 +166,10 @@ class Renderer {
       first = {};
       const CameraSample sample{x, y, rays[lane], hits[lane]};
       const Rgb radiance = integrator_.radiance(sample, worker.memory, wantsFirst);
-      if (const auto defect = defectOf(radiance, integrator_.isSigned())) {
-        worker.invalid.add(*defect, x, y);
-        result_.aovs.add(x, y, *defect);
-      } else {
-        sums.add(settings_.clamp ? clamped(radiance, worker.clamped) : radiance);
-      }
+      if (isValid(radiance))
+        sums.add(radiance);
+      else
+        worker.invalid = {worker.invalid.count + 1, x, y};
       if (wantsFirst) {
         first.depth = camera_.depth(sample.ray.direction, first.depth);
         result_.aovs.add(x, y, first);
@@ -175,16 +178,9 @@ class Renderer {
     result_.film.addBlock(x, y, sums);
   }
 
-  // Keeps the hue.
-  Rgb clamped(const Rgb& radiance, ClampedSamples& clamped) const {
-    const float largest = maxComponent(glm::abs(radiance));
-    const float scale = largest > *settings_.clamp ? *settings_.clamp / largest : 1;
-    const double light = std::fabs(double(luminance(radiance)));
-    clamped.kept += light * scale;
-    if (scale == 1) return radiance;
-    ++clamped.count;
-    clamped.removed += light * (1 - double(scale));
-    return radiance * scale;
+  bool isValid(const Rgb& radiance) const {
+    return isFinite(radiance) &&
+           (integrator_.isSigned() || glm::all(glm::greaterThanEqual(radiance, Rgb(0))));
   }
 
   const Integrator& integrator_;
@@ -210,8 +206,22 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop) {
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
-  const PathScene<Accel> path{
-      scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth, settings.hideProbe};
+  const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
+  // Where the number of samples is open, textures are sharp enough for many and smooth for few.
+  constexpr double kOpenSamples = 16;
+  const bool open = settings.timeLimit || settings.noiseLimit;
+  const Beam beam = scene.textures.empty()
+                        ? Beam{}
+                        : beamOf(camera, settings.height, open ? kOpenSamples : settings.samples);
+  const PathScene<Accel> path{scene,
+                              accel,
+                              lighting,
+                              emitters.get(),
+                              settings.mis,
+                              settings.maxDepth,
+                              settings.hideProbe,
+                              punctual.get(),
+                              beam};
   prepareBsdfs(scene);
   return render(PathIntegrator(path), accel, camera, settings, progress, stop);
 }
@@ -221,7 +231,6 @@ RenderResult render(const Integrator& integrator, const Accel& accel, const Came
                     const std::atomic<bool>& stop) {
   RenderResult result{Film(settings.width, settings.height),
                       AovFilm(settings.width, settings.height, settings.aovs),
-                      {},
                       {},
                       {},
                       0,

@@ -20,20 +20,14 @@ struct RenderSettings {
   int maxDepth = 8;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
-  bool hideProbe = false;      // from the camera only: for compositing
-  std::optional<float> clamp;  // the largest channel a sample may have; else none is clamped
+  bool hideProbe = false;  // from the camera only: for compositing
   std::vector<Aov> aovs;
 };
 
-// Samples brighter than the limit, which were scaled down to it: an error the user asked for.
-struct ClampedSamples {
+// Samples that came out NaN, infinite or negative: counted, left out of the mean, never hidden.
+struct InvalidSamples {
   uint64_t count = 0;
-  double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
-
-  double shareRemoved() const { return removed > 0 ? removed / (removed + kept) : 0; }
-  void add(const ClampedSamples& other) {
-    count += other.count, removed += other.removed, kept += other.kept;
-  }
+  int x = -1, y = -1;  // where one of them was
 };
 
 struct RenderResult {
@@ -41,7 +35,6 @@ struct RenderResult {
   AovFilm aovs;
   RayCounts rays;
   InvalidSamples invalid;
-  ClampedSamples clamped;
   int samples = 0;  // per pixel
   bool interrupted = false;
 };

@@ -1,16 +1,41 @@
 #include "scene/camera.h"
 
 #include "math/error.h"
+#include "math/warp.h"
 
 namespace chromeball {
 
 CameraRays::CameraRays(const Camera& camera, float aspectRatio)
-    : orthographic_(camera.orthographic), position_(camera.position), forward_(-camera.back) {
+    : orthographic_(camera.orthographic),
+      position_(camera.position),
+      forward_(-camera.back),
+      right_(camera.right),
+      up_(camera.up),
+      lensRadius_(camera.orthographic ? 0 : camera.lensRadius),
+      focus_(camera.focus) {
   const float halfHeight = orthographic_ ? camera.halfHeight : std::tan(0.5f * camera.fov);
   across_ = 2 * halfHeight * aspectRatio * camera.right;
   down_ = -2 * halfHeight * camera.up;
   corner_ = -0.5f * (across_ + down_);
   if (!orthographic_) corner_ += forward_;
+}
+
+void CameraRays::ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const {
+  // The cosine-weighted hemisphere seen from its pole is an even disc.
+  const vec2 disc = lensRadius_ * vec2(squareToCosineHemisphere(lens));
+  const vec3 onLens = disc.x * right_ + disc.y * up_;
+  origin = position_ + onLens;
+  direction = glm::normalize(focus_ * (corner_ + u * across_ + v * down_) - onLens);
+}
+
+Beam beamOf(const Camera& camera, int height, double samples) {
+  const double halfHeight =
+      camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
+  const double side = 2 * halfHeight / height;
+  // Of overlaps of 1, 2, 4 and 8, this one makes the least error of 16 samples of a checkerboard.
+  constexpr double kOverlap = 4;
+  const float share = float(side * side * std::min(kOverlap / samples, 1.0));
+  return camera.orthographic ? Beam{share, 0} : Beam{0, share};
 }
 
 Camera Camera::lookAt(vec3 position, vec3 target, vec3 up, float fovRadians) {

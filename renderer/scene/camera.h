@@ -16,10 +16,25 @@ struct Camera {
   float fov = 0.6911112f;  // vertical field of view in radians (perspective)
   float halfHeight = 1;    // half the height of the view in metres (orthographic)
   float aspect = 0;        // width / height the file asks for; 0: none
+  float lensRadius = 0;    // metres; 0: a pinhole. Perspective only
+  float focus = 1;         // metres along the axis to the plane in focus, where there is a lens
 
   // Throws InputError where eye and target coincide or up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);
 };
+
+// How wide the beam around a camera's ray is: its cross-section, after `distance` metres, in m^2.
+struct Beam {
+  float area = 0, solidAngle = 0;  // both 0: a ray that sees points
+
+  explicit operator bool() const { return area + solidAngle > 0; }
+  float crossSection(float distance) const { return area + solidAngle * distance * distance; }
+};
+
+// The beam of one of `samples` rays through a pixel at the centre of a picture of `height` pixels:
+// the beams overlap and cover the pixel four times, so that textures do not alias, and grow narrow
+// with many samples, so that textures do not blur.
+Beam beamOf(const Camera& camera, int height, double samples);
 
 // The rays of a camera for a picture with the given width / height.
 class CameraRays {
@@ -33,6 +48,11 @@ class CameraRays {
     direction = orthographic_ ? forward_ : glm::normalize(point);
   }
 
+  // The ray that meets the same point of the plane in focus (thin lens), from the point of the lens
+  // that `lens` in [0, 1)^2 chooses uniformly over its area.
+  bool hasLens() const { return lensRadius_ > 0; }
+  void ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const;
+
   // Metres along the camera's axis to a point `distance` metres along a ray.
   float depth(const vec3& direction, float distance) const {
     return distance * glm::dot(direction, forward_);
@@ -42,6 +62,8 @@ class CameraRays {
   bool orthographic_;
   vec3 position_, forward_;
   vec3 corner_, across_, down_;  // of the view's rectangle, from the position; at distance 1
+  vec3 right_, up_;
+  float lensRadius_, focus_;
 };
 
 }  // namespace chromeball

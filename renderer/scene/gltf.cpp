@@ -4,6 +4,7 @@
 #include "scene/gltf_draco.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_instances.h"
+#include "scene/gltf_lights.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_node.h"
 
@@ -75,10 +76,11 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   else if (!file.model.animations.empty())
     file.warnOnce("shown in its rest pose; --animation shows it at a time of an animation");
   standMeshesUp(file.model);
-  const NodeTree tree = readNodes(file, placement, choice.origin);
+  const NodeTree tree = readNodes(file, placement);
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
+  scene.lights = readLights(file, tree);
   scene.nodeNames = tree.names;
   return scene;
 }

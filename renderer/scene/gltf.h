@@ -27,7 +27,6 @@ struct AnimationTime {
 struct GltfChoice {
   std::optional<AnimationTime> animation;  // else the rest pose
   ExternalFiles external = ExternalFiles::Refuse;
-  glm::dvec3 origin{0};  // of the scene in the world: subtracted while numbers are still doubles
 };
 
 // Reads the default scene of the file (the first where none is named), with `placement` applied to

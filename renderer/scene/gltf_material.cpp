@@ -1,11 +1,13 @@
 #include "scene/gltf_material.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 
 #include "image/decode.h"
 #include "scene/gltf_value.h"
+#include "scene/mip_chain.h"
 
 namespace chromeball {
 namespace {
@@ -167,6 +169,19 @@ TexelGrid* MaterialReader::grid(int image) {
   return grids_[size_t(found->second)].get();
 }
 
+// Textures that differ in their samplers alone share them.
+void MaterialReader::makeSmallerVersions() {
+  std::map<std::pair<const TexelGrid*, bool>, std::vector<TexelGrid>> made;
+  for (const Texture& t : textures_) made[{t.grid, t.srgb}];
+  tbb::parallel_for_each(made.begin(), made.end(), [](auto& entry) {
+    entry.second = makeSmaller(*entry.first.first, entry.first.second);
+  });
+  std::map<std::pair<const TexelGrid*, bool>, std::shared_ptr<const std::vector<TexelGrid>>> shared;
+  for (auto& [key, levels] : made)
+    shared[key] = std::make_shared<const std::vector<TexelGrid>>(std::move(levels));
+  for (Texture& t : textures_) t.smaller = shared[{t.grid, t.srgb}];
+}
+
 void MaterialReader::moveInto(Scene& scene) {
   tbb::parallel_for(size_t(0), grids_.size(), [&](size_t i) {
     Bytes storage;
@@ -175,6 +190,7 @@ void MaterialReader::moveInto(Scene& scene) {
     *grids_[i] = {decoded.width, decoded.height, std::move(decoded.texels8),
                   std::move(decoded.texelsFloat)};
   });
+  makeSmallerVersions();
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

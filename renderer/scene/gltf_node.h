@@ -14,9 +14,9 @@ struct NodeTree {
   std::vector<std::string> names;   // of every node; never empty
 };
 
-// Composes the transforms of all nodes, `placement` outermost, seen from `origin`. Throws
-// InputError where the nodes are not trees, or a transform is not affine and finite.
-NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
+// Composes the transforms of all nodes, `placement` outermost. Throws InputError where the nodes
+// are not trees, or a transform is not affine and finite.
+NodeTree readNodes(const GltfFile& file, const Transform& placement);
 
 // False where the matrix flattens space, or does once it is rounded to float.
 bool isInvertible(const glm::dmat4& m);

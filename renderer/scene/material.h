@@ -25,6 +25,10 @@ struct Material {
   bool doubleSided = false;
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
 
+  // Whether the camera and mirrors do not see it from behind (back-face culling, glTF 2.0, 3.9.6).
+  // It is there for all other light, which would leak in otherwise.
+  bool hidesBack() const { return !doubleSided && !(extended && extended->transmission > 0); }
+
   bool emits() const { return unlit || emission != Rgb(0); }
 
   TextureSlot baseColorTexture;          // sRGB

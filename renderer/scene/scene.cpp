@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 namespace chromeball {
 namespace {
@@ -10,6 +11,8 @@ template <class T>
 size_t bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
+
+size_t bytesOf(const TexelGrid& grid) { return bytesOf(grid.texels8) + bytesOf(grid.texelsFloat); }
 
 template <class T>
 void moveToEnd(std::vector<T>& to, std::vector<T>& from) {
@@ -31,7 +34,16 @@ size_t Scene::byteCount() const {
              bytesOf(mesh.tangents) + bytesOf(mesh.colors);
     for (const auto& uv : mesh.uvs) bytes += bytesOf(uv);
   }
-  for (const auto& grid : grids) bytes += bytesOf(grid->texels8) + bytesOf(grid->texelsFloat);
+  return bytes + texelByteCount();
+}
+
+size_t Scene::texelByteCount() const {
+  size_t bytes = 0;
+  for (const auto& grid : grids) bytes += bytesOf(*grid);
+  std::set<const void*> counted;
+  for (const Texture& texture : textures)
+    if (texture.smaller && counted.insert(texture.smaller.get()).second)
+      for (const TexelGrid& level : *texture.smaller) bytes += bytesOf(level);
   return bytes;
 }
 
@@ -64,6 +76,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.textures, other.textures);
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
+  moveToEnd(scene.lights, other.lights);
   moveToEnd(scene.nodeNames, other.nodeNames);
 }
 

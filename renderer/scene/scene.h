@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/light.h"
 #include "scene/material.h"
 
 namespace chromeball {
@@ -19,10 +20,10 @@ using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the fron
 struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<vec3> positions;
-  std::vector<vec3> normals;               // empty: flat, the triangle's own normal
-  std::vector<vec4> tangents;              // filled only where a material has a normal map
-  std::vector<vec4> colors;                // linear RGBA; empty: white
-  std::vector<std::vector<vec2>> uvs;      // by UV set; only those a material reads are kept
+  std::vector<vec3> normals;           // empty: flat, the triangle's own normal
+  std::vector<vec4> tangents;          // filled only where a material has a normal map
+  std::vector<vec4> colors;            // linear RGBA; empty: white
+  std::vector<std::vector<vec2>> uvs;  // by UV set; only those a material reads are kept
 };
 
 // Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
@@ -51,10 +52,12 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<std::unique_ptr<TexelGrid>> grids;  // owns the texels that textures point to
   std::vector<Camera> cameras;
+  std::vector<PunctualLight> lights;
   std::vector<std::string> nodeNames;
 
   size_t triangleCount() const;  // instanced triangles count once per instance
   size_t byteCount() const;      // of geometry and texels, for the statistics
+  size_t texelByteCount() const;
 };
 
 struct Bounds {

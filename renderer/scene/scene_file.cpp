@@ -179,22 +179,35 @@ ModelEntry readModel(const Entry& entry) {
   return result;
 }
 
+void readLens(const Section& camera, SceneFile& scene) {
+  const Entry aperture = camera["aperture"], focus = camera["focus"];
+  if (!aperture && !focus) return;
+  if (!aperture || !focus)
+    failAt((aperture ? aperture : focus).place(),
+           "`aperture` (the lens's diameter) and `focus` (a distance) go together, in metres");
+  scene.lens = {float(aperture.positive()), float(focus.positive()), aperture.place()};
+}
+
 void readCamera(const Section& camera, SceneFile& scene) {
+  readLens(camera, scene);
   const Entry name = camera["name"], position = camera["position"], target = camera["look_at"];
   if (name) {
-    for (const char* key : {"position", "look_at", "up", "fov"})
+    for (const char* key : {"position", "look_at", "up", "fov", "orthographic"})
       if (const Entry e = camera[key])
         failAt(e.place(), "[camera] has `name`, a camera of the model; it cannot have `{}` too",
                key);
     scene.cameraName = name.name();
     return;
   }
-  if (!position && !target && !camera["up"] && !camera["fov"]) return;
+  const Entry orthographic = camera["orthographic"];
+  if (!position && !target && !camera["up"] && !camera["fov"] && !orthographic) return;
   if (!position || !target)
     failAt(camera.place(), "[camera] needs `name`, or both `position` and `look_at`");
 
   const vec3 from = position.vector(), to = target.vector();
   const Entry upEntry = camera["up"], fovEntry = camera["fov"];
+  if (orthographic && fovEntry)
+    failAt(fovEntry.place(), "[camera] is `orthographic`; it has no `fov`");
   const vec3 up = upEntry ? upEntry.vector() : vec3(0, 1, 0);
   const float fov = fovEntry ? glm::radians(float(fovEntry.number(
                                    "degrees between 0 and 180",
@@ -204,6 +217,10 @@ void readCamera(const Section& camera, SceneFile& scene) {
     scene.camera = Camera::lookAt(from, to, up, fov);
   } catch (const InputError& error) {
     failAt(camera.place(), "{}", error.what());
+  }
+  if (orthographic) {
+    scene.camera->orthographic = true;
+    scene.camera->halfHeight = 0.5f * float(orthographic.positive());
   }
 }
 
@@ -262,7 +279,9 @@ SceneFile readSceneFile(const std::string& path) {
   SceneFile scene;
   forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
   if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
-  readCamera(root.section("camera", {"name", "position", "look_at", "up", "fov"}), scene);
+  readCamera(root.section("camera", {"name", "position", "look_at", "up", "fov", "orthographic",
+                                     "aperture", "focus"}),
+             scene);
   readProbe(root.section("probe", {"file", "mapping", "rotation", "scale"}), scene);
   const Section lighting = root.section("lighting", {"strategy", "mis"});
   if (const Entry e = lighting["strategy"]) scene.strategy = e.name();

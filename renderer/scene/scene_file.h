@@ -33,7 +33,13 @@ struct SceneFile {
   std::vector<ModelEntry> models;  // at least one
 
   std::optional<NamedSetting> cameraName;  // a camera of the model; or
-  std::optional<Camera> camera;  // [camera] position, look_at, up, fov (vertical, degrees)
+  std::optional<Camera> camera;  // [camera] position, look_at, up, fov (vertical, degrees) or
+                                 // orthographic (height of the view, metres)
+  struct Lens {
+    float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
+    std::string place;      // for an error
+  };
+  std::optional<Lens> lens;  // for whichever camera it is
 
   std::optional<std::string> probe;
   std::optional<NamedSetting> probeMapping;

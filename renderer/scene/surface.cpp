@@ -18,6 +18,14 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Mesh& mesh, const
   return scene.textures[slot.texture].lookup(slot.transform(uv));
 }
 
+// The beam around a ray meets the surface in an ellipse; textures are filtered by a circle as
+// large, so that the beams of a pixel cover as much of it at any slant.
+float footprintOf(float crossSection, float cosine, float doubleArea) {
+  constexpr float kLeastCosine = 1e-3f;
+  const float area = crossSection / std::max(std::fabs(cosine), kLeastCosine);
+  return doubleArea > 0 ? area / doubleArea : 0;
+}
+
 float handednessOf(const Instance& instance) {
   return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0 ? -1.0f : 1.0f;
 }
@@ -59,7 +67,7 @@ float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& norm
 }  // namespace
 
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
-                  const vec3& wo) {
+                  const vec3& wo, float crossSection) {
   Surface s;
   s.mesh = &scene.meshes[instance.mesh];
   s.material = &scene.materials[instance.material];
@@ -82,6 +90,9 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   const float doubleArea2 = glm::dot(front, front);
   front = doubleArea2 > 0 ? front * (1 / std::sqrt(doubleArea2)) : wo;
   s.frontFace = glm::dot(front, wo) >= 0;
+  s.footprint = 0;
+  if (crossSection > 0)
+    s.footprint = footprintOf(crossSection, glm::dot(front, wo), std::sqrt(doubleArea2));
   s.geometricNormal = s.frontFace ? front : -front;
   s.rayOffset = rayOffset(p0, p1, p2, front);
 
@@ -122,7 +133,19 @@ vec3 mappedNormal(const Scene& scene, const TextureSlot& map, float scale, const
 }
 
 vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
-  return lookup(scene, slot, *s.mesh, s.triangle, s.barycentric);
+  if (s.footprint == 0) return lookup(scene, slot, *s.mesh, s.triangle, s.barycentric);
+  vec2 uv(0), edge1(0), edge2(0);
+  if (slot.uvSet < int(s.mesh->uvs.size()) && !s.mesh->uvs[slot.uvSet].empty()) {
+    const std::vector<vec2>& uvs = s.mesh->uvs[slot.uvSet];
+    uv = interpolate(uvs, s.triangle, s.barycentric);
+    edge1 = uvs[s.triangle.y] - uvs[s.triangle.x];
+    edge2 = uvs[s.triangle.z] - uvs[s.triangle.x];
+  }
+  const Texture& texture = scene.textures[slot.texture];
+  const float doubleArea = std::fabs(edge1.x * edge2.y - edge1.y * edge2.x) * slot.areaFactor();
+  const float texels =
+      s.footprint * doubleArea * float(texture.grid->width) * float(texture.grid->height);
+  return texture.lookup(slot.transform(uv), texels);
 }
 
 MaterialPoint materialAt(const Scene& scene, const Surface& s) {

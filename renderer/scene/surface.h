@@ -17,6 +17,9 @@ struct Surface {
   vec3 normal;
   float rayOffset;  // how far a ray must start off the surface not to meet it again (metres)
   bool frontFace;
+  // The area around the point that stands for it in textures, as a share of twice the triangle's; 0
+  // where textures are not filtered.
+  float footprint;
 
   // Where a ray that leaves towards `direction` starts.
   vec3 rayOrigin(const vec3& direction) const {
@@ -25,9 +28,10 @@ struct Surface {
   }
 };
 
-// `wo`: unit, towards the viewer.
+// `wo`: unit, towards the viewer. `crossSection`: of the beam around the ray, in square metres; 0
+// for a ray that sees a point.
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
-                  const vec3& wo);
+                  const vec3& wo, float crossSection = 0);
 
 // The smooth normal before any map, and the axes about it that normal maps are written in, all on
 // the front. Right angles; unit. Nothing where the mesh has no tangents or a degenerate one.

@@ -29,7 +29,6 @@ float decodeSrgbFast(float c) {
   return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
 }
 
-// Linear RGBA of one texel.
 vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
   const size_t i = size_t(y) * grid.width + x;
   if (!grid.texels8.empty()) {
@@ -80,14 +79,35 @@ float reduce(float x, Wrap wrap) {
 
 }  // namespace
 
+vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
+
 vec4 Texture::lookup(vec2 uv) const {
   const TexelGrid& g = *grid;
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch(g, srgb, 0, 0);
+  if (filter == Filter::Linear) return bilinear(g, uv);
+  const int x = int(reduce(uv.x, wrapS) * float(g.width));
+  const int y = int(reduce(uv.y, wrapT) * float(g.height));
+  return fetch(g, srgb, wrapIndex(x, g.width, wrapS), wrapIndex(y, g.height, wrapT));
+}
+
+vec4 Texture::lookup(vec2 uv, float texels) const {
+  if (!(texels > 1) || !smaller || smaller->empty()) return lookup(uv);
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return lookup(uv);
+  // Half the binary logarithm, linear between powers of two.
+  int exponent = 0;
+  const float mantissa = 2 * std::frexp(texels, &exponent) - 1;
+  const float level = 0.5f * (float(exponent - 1) + mantissa);
+  const size_t last = smaller->size();
+  if (!(level < float(last))) return bilinear(smaller->back(), uv);
+  const size_t below = size_t(level);
+  const vec4 finer = below == 0 ? lookup(uv) : bilinear((*smaller)[below - 1], uv);
+  return glm::mix(finer, bilinear((*smaller)[below], uv), level - float(below));
+}
+
+// `uv` is finite.
+vec4 Texture::bilinear(const TexelGrid& g, vec2 uv) const {
   const float x = reduce(uv.x, wrapS) * float(g.width);
   const float y = reduce(uv.y, wrapT) * float(g.height);
-  if (filter == Filter::Nearest)
-    return fetch(g, srgb, wrapIndex(int(x), g.width, wrapS), wrapIndex(int(y), g.height, wrapT));
-
   const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
   const float tx = x - 0.5f - fx, ty = y - 0.5f - fy;
   const int x0 = wrapIndex(int(fx), g.width, wrapS), x1 = wrapIndex(int(fx) + 1, g.width, wrapS);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "math/vec.h"
@@ -27,10 +28,21 @@ struct Texture {
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter filter = Filter::Linear;
   bool srgb = false;
+  std::shared_ptr<const std::vector<TexelGrid>> smaller;  // mip_chain.h; null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
   vec4 lookup(vec2 uv) const;
+
+  // The mean of an area of about `texels` texels around uv: trilinear between the smaller versions
+  // (Williams 1983). Up to one texel it is lookup(uv).
+  vec4 lookup(vec2 uv, float texels) const;
+
+ private:
+  vec4 bilinear(const TexelGrid& from, vec2 uv) const;
 };
+
+// Linear RGBA of one texel.
+vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y);
 
 // A material's use of a texture: which one, by which UV set, after which transform
 // (KHR_texture_transform: uv' = offset + R(rotation) S(scale) uv).
@@ -43,6 +55,8 @@ struct TextureSlot {
   vec2 transform(vec2 uv) const {
     return vec2(glm::dot(uvRow0, uv), glm::dot(uvRow1, uv)) + uvOffset;
   }
+  // By how much the transform enlarges areas.
+  float areaFactor() const { return std::fabs(uvRow0.x * uvRow1.y - uvRow0.y * uvRow1.x); }
 };
 
 }  // namespace chromeball

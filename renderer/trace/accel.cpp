@@ -29,7 +29,8 @@ Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
   RTCHitN* hit = arguments->hit;
   return {instanceOf(RTCHitN_instID(hit, 1, 0, 0), RTCHitN_geomID(hit, 1, 0)),
           RTCHitN_primID(hit, 1, 0),
-          {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)}};
+          {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)},
+          RTCRayN_tfar(arguments->ray, 1, 0)};
 }
 
 float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
@@ -199,7 +200,7 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {instanceOf(r.hit.instID[0], r.hit.geomID), r.hit.primID, {r.hit.u, r.hit.v}};
+  hit = {instanceOf(r.hit.instID[0], r.hit.geomID), r.hit.primID, {r.hit.u, r.hit.v}, r.ray.tfar};
   return true;
 }
 
@@ -233,7 +234,8 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
     if (valid[i] && r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
       hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
                  r.hit.primID[i],
-                 {r.hit.u[i], r.hit.v[i]}};
+                 {r.hit.u[i], r.hit.v[i]},
+                 r.ray.tfar[i]};
   return hits;
 }
 

@@ -17,6 +17,7 @@ struct Hit {
   uint32_t instance;  // index into Scene::instances
   uint32_t triangle;  // index into the mesh's triangles
   vec2 barycentric;   // weights of the second and third vertex
+  float distance;     // along the ray, metres
 };
 
 }  // namespace chromeball

@@ -1,0 +1,13 @@
+// KHR_lights_punctual: the lights that nodes carry.
+#pragma once
+
+#include "scene/gltf_file.h"
+#include "scene/gltf_node.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+// The lights of the tree's nodes, in world space. Throws InputError where one is not well-formed.
+std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree);
+
+}  // namespace chromeball

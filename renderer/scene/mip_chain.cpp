@@ -1,0 +1,85 @@
+#include "scene/mip_chain.h"
+
+namespace chromeball {
+namespace {
+
+double encodeSrgb(double c) {  // IEC 61966-2-1
+  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+}
+
+// The 8-bit code of linear light; finer than the codes are apart, even where the curve is steepest.
+constexpr int kSteps = 1 << 14;
+const std::vector<uint8_t>& srgbCodes() {
+  static const std::vector<uint8_t> kCodes = [] {
+    std::vector<uint8_t> codes(kSteps + 1);
+    for (int i = 0; i <= kSteps; ++i)
+      codes[size_t(i)] = uint8_t(std::lround(255 * encodeSrgb(double(i) / kSteps)));
+    return codes;
+  }();
+  return kCodes;
+}
+
+uint8_t code8(float c, bool srgb) {
+  return srgb ? srgbCodes()[size_t(c * kSteps + 0.5f)] : uint8_t(c * 255 + 0.5f);
+}
+
+// Which texels of a side of `from` one of its half covers, and how much of each: two, or where the
+// side is odd three.
+struct Cover {
+  int first = 0;
+  std::array<float, 3> weight{};
+};
+
+std::vector<Cover> covers(int from, int to) {
+  std::vector<Cover> all(static_cast<size_t>(to));
+  const double width = double(from) / to;
+  for (int i = 0; i < to; ++i) {
+    const double begin = i * width, end = begin + width;
+    Cover& cover = all[size_t(i)];
+    cover.first = int(begin);
+    for (int k = 0; k < 3; ++k) {
+      const double low = std::max(begin, double(cover.first + k));
+      const double high = std::min(end, double(cover.first + k + 1));
+      cover.weight[size_t(k)] = float(std::max(high - low, 0.0) / width);
+    }
+  }
+  return all;
+}
+
+TexelGrid halved(const TexelGrid& grid, bool srgb) {
+  TexelGrid half{std::max(grid.width / 2, 1), std::max(grid.height / 2, 1), {}, {}};
+  const std::vector<Cover> columns = covers(grid.width, half.width);
+  const std::vector<Cover> rows = covers(grid.height, half.height);
+  const size_t count = size_t(half.width) * size_t(half.height);
+  const bool is8 = !grid.texels8.empty();
+  is8 ? half.texels8.reserve(count) : half.texelsFloat.reserve(count);
+  for (const Cover& row : rows)
+    for (const Cover& column : columns) {
+      vec4 mean(0);
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+          if (const float w = row.weight[size_t(j)] * column.weight[size_t(i)]; w > 0)
+            mean += w * linearTexel(grid, srgb, column.first + i, row.first + j);
+      if (is8) {
+        mean = glm::min(mean, vec4(1));
+        half.texels8.push_back(
+            {code8(mean.x, srgb), code8(mean.y, srgb), code8(mean.z, srgb), code8(mean.w, false)});
+        continue;
+      }
+      if (srgb)
+        for (int k = 0; k < 3; ++k) mean[k] = float(encodeSrgb(mean[k]));
+      half.texelsFloat.push_back(mean);
+    }
+  return half;
+}
+
+}  // namespace
+
+std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb) {
+  std::vector<TexelGrid> levels;
+  for (const TexelGrid* last = &grid; last->width > 1 || last->height > 1; last = &levels.back())
+    levels.push_back(halved(*last, srgb));
+  return levels;
+}
+
+}  // namespace chromeball

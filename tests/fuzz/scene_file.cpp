@@ -1,9 +1,0 @@
-#include "scene/scene_file.h"
-
-#include "fuzz.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  using namespace chromeball;
-  const std::string path = fuzzFile(bytes, size, "scene.toml");
-  return readOrRefuse([&] { readSceneFile(path); });
-}

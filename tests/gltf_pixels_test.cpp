@@ -1,0 +1,182 @@
+// The sample models that carry their own right answer, rendered: where they say what a right
+// picture shows, ours must.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "probe/synth.h"
+#include "scene/gltf.h"
+#include "shared_data.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+std::optional<Scene> sample(const std::string& name) {
+  const auto path = sharedData("gltf/" + name + "/glTF/" + name + ".gltf");
+  if (!path) return std::nullopt;
+  return loadGltf(path->string(), {}, nullptr);
+}
+
+// From the front, without perspective, in even light; exactly as wide and high as the model.
+struct Front {
+  Bounds box;
+  Image image;
+
+  Front(const Scene& scene, int height, int samples = 16) : box(bounds(scene)) {
+    const vec3 size = box.max - box.min;
+    Camera camera;
+    camera.orthographic = true;
+    camera.position = {0.5f * (box.min.x + box.max.x), 0.5f * (box.min.y + box.max.y),
+                       box.max.z + 1};
+    camera.halfHeight = 0.5f * size.y;
+    const int width = int(std::lround(float(height) * size.x / size.y));
+    const Probe white(constantProbe({16, 8}, Rgb(1)));
+    RenderSettings settings = smallRender(width, height, samples, 1);
+    settings.hideProbe = true;
+    image = renderScene(scene, camera, white, "uniform", settings).film.mean();
+  }
+
+  vec2 pixelOf(const vec3& p) const {
+    return {(p.x - box.min.x) / (box.max.x - box.min.x) * float(image.width),
+            (box.max.y - p.y) / (box.max.y - box.min.y) * float(image.height)};
+  }
+  Rgb at(const vec3& p) const {
+    const vec2 pixel = pixelOf(p);
+    return image.rgb(int(pixel.x), int(pixel.y));
+  }
+  template <class Is>
+  int count(const Is& is) const {
+    int n = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) n += is(image.rgb(x, y));
+    return n;
+  }
+};
+
+bool isRed(const Rgb& c) { return c.x > 0.08f && c.x > 2.5f * c.y && c.x > 2.5f * c.z; }
+bool isGreen(const Rgb& c) { return c.y > 0.08f && c.y > 2.5f * c.x && c.y > 2.5f * c.z; }
+
+vec3 centreOf(const Scene& scene, const Instance& instance) {
+  Bounds box;
+  for (const vec3& p : scene.meshes[size_t(instance.mesh)].positions) {
+    box.min = glm::min(box.min, instance.point(p));
+    box.max = glm::max(box.max, instance.point(p));
+  }
+  return 0.5f * (box.min + box.max);
+}
+
+// A wrong answer shows a red cross, a right one a green check.
+TEST(GltfPixels, ChecksAndNoCrosses) {
+  for (const char* name : {"TextureSettingsTest", "NegativeScaleTest", "AlphaBlendModeTest"}) {
+    const auto scene = sample(name);
+    if (!scene) GTEST_SKIP() << "no sample models";
+    const Front front(*scene, 160);
+    EXPECT_EQ(front.count(isRed), 0) << name;
+    EXPECT_GT(front.count(isGreen), 100) << name;
+  }
+}
+
+// Vertex colours take two channels from each check; were they ignored, a cross in them would show.
+TEST(GltfPixels, VertexColorTest) {
+  const auto scene = sample("VertexColorTest");
+  if (!scene) GTEST_SKIP() << "no sample models";
+  const Front front(*scene, 160);
+  const auto secondary = [](const Rgb& c) {  // cyan, magenta or yellow
+    const float least = std::min({c.x, c.y, c.z}), most = maxComponent(c);
+    const float middle = c.x + c.y + c.z - least - most;
+    return middle > 0.1f && least < 0.25f * middle;
+  };
+  EXPECT_LT(front.count(secondary), 5);  // where edges blend
+  EXPECT_GT(front.count(isRed), 100);
+  EXPECT_GT(front.count(isGreen), 100);
+}
+
+// In each row of spheres, factors and three encodings of textures mean the same material.
+TEST(GltfPixels, TextureEncodingTest) {
+  const auto scene = sample("TextureEncodingTest");
+  if (!scene) GTEST_SKIP() << "no sample models";
+  const Front front(*scene, 160, 256);
+  std::map<int, std::vector<Rgb>> rows;
+  for (const Instance& instance : scene->instances) {
+    if (scene->meshes[size_t(instance.mesh)].positions.size() < 100) continue;  // a label
+    const vec3 centre = centreOf(*scene, instance);
+    rows[int(std::lround(4 * centre.y))].push_back(front.at(centre));
+  }
+  EXPECT_EQ(rows.size(), 3u);
+  for (const auto& [row, colors] : rows) {
+    EXPECT_EQ(colors.size(), 4u);
+    for (const Rgb& c : colors)
+      EXPECT_NEAR(glm::distance(c, colors[0]), 0, 0.02f * maxComponent(colors[0])) << row;
+  }
+}
+
+// Halfway between a black texel and a green one is half the light.
+TEST(GltfPixels, TextureLinearInterpolationTest) {
+  const auto scene = sample("TextureLinearInterpolationTest");
+  if (!scene) GTEST_SKIP() << "no sample models";
+  const Front front(*scene, 80);
+  const Rgb factor = front.at({-1.5f, -1, 0}), texture = front.at({1.5f, -1, 0});
+  EXPECT_GT(factor.y, 0.4f);
+  EXPECT_NEAR(glm::distance(factor, texture), 0, 0.01f);
+}
+
+// The upper quads show checks on green, blue and cyan; yellow would be a missing offset. On the
+// lower ones the arrow's tip lies at the marker named "Correct".
+TEST(GltfPixels, TextureTransformTest) {
+  const auto scene = sample("TextureTransformTest");
+  if (!scene) GTEST_SKIP() << "no sample models";
+  const Front front(*scene, 200);
+  int yellow = 0;
+  for (int y = 0; y < front.image.height * 2 / 5; ++y)
+    for (int x = 0; x < front.image.width; ++x) {
+      const Rgb c = front.image.rgb(x, y);
+      yellow += c.x > 0.1f && c.y > 0.1f && c.z < 0.3f * std::min(c.x, c.y);
+    }
+  EXPECT_EQ(yellow, 0);
+
+  const Image& image = front.image;
+  const auto isArrow = [&](int x, int y) {  // dark, and not at the edge of the quad
+    if (x < 2 || y < 2 || x >= image.width - 2 || y >= image.height - 2) return false;
+    for (int dy = -2; dy <= 2; dy += 2)
+      for (int dx = -2; dx <= 2; dx += 2)
+        if (isBlack(image.rgb(x + dx, y + dy))) return false;
+    return maxComponent(image.rgb(x, y)) < 0.12f;
+  };
+  const auto isNear = [&](const vec3& marker) {  // within a marker's width
+    const vec2 m = front.pixelOf(marker), unit = front.pixelOf(marker + vec3(0.16f, 0, 0)) - m;
+    for (int y = int(m.y - unit.x); y <= int(m.y + unit.x); ++y)
+      for (int x = int(m.x - unit.x); x <= int(m.x + unit.x); ++x)
+        if (isArrow(x, y)) return true;
+    return false;
+  };
+  for (const Instance& instance : scene->instances) {
+    const std::string& name = scene->nodeNames[size_t(instance.node)];
+    if (name.find(" - ") == std::string::npos) continue;
+    EXPECT_EQ(isNear(centreOf(*scene, instance)), name.ends_with("Correct")) << name;
+  }
+}
+
+// Each arrow, turned by its node, points at a target of its colour that no node turns.
+TEST(GltfPixels, OrientationTest) {
+  const auto scene = sample("OrientationTest");
+  if (!scene) GTEST_SKIP() << "no sample models";
+  std::map<std::string, const Instance*> byName;
+  for (const Instance& i : scene->instances) byName[scene->nodeNames[size_t(i.node)]] = &i;
+  for (const char* which : {"X1", "X2", "Y1", "Y2", "Z1", "Z2"}) {
+    const Instance& arrow = *byName.at(std::string("Arrow") + which);
+    const Instance& target = *byName.at(std::string("Target") + which);
+    EXPECT_EQ(arrow.material, target.material);
+    vec3 aim = centreOf(*scene, target), tip(0);
+    aim[which[0] - 'X'] = 0;
+    for (const vec3& position : scene->meshes[size_t(arrow.mesh)].positions) {
+      vec3 p = arrow.point(position);
+      p[which[0] - 'X'] = 0;
+      if (glm::length(p) > glm::length(tip)) tip = p;
+    }
+    EXPECT_GT(glm::dot(glm::normalize(tip), glm::normalize(aim)), std::cos(0.15f)) << which;
+  }
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,140 @@
+// Filtered textures: means that are means, and pictures that neither alias nor blur.
+#include "scene/mip_chain.h"
+
+#include <gtest/gtest.h>
+
+#include "math/hash.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+TexelGrid randomGrid(int width, int height) {
+  TexelGrid grid{width, height, {}, {}};
+  for (int i = 0; i < width * height; ++i) {
+    const uint64_t bits = hash(uint64_t(i));
+    grid.texelsFloat.push_back({toUnit(uint32_t(bits)), toUnit(uint32_t(bits >> 32)), 0.5f, 1});
+  }
+  return grid;
+}
+
+vec4 mean(const TexelGrid& grid) {
+  glm::dvec4 sum(0);
+  for (const vec4& t : grid.texelsFloat) sum += glm::dvec4(t);
+  return vec4(sum / double(grid.texelsFloat.size()));
+}
+
+TEST(MipChain, EveryVersionHasTheMeanOfTheWhole) {
+  for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 9}, {31, 2}}) {
+    const TexelGrid grid = randomGrid(width, height);
+    const std::vector<TexelGrid> levels = makeSmaller(grid, false);
+    for (const TexelGrid& level : levels) {
+      EXPECT_EQ(level.texelsFloat.size(), size_t(level.width) * size_t(level.height));
+      EXPECT_NEAR(glm::distance(mean(level), mean(grid)), 0, 1e-6) << width << "x" << level.width;
+    }
+    EXPECT_EQ(levels.back().width * levels.back().height, 1);
+  }
+  EXPECT_TRUE(makeSmaller(randomGrid(1, 1), false).empty());
+}
+
+TEST(MipChain, AveragesInLinearLight) {
+  TexelGrid grid{2, 2, {{0, 0, 0, 0}, {255, 255, 0, 255}, {255, 255, 0, 0}, {0, 255, 0, 255}}, {}};
+  // Half the light has the sRGB code 188, three quarters 225; alpha is linear.
+  const std::array<uint8_t, 4> encoded{188, 225, 0, 128}, linear{128, 191, 0, 128};
+  EXPECT_EQ(makeSmaller(grid, true).at(0).texels8.at(0), encoded);
+  EXPECT_EQ(makeSmaller(grid, false).at(0).texels8.at(0), linear);
+  for (int code = 0; code < 256; ++code) {  // what is even stays as it is
+    const uint8_t c = uint8_t(code);
+    const TexelGrid even{2, 1, {{c, c, c, c}, {c, c, c, c}}, {}};
+    const std::array<uint8_t, 4> same{c, c, c, c};
+    EXPECT_EQ(makeSmaller(even, true)[0].texels8[0], same);
+  }
+}
+
+TEST(MipChain, LookupGoesFromThePointToTheMean) {
+  const TexelGrid grid = randomGrid(16, 16);
+  Texture texture{&grid};
+  texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(grid, false));
+  const vec2 uv(0.3f, 0.6f);
+  EXPECT_EQ(texture.lookup(uv, 0), texture.lookup(uv));
+  EXPECT_EQ(texture.lookup(uv, 1), texture.lookup(uv));
+  for (int level = 1; level <= 4; ++level) {
+    const Texture alone{&(*texture.smaller)[size_t(level) - 1]};
+    const float texels = std::pow(4.0f, float(level));
+    EXPECT_NEAR(glm::distance(texture.lookup(uv, texels), alone.lookup(uv)), 0, 1e-6);
+    EXPECT_NEAR(glm::distance(texture.lookup(uv, texels * 0.99999f), alone.lookup(uv)), 0, 1e-3);
+  }
+  EXPECT_NEAR(glm::distance(texture.lookup(uv, 1e30f), mean(grid)), 0, 1e-6);
+  EXPECT_NEAR(glm::distance(texture.lookup(uv, INFINITY), mean(grid)), 0, 1e-6);
+}
+
+// A glowing checkerboard that goes to the horizon: squares of 1 m, 8 texels each.
+Scene checkerboard(bool filtered) {
+  Scene scene;
+  constexpr int kSide = 64;
+  auto grid = std::make_unique<TexelGrid>(TexelGrid{kSide, kSide, {}, {}});
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const uint8_t c = (x / 8 + y / 8) % 2 ? 255 : 0;
+      grid->texels8.push_back({c, c, c, 255});
+    }
+  Texture texture{grid.get()};
+  if (filtered)
+    texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(*grid, false));
+  scene.grids.push_back(std::move(grid));
+  scene.textures.push_back(texture);
+  Material glow = lambert(Rgb(0));
+  glow.emission = Rgb(1);
+  glow.emissiveTexture.texture = 0;
+  addQuad(scene, addMaterial(scene, glow), {-400, 0, 400}, {800, 0, 0}, {0, 0, -800});
+  scene.meshes[0].uvs = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}};
+  return scene;
+}
+
+// From two metres to the horizon, or from high above.
+std::vector<double> seen(bool steep, bool filtered, int samples, uint64_t seed) {
+  const Camera camera = steep ? Camera::lookAt({3, 150, 10}, {0.4f, 0, -50}, {0, 1, 0}, 0.7f)
+                              : Camera::lookAt({0.3f, 2, 0}, {5, 0, -40}, {0, 1, 0}, 0.1f);
+  const Probe black(Image(2, 1, 3));
+  const Image image = renderScene(checkerboard(filtered), camera, black, "bsdf",
+                                  smallRender(40, 30, samples, 0, seed))
+                          .film.mean();
+  std::vector<double> greys;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) greys.push_back(image.rgb(x, y).x);
+  return greys;
+}
+
+double rmsDifference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / double(a.size()));
+}
+
+// Share of the reference's contrast that the picture shows.
+double contrast(const std::vector<double>& picture, const std::vector<double>& reference) {
+  double both = 0, own = 0;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    both += (picture[i] - 0.5) * (reference[i] - 0.5);
+    own += (reference[i] - 0.5) * (reference[i] - 0.5);
+  }
+  return both / own;
+}
+
+TEST(SlowMipChain, AFarCheckerboardNeitherAliasesNorBlurs) {
+  for (const bool steep : {false, true}) {
+    const auto truth = seen(steep, false, 2048, 1);
+    const auto few = seen(steep, true, 16, 2), fewPoints = seen(steep, false, 16, 2);
+    const auto many = seen(steep, true, 1024, 3), manyPoints = seen(steep, false, 1024, 3);
+    // Point samples err by 0.065 and 0.099, filtered ones by 0.032 and 0.005.
+    EXPECT_LT(rmsDifference(few, truth), (steep ? 0.1 : 0.6) * rmsDifference(fewPoints, truth));
+    EXPECT_LT(rmsDifference(many, truth), 1.1 * rmsDifference(manyPoints, truth));
+    if (steep) continue;  // an even grey
+    EXPECT_GT(contrast(few, truth), 0.97);
+    EXPECT_NEAR(contrast(many, truth), 1, 0.002);
+  }
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,221 @@
+// Lights without extent: the closed forms of their falloff, and what they make of a plane.
+#include "lighting/punctual.h"
+
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "measure/statistics.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+using Kind = PunctualLight::Kind;
+using nlohmann::json;
+
+PunctualLight lampAt(vec3 position, Rgb intensity) {
+  PunctualLight light;
+  light.position = position;
+  light.intensity = intensity;
+  return light;
+}
+
+TEST(Punctual, InverseSquareAndRange) {
+  PunctualLight light = lampAt({0, 3, 0}, Rgb(18, 9, 0));
+  const PunctualSample s = shine(light, {0, 0, 0});
+  EXPECT_EQ(s.wi, vec3(0, 1, 0));
+  EXPECT_EQ(s.distance, 3);
+  EXPECT_NEAR(glm::distance(s.irradiance, Rgb(2, 1, 0)), 0, 1e-6);
+  light.range = 6;
+  EXPECT_NEAR(shine(light, vec3(0)).irradiance.x, 2 * (1 - 1.0 / 16), 1e-6);
+  EXPECT_EQ(shine(light, {0, -3, 0}).irradiance, Rgb(0));
+  EXPECT_EQ(shine(light, {0, -9, 0}).irradiance, Rgb(0));
+  EXPECT_EQ(shine(light, light.position).irradiance, Rgb(0));  // no direction, no light
+}
+
+TEST(Punctual, DirectionalIsTheSameEverywhere) {
+  PunctualLight light;
+  light.kind = Kind::Directional;
+  light.direction = {0, -1, 0};
+  light.intensity = Rgb(5);
+  for (const vec3& p : {vec3(0), vec3(1e6f, -3, 2)}) {
+    EXPECT_EQ(shine(light, p).irradiance, Rgb(5));
+    EXPECT_EQ(shine(light, p).wi, vec3(0, 1, 0));
+    EXPECT_TRUE(std::isinf(shine(light, p).distance));
+  }
+}
+
+TEST(Punctual, SpotFadesBetweenItsCones) {
+  PunctualLight light = lampAt({0, 0, 0}, Rgb(1));
+  light.kind = Kind::Spot;
+  light.cosInner = 0.9f;
+  light.cosOuter = 0.5f;
+  const auto at = [&](float cosine) {  // at unit distance, off the axis -Z
+    return shine(light, {std::sqrt(1 - cosine * cosine), 0, -cosine}).irradiance.x;
+  };
+  EXPECT_NEAR(at(1), 1, 1e-6);
+  EXPECT_NEAR(at(0.91f), 1, 1e-5);
+  EXPECT_NEAR(at(0.7f), 0.25, 1e-5);  // half way: squared
+  EXPECT_NEAR(at(0.6f), 0.0625, 1e-5);
+  EXPECT_EQ(at(0.49f), 0);
+  EXPECT_EQ(at(-1), 0);
+  light.cosInner = light.cosOuter;  // a sharp edge
+  EXPECT_EQ(at(0.499f), 0);
+  EXPECT_NEAR(at(0.502f), 1, 1e-5);
+}
+
+// A Lambertian plane y = 0 from straight above, 8 m wide.
+Scene plane(float albedo = 0.5f) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(albedo))), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
+  return scene;
+}
+Camera above() {
+  Camera camera = topCamera(50, 10);
+  camera.orthographic = true;
+  camera.halfHeight = 4;
+  return camera;
+}
+Image picture(const Scene& scene, int samples = 4, uint64_t seed = 0, int size = 33) {
+  const Probe black(Image(2, 1, 3));
+  return renderScene(scene, above(), black, "importance", smallRender(size, size, samples, 1, seed))
+      .film.mean();
+}
+
+// L = albedo / pi x I cos / d^2 = albedo / pi x I h / d^3.
+TEST(Punctual, PlaneUnderALampFollowsTheCosineAndInverseSquareLaws) {
+  Scene scene = plane();
+  scene.lights.push_back(lampAt({1, 2, 0}, Rgb(8, 4, 2)));
+  const int n = 33;
+  const Image image = picture(scene, 4, 0, n);
+  for (int y = 0; y < n; y += 4)
+    for (int x = 0; x < n; x += 4) {
+      const double px = 8 * (x + 0.5) / n - 4, pz = 8 * (y + 0.5) / n - 4;
+      const double d = std::sqrt((px - 1) * (px - 1) + 4 + pz * pz);
+      const double expected = 0.5 / kPiD * 8 * 2 / (d * d * d);
+      EXPECT_NEAR(image.rgb(x, y).x / expected, 1, 0.01) << px << " " << pz;
+      EXPECT_NEAR(image.rgb(x, y).y, image.rgb(x, y).x / 2, 1e-6);
+    }
+}
+
+TEST(Punctual, WhatStandsBetweenShadesAndWhatStandsBehindDoesNot) {
+  for (const float height : {1.0f, 3.0f}) {
+    Scene scene = plane();
+    scene.lights.push_back(lampAt({0, 2, 0}, Rgb(1)));
+    addQuad(scene, 0, {-0.5f, height, 0.5f}, {1, 0, 0}, {0, 0, -1});
+    // Off the plate, which hides the centre from the camera; its shadow reaches to x = 1.
+    const Rgb beside = picture(scene).rgb(33 * 4.75 / 8, 16);
+    EXPECT_EQ(beside.x > 0, height > 2);
+  }
+}
+
+TEST(Punctual, DirectionalLightAddsToTheProbe) {
+  Scene scene = plane();
+  PunctualLight sun;
+  sun.kind = Kind::Directional;
+  sun.direction = glm::normalize(vec3(1, -1, 0));
+  sun.intensity = Rgb(2);
+  scene.lights.push_back(sun);
+  const Probe probe(constantProbe({16, 8}, Rgb(0.25f)));
+  const Image image =
+      renderScene(scene, above(), probe, "importance", smallRender(8, 8, 1024, 1)).film.mean();
+  EXPECT_NEAR(meanColor(image).x, 0.5 * 0.25 + 0.5 / kPiD * 2 * std::sqrt(0.5), 2e-4);
+}
+
+// More lamps than are all taken: those chosen stand for the others.
+TEST(Punctual, ChosenLampsAreUnbiased) {
+  Scene scene = plane();
+  double expected = 0;  // at the centre
+  for (int i = 0; i < 3 * PunctualLights::kFirst; ++i) {
+    const vec3 p(std::sin(float(i)) * 3, 1 + float(i % 5), std::cos(2.0f * float(i)) * 3);
+    const float intensity = 1 + float(i % 7);
+    scene.lights.push_back(lampAt(p, Rgb(intensity)));
+    expected += 0.5 / kPiD * intensity * p.y / std::pow(glm::length(p), 3);
+  }
+  Camera narrow = above();
+  narrow.halfHeight = 1e-3f;
+  std::vector<double> means;
+  for (uint64_t seed = 0; seed < 32; ++seed) {
+    const Probe black(Image(2, 1, 3));
+    means.push_back(
+        meanColor(renderScene(scene, narrow, black, "importance", smallRender(4, 4, 16, 1, seed))
+                      .film.mean())
+            .x);
+  }
+  const Moments m = Moments::of(means);
+  EXPECT_GT(tTest(m, expected), 1e-5);
+  EXPECT_LT(std::sqrt(m.variance), 0.05 * expected);
+}
+
+TEST(GltfLights, StandWhereTheirNodesAre) {
+  GltfWriter w;
+  addTriangle(w);
+  w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"},
+       {"intensity", 3},
+       {"color", {1, 0.5, 0}},
+       {"range", 7},
+       {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}},
+      {{"type", "directional"}},
+      {{"type", "point"}, {"intensity", 0}}};
+  const float s = std::sqrt(0.5f);  // a quarter turn about X takes -Z to +Y
+  for (int light : {0, 1, 2}) {
+    json node = {{"translation", {1, 2, 3}}, {"rotation", {s, 0, 0, s}}, {"scale", {4, 4, 4}}};
+    node["extensions"]["KHR_lights_punctual"]["light"] = light;
+    w.add("nodes", node);
+  }
+  const std::vector<PunctualLight> lights = w.load().lights;
+  ASSERT_EQ(lights.size(), 2u);  // the black one is nobody's
+  EXPECT_EQ(lights[0].kind, Kind::Spot);
+  EXPECT_EQ(lights[0].position, vec3(1, 2, 3));
+  EXPECT_NEAR(glm::distance(lights[0].direction, vec3(0, 1, 0)), 0, 1e-6);
+  EXPECT_EQ(lights[0].intensity, Rgb(3, 1.5f, 0));
+  EXPECT_EQ(lights[0].range, 7);
+  EXPECT_NEAR(lights[0].cosInner, std::cos(0.1), 1e-6);
+  EXPECT_NEAR(lights[0].cosOuter, std::cos(0.2), 1e-6);
+  EXPECT_EQ(lights[1].kind, Kind::Directional);
+  EXPECT_EQ(lights[1].intensity, Rgb(1));
+  EXPECT_TRUE(w.warnings.empty());
+}
+
+TEST(GltfLights, AreRefusedWhereTheyAreNotWellFormed) {
+  const auto refusal = [](const json& light, int index = 0) {
+    GltfWriter w;
+    addTriangle(w);
+    w.root["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = index;
+    return w.refusal();
+  };
+  const auto holds = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_EQ(refusal({{"type", "point"}}), "");
+  EXPECT_TRUE(holds(refusal({{"type", "point"}}, 1), "lights[1] does not exist"));
+  EXPECT_TRUE(holds(refusal({{"type", "area"}}), "\"area\" is not directional, point or spot"));
+  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"intensity", -1}}), "lights[0].intensity: -1"));
+  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"range", 0}}), "lights[0].range"));
+  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"color", {1, -1, 0}}}), "lights[0].color"));
+  EXPECT_TRUE(holds(refusal({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
+                    "outerConeAngle: 2 is not in the range"));
+  EXPECT_TRUE(holds(
+      refusal({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}}),
+      "innerConeAngle"));
+}
+
+TEST(GltfLights, LightASceneWithoutAProbe) {
+  GltfWriter w;
+  addTriangle(w);
+  const TemporaryFolder folder;
+  expectRefused({"render", w.save(), "-o", folder / "a.pfm"}, "nothing lights the scene");
+  w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}}};
+  w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  const CommandResult result =
+      runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "8x8", "--samples", "2"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("no probe; its 1 lights shine alone"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chromeball
