@@ -24,5 +24,5 @@ compare() {  # MODEL PROBE options
 for probe in "$folder/sun.exr" "$folder/overcast.exr" "$data/galileo_probe.hdr" "$data/grace_probe.hdr"; do
   [[ -e $probe ]] || { echo "no $probe" >&2; continue; }
   compare pillars.gltf "$probe" --size 96x64 --repeats 4 --reference-samples 1024 "$@"
-  compare still-life.glb "$probe" --size 72x48 --repeats 3 --reference-samples 768 "$@"
+  compare still-life.glb "$probe" --max-depth 1 --size 72x48 --repeats 3 --reference-samples 768 "$@"
 done
