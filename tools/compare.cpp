@@ -95,6 +95,7 @@ Study planStudy(const Arguments& a) {
     throwInput("--reference-samples: the reference is a file; give one or the other");
   study.referenceStrategy = resolveStrategy(a.referenceStrategy);
   study.referenceSamples = planReferenceSamples(a, study.budgets);
+  if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
   if (fs::exists(a.folder) && !fs::is_directory(a.folder))
     throwInput("--output: {} is a file; give a folder", a.folder);
   return study;
