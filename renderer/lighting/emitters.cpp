@@ -15,10 +15,8 @@ double meanEmission(const Scene& scene, const Material& material) {
   const TexelGrid& grid = *texture.grid;
   double sum = 0;
   for (int y = 0; y < grid.height; ++y)
-    for (int x = 0; x < grid.width; ++x) {
-      const vec2 uv((float(x) + 0.5f) / float(grid.width), (float(y) + 0.5f) / float(grid.height));
-      sum += luminance(material.emission * Rgb(texture.lookup(uv)));
-    }
+    for (int x = 0; x < grid.width; ++x)
+      sum += luminance(material.emission * Rgb(linearTexel(grid, texture.srgb, x, y)));
   return sum / (double(grid.width) * grid.height);
 }
 
