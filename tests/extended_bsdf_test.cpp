@@ -4,6 +4,7 @@
 #include "math/sobol.h"
 #include "shading/dielectric.h"
 #include "shading/extended_bsdf.h"
+#include "shading/thin_film.h"
 #include "sphere_test.h"
 
 namespace chromeball {
@@ -54,6 +55,20 @@ ExtendedPoint coated(float clearcoat, float roughness, vec3 normal = {0, 0, 1}) 
   return e;
 }
 
+ExtendedPoint sheened(Rgb color, float roughness) {
+  ExtendedPoint e;
+  e.sheenColor = color;
+  e.sheenRoughness = roughness;
+  return e;
+}
+
+ExtendedPoint brushed(float strength) {
+  ExtendedPoint e;
+  e.anisotropy = strength;
+  e.anisotropyTangent = glm::normalize(vec3(1, 1, 0));
+  return e;
+}
+
 // White in every part, so that nothing is to be lost.
 std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
   std::vector<Case> cases;
@@ -78,6 +93,20 @@ std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
     MaterialPoint metal = dielectric(0.3f);
     metal.metallic = 1;
     cases.push_back({"thin coat on metal" + at, metal, coated(0.5f, r)});
+    cases.push_back({"sheen" + at, dielectric(0.5f), sheened(Rgb(1), r)});
+    cases.push_back({"faint sheen" + at, dielectric(0.5f), sheened(Rgb(0.3f), r)});
+    for (float strength : {0.3f, 0.7f, 1.0f}) {
+      const std::string by = at + " strength " + std::to_string(strength);
+      cases.push_back({"brushed plastic" + by, dielectric(r), brushed(strength)});
+      MaterialPoint brushedMetal = dielectric(r);
+      brushedMetal.metallic = 1;
+      cases.push_back({"brushed metal" + by, brushedMetal, brushed(strength)});
+    }
+    Case film{"film" + at, dielectric(r), {}};
+    film.extended.iridescence = 1;
+    film.extended.filmIor = 1.8f;
+    film.extended.filmThickness = 300;
+    cases.push_back(film);
     Case coatedGlass{"coated glass" + at, dielectric(0.4f), coated(1, r)};
     coatedGlass.extended.transmission = 1;
     coatedGlass.extended.thinWalled = false;
@@ -120,7 +149,8 @@ TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
     for (float angle : {0.0f, 30.0f, 60.0f, 80.0f, 88.0f}) {
       const Rgb a = albedo(c.from(angle), 1 << 13);
       for (int k = 0; k < 3; ++k) {
-        EXPECT_GT(a[k], 0.99f) << c.name << " angle " << angle;
+        if (c.extended.iridescence == 0)  // a coloured film hides the base in all channels alike
+          EXPECT_GT(a[k], 0.99f) << c.name << " angle " << angle;
         EXPECT_LT(a[k], 1.01f) << c.name << " angle " << angle;
       }
     }
@@ -182,6 +212,49 @@ TEST(ExtendedBsdf, smootherGlassIsReciprocal) {
     ASSERT_NEAR(f / (kIor * kIor), g, 0.02f * g);
   }
   EXPECT_GT(compared, 100);
+}
+
+// The film's colour takes light from the base's specular part or adds to it, never to the whole.
+TEST(ExtendedBsdf, filmsOnDielectricsGainNothing) {
+  for (float thickness : {0.0f, 150.0f, 400.0f, 1000.0f})
+    for (float angle : {0.0f, 45.0f, 80.0f}) {
+      Case c{"", dielectric(0.3f), {}};
+      c.extended.iridescence = 1;
+      c.extended.filmIor = 1.5f;
+      c.extended.filmThickness = thickness;
+      EXPECT_LT(maxComponent(albedo(c.from(angle), 1 << 12)), 1.005f) << thickness << " " << angle;
+    }
+}
+
+TEST(ThinFilm, vanishesWithItsThickness) {
+  for (float cosine : {1.0f, 0.7f, 0.3f})
+    for (Rgb f0 : {Rgb(0.04f), Rgb(0.9f, 0.6f, 0.3f)}) {
+      const Rgb none = thinFilmReflectance(f0, 1.5f, 0, cosine);
+      const float c = 1 - cosine, grazing = c * c * c * c * c;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(none[k], f0[k] + (1 - f0[k]) * grazing, 0.01f);
+        EXPECT_NEAR(thinFilmF0(f0, 1.5f, 0, cosine)[k], f0[k], 0.015f);
+      }
+    }
+}
+
+// A film of a quarter of green's wavelength, whose index is the root of the base's, cancels the
+// reflection of green; of half of it, does nothing.
+TEST(ThinFilm, quarterWaveCoatingIsDark) {
+  const float base = 1.9f, film = std::sqrt(base), f0 = 0.9f * 0.9f / (2.9f * 2.9f);
+  const float quarter = 550 / (4 * film);
+  EXPECT_LT(thinFilmReflectance(Rgb(f0), film, quarter, 1).y, 0.1f * f0);
+  EXPECT_NEAR(thinFilmReflectance(Rgb(f0), film, 2 * quarter, 1).y, f0, 0.1f * f0);
+}
+
+// The highlight of a brushed surface is wide along the tangent, narrow across.
+TEST(ExtendedBsdf, brushedHighlightsSpreadAlongTheTangent) {
+  MaterialPoint metal = dielectric(0.3f);
+  metal.metallic = 1;
+  const ExtendedBsdf bsdf(metal, brushed(0.8f), {}, flatSurface(), {0, 0, 1}, 0);
+  const vec3 along = glm::normalize(vec3(0.4f, 0.4f, 1)),
+             across = glm::normalize(vec3(0.4f, -0.4f, 1));
+  EXPECT_GT(bsdf.evaluate(along).fCos.x, 10 * bsdf.evaluate(across).fCos.x);
 }
 
 TEST(ExtendedBsdf, sheetMirrorsItsHighlightBelow) {

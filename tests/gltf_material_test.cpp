@@ -85,7 +85,14 @@ TEST(GltfMaterial, ExtendedMaterials) {
             {"KHR_materials_clearcoat",
              {{"clearcoatFactor", .5},
               {"clearcoatRoughnessFactor", .25},
-              {"clearcoatNormalTexture", {{"index", 0}, {"scale", 2}}}}}}}});
+              {"clearcoatNormalTexture", {{"index", 0}, {"scale", 2}}}}},
+            {"KHR_materials_sheen",
+             {{"sheenColorFactor", {.1, .2, .3}}, {"sheenRoughnessFactor", .4}}},
+            {"KHR_materials_anisotropy", {{"anisotropyStrength", .6}, {"anisotropyRotation", 1.5}}},
+            {"KHR_materials_iridescence",
+             {{"iridescenceFactor", .9},
+              {"iridescenceIor", 1.7},
+              {"iridescenceThicknessMaximum", 500}}}}}});
   ASSERT_TRUE(scene.materials[0].extended);
   const ExtendedMaterial& m = *scene.materials[0].extended;
   EXPECT_EQ(m.transmission, .75f);
@@ -97,16 +104,46 @@ TEST(GltfMaterial, ExtendedMaterials) {
   EXPECT_EQ(m.clearcoat, .5f);
   EXPECT_EQ(m.clearcoatRoughness, .25f);
   EXPECT_EQ(m.clearcoatNormalScale, 2);
+  EXPECT_EQ(m.sheenColor, Rgb(.1f, .2f, .3f));
+  EXPECT_EQ(m.sheenRoughness, .4f);
+  EXPECT_EQ(m.anisotropy, .6f);
+  EXPECT_EQ(m.anisotropyRotation, 1.5f);
+  EXPECT_EQ(m.iridescence, .9f);
+  EXPECT_EQ(m.filmIor, 1.7f);
+  EXPECT_EQ(m.filmThinnest, 100);
+  EXPECT_EQ(m.filmThickest, 500);
   EXPECT_EQ(scene.meshes[0].tangents.size(), 3u);  // for the coat's normal map
+}
+
+TEST(GltfMaterial, VariantsChooseMaterials) {
+  GltfWriter w;
+  w.root["extensions"] = {
+      {"KHR_materials_variants", {{"variants", {{{"name", "day"}}, {{"name", "night"}}}}}}};
+  w.root["materials"] = {{{"name", "own"}}, {{"name", "dark"}}};
+  const json mapping = {{"mappings", {{{"material", 1}, {"variants", {1}}}}}};
+  addTriangle(w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", mapping}}}});
+  const std::string path = w.save();
+  const auto material = [&](const GltfChoice& choice) {
+    return loadGltf(path, {}, nullptr, choice).materials.at(0).name;
+  };
+  EXPECT_EQ(material({}), "own");
+  EXPECT_EQ(material({.animation = {}, .variant = VariantChoice{"night", "--variant"}}), "dark");
+  EXPECT_EQ(material({.animation = {}, .variant = VariantChoice{"day", "--variant"}}), "own");
+  try {
+    material({.animation = {}, .variant = VariantChoice{"nihgt", "--variant"}});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(std::string(e.what()),
+              path + ": has no variant `nihgt` (--variant); did you mean `night`?");
+  }
 }
 
 TEST(GltfMaterial, ExtensionsThatChangeNothingCostNothing) {
   GltfWriter w;
-  const Scene scene =
-      loadWith(w, {{"extensions",
-                    {{"KHR_materials_transmission", {{"transmissionFactor", 0}}},
-                     {"KHR_materials_clearcoat", json::object()},
-                     {"KHR_materials_volume", {{"thicknessFactor", 1}}}}}});
+  const Scene scene = loadWith(w, {{"extensions",
+                                    {{"KHR_materials_transmission", {{"transmissionFactor", 0}}},
+                                     {"KHR_materials_clearcoat", json::object()},
+                                     {"KHR_materials_volume", {{"thicknessFactor", 1}}}}}});
   EXPECT_FALSE(scene.materials[0].extended);
 }
 

@@ -3,7 +3,8 @@ blender --background --factory-startup --python cycles_picture.py -- MODEL.glb P
         WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
 
 The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1
-for direct light. Materials are taken for what the glTF file says: Lambertian, or a conductor.
+for direct light. Materials are taken for what the glTF file says: Lambertian, a conductor, or
+smooth glass of index 1.5.
 """
 import json
 import math
@@ -48,10 +49,17 @@ def replace_materials():
         if principled.inputs["Metallic"].default_value > 0:
             principled.distribution = "MULTI_GGX"
             continue
+        surface = next(node for node in nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
+        if principled.inputs["Transmission"].default_value > 0:
+            glass = nodes.new("ShaderNodeBsdfGlass")
+            glass.distribution = "SHARP"
+            glass.inputs["IOR"].default_value = 1.5
+            glass.inputs["Color"].default_value = (1, 1, 1, 1)
+            links.new(glass.outputs["BSDF"], surface)
+            continue
         diffuse = nodes.new("ShaderNodeBsdfDiffuse")
         diffuse.inputs["Color"].default_value = principled.inputs["Base Color"].default_value
         diffuse.inputs["Roughness"].default_value = 0
-        surface = next(node for node in nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
         links.new(diffuse.outputs["BSDF"], surface)
 
 
@@ -85,6 +93,7 @@ def configure():
     cycles.pixel_filter_type = "BOX"
     bounces = int(depth) - 1  # Cycles counts those after the first
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    cycles.transmission_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.blur_glossy = 0

@@ -87,6 +87,8 @@ RenderJob planJob(const RenderOptions& o) {
   if (o.camera) file.camera.reset();
   overlay(file.cameraName, o.camera, "--camera");
   overlayAnimation(o, file);
+  if (o.variant)
+    for (ModelEntry& model : file.models) model.choice.variant = {*o.variant, "--variant"};
   overlay(file.probe, o.probe);
   overlay(file.probeMapping, o.mapping, "--probe-mapping");
   overlay(file.probeRotation, o.rotation);
@@ -152,6 +154,7 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--camera", o.camera, "Name of one of the model's cameras");
   command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
   command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");
+  command.add_option("--variant", o.variant, "Show the models in this variant of their materials");
   command.add_option("--seed", o.seed, "Another seed, another independent picture (0)");
   command.add_option("--threads", o.threads, "Number of threads (all)");
   command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");

@@ -16,7 +16,7 @@ namespace chromeball {
 struct RenderOptions {
   std::string scene;
   std::vector<std::string> outputs, aovs;
-  std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation;
+  std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation, variant;
   std::optional<float> rotation, scale;
   std::optional<int> samples, maxDepth;
   std::optional<double> time, noise, animationTime;

@@ -19,7 +19,7 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "versus"
 CHROMEBALL = ROOT / "build" / "chromeball"
-SCENES = ("lambertian", "conductors")
+SCENES = ("lambertian", "conductors", "glass")
 
 
 def arguments():

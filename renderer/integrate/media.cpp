@@ -37,15 +37,16 @@ RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) 
   return {outer / own, m.ior};
 }
 
-void Media::cross(const Surface& s) {
+Media& Media::follow(const Surface& s, const vec3& wi) {
+  const auto& extended = s.material->extended;
+  if (!extended || extended->thinWalled || glm::dot(s.geometricNormal, wi) >= 0) return *this;
   if (s.frontFace) {
     if (count_ < int(bodies_.size())) bodies_[size_t(count_++)] = s.material;
-    return;
+  } else if (const int place = find(s.material); place >= 0) {
+    for (int i = place; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
+    --count_;
   }
-  const int place = find(s.material);
-  if (place < 0) return;
-  for (int i = place; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
-  --count_;
+  return *this;
 }
 
 }  // namespace chromeball

@@ -17,17 +17,16 @@ class Media {
   // Share of light that passes `distance` metres of the medium here. Nothing absorbs without end:
   // what leaves an open mesh for the surroundings is left whole.
   Rgb transmittance(float distance) const {
-    return std::isfinite(distance)
-               ? glm::exp(-distance * bodies_[size_t(count_ - 1)]->extended->attenuation)
-               : Rgb(1);
+    if (count_ == 0 || !std::isfinite(distance)) return Rgb(1);
+    return glm::exp(-distance * bodies_[size_t(count_ - 1)]->extended->attenuation);
   }
 
   // The indices on both sides of the boundary of a body. Each channel has its own where the medium
   // disperses light (KHR_materials_dispersion); but light that is down to one channel has one.
   RefractiveIndex refractiveIndex(const Surface& boundary, const Rgb& throughput) const;
 
-  // Follows a ray through a surface: into its body or out of it.
-  void cross(const Surface& surface);
+  // Follows a ray that leaves a surface towards `wi`: where it is refracted, into the body or out.
+  Media& follow(const Surface& surface, const vec3& wi);
 
  private:
   int find(const Material* body) const;

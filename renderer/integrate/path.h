@@ -79,16 +79,10 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
   return light;
 }
 
-// Whether a ray towards wi goes into the body behind the surface, or out of it.
-inline bool crosses(const Surface& surface, const vec3& wi) {
-  const auto& extended = surface.material->extended;
-  return extended && !extended->thinWalled && glm::dot(surface.geometricNormal, wi) < 0;
-}
-
 // Light from one point on an emissive triangle.
 template <class Rays>
 Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
-                 Media media, const PixelSampler& sampler, RayCounts& counts) {
+                 const Media& media, const PixelSampler& sampler, RayCounts& counts) {
   const Emitters::Point emitter = path.emitters->sample(sampler.get2(dimension::kEmitter));
   const vec3 to = emitter.position - surface.position;
   const float distance = glm::length(to);
@@ -109,8 +103,8 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const float length = glm::length(target - origin);
   ++counts.shadow;
   Rgb passed = path.rays.transmittance({origin, (target - origin) / length, length});
-  if (crosses(surface, wi)) media.cross(surface);
-  if (media.inside()) passed *= media.transmittance(length);
+  if (media.inside() || surface.material->extended)
+    passed *= Media(media).follow(surface, wi).transmittance(length);
   const float density = path.emitters->density(instance.material, distance, cosine);
   return bsdf.fCos * radiance * passed * (lightSampleWeight(path.mis, density, bsdf.pdf) / density);
 }
@@ -118,16 +112,15 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
 // Light from the lamps without extent.
 template <class Rays>
 Rgb punctualLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
-                  const Media& here, const PixelSampler& sampler, RayCounts& counts) {
+                  const Media& media, const PixelSampler& sampler, RayCounts& counts) {
   Rgb light(0);
   path.punctual->sample(point, sampler, [&](const PunctualSample& s) {
     const Rgb fCos = point.bsdf->evaluate(s.wi).fCos;
     if (isBlack(fCos)) return;
     ++counts.shadow;
     Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi, s.distance});
-    Media media = here;
-    if (crosses(surface, s.wi)) media.cross(surface);
-    if (media.inside()) passed *= media.transmittance(s.distance);
+    if (media.inside() || surface.material->extended)
+      passed *= Media(media).follow(surface, s.wi).transmittance(s.distance);
     light += fCos * s.irradiance * passed;
   });
   return light;
@@ -158,7 +151,7 @@ struct PathState {
   float pdf = 0;      // of the ray's direction at `from`; 0 for the camera and mirrors
   int depth = 0;      // of the vertex to come
   int straight = 0;   // vertices so far where the ray just went on; they are no bounces
-  Media media{};      // that the ray is in
+  Media media;        // that the ray is in
   float length = 0;   // metres from the camera
 };
 
@@ -195,27 +188,22 @@ inline void goOn(PathState& state, const Surface& surface) {
 
 // Adds the light that comes straight to a vertex and chooses where the path goes on from there;
 // false where it ends.
-template <class Rays>
-bool scatter(const PathScene<Rays>& path, PathState& state, const Instance& instance,
-             const Surface& surface, const MaterialPoint& material, const PixelSampler& sampler,
-             std::vector<DirectionSample>& samples, RayCounts& counts, Rgb& radiance) {
-  const vec3 wo = -state.ray.direction;
-  std::optional<ExtendedBsdf> extended;
-  if (surface.material->extended) [[unlikely]]
-    extended.emplace(material, extendedMaterialAt(path.scene, instance, surface),
-                     state.media.refractiveIndex(surface, state.throughput), surface, wo,
-                     path.mirrorAlpha);
-  const Bsdf bsdf = extended ? Bsdf(*extended) : Bsdf(material, surface, wo, path.mirrorAlpha);
-  const LightPoint point = {surface.position, bsdf.normal(), wo, &bsdf, state.depth};
+template <bool kExtended, class Rays>
+bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surface,
+             const Bsdf& bsdf, const PixelSampler& sampler, std::vector<DirectionSample>& samples,
+             RayCounts& counts, Rgb& radiance) {
+  const LightPoint before = state.from;
+  state.from = {surface.position, bsdf.normal(), -state.ray.direction, &bsdf, state.depth};
   if (bsdf.hasContinuousLobe()) {
-    radiance += state.throughput * probeLight(path, point, surface, sampler, samples, counts);
+    radiance += state.throughput * probeLight(path, state.from, surface, sampler, samples, counts);
     if (path.emitters)
       radiance +=
-          state.throughput * emitterLight(path, point, surface, state.media, sampler, counts);
+          state.throughput * emitterLight(path, state.from, surface, state.media, sampler, counts);
     if (path.punctual)
       radiance +=
-          state.throughput * punctualLight(path, point, surface, state.media, sampler, counts);
+          state.throughput * punctualLight(path, state.from, surface, state.media, sampler, counts);
   }
+  state.from.bsdf = nullptr;  // it ends with the vertex
 
   BsdfSample next;
   if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
@@ -224,16 +212,30 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Instance& inst
   if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
   ++state.depth;
   ++counts.bounce;
-  if (extended && next.wi == state.ray.direction && passesStraight(*surface.material)) {
-    goOn(state, surface);
-    return true;
+  if constexpr (kExtended) {
+    if (next.wi == state.ray.direction && passesStraight(*surface.material)) {
+      state.from = before;
+      goOn(state, surface);
+      return true;
+    }
+    state.media.follow(surface, next.wi);
   }
-  if (crosses(surface, next.wi)) state.media.cross(surface);
   state.pdf = next.pdf;
   state.ray = {surface.rayOrigin(next.wi), next.wi};
-  state.from = point;
-  state.from.bsdf = nullptr;  // it ends here
   return true;
+}
+
+// The same for an extended material; out of line, so that plain ones do not feel its weight.
+template <class Rays>
+[[gnu::noinline]] bool scatterExtended(const PathScene<Rays>& path, PathState& state,
+                                       const Instance& instance, const Surface& surface,
+                                       const MaterialPoint& material, const PixelSampler& sampler,
+                                       std::vector<DirectionSample>& samples, RayCounts& counts,
+                                       Rgb& radiance) {
+  const ExtendedBsdf extended(material, extendedMaterialAt(path.scene, instance, surface),
+                              state.media.refractiveIndex(surface, state.throughput), surface,
+                              -state.ray.direction, path.mirrorAlpha);
+  return scatter<true>(path, state, surface, Bsdf(extended), sampler, samples, counts, radiance);
 }
 
 // Where bounces are used up, what passes straight through a surface still reaches the vertex
@@ -279,7 +281,11 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     *first = {true,           state.length,      material.baseColor,
               surface.normal, instance.material, instance.node};
   if (ends) return passThrough(path.scene, state, instance, surface);
-  return scatter(path, state, instance, surface, material, sampler, samples, counts, radiance);
+  if (surface.material->extended) [[unlikely]]
+    return scatterExtended(path, state, instance, surface, material, sampler, samples, counts,
+                           radiance);
+  const Bsdf bsdf(material, surface, -state.ray.direction, path.mirrorAlpha);
+  return scatter<false>(path, state, surface, bsdf, sampler, samples, counts, radiance);
 }
 
 // What a path that stands before `hit` goes on to find.

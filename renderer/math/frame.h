@@ -17,6 +17,15 @@ struct Frame {
     y = {b, sign + z.y * z.y * a, -z.y};
   }
 
+  // With local +x along the tangent, as far as it is at right angles to the normal.
+  Frame(const vec3& normal, const vec3& tangent) : Frame(normal) {
+    const vec3 along = tangent - normal * glm::dot(normal, tangent);
+    const float length2 = glm::dot(along, along);
+    if (!(length2 > 1e-12f)) return;
+    x = along / std::sqrt(length2);
+    y = glm::cross(z, x);
+  }
+
   vec3 toLocal(const vec3& v) const { return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)}; }
   vec3 toWorld(const vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };

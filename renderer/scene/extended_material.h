@@ -18,6 +18,21 @@ struct ExtendedMaterial {
   TextureSlot clearcoatTexture;           // R
   TextureSlot clearcoatRoughnessTexture;  // G
   TextureSlot clearcoatNormalTexture;
+
+  // KHR_materials_sheen
+  Rgb sheenColor{0};
+  float sheenRoughness = 0;
+  TextureSlot sheenColorTexture;      // sRGB
+  TextureSlot sheenRoughnessTexture;  // A
+
+  // KHR_materials_anisotropy
+  float anisotropy = 0, anisotropyRotation = 0;  // strength; radians from the tangent, ccw
+  TextureSlot anisotropyTexture;                 // RG direction, B strength
+
+  // KHR_materials_iridescence: a film, nanometres thick
+  float iridescence = 0, filmIor = 1.3f, filmThinnest = 100, filmThickest = 400;
+  TextureSlot iridescenceTexture;    // R
+  TextureSlot filmThicknessTexture;  // G, from thinnest to thickest; without it, the thickest
 };
 
 }  // namespace chromeball

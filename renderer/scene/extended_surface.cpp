@@ -23,6 +23,29 @@ vec3 clearcoatNormal(const Scene& scene, const Instance& instance, const Surface
   return glm::dot(n, s.geometricNormal) > 0 ? n : s.geometricNormal;
 }
 
+// Strength and direction of the grooves (KHR_materials_anisotropy).
+void readAnisotropy(const Scene& scene, const Instance& instance, const Surface& s,
+                    ExtendedPoint& p) {
+  const ExtendedMaterial& e = *s.material->extended;
+  const std::optional<TangentFrame> frame = tangentFrameAt(s, instance);
+  vec2 direction(1, 0);
+  p.anisotropy = e.anisotropy;
+  if (e.anisotropyTexture) {
+    const vec4 texel = lookup(scene, e.anisotropyTexture, s);
+    direction = vec2(texel) * 2.0f - 1.0f;
+    p.anisotropy *= texel.z;
+  }
+  const float c = std::cos(e.anisotropyRotation), sn = std::sin(e.anisotropyRotation);
+  direction = {c * direction.x - sn * direction.y, sn * direction.x + c * direction.y};
+  const float length = glm::length(direction);
+  if (!frame || !(length > 0)) {
+    p.anisotropy = 0;
+    return;
+  }
+  p.anisotropyTangent =
+      (direction.x / length) * frame->tangent + (direction.y / length) * frame->bitangent;
+}
+
 }  // namespace
 
 ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance, const Surface& s) {
@@ -33,6 +56,19 @@ ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance, c
   p.clearcoat = product(scene, s, e.clearcoat, e.clearcoatTexture, 0);
   p.clearcoatRoughness = product(scene, s, e.clearcoatRoughness, e.clearcoatRoughnessTexture, 1);
   p.clearcoatNormal = p.clearcoat > 0 ? clearcoatNormal(scene, instance, s) : s.normal;
+  if (!isBlack(e.sheenColor)) {
+    p.sheenColor = e.sheenColor;
+    if (e.sheenColorTexture) p.sheenColor *= Rgb(lookup(scene, e.sheenColorTexture, s));
+    p.sheenRoughness = product(scene, s, e.sheenRoughness, e.sheenRoughnessTexture, 3);
+  }
+  if (e.anisotropy > 0) readAnisotropy(scene, instance, s, p);
+  if (e.iridescence > 0) {
+    p.iridescence = product(scene, s, e.iridescence, e.iridescenceTexture, 0);
+    p.filmIor = e.filmIor;
+    p.filmThickness = e.filmThicknessTexture ? glm::mix(e.filmThinnest, e.filmThickest,
+                                                        lookup(scene, e.filmThicknessTexture, s).y)
+                                             : e.filmThickest;
+  }
   return p;
 }
 

@@ -7,6 +7,7 @@
 #include "scene/gltf_lights.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_node.h"
+#include "scene/gltf_variants.h"
 
 namespace chromeball {
 namespace {
@@ -71,6 +72,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   GltfFile file(path, warn, choice.external);
   decodeMeshopt(file);
   decodeDraco(file);
+  if (choice.variant) applyVariant(file, *choice.variant);
   if (choice.animation)
     applyAnimation(file, *choice.animation);
   else if (!file.model.animations.empty())

@@ -23,9 +23,16 @@ struct AnimationTime {
   double seconds = 0;
 };
 
+// A variant of the file's materials (KHR_materials_variants).
+struct VariantChoice {
+  std::string name;
+  std::string place;  // where it was asked for, for the error where it does not exist
+};
+
 // What of a file to show, and what it may ask for.
 struct GltfChoice {
   std::optional<AnimationTime> animation;  // else the rest pose
+  std::optional<VariantChoice> variant;    // else the materials that the primitives name
   ExternalFiles external = ExternalFiles::Refuse;
 };
 

@@ -47,13 +47,45 @@ void MaterialReader::readClearcoat(const Value& e, const std::string& where, Ext
         member(file_, normal, "scale", 1, -1e6, 1e6, where + ".clearcoatNormalTexture");
 }
 
+void MaterialReader::readSheen(const Value& e, const std::string& where, ExtendedMaterial& m) {
+  m.sheenColor = vectorMember<3>(file_, e, "sheenColorFactor", vec3(0), 0, 1, where);
+  m.sheenColorTexture = slot(e.Get("sheenColorTexture"), true, where + ".sheenColorTexture");
+  m.sheenRoughness = member(file_, e, "sheenRoughnessFactor", 0, 0, 1, where);
+  m.sheenRoughnessTexture =
+      slot(e.Get("sheenRoughnessTexture"), false, where + ".sheenRoughnessTexture");
+}
+
+void MaterialReader::readAnisotropy(const Value& e, const std::string& where, ExtendedMaterial& m) {
+  m.anisotropy = member(file_, e, "anisotropyStrength", 0, 0, 1, where);
+  m.anisotropyRotation = member(file_, e, "anisotropyRotation", 0, -1e6, 1e6, where);
+  m.anisotropyTexture = slot(e.Get("anisotropyTexture"), false, where + ".anisotropyTexture");
+}
+
+void MaterialReader::readIridescence(const Value& e, const std::string& where,
+                                     ExtendedMaterial& m) {
+  m.iridescence = member(file_, e, "iridescenceFactor", 0, 0, 1, where);
+  m.iridescenceTexture = slot(e.Get("iridescenceTexture"), false, where + ".iridescenceTexture");
+  m.filmIor = member(file_, e, "iridescenceIor", 1.3, 1, 1e3, where);
+  m.filmThinnest = member(file_, e, "iridescenceThicknessMinimum", 100, 0, 1e6, where);
+  m.filmThickest = member(file_, e, "iridescenceThicknessMaximum", 400, 0, 1e6, where);
+  m.filmThicknessTexture =
+      slot(e.Get("iridescenceThicknessTexture"), false, where + ".iridescenceThicknessTexture");
+}
+
 std::optional<ExtendedMaterial> MaterialReader::readExtensions(
     const tinygltf::ExtensionMap& extensions, const std::string& where) {
   ExtendedMaterial m;
   readTransmission(extensions, where, m);
   if (const Value* e = findExtension(extensions, "KHR_materials_clearcoat"))
     readClearcoat(*e, where, m);
-  if (m.transmission == 0 && m.clearcoat == 0) return std::nullopt;
+  if (const Value* e = findExtension(extensions, "KHR_materials_sheen")) readSheen(*e, where, m);
+  if (const Value* e = findExtension(extensions, "KHR_materials_anisotropy"))
+    readAnisotropy(*e, where, m);
+  if (const Value* e = findExtension(extensions, "KHR_materials_iridescence"))
+    readIridescence(*e, where, m);
+  if (m.transmission == 0 && m.clearcoat == 0 && isBlack(m.sheenColor) && m.anisotropy == 0 &&
+      m.iridescence == 0)
+    return std::nullopt;
   return m;
 }
 

@@ -42,6 +42,11 @@ class MaterialReader {
                         ExtendedMaterial& m);
   void readClearcoat(const tinygltf::Value& extension, const std::string& where,
                      ExtendedMaterial& m);
+  void readSheen(const tinygltf::Value& extension, const std::string& where, ExtendedMaterial& m);
+  void readAnisotropy(const tinygltf::Value& extension, const std::string& where,
+                      ExtendedMaterial& m);
+  void readIridescence(const tinygltf::Value& extension, const std::string& where,
+                       ExtendedMaterial& m);
 
   GltfFile& file_;
   std::map<int, int> materialOf_;  // glTF's index to ours

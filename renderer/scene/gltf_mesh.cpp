@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <set>
 
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_pose.h"
@@ -64,13 +65,19 @@ class AttributeReader {
   size_t vertexCount_ = 0;
 };
 
-void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, Material material,
+// The UV sets that the material reads, by textures or tangents.
+std::vector<int> uvSetsOf(Material material) {
+  std::set<int> sets;
+  for (const TextureSlot* slot : textureSlots(material))
+    if (*slot) sets.insert(slot->uvSet);
+  if (const std::optional<TextureSlot> slot = tangentSpace(material)) sets.insert(slot->uvSet);
+  return {sets.begin(), sets.end()};
+}
+
+void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const Material& material,
                             Mesh& mesh) {
-  for (const TextureSlot* slot : textureSlots(material)) {
-    if (!*slot) continue;
-    const size_t set = size_t(slot->uvSet);
-    if (mesh.uvs.size() <= set) mesh.uvs.resize(set + 1);
-    if (!mesh.uvs[set].empty()) continue;
+  for (const int set : uvSetsOf(material)) {
+    if (int(mesh.uvs.size()) <= set) mesh.uvs.resize(size_t(set) + 1);
     const std::string name = fmt::format("TEXCOORD_{}", set);
     mesh.uvs[set] = attributes.read(name, readVectors<2>);
     if (!mesh.uvs[set].empty()) continue;
@@ -128,7 +135,8 @@ bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const st
   file.fail("{}.mode: {} is not one of glTF's (0 to 6)", where, primitive.mode);
 }
 
-MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Material material) {
+MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
+                    const Material& material) {
   MeshRecipe recipe{
       .mode = primitive.mode,
       .indices = primitive.indices,
@@ -139,10 +147,7 @@ MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Mate
       .tangentSpace = {},
       .hasAlpha = material.alphaMode != AlphaMode::Opaque || passesStraight(material)};
   if (!primitive.targets.empty()) recipe.weights.assign(pose.weights.begin(), pose.weights.end());
-  for (const TextureSlot* slot : textureSlots(material))
-    if (*slot) recipe.uvSets.push_back(slot->uvSet);
-  std::sort(recipe.uvSets.begin(), recipe.uvSets.end());
-  recipe.uvSets.erase(std::unique(recipe.uvSets.begin(), recipe.uvSets.end()), recipe.uvSets.end());
+  recipe.uvSets = uvSetsOf(material);
   if (const std::optional<TextureSlot> slot = tangentSpace(material)) {
     recipe.tangentSpace.push_back(uint32_t(slot->uvSet));
     for (const vec2& v : {slot->uvRow0, slot->uvRow1, slot->uvOffset})

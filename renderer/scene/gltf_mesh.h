@@ -37,7 +37,8 @@ struct MeshRecipe {
 
   auto operator<=>(const MeshRecipe&) const = default;
 };
-MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose, Material material);
+MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
+                    const Material& material);
 
 // Reads a primitive that has triangles, with what the material needs of it: normals mended,
 // tangents complete. Nothing where the indices make no triangle: a warning has then been said.

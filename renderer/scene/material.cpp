@@ -8,15 +8,19 @@ std::vector<TextureSlot*> textureSlots(Material& m) {
                                      &m.specularTexture,  &m.specularColorTexture};
   if (m.extended) {
     ExtendedMaterial& e = *m.extended;
-    slots.insert(slots.end(), {&e.transmissionTexture, &e.clearcoatTexture,
-                               &e.clearcoatRoughnessTexture, &e.clearcoatNormalTexture});
+    slots.insert(slots.end(),
+                 {&e.transmissionTexture, &e.clearcoatTexture, &e.clearcoatRoughnessTexture,
+                  &e.clearcoatNormalTexture, &e.sheenColorTexture, &e.sheenRoughnessTexture,
+                  &e.anisotropyTexture, &e.iridescenceTexture, &e.filmThicknessTexture});
   }
   return slots;
 }
 
 std::optional<TextureSlot> tangentSpace(const Material& m) {
   if (m.normalTexture) return m.normalTexture;
-  if (m.extended && m.extended->clearcoatNormalTexture) return m.extended->clearcoatNormalTexture;
+  if (!m.extended) return std::nullopt;
+  if (m.extended->clearcoatNormalTexture) return m.extended->clearcoatNormalTexture;
+  if (m.extended->anisotropy > 0) return m.extended->anisotropyTexture;
   return std::nullopt;
 }
 

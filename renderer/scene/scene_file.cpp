@@ -158,7 +158,7 @@ ModelEntry readModel(const Entry& entry) {
   if (entry.node->is_string()) return {existing(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
   const Section model(entry.file, "model", *entry.node->as_table(),
-                      {"file", "translation", "rotation", "scale", "animation", "time"});
+                      {"file", "translation", "rotation", "scale", "animation", "time", "variant"});
   if (!model["file"]) failAt(model.place(), "[model] has no `file`");
 
   ModelEntry result{existing(model["file"]), {}, {}};
@@ -176,6 +176,7 @@ ModelEntry readModel(const Entry& entry) {
     if (animation) when.name = animation.text();
     if (time) when.seconds = time.number();
   }
+  if (const Entry e = model["variant"]) result.choice.variant = {e.text(), e.place()};
   return result;
 }
 

@@ -31,8 +31,9 @@ float handednessOf(const Instance& instance) {
 }
 
 // The vertices' normals between them, in world space and on the front; not unit.
-vec3 interpolatedNormal(const Mesh& mesh, const Instance& instance, const Triangle& triangle,
-                        vec2 barycentric, float handedness) {
+[[gnu::always_inline]] inline vec3 interpolatedNormal(const Mesh& mesh, const Instance& instance,
+                                                      const Triangle& triangle, vec2 barycentric,
+                                                      float handedness) {
   const vec3 n = interpolate(mesh.normals, triangle, barycentric);
   if (!instance.toWorld) return n;
   const mat3& m = instance.toWorld->linear;  // normals turn by the matrix of cofactors
@@ -51,6 +52,14 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
   tangent *= 1 / std::sqrt(length2);
   return TangentFrame{
       tangent, handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent), normal};
+}
+
+// Out of line: most materials have no normal map.
+[[gnu::noinline]] vec3 mappedNormal(const Scene& scene, const Surface& s, const Instance& instance,
+                                    float handedness, const vec3& normal) {
+  const auto frame = tangentFrame(s, instance, handedness, normal);
+  if (!frame) return normal;
+  return mappedNormal(scene, s.material->normalTexture, s.material->normalScale, s, *frame);
 }
 
 // The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
@@ -103,8 +112,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     if (length2 > 0) {
       n *= 1 / std::sqrt(length2);
       if (s.material->normalTexture && !s.mesh->tangents.empty())
-        if (const auto frame = tangentFrame(s, instance, handedness, n))
-          n = mappedNormal(scene, s.material->normalTexture, s.material->normalScale, s, *frame);
+        n = mappedNormal(scene, s, instance, handedness, n);
       if (!s.frontFace) n = -n;
       if (glm::dot(n, s.geometricNormal) > 0) s.normal = n;
     }

@@ -3,8 +3,10 @@
 namespace chromeball {
 
 bool passesStraight(const Material& m) {
-  return m.extended && m.extended->transmission > 0 && m.extended->thinWalled && m.roughness == 0 &&
-         m.extended->clearcoat == 0 && !m.unlit;
+  if (!m.extended || m.unlit || m.roughness != 0) return false;
+  const ExtendedMaterial& e = *m.extended;
+  return e.transmission > 0 && e.thinWalled && e.clearcoat == 0 && isBlack(e.sheenColor) &&
+         e.anisotropy == 0 && e.iridescence == 0;
 }
 
 Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine) {

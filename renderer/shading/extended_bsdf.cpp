@@ -1,8 +1,10 @@
 #include "shading/extended_bsdf.h"
 
 #include "scene/thin_wall.h"
+#include "shading/anisotropic_table.h"
 #include "shading/ggx.h"
 #include "shading/glass_table.h"
+#include "shading/thin_film.h"
 
 namespace chromeball {
 namespace {
@@ -25,6 +27,8 @@ bool isMirror(const Lobe& lobe) {
 
 void prepareExtendedBsdf(const Material& m) {
   EnergyTable::get();
+  if (m.extended->anisotropy > 0) AnisotropicTable::get();
+  if (!isBlack(m.extended->sheenColor)) SheenTable::get();
   if (m.extended->transmission > 0 && !m.extended->thinWalled && m.roughness > 0) GlassTable::get();
 }
 
@@ -32,6 +36,8 @@ template <class Self, class Function>
 void ExtendedBsdf::forEachPart(Self& self, Function&& function) {
   if (self.coat_) function(*self.coat_);
   if (self.base_) function(*self.base_);
+  if (self.brushed_) function(*self.brushed_);
+  if (self.sheen_) function(*self.sheen_);
   if (self.glass_) function(*self.glass_);
   if (self.sheet_) function(*self.sheet_);
 }
@@ -47,7 +53,23 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
     coat_ = {coat, 1, coat.albedo()};
     through -= coat.surfaceAlbedo();
   }
-  addBase(m, e, index, surface, wo, mirrorAlpha, through);
+  if (!isBlack(e.sheenColor) && !inside) {
+    const Sheen sheen(e.sheenColor, e.sheenRoughness, surface, wo);
+    sheen_ = {sheen, through, through * sheen.albedo()};
+    through *= 1 - sheen.surfaceAlbedo();
+  }
+  MaterialPoint base = m;
+  Rgb metalF0 = m.baseColor;
+  if (e.iridescence > 0) {
+    const float cosine = glm::clamp(glm::dot(surface.normal, wo), 0.0f, 1.0f);
+    const auto filmed = [&](const Rgb& f0) {
+      return glm::mix(f0, thinFilmF0(f0, e.filmIor, e.filmThickness, cosine), e.iridescence);
+    };
+    if (m.dielectricF90 > 0)
+      base.dielectricF0 = glm::min(filmed(m.dielectricF0), Rgb(m.dielectricF90));
+    metalF0 = filmed(m.baseColor);
+  }
+  addBase(base, metalF0, e, index, surface, wo, mirrorAlpha, through);
 
   float total = 0;
   forEachPart(*this, [&](auto& part) { total += part.share; });
@@ -57,19 +79,31 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
   });
 }
 
-void ExtendedBsdf::addBase(const MaterialPoint& m, const ExtendedPoint& e,
+float ExtendedBsdf::addMetallicRoughness(const MaterialPoint& m, const Rgb& diffuse,
+                                         const Rgb& metalF0, const ExtendedPoint& e,
+                                         const Surface& surface, const vec3& wo, float mirrorAlpha,
+                                         float factor) {
+  const auto add = [&](auto& part, const auto& lobe) {
+    part = {lobe, factor, factor * lobe.albedo()};
+    normal_ = lobe.normal();
+    return lobe.surfaceAlbedo();
+  };
+  if (e.anisotropy == 0) return add(base_, Bsdf(m, diffuse, metalF0, surface, wo, mirrorAlpha));
+  return add(brushed_, Brushed(m, diffuse, metalF0, e.anisotropy, e.anisotropyTangent, surface, wo,
+                               mirrorAlpha));
+}
+
+void ExtendedBsdf::addBase(const MaterialPoint& m, const Rgb& metalF0, const ExtendedPoint& e,
                            const RefractiveIndex& index, const Surface& surface, const vec3& wo,
                            float mirrorAlpha, float factor) {
   const float transmission = e.transmission * (1 - m.metallic);
   if (e.thinWalled) {
-    const Bsdf base(m, m.baseColor * (1 - m.metallic - transmission), m.baseColor, surface, wo,
-                    mirrorAlpha);
-    base_ = {base, factor, factor * base.albedo()};
-    normal_ = base.normal();
+    const float reflected = addMetallicRoughness(m, m.baseColor * (1 - m.metallic - transmission),
+                                                 metalF0, e, surface, wo, mirrorAlpha, factor);
     if (transmission == 0) return;
     const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha;
     const Rgb share = smooth ? sheetTransmittance(m, e.transmission, glm::dot(surface.normal, wo))
-                             : m.baseColor * (transmission * (1 - base.surfaceAlbedo()));
+                             : m.baseColor * (transmission * (1 - reflected));
     const Sheet sheet(share, m.roughness, surface, wo, mirrorAlpha);
     sheet_ = {sheet, factor, factor * sheet.albedo()};
     return;
@@ -82,9 +116,8 @@ void ExtendedBsdf::addBase(const MaterialPoint& m, const ExtendedPoint& e,
   if (transmission < 1) {
     MaterialPoint rest = m;  // of the same amount of metal, and less of the dielectric
     rest.metallic = m.metallic / (1 - transmission);
-    const Bsdf base(rest, surface, wo, mirrorAlpha);
-    base_ = {base, factor * (1 - transmission), factor * (1 - transmission) * base.albedo()};
-    normal_ = base.normal();
+    addMetallicRoughness(rest, rest.baseColor * (1 - rest.metallic), metalF0, e, surface, wo,
+                         mirrorAlpha, factor * (1 - transmission));
   }
 }
 

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "scene/extended_surface.h"
+#include "shading/brushed.h"
 #include "shading/glass.h"
+#include "shading/sheen.h"
 #include "shading/sheet.h"
 
 namespace chromeball {
@@ -14,8 +16,11 @@ void prepareExtendedBsdf(const Material& material);
 
 // Lobes that each conserve energy, with the share of light that each gets:
 //   a clear coat of index 1.5, which lets 1 - (its albedo) through to what lies beneath;
-//   the base: metallic-roughness, of which a share `transmission` of the dielectric is glass, or,
-//   for a sheet without thickness, of which that share of the diffuse light passes.
+//   sheen, which does the same;
+//   the base: metallic-roughness, brushed where it is anisotropic, of which a share `transmission`
+//   of the dielectric is glass, or, for a sheet without thickness, of which that share of the
+//   diffuse light passes. A thin film changes the base's F0 to what it reflects under the viewer's
+//   angle: exact where the base is smooth. Glass ignores anisotropy.
 // Layers look at the viewer's direction alone, as the extensions' simple forms do: that keeps the
 // energy exactly, and costs reciprocity.
 class ExtendedBsdf {
@@ -41,13 +46,19 @@ class ExtendedBsdf {
   // Samples one part, with a number that says which of its own lobes.
   template <class Lobe>
   bool samplePart(const Part<Lobe>& part, vec2 u, float lobe, BsdfSample& out) const;
-  void addBase(const MaterialPoint& material, const ExtendedPoint& extended,
+  void addBase(const MaterialPoint& material, const Rgb& metalF0, const ExtendedPoint& extended,
                const RefractiveIndex& index, const Surface& surface, const vec3& wo,
                float mirrorAlpha, float factor);
+  // Metallic-roughness; returns what its dielectric surface reflects.
+  float addMetallicRoughness(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
+                             const ExtendedPoint& extended, const Surface& surface, const vec3& wo,
+                             float mirrorAlpha, float factor);
 
   vec3 normal_;
   bool continuous_ = false;
   std::optional<Part<Bsdf>> coat_, base_;
+  std::optional<Part<Brushed>> brushed_;
+  std::optional<Part<Sheen>> sheen_;
   std::optional<Part<Glass>> glass_;
   std::optional<Part<Sheet>> sheet_;
 };

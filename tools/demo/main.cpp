@@ -1,4 +1,4 @@
-// make_demo still-life|lambertian|conductors OUT.glb
+// make_demo still-life|lambertian|conductors|glass OUT.glb
 // make_demo dusk OUT.exr
 #include <iostream>
 
@@ -17,10 +17,12 @@ int main(int argc, char** argv) {
       demo::writeStillLife(argv[2], demo::Finish::Lambertian);
     else if (what == "conductors")
       demo::writeStillLife(argv[2], demo::Finish::Conductors);
+    else if (what == "glass")
+      demo::writeStillLife(argv[2], demo::Finish::Glass);
     else if (what == "dusk")
       writeImage(argv[2], demo::paintDusk(1536));
     else
-      throwInput("make_demo: still-life|lambertian|conductors OUT.glb, or dusk OUT.exr");
+      throwInput("make_demo: still-life|lambertian|conductors|glass OUT.glb, or dusk OUT.exr");
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -17,6 +17,7 @@ struct Object {
   Surface surface;
   Rgb color;
   float metallic, roughness, glow;
+  bool glass = false;
 };
 
 std::vector<Object> stillLife() {
@@ -61,12 +62,17 @@ std::vector<Object> stillLife() {
   };
 }
 
-// Everything without gloss, or `conductors` of a roughness that both renderers sample well.
-void makePlain(std::vector<Object>& objects, bool conductors) {
+// Everything without gloss, or what is of metal conductors of a roughness that both renderers
+// sample well, or smooth glass.
+void makePlain(std::vector<Object>& objects, Finish finish) {
   for (Object& object : objects) {
+    const bool metal = object.metallic > 0, polished = metal && object.roughness < 0.3f;
     object.glow = 0;
-    object.roughness = conductors && object.metallic > 0 ? std::max(object.roughness, 0.2f) : 1;
-    object.metallic = conductors ? object.metallic : 0;
+    object.roughness = 1;
+    object.metallic = 0;
+    if (metal && finish == Finish::Conductors)
+      object.metallic = 1, object.roughness = std::max(object.roughness, 0.2f);
+    object.glass = polished && finish == Finish::Glass;
   }
   objects[0].color = {0.5f, 0.38f, 0.26f};  // the table, which has no texture here
 }
@@ -116,7 +122,13 @@ int addMaterial(GlbWriter& glb, const Object& object, bool lambertian) {
                     {{"baseColorFactor", {object.color.x, object.color.y, object.color.z, 1}},
                      {"metallicFactor", object.metallic},
                      {"roughnessFactor", object.roughness}}}};
-  if (lambertian) material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  if (object.glass) {
+    material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0}};
+    material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+  } else if (lambertian) {
+    material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  }
   if (object.glow > 0) {
     material["emissiveFactor"] = {1, 0.5, 0.18};
     material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", object.glow}};
@@ -154,7 +166,7 @@ void addCamera(GlbWriter& glb) {
 
 void writeStillLife(const std::string& path, Finish finish) {
   std::vector<Object> objects = stillLife();
-  if (finish != Finish::Demo) makePlain(objects, finish == Finish::Conductors);
+  if (finish != Finish::Demo) makePlain(objects, finish);
 
   GlbWriter glb;
   for (const Object& object : objects) {
@@ -169,6 +181,9 @@ void writeStillLife(const std::string& path, Finish finish) {
   std::iota(nodes.begin(), nodes.end(), 0);
   glb.root["scenes"] = {{{"nodes", nodes}}};
   glb.root["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_emissive_strength"};
+  if (finish == Finish::Glass)
+    for (const char* name : {"KHR_materials_transmission", "KHR_materials_volume"})
+      glb.root["extensionsUsed"].push_back(name);
   glb.write(path);
 }
 

@@ -1,0 +1,12 @@
+// KHR_materials_variants: one model in several dresses.
+#pragma once
+
+#include "scene/gltf_file.h"
+
+namespace chromeball {
+
+// Gives each primitive the material that the variant has for it. Throws InputError where the file
+// has no such variant.
+void applyVariant(GltfFile& file, const VariantChoice& choice);
+
+}  // namespace chromeball

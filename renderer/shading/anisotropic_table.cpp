@@ -1,0 +1,89 @@
+#include "shading/anisotropic_table.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+#include "math/hash.h"
+#include "math/sobol.h"
+#include "shading/ggx_anisotropic.h"
+
+namespace chromeball {
+namespace {
+
+constexpr std::array<int, 4> kNodes = {16, 9, 16, 7};  // roughness, strength, angle, azimuth
+
+SpecularAlbedo integrate(const vec3& wo, vec2 alpha) {
+  constexpr uint32_t kSamples = 512;
+  const float lambdaO = ggx::lambda(wo, alpha);
+  double a = 0, b = 0;
+  for (uint32_t i = 0; i < kSamples; ++i) {
+    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))});
+    const float woH = glm::dot(wo, h);
+    const vec3 wi = 2 * woH * h - wo;
+    if (wi.z <= 0) continue;
+    const float weight = (1 + lambdaO) / (1 + lambdaO + ggx::lambda(wi, alpha));
+    const float c = 1 - woH, grazing = c * c * c * c * c;
+    a += double(weight) * (1 - grazing);
+    b += double(weight) * grazing;
+  }
+  return {float(a / kSamples), float(b / kSamples)};
+}
+
+// Node i along dimension d as a share of the way; roughness and angle crowd towards 0, as in
+// EnergyTable.
+float node(int d, int i) { return float(i) / float(kNodes[size_t(d)] - 1); }
+
+}  // namespace
+
+vec2 anisotropicAlpha(float roughness, float strength) {
+  constexpr float kLeast = 1e-3f;  // a groove narrower than this is as good as a scratch's line
+  const float alpha = std::max(roughness * roughness, kLeast);
+  return {glm::mix(alpha, 1.0f, strength * strength), alpha};
+}
+
+AnisotropicTable::AnisotropicTable()
+    : cells_(size_t(kNodes[0] * kNodes[1] * kNodes[2] * kNodes[3])) {
+  tbb::parallel_for(0, kNodes[0] * kNodes[1], [&](int row) {
+    const float r = node(0, row / kNodes[1]);
+    const vec2 alpha = anisotropicAlpha(r * r, node(1, row % kNodes[1]));
+    for (int i = 0; i < kNodes[2]; ++i)
+      for (int j = 0; j < kNodes[3]; ++j) {
+        const float mu = std::max(node(2, i) * node(2, i), 1e-4f);
+        const vec3 wo = unitVector(mu, 0.25f * node(3, j));
+        cells_[size_t((row * kNodes[2] + i) * kNodes[3] + j)] = integrate(wo, alpha);
+      }
+  });
+}
+
+const AnisotropicTable& AnisotropicTable::get() {
+  static const AnisotropicTable table;
+  return table;
+}
+
+SpecularAlbedo AnisotropicTable::albedo(const vec3& wo, float roughness, float strength) const {
+  const float turns = atan2Turns(std::fabs(wo.y), std::fabs(wo.x));
+  const std::array<float, 4> at = {std::sqrt(roughness), strength, std::sqrt(wo.z), 4 * turns};
+  std::array<int, 4> low;
+  std::array<float, 4> blend;
+  for (size_t d = 0; d < 4; ++d) {
+    const float x = glm::clamp(at[d], 0.0f, 1.0f) * float(kNodes[d] - 1);
+    low[d] = std::min(int(x), kNodes[d] - 2);
+    blend[d] = x - float(low[d]);
+  }
+  SpecularAlbedo sum{0, 0};
+  for (int corner = 0; corner < 16; ++corner) {
+    int cell = 0;
+    float weight = 1;
+    for (size_t d = 0; d < 4; ++d) {
+      const int up = corner >> d & 1;
+      cell = cell * kNodes[d] + low[d] + up;
+      weight *= up ? blend[d] : 1 - blend[d];
+    }
+    sum.a += weight * cells_[size_t(cell)].a;
+    sum.b += weight * cells_[size_t(cell)].b;
+  }
+  return sum;
+}
+
+}  // namespace chromeball
