@@ -42,7 +42,7 @@ const std::map<std::string, std::string> kSeenBy = {
     {"draco/", "renderer/scene/gltf_draco.cpp"},
     {"meshoptimizer.h", "renderer/scene/gltf_meshopt.cpp"},
     {"tiny_gltf.h", "renderer/scene/gltf"},
-    {"toml++/", "renderer/scene/scene_file.cpp"},
+    {"toml++/", "renderer/scene/toml_section.h"},
     {"Eigen/", "renderer/lighting/"},
     {"boost/", "renderer/measure/"},
     {"CLI/", "tools/"},

@@ -254,8 +254,10 @@ TEST_F(SceneFileTest, BrokenTomlNamesItsLine) {
   expectError("x = " + std::string(100000, '['), 2, {"TOML"});
 }
 
-TEST_F(SceneFileTest, CompositeIsRefusedByName) {
-  expectError("[composite]\nplate = 'p.exr'\n", 2, {"[composite]", "not supported"});
+TEST_F(SceneFileTest, CompositeNeedsPlateAndLocalScene) {
+  expectError("[composite]\nlocal_scene = 'ground'\n", 2, {"[composite]", "plate"});
+  expectError("[composite]\nplate = '../ball.glb'\n", 2, {"[composite]", "local_scene"});
+  expectError("[composite]\nplate = 'none.exr'\nlocal_scene = 'a'\n", 3, {"no such file"});
 }
 
 TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
@@ -265,9 +267,12 @@ TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
 }
 
 TEST(SceneFileOfTheDemo, IsValidAndItsFilesAreThere) {
-  const SceneFile scene = readSceneFile(std::string(kSourceDir) + "/scenes/demo.toml");
-  EXPECT_EQ(scene.models.size(), 1u);
-  EXPECT_TRUE(scene.probe && scene.size && scene.samples);
+  for (const char* name : {"demo", "terrace"}) {
+    const SceneFile scene = readSceneFile(std::string(kSourceDir) + "/scenes/" + name + ".toml");
+    EXPECT_EQ(scene.models.size(), 1u);
+    EXPECT_TRUE(scene.probe && scene.samples);
+    EXPECT_EQ(scene.composite.has_value(), name == std::string("terrace"));
+  }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "composite/differential.h"
+#include "lighting/finite_surroundings.h"
 #include "math/error.h"
 #include "math/suggest.h"
 #include "scene/framing.h"
@@ -76,12 +78,23 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
+  constexpr double kCompositeBytes = sizeof(DifferentialPixel) + 60;  // plate, mean, variance, ...
   const double needed = double(settings.width) * settings.height *
-                        (Film::bytesPerPixel() + 16.0 * double(settings.aovs.size()));
+                        (Film::bytesPerPixel() + 16.0 * double(settings.aovs.size()) +
+                         (job.file.composite ? kCompositeBytes : 0));
   const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   if (needed > 0.8 * available)
     throwInput("--size: a picture of {}x{} needs {:.1f} GB of memory, and there are {:.1f}",
                settings.width, settings.height, needed * 1e-9, available * 1e-9);
+}
+
+void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
+  surroundings.grow(1e-4f);  // what stands on the floor touches it
+  for (const Instance& instance : scene.instances)
+    for (const vec3& position : scene.meshes[instance.mesh].positions)
+      if (const vec3 p = instance.point(position); !surroundings.contains(p))
+        throwInput("{}: the model must lie inside [surroundings]; it reaches to ({:g}, {:g}, {:g})",
+                   file, p.x, p.y, p.z);
 }
 
 }  // namespace
@@ -91,10 +104,21 @@ LoadedScene loadScene(RenderJob& job) {
   Scene scene = loadModels(job.file, notes);
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));
+  if (job.file.surroundings)
+    checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
-  return {std::move(scene), camera, std::move(loaded), std::move(probe), std::move(notes)};
+  return {std::move(scene),      camera,          std::move(loaded), std::move(probe),
+          job.file.surroundings, std::move(notes)};
+}
+
+std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
+                                               const LoadedScene& loaded) {
+  auto lighting = makeStrategy(strategy.name, loaded.probe, mis, strategy.place);
+  if (!loaded.surroundings) return lighting;
+  return std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
+                                              *loaded.surroundings);
 }
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {

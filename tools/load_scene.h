@@ -1,6 +1,7 @@
 // What a job's files hold, ready to be rendered.
 #pragma once
 
+#include "lighting/strategy.h"
 #include "probe/load.h"
 #include "render_job.h"
 #include "scene/scene.h"
@@ -10,14 +11,20 @@ namespace chromeball {
 struct LoadedScene {
   Scene scene;
   Camera camera;
-  LoadedProbe loadedProbe;              // what was found in its file; the map itself is in `probe`
-  Probe probe;                          // black where the scene lights itself
-  std::vector<std::string> modelNotes;  // what the models' files hold that is not rendered
+  LoadedProbe loadedProbe;  // what was found in its file; the map itself is in `probe`
+  Probe probe;              // black where the scene lights itself
+  std::optional<Surroundings> surroundings;  // the model is inside
+  std::vector<std::string> modelNotes;       // what the models' files hold that is not rendered
 };
 
 // Reads models and probe, chooses the camera, and the size where the job left it to the camera.
 // Throws InputError.
 LoadedScene loadScene(RenderJob& job);
+
+// The strategy, with the probe as far away as the scene's surroundings have it. `loaded` must
+// outlive it. Throws InputError for an unknown name.
+std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
+                                               const LoadedScene& loaded);
 
 // Says on standard error what is left out of the models, what was repaired in the probe and, unless
 // quiet, what was guessed of it.

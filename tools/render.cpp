@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "composite_job.h"
 #include "image/file.h"
 #include "image/write.h"
 #include "load_scene.h"
@@ -114,6 +115,14 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
   return output;
 }
 
+Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Accel& accel,
+                     const LightingStrategy& lighting, const Progress& progress) {
+  RenderResult result =
+      render(loaded.scene, accel, loaded.camera, lighting, job.settings, progress, interrupted);
+  OutputImage output = assemble(result, job.settings);
+  return {std::move(result), std::move(output)};
+}
+
 void writeStats(const std::string& path, const nlohmann::json& json) {
   const std::string text = json.dump(2) + "\n";
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
@@ -128,32 +137,38 @@ void render(const RenderOptions& options) {
 
   Seconds seconds;
   Stopwatch watch;
-  const LoadedScene loaded = loadScene(job);
+  std::optional<CompositeJob> composite;
+  if (job.file.composite) composite = planComposite(job, options.twoPass);
+  LoadedScene loaded = loadScene(job);
   const Scene& scene = loaded.scene;
+  if (composite) prepareLocalScene(*composite, job, loaded);
   seconds.load = watch.lap();
   const Accel accel(scene);
   seconds.build = watch.lap();
-  const auto lighting =
-      makeStrategy(job.strategy.name, loaded.probe, job.settings.mis, job.strategy.place);
+  const auto lighting = makeLighting(job.strategy, job.settings.mis, loaded);
   seconds.prepare = watch.lap();
   sayNotes(job, loaded, options.quiet);
+  if (composite && !options.quiet) sayPlateNotes(*job.file.composite);
 
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
-  const RenderResult result = [&] {
+  Rendered rendered = [&] {
     ProgressBar bar(options.progress || (ProgressBar::isTerminal() && !options.quiet));
-    return render(
-        scene, accel, loaded.camera, *lighting, job.settings,
-        [&](double share) { bar.update(share); }, interrupted);
+    const auto progress = [&](double share) { bar.update(share); };
+    return composite
+               ? renderComposite(*composite, job, loaded, accel, *lighting, progress, interrupted)
+               : renderPlain(job, loaded, accel, *lighting, progress);
   }();
+  const RenderResult& result = rendered.result;
   seconds.render = watch.lap();
 
   const double noise = result.film.noise();
-  OutputImage output = assemble(result, job.settings);
+  OutputImage& output = rendered.output;
   output.metadata = describe(job, options, scene, result, seconds, noise).metadata;
   for (const std::string& path : job.outputs) writeImage(path, output, job.display);
   seconds.write = watch.lap();
-  const Report report = describe(job, options, scene, result, seconds, noise);
+  Report report = describe(job, options, scene, result, seconds, noise);
+  report.json.update(rendered.details);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
   if (result.invalid.count)
@@ -161,6 +176,7 @@ void render(const RenderOptions& options) {
         fmt::format("{} invalid samples (NaN, infinite or negative) were left out, one at pixel "
                     "({}, {})",
                     result.invalid.count, result.invalid.x, result.invalid.y));
+  for (const std::string& note : rendered.notes) warn(note);
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
   if (!options.quiet)
     fmt::print("{} samples a pixel in {:.2f} s, noise {:.2f}%: {}\n", result.samples,
@@ -183,6 +199,8 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');
   command->add_option("--stats", o.stats, "Write times, rays and noise to this .json");
+  command->add_flag("--two-pass", o.twoPass,
+                    "Of a composite: two renders, subtracted; slow, to check the one pass by");
   command->add_flag("--transparent", o.transparent, "Hide the probe from the camera; write alpha");
   command->callback([options] { render(*options); });
 }

@@ -127,7 +127,14 @@ RenderJob planJob(const RenderOptions& o) {
     aovs.clear();
     for (const std::string& name : o.aovs) aovs.push_back({name, "--aov"});
   }
-  for (const NamedSetting& aov : aovs) settings.aovs.push_back(aovFromName(aov.name, aov.place));
+  for (const NamedSetting& aov : aovs) {
+    settings.aovs.push_back(aovFromName(aov.name, aov.place));
+    if (isOfComposite(settings.aovs.back()) && !file.composite)
+      throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", aov.place,
+                 aov.name);
+  }
+  if (o.twoPass && !file.composite)
+    throwInput("--two-pass: renders a composite, and the scene file has no [composite]");
   if (settings.hideProbe && std::count(settings.aovs.begin(), settings.aovs.end(), Aov::Alpha) == 0)
     settings.aovs.push_back(Aov::Alpha);
   return job;

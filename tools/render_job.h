@@ -23,7 +23,8 @@ struct RenderOptions {
   std::optional<uint64_t> seed;
   int threads = 0;
   std::string stats;
-  bool progress = false, quiet = false, transparent = false, allowExternal = false;
+  bool progress = false, quiet = false, transparent = false, twoPass = false;
+  bool allowExternal = false;
   std::string tonemap = "none";
   float exposure = 0;
 };

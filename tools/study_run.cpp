@@ -26,7 +26,7 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
   const auto build = [&](const std::string& name, const std::string& strategy, const char* place) {
     const double start = now();
     Built& built = built_[name];
-    built.strategy = makeStrategy(strategy, loaded.probe, settings.mis, place);
+    built.strategy = makeLighting({strategy, place}, settings.mis, loaded);
     built.prepareSeconds = now() - start;
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");

@@ -18,7 +18,9 @@ const std::vector<AovInfo>& allAovs() {
       {Aov::Albedo, "albedo", "RGB"},     {Aov::Normal, "normal", "XYZ"},
       {Aov::Depth, "depth", "Z"},         {Aov::Alpha, "alpha", "A"},
       {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
-      {Aov::Material, "material", ""},    {Aov::Node, "node", ""}};
+      {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
+      {Aov::WithObjects, "l_obj", "RGB"}, {Aov::WithoutObjects, "l_noobj", "RGB"},
+      {Aov::Difference, "difference", "RGB"}, {Aov::Reflectance, "reflectance", "RGB"}};
   return infos;
 }
 
@@ -35,7 +37,7 @@ Aov aovFromName(const std::string& name, const std::string& place) {
 
 AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted) {
   for (Aov aov : wanted) {
-    if (aov == Aov::Variance || aov == Aov::Samples) continue;
+    if (aov == Aov::Variance || aov == Aov::Samples || isOfComposite(aov)) continue;
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
     sums_.push_back({aov, Image(width, height, channels)});
   }
@@ -55,9 +57,7 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
       case Aov::Depth: *to += first.depth; break;
       case Aov::Material: if (isFirst) *to = float(first.material + 1); break;
       case Aov::Node: if (isFirst) *to = float(first.node + 1); break;
-      case Aov::Alpha:
-      case Aov::Variance:
-      case Aov::Samples: break;
+      default: break;  // known otherwise
     }
   }
 }

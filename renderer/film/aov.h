@@ -20,8 +20,13 @@ struct FirstHit {
 // The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
 //   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
 //   alpha           share that hit something    material, node  index + 1 at the first sample; else 0
+//   l_obj, l_noobj, difference    radiance with the objects, without, and what they change
+//   reflectance                   of the local scene (these four: of composites only)
 //   variance        squared standard error of the pixel (Film)        samples  their number (Film)
-enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node };
+enum class Aov {
+  Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node,
+  WithObjects, WithoutObjects, Difference, Reflectance
+};
 
 struct AovInfo {
   Aov aov;
@@ -30,6 +35,7 @@ struct AovInfo {
 };
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);
+inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects; }
 // `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& place);
 

@@ -79,6 +79,13 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
   return light;
 }
 
+// As transmittance(), for a ray that ends just before a point of the instance, a lamp. Rays that do
+// not see all of the scene have an overload of this.
+template <class Rays>
+Rgb transmittanceTo(const Rays& rays, uint32_t /*instance*/, const Ray& ray) {
+  return rays.transmittance(ray);
+}
+
 // Light from one point on an emissive triangle.
 template <class Rays>
 Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
@@ -102,7 +109,8 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const vec3 origin = surface.rayOrigin(wi), target = source.rayOrigin(-wi);
   const float length = glm::length(target - origin);
   ++counts.shadow;
-  Rgb passed = path.rays.transmittance({origin, (target - origin) / length, length});
+  Rgb passed =
+      transmittanceTo(path.rays, emitter.instance, {origin, (target - origin) / length, length});
   if (media.inside() || surface.material->extended)
     passed *= Media(media).follow(surface, wi).transmittance(length);
   const float density = path.emitters->density(instance.material, distance, cosine);

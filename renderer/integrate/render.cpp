@@ -202,17 +202,20 @@ std::vector<uint32_t> planBlocks(uint32_t samples) {
   return blocks;
 }
 
+Beam beamOf(const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+  if (scene.textures.empty()) return {};
+  // Where the number of samples is open, textures are sharp enough for many and smooth for few.
+  constexpr double kOpenSamples = 16;
+  const bool open = settings.timeLimit || settings.noiseLimit;
+  return beamOf(camera, settings.height, open ? kOpenSamples : settings.samples);
+}
+
 RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop) {
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
-  // Where the number of samples is open, textures are sharp enough for many and smooth for few.
-  constexpr double kOpenSamples = 16;
-  const bool open = settings.timeLimit || settings.noiseLimit;
-  const Beam beam = scene.textures.empty()
-                        ? Beam{}
-                        : beamOf(camera, settings.height, open ? kOpenSamples : settings.samples);
+  const Beam beam = beamOf(scene, camera, settings);
   const PathScene<Accel> path{scene,
                               accel,
                               lighting,

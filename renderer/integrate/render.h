@@ -53,6 +53,9 @@ RenderResult render(const Integrator& integrator, const Accel& accel, const Came
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop);
 
+// The beam of a render's rays from the camera; none where the scene has no textures to filter.
+Beam beamOf(const Scene& scene, const Camera& camera, const RenderSettings& settings);
+
 // Sizes of the blocks, each a power of two, that make up exactly `samples`: two equal ones as large
 // as will fit (the error is estimated from how they differ), then what is left.
 std::vector<uint32_t> planBlocks(uint32_t samples);

@@ -84,6 +84,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scaleMedia(placement, scene);
   scene.lights = readLights(file, tree);
   scene.nodeNames = tree.names;
+  scene.nodeParents = tree.parents;
   return scene;
 }
 

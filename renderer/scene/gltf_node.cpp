@@ -122,6 +122,7 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement) {
   }
   tree.inScene = descend(file, sceneRoots(file, treeRoots));
   for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nameOf(file.model, i));
+  tree.parents = parents;
   return tree;
 }
 

@@ -12,6 +12,7 @@ struct NodeTree {
   std::vector<glm::dmat4> toWorld;  // of every node in the file
   std::vector<int> inScene;         // the nodes of the scene to show, parents before children
   std::vector<std::string> names;   // of every node; never empty
+  std::vector<int> parents;         // of every node; -1: a root
 };
 
 // Composes the transforms of all nodes, `placement` outermost. Throws InputError where the nodes

@@ -9,6 +9,8 @@
 
 namespace chromeball {
 
+class Projection;
+
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
 struct Material {
@@ -28,6 +30,9 @@ struct Material {
   // Whether the camera and mirrors do not see it from behind (back-face culling, glTF 2.0, 3.9.6).
   // It is there for all other light, which would leak in otherwise.
   bool hidesBack() const { return !doubleSided && !(extended && extended->transmission > 0); }
+
+  // Gives the base colour where it sees the surface; null: none does.
+  const Projection* projection = nullptr;
 
   bool emits() const { return unlit || emission != Rgb(0); }
 

@@ -77,6 +77,11 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
   moveToEnd(scene.lights, other.lights);
+  scene.nodeParents.resize(scene.nodeNames.size(), -1);
+  other.nodeParents.resize(other.nodeNames.size(), -1);
+  for (int& parent : other.nodeParents)
+    if (parent >= 0) parent += nodes;
+  moveToEnd(scene.nodeParents, other.nodeParents);
   moveToEnd(scene.nodeNames, other.nodeNames);
 }
 

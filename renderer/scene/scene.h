@@ -54,6 +54,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::vector<std::string> nodeNames;
+  std::vector<int> nodeParents;  // by node, -1 for none; or empty, where no node has one
 
   size_t triangleCount() const;  // instanced triangles count once per instance
   size_t byteCount() const;      // of geometry and texels, for the statistics

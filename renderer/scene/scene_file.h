@@ -9,6 +9,7 @@
 #include "scene/camera.h"
 #include "scene/gltf.h"
 #include "scene/scene.h"
+#include "scene/surroundings.h"
 
 namespace chromeball {
 
@@ -25,6 +26,17 @@ struct ModelEntry {
   // Y, then Z (fixed axes), or glTF's quaternion x, y, z, w; its `scale` is one number or three.
   Transform placement;
   GltfChoice choice;
+};
+
+// [composite]: objects of the model are put into a photograph.
+struct CompositeEntry {
+  std::string place;                     // of the section, for errors
+  std::string plate;                     // the photograph
+  std::vector<NamedSetting> localScene;  // nodes that stand for real things; the others are put in
+  std::optional<NamedSetting> reflectance;  // of the local scene: "model", "plate" or "flat"
+  std::optional<int> iterations;            // of "plate"; 1..20
+  std::optional<float> specular, roughness;  // of the local scene's gloss; 0..1
+  std::optional<NamedSetting> mode;      // "difference" or "ratio"
 };
 
 // What the file says; what it leaves out is nullopt or empty, for the command line or the default
@@ -58,6 +70,9 @@ struct SceneFile {
   std::optional<uint64_t> seed;
   std::optional<double> timeLimit;   // seconds, > 0
   std::optional<double> noiseLimit;  // percent, > 0
+
+  std::optional<CompositeEntry> composite;
+  std::optional<Surroundings> surroundings;
 
   std::vector<std::string> outputs;
   std::vector<NamedSetting> aovs;

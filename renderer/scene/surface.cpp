@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "scene/projection.h"
+
 namespace chromeball {
 namespace {
 
@@ -166,6 +168,8 @@ MaterialPoint materialAt(const Scene& scene, const Surface& s) {
   if (!s.mesh->colors.empty())
     p.baseColor = glm::clamp(
         p.baseColor * Rgb(interpolate(s.mesh->colors, s.triangle, s.barycentric)), 0.0f, 1.0f);
+  if (m.projection)
+    if (const auto seen = m.projection->lookup(s.position)) p.baseColor = *seen;
   if (m.metallicRoughnessTexture) {
     const vec4 texel = lookup(scene, m.metallicRoughnessTexture, s);
     p.roughness *= texel.y;

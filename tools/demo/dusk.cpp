@@ -2,6 +2,7 @@
 
 #include "noise.h"
 #include "probe/mapping.h"
+#include "round_texels.h"
 
 namespace chromeball::demo {
 namespace {
@@ -75,12 +76,7 @@ Image paintDusk(int width) {
       }
       image.setRgb(x, y, sum / float(kGrid * kGrid));
     }
-  // Eleven significant bits are plenty for a painting, and make the file a third as large.
-  for (float& texel : image.texels) {
-    int exponent;
-    const float fraction = std::frexp(texel, &exponent);
-    texel = std::ldexp(std::round(fraction * 2048) / 2048, exponent);
-  }
+  roundTexels(image);
   return image;
 }
 

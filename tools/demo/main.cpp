@@ -1,11 +1,13 @@
 // make_demo still-life|lambertian|conductors|glass OUT.glb
-// make_demo dusk OUT.exr
+// make_demo terrace|terrace-photograph|terrace-whole OUT.glb
+// make_demo dusk|noon OUT.exr
 #include <iostream>
 
 #include "dusk.h"
 #include "image/write.h"
 #include "math/error.h"
 #include "still_life.h"
+#include "terrace.h"
 
 int main(int argc, char** argv) {
   using namespace chromeball;
@@ -19,10 +21,21 @@ int main(int argc, char** argv) {
       demo::writeStillLife(argv[2], demo::Finish::Conductors);
     else if (what == "glass")
       demo::writeStillLife(argv[2], demo::Finish::Glass);
+    else if (what == "terrace")
+      demo::writeTerrace(argv[2], demo::Terrace::Model);
+    else if (what == "terrace-photograph")
+      demo::writeTerrace(argv[2], demo::Terrace::Photograph);
+    else if (what == "terrace-whole")
+      demo::writeTerrace(argv[2], demo::Terrace::Whole);
+    else if (what == "noon")
+      writeImage(argv[2], demo::terraceProbe(768));
     else if (what == "dusk")
       writeImage(argv[2], demo::paintDusk(1536));
     else
-      throwInput("make_demo: still-life|lambertian|conductors|glass OUT.glb, or dusk OUT.exr");
+      throwInput(
+          "make_demo: "
+          "still-life|lambertian|conductors|glass|terrace|terrace-photograph|terrace-whole "
+          "OUT.glb, or dusk|noon OUT.exr");
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

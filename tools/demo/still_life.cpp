@@ -1,24 +1,10 @@
 #include "still_life.h"
 
-#include <filesystem>
-#include <numeric>
-
-#include "glb_writer.h"
-#include "image/write.h"
+#include "glb_objects.h"
 #include "noise.h"
-#include "scene/camera.h"
-#include "shapes.h"
 
 namespace chromeball::demo {
 namespace {
-
-struct Object {
-  std::string name;
-  Surface surface;
-  Rgb color;
-  float metallic, roughness, glow;
-  bool glass = false;
-};
 
 std::vector<Object> stillLife() {
   return {
@@ -94,74 +80,6 @@ Image wood(int size) {
   return image;
 }
 
-// glTF's componentType.
-constexpr int kUint16 = 5123, kFloat = 5126;
-
-int addMesh(GlbWriter& glb, const Object& object, int material) {
-  const Surface& s = object.surface;
-  const int positions = glb.accessor(s.positions, kFloat, "VEC3", s.positions.size());
-  vec3 low = s.positions[0], high = low;
-  for (const vec3& p : s.positions) low = glm::min(low, p), high = glm::max(high, p);
-  glb.root["accessors"][positions]["min"] = {low.x, low.y, low.z};
-  glb.root["accessors"][positions]["max"] = {high.x, high.y, high.z};
-  const json attributes = {
-      {"POSITION", positions},
-      {"NORMAL", glb.accessor(s.normals, kFloat, "VEC3", s.normals.size())},
-      {"TEXCOORD_0", glb.accessor(s.uvs, kFloat, "VEC2", s.uvs.size())},
-  };
-  const int triangles = glb.accessor(s.triangles, kUint16, "SCALAR", 3 * s.triangles.size());
-  glb.root["meshes"].push_back(
-      {{"primitives",
-        {{{"attributes", attributes}, {"indices", triangles}, {"material", material}}}}});
-  return int(glb.root["meshes"].size()) - 1;
-}
-
-int addMaterial(GlbWriter& glb, const Object& object, bool lambertian) {
-  json material = {{"name", object.name},
-                   {"pbrMetallicRoughness",
-                    {{"baseColorFactor", {object.color.x, object.color.y, object.color.z, 1}},
-                     {"metallicFactor", object.metallic},
-                     {"roughnessFactor", object.roughness}}}};
-  if (object.glass) {
-    material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0}};
-    material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
-    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
-  } else if (lambertian) {
-    material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
-  }
-  if (object.glow > 0) {
-    material["emissiveFactor"] = {1, 0.5, 0.18};
-    material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", object.glow}};
-  }
-  glb.root["materials"].push_back(material);
-  return int(glb.root["materials"].size()) - 1;
-}
-
-// Lays the picture of wood over the first material.
-void addWood(GlbWriter& glb) {
-  const auto file = std::filesystem::temp_directory_path() / "chromeball-demo-wood.png";
-  writeImage(file, wood(1024));
-  const int view = glb.view(readFile(file));
-  std::filesystem::remove(file);
-  glb.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
-  glb.root["textures"] = {{{"source", 0}}};
-  glb.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-}
-
-void addCamera(GlbWriter& glb) {
-  const Camera camera =
-      Camera::lookAt({0.3f, 1.3f, 5.4f}, {0.05f, 0.62f, 0}, {0, 1, 0}, glm::radians(29.0f));
-  const glm::quat q = glm::quat_cast(mat3(camera.right, camera.up, camera.back));
-  glb.root["cameras"] = {{{"name", "Front"},
-                          {"type", "perspective"},
-                          {"perspective", {{"yfov", camera.fov}, {"znear", 0.01}}}}};
-  glb.root["nodes"].push_back(
-      {{"name", "Front"},
-       {"camera", 0},
-       {"translation", {camera.position.x, camera.position.y, camera.position.z}},
-       {"rotation", {q.x, q.y, q.z, q.w}}});
-}
-
 }  // namespace
 
 void writeStillLife(const std::string& path, Finish finish) {
@@ -169,22 +87,16 @@ void writeStillLife(const std::string& path, Finish finish) {
   if (finish != Finish::Demo) makePlain(objects, finish);
 
   GlbWriter glb;
-  for (const Object& object : objects) {
-    const bool lambertian = finish != Finish::Demo && object.metallic == 0;
-    const int mesh = addMesh(glb, object, addMaterial(glb, object, lambertian));
-    glb.root["nodes"].push_back({{"name", object.name}, {"mesh", mesh}});
+  if (finish == Finish::Demo) objects[0].texture = addTexture(glb, wood(1024));
+  for (Object& object : objects) {
+    object.lambertian = finish != Finish::Demo && object.metallic == 0;
+    addObject(glb, object);
   }
-  if (finish == Finish::Demo) addWood(glb);
-  addCamera(glb);
-
-  std::vector<int> nodes(glb.root["nodes"].size());
-  std::iota(nodes.begin(), nodes.end(), 0);
-  glb.root["scenes"] = {{{"nodes", nodes}}};
-  glb.root["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_emissive_strength"};
-  if (finish == Finish::Glass)
-    for (const char* name : {"KHR_materials_transmission", "KHR_materials_volume"})
-      glb.root["extensionsUsed"].push_back(name);
-  glb.write(path);
+  Camera camera =
+      Camera::lookAt({0.3f, 1.3f, 5.4f}, {0.05f, 0.62f, 0}, {0, 1, 0}, glm::radians(29.0f));
+  camera.name = "Front";
+  addCamera(glb, camera);
+  writeScene(glb, path);
 }
 
 }  // namespace chromeball::demo

@@ -1,0 +1,108 @@
+#include "composite/compose.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dvec3;
+
+// Share of the picture's mean L_noobj below which the ratio is not formed.
+constexpr double kLeastForRatio = 1e-3;
+
+double alphaOf(const DifferentialPixel& p) {
+  return p.count ? double(p.covered) / double(p.count) : 0;
+}
+
+// L_noobj where no object is seen; 0 where one covers all.
+dvec3 localRadiance(const DifferentialPixel& p) {
+  return p.count > p.covered ? p.local / double(p.count - p.covered) : dvec3(0);
+}
+
+dvec3 meanLocalRadiance(const DifferentialFilm& film) {
+  dvec3 sum(0);
+  double weight = 0;
+  for (const DifferentialPixel& p : film.pixels) {
+    sum += p.local;
+    weight += double(p.count - p.covered);
+  }
+  return weight > 0 ? sum / weight : sum;
+}
+
+// plate / L_noobj where that can be formed, 1 (the difference) where it cannot.
+Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
+  Rgb gain(1);
+  for (int c = 0; c < 3; ++c) {
+    const double floor = kLeastForRatio * mean[c];
+    if (!(local[c] > floor)) continue;
+    const double share = std::min(local[c] / floor - 1, 1.0);
+    gain[c] = float(glm::mix(1.0, plate[c] / local[c], share));
+  }
+  return gain;
+}
+
+}  // namespace
+
+Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
+                  CompositeMode mode) {
+  Composite result{Image(film.width, film.height, 3), Image(film.width, film.height, 3)};
+  const dvec3 meanLocal = meanLocalRadiance(film);
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const DifferentialPixel& p = film.at(x, y);
+      const Rgb behind = plate.rgb(x, y);
+      Rgb gain(1), color = behind;  // a render may stop before a pixel's first sample
+      if (p.count && mode == CompositeMode::Difference) color = mean.rgb(x, y);
+      if (p.count && mode == CompositeMode::Ratio) {
+        gain = ratioGain(behind, localRadiance(p), meanLocal);
+        color = Rgb((p.objects + dvec3(gain) * p.difference) / double(p.count) +
+                    (1 - alphaOf(p)) * dvec3(behind));
+      }
+      if (color.x < 0 || color.y < 0 || color.z < 0) {
+        const bool wasNegative = behind.x < 0 || behind.y < 0 || behind.z < 0;
+        if (!wasNegative) {
+          ++result.darkerThanBlack;
+          color = glm::max(color, Rgb(0));
+        }
+      }
+      result.color.setRgb(x, y, color);
+      result.gain.setRgb(x, y, gain);
+    }
+  return result;
+}
+
+Image compositeVariance(const DifferentialFilm& film, const Composite& composite,
+                        const Image& squaredStandardError) {
+  Image variance = squaredStandardError;
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const float alpha = float(alphaOf(film.at(x, y)));
+      const Rgb gain = alpha + (1 - alpha) * composite.gain.rgb(x, y);
+      variance.setRgb(x, y, gain * gain * variance.rgb(x, y));
+    }
+  return variance;
+}
+
+Image ingredient(const DifferentialFilm& film, Aov aov) {
+  Image image(film.width, film.height, aov == Aov::Alpha ? 1 : 3);
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const DifferentialPixel& p = film.at(x, y);
+      const double count = std::max(p.count, 1u);
+      switch (aov) {
+        case Aov::WithObjects:
+          image.setRgb(x, y, Rgb((p.objects + p.local + p.difference) / count));
+          break;
+        case Aov::WithoutObjects:
+          image.setRgb(x, y, Rgb((p.local + p.behind) / count));
+          break;
+        case Aov::Difference:
+          image.setRgb(x, y, Rgb(p.difference / count));
+          break;
+        default:
+          *image.at(x, y) = float(p.covered / count);
+          break;
+      }
+    }
+  return image;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,39 @@
+// The formulas of differential rendering (HDRI book, 9.7.1).
+#pragma once
+
+#include <optional>
+
+#include "composite/differential.h"
+#include "film/aov.h"
+#include "film/film.h"
+
+namespace chromeball {
+
+enum class CompositeMode { Difference, Ratio };
+
+// Plate and objects as one picture. With alpha the share of samples that see an object, and L_obj,
+// L_noobj of the others alone (so that edges are right):
+//   Difference  alpha L_objects + (1 - alpha) (plate + L_obj - L_noobj), not below 0
+//   Ratio       alpha L_objects + (1 - alpha) plate L_obj / L_noobj
+// Where L_noobj, of a colour channel, falls below twice a thousandth of the picture's mean L_noobj,
+// the ratio gives way to the difference, and below once it is the difference alone: a ratio of
+// next to nothing is noise. Where objects change nothing, both are the plate to the last bit.
+struct Composite {
+  Image color;
+  Image gain;                  // by which L_obj - L_noobj was multiplied, before (1 - alpha)
+  size_t darkerThanBlack = 0;  // pixels that the difference would have made negative; they are 0
+};
+// `mean` is that of the integrator's samples.
+Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
+                  CompositeMode mode);
+
+// Squared standard error of the composite, from that of the difference formula's; for the ratio to
+// first order, L_noobj taken as known.
+Image compositeVariance(const DifferentialFilm& film, const Composite& composite,
+                        const Image& squaredStandardError);
+
+// What the composite is made of: Aov::WithObjects (L_obj), Aov::WithoutObjects (L_noobj),
+// Aov::Difference ((1 - alpha) (L_obj - L_noobj)) or Aov::Alpha.
+Image ingredient(const DifferentialFilm& film, Aov aov);
+
+}  // namespace chromeball

@@ -1,0 +1,32 @@
+#include "composite/differential.h"
+
+#include <limits>
+
+namespace chromeball {
+namespace {
+
+bool isRadiance(const Rgb& c) { return isFinite(c) && glm::all(glm::greaterThanEqual(c, Rgb(0))); }
+
+}  // namespace
+
+Rgb DifferentialIntegrator::radiance(const CameraSample& camera, PathMemory& memory,
+                                     FirstHit* first) const {
+  const DifferentialSample s = differentialRadiance(scene_, camera, memory, first);
+  const Rgb withObjects = s.both + s.withObjects, without = s.both + s.without;
+  if (!isRadiance(withObjects) || !isRadiance(without))
+    return Rgb(std::numeric_limits<float>::quiet_NaN());
+
+  DifferentialPixel& pixel = film_.at(camera.x, camera.y);
+  ++pixel.count;
+  if (s.objectFirst) {
+    ++pixel.covered;
+    pixel.objects += glm::dvec3(withObjects);
+    pixel.behind += glm::dvec3(without);
+    return withObjects;
+  }
+  pixel.local += glm::dvec3(without);
+  pixel.difference += glm::dvec3(s.difference());
+  return plate_.rgb(camera.x, camera.y) + s.difference();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,43 @@
+#include "lighting/finite_surroundings.h"
+
+namespace chromeball {
+
+float FiniteSurroundings::enlargement(const vec3& x, const Surroundings::Point& y) const {
+  // cos / distance^2 = dot(n, to) / |to|^3
+  const auto solidAngle = [&](const vec3& to) {
+    const float squared = glm::dot(to, to);
+    return squared > 0 ? glm::dot(y.normal, to) / (squared * std::sqrt(squared)) : 0;
+  };
+  return solidAngle(x - y.position) / solidAngle(surroundings_.capture - y.position);
+}
+
+void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sampler,
+                                std::vector<DirectionSample>& out) const {
+  const size_t before = out.size();
+  strategy_->sample(point, sampler, out);
+  size_t kept = before;
+  for (size_t i = before; i < out.size(); ++i) {
+    const Surroundings::Point y = surroundings_.behind(surroundings_.capture, out[i].wi);
+    const float larger = enlargement(point.position, y);
+    if (!(larger > 0)) continue;  // the point lies on the surface itself
+    out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * larger,
+                   out[i].density / larger};
+  }
+  out.resize(kept);
+}
+
+LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
+                                                      const vec3& wi) const {
+  const Surroundings::Point y = surroundings_.behind(point.position, wi);
+  Escaped found = strategy_->escaped(point, glm::normalize(y.position - surroundings_.capture));
+  const float larger = enlargement(point.position, y);
+  if (found.density > 0) found.density = larger > 0 ? found.density / larger : 0;
+  return found;
+}
+
+Rgb FiniteSurroundings::background(const vec3& origin, const vec3& wi) const {
+  const Surroundings::Point y = surroundings_.behind(origin, wi);
+  return probe_.radiance(glm::normalize(y.position - surroundings_.capture));
+}
+
+}  // namespace chromeball

@@ -1,0 +1,275 @@
+// `chromeball render` of a scene file with [composite].
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "composite/plate.h"
+#include "gltf_writer.h"
+#include "image/write.h"
+#include "math/hash.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "shared_data.h"
+
+namespace chromeball {
+namespace {
+
+// A quad from corner along a and b.
+int addQuad(GltfWriter& w, const std::string& name, vec3 corner, vec3 a, vec3 b) {
+  std::vector<float> positions;
+  for (const vec3& p : {corner, corner + a, corner + a + b, corner + b})
+    for (int axis = 0; axis < 3; ++axis) positions.push_back(p[axis]);
+  const int material = w.add(
+      "materials",
+      {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}}},
+       {"doubleSided", true}});
+  const int mesh = w.mesh({{"attributes", {{"POSITION", w.vec3s(positions)}}},
+                           {"indices", w.indices({0, 1, 2, 0, 2, 3})},
+                           {"material", material}});
+  return w.add("nodes", {{"name", name}, {"mesh", mesh}});
+}
+
+Image alphaOf(const ImageFile& file) {
+  const auto channel = std::find(file.channels.begin(), file.channels.end(), "alpha.A");
+  Image alpha(file.image.width, file.image.height, 1);
+  for (int y = 0; y < alpha.height; ++y)
+    for (int x = 0; x < alpha.width; ++x)
+      *alpha.at(x, y) = file.image.at(x, y)[channel - file.channels.begin()];
+  return alpha;
+}
+
+// A ground seen from above and a sail that stands on its left half, with a plate and a probe.
+class CommandComposite : public testing::Test {
+ protected:
+  CommandComposite() {
+    addQuad(model_, "ground", {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+    const int sail = addQuad(model_, "sail", {-0.5f, 0, 0.2f}, {0, 0, -0.4f}, {0, 0.5f, 0});
+    model_.add("nodes", {{"name", "boat"}, {"children", {sail}}});
+    model_.root["scenes"] = {{{"nodes", {0, 2}}}};
+    model_.save();
+    writeImage(path("probe.hdr"), overcastProbe({16, 8}, Rgb(1), 0.3));
+    writePlate(path("plate.exr"), 32, 16);
+  }
+
+  std::string path(const std::string& name) const { return (model_.folder() / name).string(); }
+
+  static Image writePlate(const std::string& file, int width, int height) {
+    Image plate(width, height, 3);
+    for (size_t i = 0; i < plate.texels.size(); ++i) plate.texels[i] = toUnit(uint32_t(hash(i)));
+    writeImage(file, plate);
+    return plate;
+  }
+
+  // A scene file with these lines in [composite], and others after it.
+  std::string scene(const std::string& composite, const std::string& others = "") const {
+    std::ofstream(path("scene.toml")) << "model = \"model.gltf\"\n"
+                                         "[camera]\nposition = [0, 4, 0]\nlook_at = [0, 0, 0]\n"
+                                         "up = [0, 0, -1]\nfov = 28\n"
+                                         "[probe]\nfile = \"probe.hdr\"\n"
+                                         "[composite]\n"
+                                      << composite << "\n"
+                                      << others << "\n";
+    return path("scene.toml");
+  }
+
+  CommandResult render(const std::string& scenePath, std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"render", scenePath, "-o", path("out.exr")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    if (std::count(more.begin(), more.end(), "--samples") == 0)
+      arguments.insert(arguments.end(), {"--samples", "16"});
+    return runCommand(arguments);
+  }
+  void refused(const std::string& scenePath, const std::string& reason) const {
+    expectRefused({"render", scenePath, "-o", path("refused.exr")}, reason);
+    EXPECT_FALSE(std::filesystem::exists(path("refused.exr")));
+  }
+
+  GltfWriter model_;
+};
+
+class SlowCommandComposite : public CommandComposite {};
+
+constexpr const char* kGood = "plate = \"plate.exr\"\nlocal_scene = \"ground\"";
+
+TEST_F(CommandComposite, WritesCompositeAndItsIngredients) {
+  const CommandResult r = render(
+      scene(kGood),
+      {"--aov", "l_obj,l_noobj,alpha,difference,variance,albedo", "--stats", path("stats.json")});
+  ASSERT_EQ(r.status, 0) << r.error;
+  const ImageFile file = readImageFile(path("out.exr"));
+  const Image composite = *findColor(file), plate = readImage(path("plate.exr"));
+  ASSERT_EQ(composite.width, 32);  // the plate's size
+  const Image alpha = alphaOf(file), difference = *findLayer(file, "difference");
+  const Image with = *findLayer(file, "l_obj"), without = *findLayer(file, "l_noobj");
+  int objects = 0, shaded = 0, untouched = 0;
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const Rgb c = composite.rgb(x, y), p = plate.rgb(x, y), d = difference.rgb(x, y);
+      const float a = *alpha.at(x, y);
+      objects += a > 0;
+      if (a == 1) {
+        EXPECT_LT(glm::length(c - with.rgb(x, y)), 1e-5f);
+      }
+      if (a > 0) continue;
+      EXPECT_LT(glm::length(d - (with.rgb(x, y) - without.rgb(x, y))), 1e-5f);
+      EXPECT_LT(glm::length(c - glm::max(p + d, 0.0f)), 1e-5f);
+      if (d == Rgb(0)) {
+        EXPECT_EQ(c, p);
+        ++untouched;
+      }
+      shaded += luminance(d) < 0;
+    }
+  EXPECT_GT(objects, 2);
+  EXPECT_GT(shaded, 10);
+  EXPECT_GT(untouched, 100);  // beside the ground
+  const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
+  EXPECT_GT(stats["composite"]["objects"], 0);
+}
+
+TEST_F(SlowCommandComposite, TwoPassesAndRatioComeToMuchTheSame) {
+  ASSERT_EQ(render(scene(kGood), {"--samples", "64"}).status, 0);
+  const Image one = readImage(path("out.exr"));
+  ASSERT_EQ(render(scene(kGood), {"--samples", "64", "--two-pass"}).status, 0);
+  const Image two = readImage(path("out.exr"));
+  double sum = 0;
+  for (size_t i = 0; i < one.texels.size(); ++i) sum += std::abs(one.texels[i] - two.texels[i]);
+  EXPECT_LT(sum / double(one.texels.size()), 0.02);
+  EXPECT_GT(sum, 0);
+  ASSERT_EQ(render(scene(std::string(kGood) + "\nmode = \"ratio\""), {}).status, 0);
+}
+
+// What has 8 bits is decoded from sRGB, and comes back from where nothing changed as it was.
+TEST_F(CommandComposite, PlatesOfEightBitsComeBack) {
+  writePlate(path("plate.png"), 32, 16);
+  const CommandResult r = render(scene("plate = \"plate.png\"\nlocal_scene = \"ground\""),
+                                 {"-o", path("out.png"), "--aov", "difference,alpha"});
+  ASSERT_EQ(r.status, 0) << r.error;
+  EXPECT_NE(r.error.find("sRGB"), std::string::npos) << r.error;
+  const ImageFile file = readImageFile(path("out.exr"));
+  const Image difference = *findLayer(file, "difference"), alpha = alphaOf(file);
+  const Image plate = readImage(path("plate.png")), png = readImage(path("out.png"));
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 32; ++x)
+      if (difference.rgb(x, y) == Rgb(0) && *alpha.at(x, y) == 0) {
+        EXPECT_EQ(png.rgb(x, y), plate.rgb(x, y));
+      }
+}
+
+TEST_F(CommandComposite, PlatesAreScaledInProportion) {
+  ASSERT_EQ(render(scene(kGood), {"--size", "16x8", "--aov", "difference,alpha"}).status, 0);
+  const ImageFile file = readImageFile(path("out.exr"));
+  const Image small = *findColor(file), plate = readImage(path("plate.exr"));
+  ASSERT_EQ(small.width, 16);
+  const Image difference = *findLayer(file, "difference"), alpha = alphaOf(file);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x) {
+      if (difference.rgb(x, y) != Rgb(0) || *alpha.at(x, y) > 0) continue;
+      Rgb mean(0);
+      for (int i = 0; i < 4; ++i) mean += plate.rgb(2 * x + i % 2, 2 * y + i / 2) / 4.0f;
+      EXPECT_LT(glm::length(small.rgb(x, y) - mean), 1e-6f);
+    }
+  expectRefused({"render", scene(kGood), "-o", path("x.exr"), "--size", "16x9"},
+                "plate.exr: the plate has 32x16 pixels, and the picture is to have 16x9");
+}
+
+// A parent speaks for what hangs on it.
+TEST_F(CommandComposite, NodesStandForThoseBelow) {
+  refused(scene("plate = \"plate.exr\"\nlocal_scene = [\"ground\", \"boat\"]"),
+          "every node is part of the local scene");
+}
+
+TEST_F(SlowCommandComposite, RefusesWhatMakesNoSense) {
+  refused(scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
+          "scene.toml:11: local_scene: the model has no node `grund`; did you mean `ground`?");
+  refused(scene("plate = \"none.exr\"\nlocal_scene = \"ground\""), "no such file");
+  refused(scene("plate = \"plate.exr\""), "[composite] has no `local_scene`");
+  refused(scene("local_scene = \"ground\""), "[composite] has no `plate`");
+  refused(scene(std::string(kGood) + "\nmode = \"rato\""), "did you mean `ratio`?");
+  refused(scene(std::string(kGood) + "\nmod = \"ratio\""), "did you mean `mode`?");
+  refused(scene("plate = \"scene.toml\"\nlocal_scene = \"ground\""), "scene.toml");
+  Image plate(32, 16, 3);
+  plate.setRgb(5, 4, Rgb(NAN));
+  plate.setRgb(7, 9, Rgb(INFINITY));
+  writeImage(path("plate.exr"), plate);
+  refused(scene(kGood),
+          "plate.exr: 2 pixels of the plate are NaN or infinite, the first at (5, 4)");
+  expectRefused({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
+                 "--aov", "l_obj"},
+                "--aov: layer `l_obj` is a composite's");
+  expectRefused({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
+                 "--two-pass"},
+                "--two-pass");
+}
+
+TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
+  for (const char* how : {"plate", "flat"}) {
+    const std::string lines = std::string(kGood) + "\nreflectance = \"" + how + "\"";
+    const CommandResult r =
+        render(scene(lines), {"--aov", "reflectance,l_noobj,difference,alpha", "--samples", "256",
+                              "--probe-scale", "3", "--stats", path("stats.json")});
+    ASSERT_EQ(r.status, 0) << r.error;
+    const ImageFile file = readImageFile(path("out.exr"));
+    const Image reflectance = *findLayer(file, "reflectance"), alone = *findLayer(file, "l_noobj");
+    const Image plate = readImage(path("plate.exr"));
+    double error = 0;
+    int known = 0;
+    for (int y = 4; y < 12; ++y)
+      for (int x = 10; x < 22; ++x)
+        if (const Rgb rho = reflectance.rgb(x, y); maxComponent(rho) < 1) {
+          error += glm::length(alone.rgb(x, y) - plate.rgb(x, y));
+          ++known;
+        }
+    EXPECT_GT(known, 50);
+    EXPECT_LT(error / known, 0.05) << how;
+    const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
+    EXPECT_GT(stats["reflectance"]["pixels"], 50);
+  }
+  // Too dark a probe cannot explain the plate.
+  const CommandResult dark =
+      render(scene(std::string(kGood) + "\nreflectance = \"plate\""), {"--probe-scale", "0.2"});
+  EXPECT_NE(dark.error.find("do plate and probe agree in exposure?"), std::string::npos);
+
+  refused(scene(std::string(kGood) + "\nreflectance = \"plat\""), "did you mean `plate`?");
+  refused(scene(std::string(kGood) + "\nspecular = 2"), "`specular` must be a number from 0 to 1");
+  expectRefused({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
+                "layer `reflectance` is found where");
+}
+
+TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
+  const std::string room = "[surroundings]\nshape = \"box\"\nmin = [-2, 0, -2]\n";
+  ASSERT_EQ(render(scene(kGood, room + "max = [2, 5, 2]"), {}).status, 0);
+  refused(scene(kGood, room + "max = [0.5, 5, 2]"), "the model must lie inside [surroundings]");
+  refused(scene(kGood, room + "max = [-3, 5, 2]"), "`max` must be above `min`");
+  refused(scene(kGood, room + "max = [2, 5, 2]\ncapture = [0, 6, 0]"), "lies outside");
+  refused(scene(kGood, "[surroundings]\nshape = \"cone\""), "not \"cone\"");
+  refused(scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]"),
+          "has no `radius`");
+}
+
+// A phone's photograph and the probe that was taken with it.
+TEST_F(SlowCommandComposite, TakesARealPhotograph) {
+  const std::string folder = "reference/differential_rendering/kartikagrawal27/";
+  const auto plate = sharedData(folder + "Materials/empty.jpg");
+  const auto probe = sharedData(folder + "flattened.hdr");
+  if (!plate || !probe) GTEST_SKIP() << folder << " is absent";
+  std::filesystem::create_symlink(*plate, path("photo.jpg"));
+  const CommandResult r = render(scene("plate = \"photo.jpg\"\nlocal_scene = \"ground\""),
+                                 {"--probe", *probe, "--samples", "2", "--size", "408x306",
+                                  "--probe-scale", "0.05", "--aov", "difference,alpha"});
+  ASSERT_EQ(r.status, 0) << r.error;
+  const ImageFile file = readImageFile(path("out.exr"));
+  const Image composite = *findColor(file), photo = scaledPlate(readPlate(*plate), 408, 306, "");
+  const Image difference = *findLayer(file, "difference"), alpha = alphaOf(file);
+  ASSERT_EQ(composite.width, photo.width);
+  size_t untouched = 0;
+  for (int y = 0; y < photo.height; ++y)
+    for (int x = 0; x < photo.width; ++x)
+      if (difference.rgb(x, y) == Rgb(0) && *alpha.at(x, y) == 0) {
+        ASSERT_EQ(composite.rgb(x, y), photo.rgb(x, y));
+        ++untouched;
+      }
+  EXPECT_GT(untouched, photo.texels.size() / 9);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,197 @@
+// The local scene's reflectance, found from a picture of it whose reflectance is known.
+#include "composite/reflectance.h"
+
+#include <gtest/gtest.h>
+
+#include "composite/compose.h"
+#include "composite/render_composite.h"
+#include "probe/irradiance.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kSize = 24;
+const std::atomic<bool> kGoOn = false;
+const auto kQuiet = [](double) {};
+
+Image skyProbe() {
+  Image probe = gradientProbe({32, 16}, Rgb(0.3f, 0.4f, 0.5f), {0.2, 0.7, 0.3});
+  probe.setRgb(9, 3, Rgb(40, 30, 20));
+  return probe;
+}
+
+// A floor, and for a corner a wall beside it, all of it local scene.
+struct Local {
+  Scene scene;
+  Camera camera = Camera::lookAt({0.3f, 2, 2.2f}, {0, 0.3f, 0}, {0, 1, 0}, 0.6f);
+  ObjectMask isObject;
+  Probe probe{skyProbe(), 25};
+
+  Local(const Rgb& floor, std::optional<Rgb> wall) {
+    addQuad(scene, addMaterial(scene, lambert(floor)), {-30, 0, 30}, {60, 0, 0}, {0, 0, -60});
+    if (wall)
+      addQuad(scene, addMaterial(scene, lambert(*wall)), {-30, 0, -0.8f}, {60, 0, 0}, {0, 4, 0});
+    isObject.resize(scene.instances.size(), false);
+  }
+
+  // As a photographer who leaves the probe out of the picture would see it.
+  Image photograph(int samples = 512, uint64_t seed = 1) const {
+    RenderSettings settings = smallRender(kSize, kSize, samples, 8, seed);
+    settings.hideProbe = true;
+    return renderScene(scene, camera, probe, "importance", settings).film.mean();
+  }
+
+  // Forgets the model's reflectance and finds it again from the plate.
+  ReflectanceSolution solve(const Image& plate, int iterations, Projection& projection,
+                            bool projected = true) {
+    if (projected) makeProjected(scene, isObject, projection);
+    const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+    return solveReflectance({scene, isObject, camera, *lighting, plate},
+                            smallRender(kSize, kSize, 512, 8, 2), iterations, projection, kQuiet,
+                            kGoOn);
+  }
+};
+
+// Mean over pixels that see only the floor (below the middle of the picture) or only the wall.
+Rgb meanOf(const Image& image, bool floor) {
+  glm::dvec3 sum(0);
+  int count = 0;
+  for (int y = floor ? 16 : 0; y < (floor ? kSize : 4); ++y)
+    for (int x = 0; x < kSize; ++x) sum += glm::dvec3(image.rgb(x, y)), ++count;
+  return Rgb(sum / double(count));
+}
+
+void expectNear(const Rgb& found, const Rgb& expected, float tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "channel " << c;
+}
+
+// Where nothing of the local scene sees another part of it one iteration is exact, by rendering as
+// by the exact irradiance of the ground's normal.
+TEST(Reflectance, OfAFlatGroundBothWays) {
+  const Rgb truth(0.6f, 0.3f, 0.1f);
+  Local local(truth, std::nullopt);
+  const Image plate = local.photograph();
+  Projection rendered(local.camera, kSize, kSize), exact = rendered;
+  const ReflectanceSolution solution = local.solve(plate, 1, rendered);
+  EXPECT_EQ(solution.clamped, 0u);
+  EXPECT_NEAR(solution.exposureRatio, 1, 0.01);
+  expectNear(meanOf(rendered.colors(), true), truth, 0.006f);
+
+  const auto normal = flatNormal(local.scene, local.isObject);
+  ASSERT_TRUE(normal);
+  EXPECT_EQ(*normal, vec3(0, 1, 0));
+  const Rgb irradiance(exactIrradiance(local.probe.latLong(), {&*normal, 1})[0]);
+  const auto lighting = makeStrategy("importance", local.probe, Mis::Balance, "test");
+  solveFlatReflectance({local.scene, local.isObject, local.camera, *lighting, plate},
+                       smallRender(kSize, kSize, 1, 8), irradiance, exact, kGoOn);
+  expectNear(meanOf(exact.colors(), true), truth, 0.006f);
+  expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
+}
+
+TEST(Reflectance, OnlyAFlatGroundIsFlat) {
+  EXPECT_FALSE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, false}));
+  EXPECT_TRUE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, true}));
+  Scene steps;
+  for (float height : {0.0f, 0.1f})
+    addQuad(steps, addMaterial(steps, lambert(Rgb(1))), {-1, height, 1}, {2, 0, 0}, {0, 0, -2});
+  EXPECT_FALSE(flatNormal(steps, {false, false}));
+}
+
+// In a corner the walls light each other: the first guess is off, the iterations are not.
+TEST(SlowReflectance, OfACornerConverges) {
+  const Rgb floor(0.8f, 0.7f, 0.6f), wall(0.9f, 0.5f, 0.3f);
+  const Image plate = Local(floor, wall).photograph();
+  double before = 1;
+  for (int iterations : {1, 2, 4}) {
+    Local local(floor, wall);
+    Projection projection(local.camera, kSize, kSize);
+    const ReflectanceSolution solution = local.solve(plate, iterations, projection);
+    const double error = glm::length(meanOf(projection.colors(), true) - floor) +
+                         glm::length(meanOf(projection.colors(), false) - wall);
+    EXPECT_LT(error, before) << iterations;
+    EXPECT_LT(solution.lastChange, iterations == 4 ? 0.02 : 1);
+    before = error;
+  }
+  EXPECT_LT(before, 0.04);
+}
+
+// Solved and projected, the local scene alone looks like the plate, whatever is painted there; and
+// so does what a small mirror shows of it.
+TEST(SlowReflectance, MakesTheLocalSceneLookLikeThePlate) {
+  Local local(Rgb(0.5f), std::nullopt);
+  Image plate = local.photograph();
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const Rgb paint = x < kSize / 2 ? Rgb(0.2f, 1, 0.5f) : Rgb(1.6f, 0.4f, 1);
+      plate.setRgb(x, y, plate.rgb(x, y) * paint);
+    }
+  Projection projection(local.camera, kSize, kSize);
+  local.solve(plate, 1, projection);
+  const Image again = local.photograph(512, 5);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(again.rgb(x, y)[c] / plate.rgb(x, y)[c], 1, 0.12) << x << " " << y;
+
+  constexpr float kBottom = 0.05f, kTop = 0.35f, kHalfWidth = 0.25f;
+  Material mirror;
+  mirror.roughness = 0;
+  addQuad(local.scene, addMaterial(local.scene, mirror), {-kHalfWidth, kBottom, 0.5f},
+          {2 * kHalfWidth, 0, 0}, {0, kTop - kBottom, 0});
+  const Image mirrored = local.photograph(512, 6);
+  const CameraRays rays(local.camera, 1);
+  Projection photograph = projection;
+  photograph.colors() = plate;
+  int compared = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      // Where the corners of the pixel land on the floor by way of the mirror.
+      std::optional<Rgb> colour;
+      bool isWhole = true;
+      for (int corner = 0; corner < 4; ++corner) {
+        vec3 origin, direction;
+        rays.ray(float(x + corner % 2) / kSize, float(y + corner / 2) / kSize, origin, direction);
+        const vec3 onMirror = origin + (0.5f - origin.z) / direction.z * direction;
+        isWhole &= std::abs(onMirror.x) < kHalfWidth && onMirror.y > kBottom && onMirror.y < kTop;
+        const vec3 back(direction.x, direction.y, -direction.z);
+        const auto found = photograph.lookup(onMirror - onMirror.y / back.y * back);
+        isWhole &= found && (!colour || glm::length(*colour - *found) < 0.1f * glm::length(*found));
+        colour = found;
+      }
+      if (!isWhole) continue;
+      ++compared;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mirrored.rgb(x, y)[c] / (*colour)[c], 1, 0.2) << x << " " << y;
+    }
+  EXPECT_GE(compared, 6);
+}
+
+// A plate twice as bright as the probe explains asks for more than all light, and says by how much.
+TEST(Reflectance, SaysWhenExposuresDisagree) {
+  Local local(Rgb(0.7f), std::nullopt);
+  Image plate = local.photograph();
+  for (float& texel : plate.texels) texel *= 2;
+  Projection projection(local.camera, kSize, kSize);
+  const ReflectanceSolution solution = local.solve(plate, 1, projection);
+  EXPECT_GT(solution.clamped, solution.pixels / 2);
+  EXPECT_NEAR(solution.exposureRatio, 2, 0.03);
+  EXPECT_LE(maxComponent(meanOf(projection.colors(), true)), 1);
+}
+
+// The highlights of a polished floor are taken off the plate before it is solved.
+TEST(SlowReflectance, OfAGlossyFloorLeavesItsHighlightsOut) {
+  const Rgb truth(0.3f, 0.2f, 0.1f);
+  Local local(truth, std::nullopt);
+  makeGlossy(local.scene, local.isObject, 1, 0.3f);
+  const Image plate = local.photograph(1024);
+  Projection projection(local.camera, kSize, kSize);
+  makeProjected(local.scene, local.isObject, projection);
+  makeGlossy(local.scene, local.isObject, 1, 0.3f);
+  local.solve(plate, 1, projection, false);
+  expectNear(meanOf(projection.colors(), true), truth, 0.012f);
+}
+
+}  // namespace
+}  // namespace chromeball

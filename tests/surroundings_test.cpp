@@ -1,0 +1,171 @@
+// Surroundings at a finite distance.
+#include <gtest/gtest.h>
+
+#include "lighting/finite_surroundings.h"
+#include "measure/statistics.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+Surroundings room() {
+  Surroundings s;
+  s.shape = Surroundings::Shape::Box;
+  s.min = {-2, 0, -3}, s.max = {3, 2.5f, 2};
+  s.capture = {0.5f, 1, -0.5f};
+  return s;
+}
+
+Surroundings dome() {
+  Surroundings s;
+  s.shape = Surroundings::Shape::Sphere;
+  s.center = {0.3f, 0.2f, 0}, s.radius = 3;
+  s.capture = {0, 1, 0.4f};
+  return s;
+}
+
+Image spotted() {
+  Image probe = gradientProbe({32, 16}, Rgb(0.3f), {0.2, 0.6, 0.3});
+  probe.setRgb(12, 4, Rgb(60, 40, 30));
+  return probe;
+}
+
+vec3 sphereDirection(int i) {
+  return squareToUniformSphere({toUnit(uint32_t(hash(2 * i))), toUnit(uint32_t(hash(2 * i + 1)))});
+}
+
+TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
+  for (const Surroundings& s : {room(), dome()})
+    for (int i = 0; i < 500; ++i) {
+      const vec3 from = s.capture + 0.9f * toUnit(uint32_t(hash(i, 7))) * sphereDirection(i + 1000);
+      const vec3 d = sphereDirection(i);
+      const Surroundings::Point y = s.behind(from, d);
+      EXPECT_LT(glm::length(glm::normalize(y.position - from) - d), 1e-5f);
+      EXPECT_LT(glm::dot(y.normal, d), 0);
+      EXPECT_TRUE(s.contains(y.position + 1e-3f * y.normal));
+      EXPECT_FALSE(s.contains(y.position - 1e-3f * y.normal));
+    }
+}
+
+constexpr const char* kStrategies[] = {
+    "bsdf", "uniform", "importance", "suns", "kollig-keller-strata:4", "irradiance-fit-ambient:8"};
+
+std::unique_ptr<LightingStrategy> inside(const Surroundings& s, const char* name,
+                                         const Probe& probe) {
+  return std::make_unique<FiniteSurroundings>(makeStrategy(name, probe, Mis::Balance, "test"),
+                                              probe, s);
+}
+
+Moments floorRadiance(const LightingStrategy& lighting, const Camera& camera, int repeats) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},
+          {0, 0, -3.8f});
+  const Accel accel(scene);
+  const std::atomic<bool> stop = false;
+  std::vector<double> means;
+  for (int i = 0; i < repeats; ++i) {
+    const RenderSettings settings = smallRender(4, 4, 512, 1, uint64_t(i));
+    means.push_back(
+        luminance(meanColor(render(
+                                scene, accel, camera, lighting, settings, [](double) {}, stop)
+                                .film.mean())));
+  }
+  return Moments::of(means);
+}
+
+// Looks down on a hand's breadth of the floor about (x, z).
+Camera above(float x, float z) {
+  return Camera::lookAt({x, 1.5f, z}, {x, 0, z}, {0, 0, -1}, 0.02f);
+}
+
+// In equally bright surroundings it does not matter where they are.
+TEST(Surroundings, ConstantOnesAreTheSameEverywhere) {
+  const Probe probe(constantProbe({8, 4}, Rgb(2)));
+  for (const Surroundings& s : {room(), dome()})
+    for (const char* name : {"bsdf", "uniform", "importance"})
+      for (const vec2 at : {vec2(0, 0), vec2(-1, 1)}) {
+        const Moments m = floorRadiance(*inside(s, name, probe), above(at.x, at.y), 6);
+        EXPECT_NEAR(m.mean, 1, 0.01) << name;
+      }
+}
+
+// Irradiance of the floor by brute force: E = integral over the upper hemisphere of L cos.
+double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x) {
+  constexpr int kRows = 300;
+  double sum = 0;
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < 4 * kRows; ++j) {
+      const double cosine = (i + 0.5) / kRows, sine = std::sqrt(1 - cosine * cosine);
+      const double phi = 2 * kPiD * (j + 0.5) / (4 * kRows);
+      const vec3 d(sine * std::sin(phi), cosine, sine * std::cos(phi));
+      const vec3 y = s.behind(x, d).position;
+      sum += luminance(probe.radiance(glm::normalize(y - s.capture))) * cosine;
+    }
+  return sum * 2 * kPiD / kRows / (4 * kRows);
+}
+
+// Every strategy finds the light that is there, at places that see it differently. Those that
+// replace the probe by lights have them on the walls, where one that is near shows by itself.
+TEST(SlowSurroundings, LightChangesWithThePlace) {
+  const Probe probe(spotted(), 25);
+  double near = 0, far = 0;
+  for (const Surroundings& s : {room(), dome()})
+    for (const char* name : kStrategies) {
+      const auto lighting = inside(s, name, probe);
+      for (const vec2 at : {vec2(0.5f, -0.5f), vec2(-1.5f, 1.5f)}) {
+        const double expected = 0.5 / kPiD * floorIrradiance(s, probe, {at.x, 0.001f, at.y});
+        (at.x > 0 ? near : far) = expected;
+        const Moments m = floorRadiance(*lighting, above(at.x, at.y), 6);
+        if (lighting->unbiased() && std::string(name) != "suns") {
+          EXPECT_GT(tTest(m, expected), sidak(1e-3, 20))
+              << name << " " << m.mean << " " << expected;
+        }
+        EXPECT_NEAR(m.mean / expected, 1, lighting->unbiased() ? 0.03 : 0.3) << name;
+      }
+      EXPECT_GT(std::abs(near / far - 1), 0.05);
+    }
+}
+
+// What sample() says of a direction is what escaped() says of it.
+TEST(Surroundings, DensitiesAgree) {
+  const Probe probe(spotted(), 25);
+  const SobolTable table(64, 16, 0);
+  PixelSampler sampler(table, 0);
+  for (const Surroundings& s : {room(), dome()})
+    for (const char* name : {"uniform", "importance"}) {
+      const auto lighting = inside(s, name, probe);
+      for (uint32_t i = 0; i < 640; ++i) {
+        sampler.startPixel(i / 64, 3, 0);
+        sampler.startSample(i % 64);
+        sampler.startVertex(0);
+        const LightPoint point{{-1, 0.5f, 0.7f}, {0, 1, 0}, {0, 1, 0}, nullptr, 0};
+        std::vector<DirectionSample> samples;
+        lighting->sample(point, sampler, samples);
+        for (const DirectionSample& sample : samples) {
+          const auto found = lighting->escaped(point, sample.wi);
+          // A sample at the rim of the one bright texel may be seen from its other side.
+          EXPECT_NEAR(found.density / sample.density, 1, 5e-3) << name;
+          const Rgb radiance = sample.irradiance * sample.density;
+          EXPECT_LT(glm::length(found.radiance - radiance), 5e-3f * (1 + glm::length(radiance)));
+        }
+      }
+    }
+}
+
+// Far away they are the distant probe.
+TEST(Surroundings, FarAwayTheyAreTheProbe) {
+  Surroundings s = dome();
+  s.radius = 1e4f;
+  s.capture = s.center;
+  const Probe probe(spotted());
+  const auto lighting = inside(s, "importance", probe);
+  for (int i = 0; i < 200; ++i) {
+    const vec3 d = sphereDirection(i);
+    EXPECT_LT(glm::length(lighting->background({1, -1, 0.5f}, d) - probe.radiance(d)),
+              0.02f + 0.01f * glm::length(probe.radiance(d)));
+  }
+}
+
+}  // namespace
+}  // namespace chromeball

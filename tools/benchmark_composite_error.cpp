@@ -1,0 +1,135 @@
+// What a local scene that is not quite right costs a composite: the terrace with its objects put
+// in, against a picture of terrace and objects together. Errors are of the pixels that see the
+// local scene where the objects change it by more than 2%; the difference formula against the
+// ratio.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "composite/compose.h"
+#include "composite/local_scene.h"
+#include "composite/reflectance.h"
+#include "composite/render_composite.h"
+#include "demo/terrace.h"
+#include "scene/gltf.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kColumns = 120, kRows = 80, kTruthSamples = 1024, kCompositeSamples = 256;
+const std::atomic<bool> kGoOn = false;
+const auto kQuiet = [](double) {};
+
+Scene load(demo::Terrace what) {
+  const auto file = std::filesystem::temp_directory_path() / "chromeball-terrace.glb";
+  demo::writeTerrace(file, what);
+  Scene scene = loadGltf(file, {}, [](const std::string&) {});
+  std::filesystem::remove(file);
+  return scene;
+}
+
+RenderSettings settingsOf(int samples, uint64_t seed) {
+  RenderSettings s;
+  s.width = kColumns, s.height = kRows, s.samples = samples, s.seed = seed;
+  s.hideProbe = true;
+  return s;
+}
+
+Image picture(demo::Terrace what, const Probe& probe, uint64_t seed) {
+  const Scene scene = load(what);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  return render(scene, Accel(scene), scene.cameras.front(), *lighting,
+                settingsOf(kTruthSamples, seed), kQuiet, kGoOn)
+      .film.mean();
+}
+
+struct Truth {
+  Image probe = demo::terraceProbe(512);
+  Image plate = picture(demo::Terrace::Photograph, Probe(probe), 1);
+  Image whole = picture(demo::Terrace::Whole, Probe(probe), 2);
+
+  static const Truth& get() {
+    static const Truth truth;
+    return truth;
+  }
+};
+
+enum class Reflectance { True, Grey, Solved };
+struct Mistake {
+  Reflectance reflectance = Reflectance::True;
+  float albedo = 1;    // factor on the local scene's
+  float exposure = 1;  // factor on the probe
+  int maxDepth = 8;
+};
+
+void errorOf(const Image& found, const DifferentialFilm& film, const char* name,
+             benchmark::State& state) {
+  const Truth& truth = Truth::get();
+  double squares = 0, sum = 0, reference = 0;
+  int count = 0;
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x) {
+      const double plate = luminance(truth.plate.rgb(x, y)),
+                   whole = luminance(truth.whole.rgb(x, y));
+      if (film.at(x, y).covered > 0 || !(std::abs(whole - plate) > 0.02 * plate)) continue;
+      const double error = luminance(found.rgb(x, y)) - whole;
+      squares += error * error / (whole * whole + 0.01);
+      sum += error, reference += whole, ++count;
+    }
+  state.counters[std::string(name) + " rel. RMSE %"] = 100 * std::sqrt(squares / count);
+  state.counters[std::string(name) + " bias %"] = 100 * sum / reference;
+}
+
+void compositeError(benchmark::State& state, const Mistake& mistake) {
+  const Truth& truth = Truth::get();
+  const bool isTrue = mistake.reflectance == Reflectance::True;
+  Scene scene = load(isTrue ? demo::Terrace::Whole : demo::Terrace::Model);
+  const ObjectMask isObject =
+      findObjects(scene, {{"floor", ""}, {"wall", ""}, {"pillar", ""}, {"vase", ""}}, "");
+  for (size_t i = 0; i < isObject.size(); ++i)
+    if (!isObject[i]) {
+      vec4& color = scene.materials[size_t(scene.instances[i].material)].baseColor;
+      color = vec4(Rgb(color) * mistake.albedo, color.w);
+    }
+  const Probe probe(truth.probe, 0, mistake.exposure);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  const Camera& camera = scene.cameras.front();
+  RenderSettings settings = settingsOf(kCompositeSamples, 3);
+  settings.maxDepth = mistake.maxDepth;
+
+  Projection projection(camera, kColumns, kRows);
+  if (mistake.reflectance == Reflectance::Solved) makeProjected(scene, isObject, projection);
+  for (auto _ : state) {
+    if (mistake.reflectance == Reflectance::Solved)
+      solveReflectance({scene, isObject, camera, *lighting, truth.plate}, settings, 2, projection,
+                       kQuiet, kGoOn);
+    const CompositeRender r =
+        renderComposite(scene, Accel(scene), isObject, camera, *lighting, truth.plate, settings,
+                        Passes::One, false, kQuiet, kGoOn);
+    for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
+      errorOf(compose(r.film, r.mean, truth.plate, mode).color, r.film,
+              mode == CompositeMode::Difference ? "difference" : "ratio", state);
+  }
+}
+
+#define MISTAKE(name, ...)                                     \
+  BENCHMARK_CAPTURE(compositeError, name, Mistake __VA_ARGS__) \
+      ->Iterations(1)                                          \
+      ->Unit(benchmark::kMillisecond)
+MISTAKE(none, {});
+MISTAKE(reflectance solved from the plate, {.reflectance = Reflectance::Solved});
+MISTAKE(grey 0.3 everywhere, {.reflectance = Reflectance::Grey});
+MISTAKE(reflectance - 30 %, {.albedo = 0.7f});
+MISTAKE(reflectance - 10 %, {.albedo = 0.9f});
+MISTAKE(reflectance + 10 %, {.albedo = 1.1f});
+MISTAKE(reflectance + 30 %, {.albedo = 1.3f});
+MISTAKE(probe - 30 %, {.exposure = 0.7f});
+MISTAKE(probe - 10 %, {.exposure = 0.9f});
+MISTAKE(probe + 10 %, {.exposure = 1.1f});
+MISTAKE(probe + 30 %, {.exposure = 1.3f});
+MISTAKE(probe - 30 % and solved, {.reflectance = Reflectance::Solved, .exposure = 0.7f});
+MISTAKE(no interreflection, {.maxDepth = 1});
+#undef MISTAKE
+
+}  // namespace
+}  // namespace chromeball
