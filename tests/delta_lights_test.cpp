@@ -199,7 +199,7 @@ TEST(DeltaLights, blackProbesGiveBlackPictures) {
         "cube-grid:2", "penrose:4", "irradiance-fit:2", "irradiance-fit-ambient:2"}) {
     const RenderResult r =
         renderScene(mattePlane(Rgb(1)), topCamera(3, 40), probe, strategy, smallRender(4, 4, 4, 2));
-    EXPECT_EQ(r.invalid.count, 0u) << strategy;
+    EXPECT_EQ(r.invalid.total(), 0u) << strategy;
     EXPECT_EQ(meanColor(r.film.mean()), Rgb(0)) << strategy;
   }
 }

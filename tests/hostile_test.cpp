@@ -44,7 +44,7 @@ std::string refusalOfModel(const fs::path& path) {
     const Probe probe(constantProbe({8, 4}, Rgb(1)));
     const RenderResult result =
         renderScene(scene, framingCamera(scene, 1), probe, "importance", smallRender(8, 8, 2, 4));
-    EXPECT_EQ(result.invalid.count, 0u) << path;
+    EXPECT_EQ(result.invalid.total(), 0u) << path;
     return "";
   } catch (const InputError& error) {
     const std::string message = error.what();

@@ -21,7 +21,7 @@ std::vector<std::vector<double>> tileMeans(const Named& named, const char* strat
     RenderSettings settings = smallRender(kSize, kSize, 64, 6, firstSeed + uint64_t(repeat));
     settings.mis = mis;
     const RenderResult r = renderScene(named.scene, camera, probe, strategy, settings);
-    EXPECT_EQ(r.invalid.count, 0u);
+    EXPECT_EQ(r.invalid.total(), 0u);
     const Image image = r.film.mean();
     for (int ty = 0; ty < tiles; ++ty)
       for (int tx = 0; tx < tiles; ++tx) {

@@ -1,27 +1,48 @@
 #include "load_scene.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "composite/differential.h"
 #include "lighting/finite_surroundings.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "picture_memory.h"
 #include "scene/framing.h"
 #include "scene/gltf.h"
 
 namespace chromeball {
 namespace {
 
-Scene loadModels(const SceneFile& file, std::vector<std::string>& notes) {
+constexpr double kWorthSaying = 1e9;  // bytes
+
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin, std::vector<std::string>& notes) {
   Scene scene;
+  notes.clear();
   const auto note = [&](const std::string& line) { notes.push_back(line); };
-  for (const ModelEntry& model : file.models)
-    append(scene, loadGltf(model.file, model.placement, note, model.choice));
+  for (const ModelEntry& model : file.models) {
+    GltfChoice choice = model.choice;
+    choice.origin = origin;
+    append(scene, loadGltf(model.file, model.placement, note, choice));
+  }
   if (scene.instances.empty())
     throwInput("{}: the model has no triangles to render", file.models.front().file);
   return scene;
+}
+
+// A float tells points apart that differ by 1e-7 of their distance from the origin. A scene much
+// farther from there than it is large is seen from its own centre instead; a probe, infinitely far
+// away, looks the same.
+glm::dvec3 originFor(const Scene& scene, const std::string& file) {
+  constexpr float kFarthest = 1e9f, kFar = 1000;
+  const Bounds box = bounds(scene);
+  const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+  if (!(maxComponent(reach) < kFarthest))
+    throwInput(
+        "{}: reaches {:.3g} m from the origin; at most {:.0e} can be rendered: scale it down", file,
+        maxComponent(reach), kFarthest);
+  const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+  const double size = glm::length(glm::dvec3(box.max) - glm::dvec3(box.min));
+  return glm::length(centre) > kFar * size ? centre : glm::dvec3(0);
 }
 
 // The probe as a lat-long map; black where the scene lights itself.
@@ -79,13 +100,14 @@ void chooseSize(RenderJob& job, const Scene& scene) {
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
   constexpr double kCompositeBytes = sizeof(DifferentialPixel) + 60;  // plate, mean, variance, ...
-  const double needed = double(settings.width) * settings.height *
-                        (Film::bytesPerPixel() + 16.0 * double(settings.aovs.size()) +
-                         (job.file.composite ? kCompositeBytes : 0));
-  const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (needed > 0.8 * available)
-    throwInput("--size: a picture of {}x{} needs {:.1f} GB of memory, and there are {:.1f}",
-               settings.width, settings.height, needed * 1e-9, available * 1e-9);
+  const double needed = pictureBytes(settings) + (job.file.composite ? kCompositeBytes : 0) *
+                                                     settings.width * settings.height;
+  const double budget = job.memory.value_or(memoryBudget());
+  if (needed > budget)
+    throwInput(
+        "--size: a picture of {}x{} takes {:.3g} GB of memory, and {:.3g} may be used; "
+        "--memory GB changes that",
+        settings.width, settings.height, needed * 1e-9, budget * 1e-9);
 }
 
 void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
@@ -101,7 +123,12 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 
 LoadedScene loadScene(RenderJob& job) {
   std::vector<std::string> notes;
-  Scene scene = loadModels(job.file, notes);
+  Scene scene = loadModels(job.file, glm::dvec3(0), notes);
+  if (const glm::dvec3 origin = originFor(scene, job.file.models.front().file);
+      origin != glm::dvec3(0)) {
+    scene = loadModels(job.file, origin, notes);
+    if (job.file.camera) job.file.camera->position -= vec3(origin);
+  }
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));
   if (job.file.surroundings)
@@ -123,6 +150,10 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
   for (const std::string& note : loaded.modelNotes) warn(note);
+  const RenderSettings& s = job.settings;
+  if (const double bytes = pictureBytes(s); bytes > kWorthSaying && !quiet)
+    fmt::print(stderr, "chromeball: a picture of {}x{} takes {:.3g} GB of memory\n", s.width,
+               s.height, bytes * 1e-9);
   if (!job.file.probe) {
     if (!quiet && !loaded.scene.lights.empty())
       fmt::print(stderr, "chromeball: {}: no probe; its {} lights shine alone\n",

@@ -1,6 +1,7 @@
 // The command line: finds the subcommand, and turns every failure into one line and an exit status.
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 
@@ -79,6 +80,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, no more
   try {
     return run(argc, argv);
   } catch (const InputError& error) {

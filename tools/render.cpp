@@ -69,7 +69,13 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
        {{"camera", result.rays.camera},
         {"shadow", result.rays.shadow},
         {"bounce", result.rays.bounce}}},
-      {"invalid_samples", result.invalid.count},
+      {"invalid_samples", result.invalid.total()},
+      {"invalid",
+       {{"nan", result.invalid.of(Defect::Nan)},
+        {"infinite", result.invalid.of(Defect::Infinite)},
+        {"negative", result.invalid.of(Defect::Negative)}}},
+      {"clamped",
+       {{"samples", result.clamped.count}, {"light_removed", result.clamped.shareRemoved()}}},
       {"noise", noise},  // NaN becomes null
       {"triangles", scene.triangleCount()},
       {"scene_bytes", scene.byteCount()},
@@ -85,6 +91,10 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
                 {"seconds", float(seconds.render)},
                 {"rays", std::to_string(rays)},
                 {"noise", float(noise)}};
+  if (job.settings.clamp) {
+    r.metadata["clamp"] = *job.settings.clamp;
+    r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
+  }
   return r;
 }
 
@@ -126,6 +136,19 @@ Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Acce
 void writeStats(const std::string& path, const nlohmann::json& json) {
   const std::string text = json.dump(2) + "\n";
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+// Light that the picture lacks is never passed over in silence.
+void sayWhatIsMissing(const RenderResult& result) {
+  if (const InvalidSamples& invalid = result.invalid; invalid.total())
+    warn(fmt::format(
+        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
+        "first at pixel ({}, {}); --aov invalid shows where",
+        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
+        invalid.of(Defect::Negative), invalid.x, invalid.y));
+  if (result.clamped.count)
+    warn(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the picture's light",
+                     result.clamped.count, 100 * result.clamped.shareRemoved()));
 }
 
 void render(const RenderOptions& options) {
@@ -171,11 +194,7 @@ void render(const RenderOptions& options) {
   report.json.update(rendered.details);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
-  if (result.invalid.count)
-    warn(
-        fmt::format("{} invalid samples (NaN, infinite or negative) were left out, one at pixel "
-                    "({}, {})",
-                    result.invalid.count, result.invalid.x, result.invalid.y));
+  sayWhatIsMissing(result);
   for (const std::string& note : rendered.notes) warn(note);
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
   if (!options.quiet)
@@ -198,6 +217,8 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');
+  command->add_option("--clamp", o.clamp,
+                      "Scale samples down whose largest channel exceeds this (none is clamped)");
   command->add_option("--stats", o.stats, "Write times, rays and noise to this .json");
   command->add_flag("--two-pass", o.twoPass,
                     "Of a composite: two renders, subtracted; slow, to check the one pass by");

@@ -8,6 +8,7 @@
 #include "image/write.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "output_file.h"
 
 namespace chromeball {
 namespace {
@@ -63,6 +64,9 @@ void checkRanges(const RenderOptions& o) {
     require(std::isfinite(*o.animationTime), "--animation-time", *o.animationTime,
             "a finite number of seconds");
   require(std::isfinite(o.exposure), "--exposure", o.exposure, "a finite number of stops");
+  if (o.memory)
+    require(*o.memory > 0 && std::isfinite(*o.memory), "--memory", *o.memory, "above 0 GB");
+  if (o.clamp) require(*o.clamp > 0 && std::isfinite(*o.clamp), "--clamp", *o.clamp, "above 0");
   require(o.threads >= 0, "--threads", o.threads, "0 (all) or more");
 }
 
@@ -109,6 +113,7 @@ RenderJob planJob(const RenderOptions& o) {
     job.size = SceneFile::Size{size.width, size.height};
   }
   job.strategy = file.strategy.value_or(NamedSetting{"auto", "--strategy"});
+  if (o.memory) job.memory = *o.memory * 1e9;
   job.display = {parseToneOperator(o.tonemap), o.exposure};
 
   RenderSettings& settings = job.settings;
@@ -119,6 +124,7 @@ RenderJob planJob(const RenderOptions& o) {
   settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
   settings.seed = file.seed.value_or(0);
   settings.hideProbe = o.transparent;
+  settings.clamp = o.clamp;
   if (o.allowExternal)
     for (ModelEntry& model : file.models) model.choice.external = ExternalFiles::Allow;
   if (file.mis) settings.mis = parseMis(*file.mis);
@@ -145,6 +151,7 @@ void planOutputs(RenderJob& job, const RenderOptions& options) {
   if (job.outputs.empty())
     throwInput("{}: nowhere to write the picture; give --output FILE", options.scene);
   for (const std::string& output : job.outputs) checkWritable(output);
+  if (!options.stats.empty()) checkOutputFile(options.stats, {".json"});
 }
 
 void addSceneOptions(CLI::App& command, RenderOptions& o) {
@@ -166,6 +173,8 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--threads", o.threads, "Number of threads (all)");
   command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
   command.add_option("--exposure", o.exposure, "For .png: stops");
+  command.add_option("--memory", o.memory,
+                     "Refuse pictures that take more than this, in GB (0.8 times the machine's)");
   command.add_flag("--allow-external", o.allowExternal,
                    "Let models name files outside their own folders");
   command.add_flag("--progress", o.progress, "Show progress even where it is no terminal");

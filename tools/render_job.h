@@ -17,9 +17,9 @@ struct RenderOptions {
   std::string scene;
   std::vector<std::string> outputs, aovs;
   std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation, variant;
-  std::optional<float> rotation, scale;
+  std::optional<float> rotation, scale, clamp;
   std::optional<int> samples, maxDepth;
-  std::optional<double> time, noise, animationTime;
+  std::optional<double> time, noise, animationTime, memory;
   std::optional<uint64_t> seed;
   int threads = 0;
   std::string stats;
@@ -33,6 +33,7 @@ struct RenderJob {
   SceneFile file;           // models, camera, probe
   RenderSettings settings;  // but for the size, which the camera may decide
   std::optional<SceneFile::Size> size;
+  std::optional<double> memory;  // the most the picture may take, in bytes
   NamedSetting strategy;
   std::vector<std::string> outputs;
   DisplayTransform display;

@@ -86,7 +86,7 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
   const RayCounts& rays = result.rays;
   store_.save(key, {result.film.mean(), double(result.samples), seconds, built.prepareSeconds,
                     result.film.noise(), double(rays.camera + rays.shadow + rays.bounce),
-                    double(result.invalid.count)});
+                    double(result.invalid.total())});
   ++stored_;
 }
 

@@ -96,7 +96,7 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
       [&](double share) { progress((1 + share) / 2); }, stop);
   result.rays.add(without.rays);
   result.interrupted |= without.interrupted;
-  result.invalid.count += without.invalid.count;
+  result.invalid.add(without.invalid);
   Image mean = combined(result.film.mean(), without.film.mean(), -1);
   Image variance =
       combined(result.film.squaredStandardError(), without.film.squaredStandardError(), 1);

@@ -20,7 +20,8 @@ const std::vector<AovInfo>& allAovs() {
       {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
       {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
       {Aov::WithObjects, "l_obj", "RGB"}, {Aov::WithoutObjects, "l_noobj", "RGB"},
-      {Aov::Difference, "difference", "RGB"}, {Aov::Reflectance, "reflectance", "RGB"}};
+      {Aov::Difference, "difference", "RGB"}, {Aov::Reflectance, "reflectance", "RGB"},
+      {Aov::Invalid, "invalid", "RGB"}};
   return infos;
 }
 
@@ -35,48 +36,58 @@ Aov aovFromName(const std::string& name, const std::string& place) {
   throwInput("{}: AOV `{}` is not known; {}", place, name, didYouMean(name, names));
 }
 
-AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted) {
+AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
+    : width_(width), height_(height) {
+  const size_t pixels = size_t(width) * height;
   for (Aov aov : wanted) {
     if (aov == Aov::Variance || aov == Aov::Samples || isOfComposite(aov)) continue;
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
-    sums_.push_back({aov, Image(width, height, channels)});
+    sums_.push_back({aov, channels, std::vector<double>(pixels * channels)});
   }
-  if (!sums_.empty()) samples_ = hits_ = Image(width, height, 1);
+  if (sums_.empty()) return;
+  samples_.resize(pixels);
+  hits_.resize(pixels);
 }
 
 void AovFilm::add(int x, int y, const FirstHit& first) {
-  *samples_.at(x, y) += 1;
+  const size_t at = pixel(x, y);
+  ++samples_[at];
   if (!first.hit) return;
-  const bool isFirst = *hits_.at(x, y) == 0;
-  *hits_.at(x, y) += 1;
+  const bool isFirst = hits_[at]++ == 0;
+  const auto addRgb = [](double* to, const vec3& v) {
+    for (int c = 0; c < 3; ++c) to[c] += v[c];
+  };
   for (Sum& sum : sums_) {
-    float* to = sum.image.at(x, y);
+    double* to = &sum.sums[at * sum.channels];
     switch (sum.aov) {
-      case Aov::Albedo: sum.image.setRgb(x, y, sum.image.rgb(x, y) + first.albedo); break;
-      case Aov::Normal: sum.image.setRgb(x, y, sum.image.rgb(x, y) + first.normal); break;
+      case Aov::Albedo: addRgb(to, first.albedo); break;
+      case Aov::Normal: addRgb(to, first.normal); break;
       case Aov::Depth: *to += first.depth; break;
-      case Aov::Material: if (isFirst) *to = float(first.material + 1); break;
-      case Aov::Node: if (isFirst) *to = float(first.node + 1); break;
+      case Aov::Material: if (isFirst) *to = first.material + 1; break;
+      case Aov::Node: if (isFirst) *to = first.node + 1; break;
+      case Aov::Alpha: *to += 1; break;
       default: break;  // known otherwise
     }
   }
 }
 
+void AovFilm::add(int x, int y, Defect defect) {
+  for (Sum& sum : sums_)
+    if (sum.aov == Aov::Invalid) sum.sums[pixel(x, y) * sum.channels + size_t(defect)] += 1;
+}
+
 Image AovFilm::finished(Aov aov) const {
   for (const Sum& sum : sums_) {
     if (sum.aov != aov) continue;
-    Image image = aov == Aov::Alpha ? hits_ : sum.image;
-    if (aov == Aov::Material || aov == Aov::Node) return image;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const float hits = *hits_.at(x, y);
-        float* texel = image.at(x, y);
-        if (aov == Aov::Depth)
-          *texel = hits > 0 ? *texel / hits : kNoDepth;
-        else
-          for (int c = 0; c < image.channels; ++c)
-            texel[c] /= std::max(*samples_.at(x, y), 1.0f);  // a render may stop before any
-      }
+    Image image(width_, height_, sum.channels);
+    for (size_t i = 0; i < image.texels.size(); ++i) {
+      const size_t at = i / sum.channels;
+      double share = 1;
+      if (aov == Aov::Depth) share = hits_[at];
+      if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
+        share = std::max(samples_[at], 1u);  // a render may stop before any
+      image.texels[i] = share > 0 ? float(sum.sums[i] / share) : kNoDepth;
+    }
     return image;
   }
   return {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "film/invalid.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -11,9 +12,9 @@ namespace chromeball {
 // What a camera ray met first.
 struct FirstHit {
   bool hit = false;
-  float depth = 0;             // metres along the camera's axis
-  Rgb albedo{0};               // base colour
-  vec3 normal{0};              // unit shading normal, world space
+  float depth = 0;  // metres along the camera's axis
+  Rgb albedo{0};    // base colour
+  vec3 normal{0};   // unit shading normal, world space
   int material = -1, node = -1;
 };
 
@@ -23,9 +24,10 @@ struct FirstHit {
 //   l_obj, l_noobj, difference    radiance with the objects, without, and what they change
 //   reflectance                   of the local scene (these four: of composites only)
 //   variance        squared standard error of the pixel (Film)        samples  their number (Film)
+//   invalid         number of samples left out: R those with a NaN, G infinite, B negative ones
 enum class Aov {
   Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node,
-  WithObjects, WithoutObjects, Difference, Reflectance
+  WithObjects, WithoutObjects, Difference, Reflectance, Invalid
 };
 
 struct AovInfo {
@@ -39,25 +41,31 @@ inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects; }
 // `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& place);
 
-// Gathers those that come from the first hit.
+// Gathers those that come from the first hit, and the defects. Sums are doubles: in float they
+// would stall after some million samples.
 class AovFilm {
  public:
   AovFilm(int width, int height, const std::vector<Aov>& wanted);
 
   bool empty() const { return sums_.empty(); }
 
-  // Adds a sample. Concurrently for different pixels.
+  // Adds a sample, or the defect of one. Concurrently for different pixels.
   void add(int x, int y, const FirstHit& first);
+  void add(int x, int y, Defect defect);
 
   Image finished(Aov aov) const;
 
  private:
   struct Sum {
     Aov aov;
-    Image image;
+    int channels;
+    std::vector<double> sums;
   };
+  size_t pixel(int x, int y) const { return size_t(y) * width_ + x; }
+
+  int width_, height_;
   std::vector<Sum> sums_;
-  Image samples_, hits_;  // number of samples, and of those that hit something
+  std::vector<uint32_t> samples_, hits_;  // number of samples, and of those that hit something
 };
 
 }  // namespace chromeball

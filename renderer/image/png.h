@@ -1,4 +1,5 @@
-// PNG in memory, for documents that carry their pictures with them.
+// PNG in memory: for documents that carry their pictures with them, and for files, since
+// OpenImageIO's writer does not notice a disk that is full.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,8 @@
 
 namespace chromeball {
 
-// `bytes` are rows of interleaved 8-bit channels, one (grey) or three, which come back unchanged.
+// `bytes` are rows of interleaved 8-bit channels, sRGB: one (grey), three, or four with unassociated
+// alpha, which come back unchanged.
 std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes);
 
 }  // namespace chromeball

@@ -122,6 +122,8 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
     return readThroughLibrary(path, integers);
   } catch (const InputError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    fail(path, "its header asks for more memory than there is");
   } catch (const std::exception& error) {  // the library's own, about a damaged file
     fail(path, error.what());
   }

@@ -11,6 +11,7 @@
 
 #include "image/file.h"
 #include "image/pfm.h"
+#include "image/png.h"
 #include "image/radiance_hdr.h"
 #include "math/error.h"
 
@@ -30,7 +31,9 @@ std::string extension(const fs::path& path) {
 void writeThroughLibrary(const fs::path& path, const std::string& format,
                          const OIIO::ImageSpec& spec, const void* texels) {
   const auto check = [&](bool ok, const std::string& reason) {
-    if (!ok) throwRun("{}: cannot be written: {}", path.string(), reason);
+    if (!ok)
+      throwRun("{}: cannot be written: {}", path.string(),
+               reason.empty() ? std::strerror(errno) : reason);
   };
   AtomicFile file(path);
   const auto output = OIIO::ImageOutput::create(format);
@@ -82,11 +85,7 @@ void writePng(const fs::path& path, const Image& color, const DisplayTransform& 
       for (int c = 0; c < 3; ++c) bytes.push_back(byte(linearToSrgb(shown[c])));
       if (hasAlpha) bytes.push_back(byte(std::clamp(color.at(x, y)[3], 0.0f, 1.0f)));
     }
-  OIIO::ImageSpec spec(color.width, color.height, hasAlpha ? 4 : 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  // Texels go out as they are; without this, colour would be divided by alpha.
-  if (hasAlpha) spec.attribute("oiio:UnassociatedAlpha", 1);
-  writeThroughLibrary(path, "png", spec, bytes.data());
+  writeFile(path, encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes));
 }
 
 // Grey repeated into three channels; anything else as it is.

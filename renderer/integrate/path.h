@@ -138,8 +138,8 @@ Rgb punctualLight(const PathScene<Rays>& path, const LightPoint& point, const Su
 // raised by as much. The first two bounces always go on: they carry most of the picture.
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
-  const float survival = std::min(maxComponent(throughput), 0.95f);
-  if (!(sampler.get1(dimension::kRoulette) < survival)) return false;
+  const float survival = std::min(maxComponent(throughput), 1.0f);
+  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN goes on, to be counted
   throughput /= survival;
   return true;
 }

@@ -74,6 +74,7 @@ class Schedule {
 struct Worker {
   PathMemory memory;
   InvalidSamples invalid;
+  ClampedSamples clamped;
 };
 
 class Renderer {
@@ -90,7 +91,7 @@ class Renderer {
                    dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
                settings.seed),
         workers_([this] {
-          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}};
+          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}, {}};
         }) {}
 
   // Adds one block to every pixel. `progress` is told the share of the pass.
@@ -117,10 +118,8 @@ class Renderer {
   void gather() {
     for (const Worker& worker : workers_) {
       result_.rays.add(worker.memory.rays);
-      if (worker.invalid.count && !result_.invalid.count)
-        result_.invalid = worker.invalid;
-      else
-        result_.invalid.count += worker.invalid.count;
+      result_.invalid.add(worker.invalid);
+      result_.clamped.add(worker.clamped);
     }
   }
 
@@ -166,10 +165,12 @@ class Renderer {
       first = {};
       const CameraSample sample{x, y, rays[lane], hits[lane]};
       const Rgb radiance = integrator_.radiance(sample, worker.memory, wantsFirst);
-      if (isValid(radiance))
-        sums.add(radiance);
-      else
-        worker.invalid = {worker.invalid.count + 1, x, y};
+      if (const auto defect = defectOf(radiance, integrator_.isSigned())) {
+        worker.invalid.add(*defect, x, y);
+        result_.aovs.add(x, y, *defect);
+      } else {
+        sums.add(settings_.clamp ? clamped(radiance, worker.clamped) : radiance);
+      }
       if (wantsFirst) {
         first.depth = camera_.depth(sample.ray.direction, first.depth);
         result_.aovs.add(x, y, first);
@@ -178,9 +179,16 @@ class Renderer {
     result_.film.addBlock(x, y, sums);
   }
 
-  bool isValid(const Rgb& radiance) const {
-    return isFinite(radiance) &&
-           (integrator_.isSigned() || glm::all(glm::greaterThanEqual(radiance, Rgb(0))));
+  // Keeps the hue.
+  Rgb clamped(const Rgb& radiance, ClampedSamples& clamped) const {
+    const float largest = maxComponent(glm::abs(radiance));
+    const float scale = largest > *settings_.clamp ? *settings_.clamp / largest : 1;
+    const double light = std::fabs(double(luminance(radiance)));
+    clamped.kept += light * scale;
+    if (scale == 1) return radiance;
+    ++clamped.count;
+    clamped.removed += light * (1 - double(scale));
+    return radiance * scale;
   }
 
   const Integrator& integrator_;
@@ -234,6 +242,7 @@ RenderResult render(const Integrator& integrator, const Accel& accel, const Came
                     const std::atomic<bool>& stop) {
   RenderResult result{Film(settings.width, settings.height),
                       AovFilm(settings.width, settings.height, settings.aovs),
+                      {},
                       {},
                       {},
                       0,

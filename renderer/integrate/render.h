@@ -20,14 +20,20 @@ struct RenderSettings {
   int maxDepth = 8;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
-  bool hideProbe = false;  // from the camera only: for compositing
+  bool hideProbe = false;      // from the camera only: for compositing
+  std::optional<float> clamp;  // the largest channel a sample may have; else none is clamped
   std::vector<Aov> aovs;
 };
 
-// Samples that came out NaN, infinite or negative: counted, left out of the mean, never hidden.
-struct InvalidSamples {
+// Samples brighter than the limit, which were scaled down to it: an error the user asked for.
+struct ClampedSamples {
   uint64_t count = 0;
-  int x = -1, y = -1;  // where one of them was
+  double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
+
+  double shareRemoved() const { return removed > 0 ? removed / (removed + kept) : 0; }
+  void add(const ClampedSamples& other) {
+    count += other.count, removed += other.removed, kept += other.kept;
+  }
 };
 
 struct RenderResult {
@@ -35,6 +41,7 @@ struct RenderResult {
   AovFilm aovs;
   RayCounts rays;
   InvalidSamples invalid;
+  ClampedSamples clamped;
   int samples = 0;  // per pixel
   bool interrupted = false;
 };

@@ -78,10 +78,11 @@ inline Probe::Position Probe::locate(const vec3& d) const {
   // Column 0's centre lies at u = 0.5 / W.
   float x = u * float(width_) - 0.5f;
   if (x < 0) x += float(width_);
-  p.column = std::min(int(x), width_ - 1);
+  // Cells are clamped on both sides: a NaN must come out as NaN and not read past the map.
+  p.column = std::clamp(int(x), 0, width_ - 1);
   p.s = x - float(p.column);
   const float y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
-  p.row = std::min(int(y), height_);
+  p.row = std::clamp(int(y), 0, height_);
   p.t = y - float(p.row);
   if (p.row == 0)
     p.t = 2 * y - 1;  // from the pole at y = 1/2

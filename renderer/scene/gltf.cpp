@@ -78,7 +78,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   else if (!file.model.animations.empty())
     file.warnOnce("shown in its rest pose; --animation shows it at a time of an animation");
   standMeshesUp(file.model);
-  const NodeTree tree = readNodes(file, placement);
+  const NodeTree tree = readNodes(file, placement, choice.origin);
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);

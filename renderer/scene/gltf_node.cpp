@@ -96,7 +96,7 @@ std::string nameOf(const tinygltf::Model& model, size_t i) {
 
 }  // namespace
 
-NodeTree readNodes(const GltfFile& file, const Transform& placement) {
+NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin) {
   const auto& nodes = file.model.nodes;
   const std::vector<int> parents = parentsOf(file);
   std::vector<int> treeRoots;
@@ -106,7 +106,7 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement) {
 
   NodeTree tree;
   dmat4 outermost{glm::dmat3(placement.linear)};
-  outermost[3] = glm::dvec4(glm::dvec3(placement.translation), 1);
+  outermost[3] = glm::dvec4(glm::dvec3(placement.translation) - origin, 1);
   tree.toWorld.assign(nodes.size(), dmat4(0));
   for (int i : order) {
     const int parent = parents[size_t(i)];

@@ -15,9 +15,9 @@ struct NodeTree {
   std::vector<int> parents;         // of every node; -1: a root
 };
 
-// Composes the transforms of all nodes, `placement` outermost. Throws InputError where the nodes
-// are not trees, or a transform is not affine and finite.
-NodeTree readNodes(const GltfFile& file, const Transform& placement);
+// Composes the transforms of all nodes, `placement` outermost, seen from `origin`. Throws
+// InputError where the nodes are not trees, or a transform is not affine and finite.
+NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
 
 // False where the matrix flattens space, or does once it is rounded to float.
 bool isInvertible(const glm::dmat4& m);

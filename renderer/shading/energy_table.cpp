@@ -2,14 +2,15 @@
 
 #include <tbb/parallel_for.h>
 
-#include "math/sobol.h"
 #include "math/hash.h"
+#include "math/sobol.h"
 #include "shading/ggx.h"
 
 namespace chromeball {
 namespace {
 
 constexpr int kRoughnesses = 32, kAngles = 64;
+constexpr float kMirrorAlpha = 1.001e-4f;  // bsdf.cpp's kSmoothAlpha, and the least node squared
 
 // Nodes crowd towards smooth surfaces and grazing angles, where the albedo bends: both are t^2.
 float roughnessNode(int i) {
@@ -21,9 +22,14 @@ float angleNode(int i) {
   return std::max(t * t, 1e-4f);
 }
 
-// Averages over visible normals h: albedo = E[F(wo.h) G2/G1].
+// Averages over visible normals h: albedo = E[F(wo.h) G2/G1]. The smoothest are mirrors (bsdf.cpp),
+// whose facets mask nothing even at grazing angles.
 SpecularAlbedo integrate(float mu, float alpha) {
   constexpr uint32_t kSamples = 4096;
+  if (alpha <= kMirrorAlpha) {
+    const float c = 1 - mu, grazing = c * c * c * c * c;
+    return {1 - grazing, grazing};
+  }
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
   double a = 0, b = 0;
   for (uint32_t i = 0; i < kSamples; ++i) {

@@ -1,0 +1,192 @@
+// tests/ENVELOPE.md, the rows of geometry.
+#include <cstdlib>
+#include <functional>
+
+#include "envelope.h"
+#include "gltf_writer.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+// A ball on a table, `scale` metres large.
+Scene still(float scale) {
+  Scene scene;
+  const int grey = addMaterial(scene, lambert(Rgb(0.6f)));
+  Material coated = lambert(Rgb(0.8f, 0.3f, 0.2f));
+  coated.specular = 1;
+  coated.roughness = 0.3f;
+  addQuad(scene, grey, scale * vec3(-2, -1, 2), scale * vec3(4, 0, 0), scale * vec3(0, 0, -4));
+  addSphere(scene, addMaterial(scene, coated), vec3(0), scale, 24);
+  return scene;
+}
+
+TEST(SlowEnvelopeGeometry, SceneScaleFrom1e_4To1e7) {
+  const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.7, 0.3}));
+  Image reference;
+  for (float scale : {1.0f, 1e-4f, 1e-2f, 1e3f, 1e7f}) {
+    const Camera camera = Camera::lookAt(scale * vec3(1, 1.5f, 5), vec3(0), {0, 1, 0}, 0.7f);
+    const RenderResult r =
+        renderScene(still(scale), camera, probe, "importance", smallRender(32, 32, 64, 4));
+    validMean(r);
+    const Image mean = r.film.mean();
+    if (scale == 1.0f) {
+      reference = mean;
+      continue;
+    }
+    double squares = 0;  // a few paths part ways by rounding; their number must stay small
+    for (size_t i = 0; i < mean.texels.size(); ++i)
+      squares += std::pow(mean.texels[i] - reference.texels[i], 2);
+    EXPECT_LT(std::sqrt(squares / double(mean.texels.size())), 4e-3) << scale;
+    EXPECT_NEAR(validMean(r) / luminance(meanColor(reference)), 1, 1e-3) << scale;
+  }
+}
+
+// A model of a metre that stands 1e6 m from the origin is rendered as if it stood there, since it
+// is seen from its own centre; and a scene beyond 1e9 m is refused.
+TEST(EnvelopeGeometry, ASmallObjectFarFromTheOrigin) {
+  const TemporaryFolder out;
+  const std::string probe = out / "probe.exr";
+  writeImage(probe, gradientProbe({32, 16}, Rgb(1), {0.2, 0.7, 0.3}));
+  const auto renderAt = [&](const nlohmann::json& translation, const std::string& name) {
+    GltfWriter w;
+    const Scene ball = still(0.5f);
+    std::vector<float> positions;
+    std::vector<uint16_t> indices;
+    for (const vec3& p : ball.meshes[1].positions)
+      positions.insert(positions.end(), {p.x, p.y, p.z});
+    for (const Triangle& t : ball.meshes[1].triangles)
+      for (int k = 0; k < 3; ++k) indices.push_back(uint16_t(t[k]));
+    w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", w.vec3s(positions)}}},
+                                     {"indices", w.indices(indices)}})},
+                    {"translation", translation}});
+    return runCommand({"render", w.save(), "--probe", probe, "--size", "24x24", "--samples", "16",
+                       "--quiet", "-o", out / name});
+  };
+  ASSERT_EQ(renderAt({0, 0, 0}, "near.pfm").status, 0);
+  ASSERT_EQ(renderAt({1e6 + 0.3, -2e6, 3e6 + 0.7}, "far.pfm").status, 0);
+  const Image near = readImage(out / "near.pfm"), far = readImage(out / "far.pfm");
+  double squares = 0;
+  for (size_t i = 0; i < near.texels.size(); ++i)
+    squares += std::pow(near.texels[i] - far.texels[i], 2);
+  EXPECT_LT(std::sqrt(squares / double(near.texels.size())), 5e-3);
+
+  const CommandResult beyond = renderAt({1e10, 0, 0}, "beyond.pfm");
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.error.find("scale it down"), std::string::npos) << beyond.error;
+}
+
+TEST(EnvelopeGeometry, DegenerateTriangles) {
+  Scene scene;
+  const int grey = addMaterial(scene, lambert(Rgb(0.5f)));
+  addQuad(scene, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  addQuad(scene, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});     // a duplicate
+  addQuad(scene, grey, {-1, 0, 1}, {4, 0, 0.5f}, {0, 0, -4});  // a coplanar overlap
+  Mesh odd;
+  odd.positions = {{0, 0.5f, 0},        {0, 0.5f, 0},  {0, 0.5f, 0},     {1, 0.5f, 0},
+                   {0.5f, 0.5f, 1e-7f}, {-1, 0.2f, 0}, {1, 0.2f, 1e-6f}, {1, 0.2f, -1e-6f}};
+  odd.triangles = {
+      {0, 1, 2}, {0, 0, 0}, {0, 3, 3}, {0, 3, 4}, {5, 6, 7}};  // points, lines, slivers
+  odd.normals.assign(odd.positions.size(), vec3(0));
+  addMesh(scene, grey, odd);
+  const Probe probe(constantProbe({8, 4}, Rgb(1)));
+  const RenderResult r =
+      renderScene(scene, topCamera(3, 40), probe, "importance", smallRender(64, 64, 16, 6));
+  // What sees the sky alone shows 1/2; slivers shadow next to nothing.
+  EXPECT_NEAR(validMean(r), 0.5, 2e-3);
+}
+
+TEST(EnvelopeGeometry, NormalsAndTangentsThatAreNone) {
+  const Probe probe(constantProbe({8, 4}, Rgb(1)));
+  Material coated = lambert(Rgb(1));
+  coated.specular = 1;
+  coated.roughness = 0.4f;
+  const std::pair<const char*, std::function<vec3(int, vec3)>> spoilers[] = {
+      {"long", [](int, vec3 n) { return 1e6f * n; }},
+      {"short", [](int, vec3 n) { return 1e-6f * n; }},
+      {"zero", [](int, vec3) { return vec3(0); }},
+      {"flipped", [](int, vec3 n) { return -n; }},
+      {"some zero, some flipped", [](int i, vec3 n) { return float(i % 3 - 1) * n; }},
+      {"overflowing", [](int, vec3 n) { return 1e30f * n; }}};
+  for (const auto& [name, spoil] : spoilers) {
+    Scene scene;
+    addSphere(scene, addMaterial(scene, coated), vec3(0), 1, 16);
+    for (size_t i = 0; i < scene.meshes[0].normals.size(); ++i)
+      scene.meshes[0].normals[i] = spoil(int(i), scene.meshes[0].normals[i]);
+    const RenderResult r =
+        renderScene(scene, topCamera(5, 20), probe, "importance", smallRender(24, 24, 32, 6));
+    const double mean = validMean(r);
+    EXPECT_LT(mean, 1.01) << name;  // a white furnace: no more light than came
+    EXPECT_GT(mean, 0.9) << name;
+  }
+}
+
+// Rays that no hole lets through: a light in a closed box and a camera outside, and a bright probe
+// around a closed ball with a camera inside. CHROMEBALL_LEAK_RAYS sets the number for each scale.
+TEST(SlowEnvelopeGeometry, NoLightLeaksAtAnyScale) {
+  const char* asked = std::getenv("CHROMEBALL_LEAK_RAYS");
+  const double wanted = asked ? std::atof(asked) : 4e5;
+  const Probe black(constantProbe({4, 2}, Rgb(0))), bright(constantProbe({16, 8}, Rgb(1e6f)));
+  const glm::mat3 turn(glm::mat3_cast(glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)))));
+  double rays = 0;
+  for (float scale : {1e-4f, 1e-2f, 1.0f, 1e3f, 1e5f, 1e7f}) {
+    Scene lamp;
+    Material glow = lambert(Rgb(0.5f));
+    glow.emission = Rgb(1e10f);
+    const int light = addMaterial(lamp, glow), wall = addMaterial(lamp, lambert(Rgb(0.8f)));
+    addSphere(lamp, light, vec3(0), 0.3f * scale, 6);
+    for (int axis = 0; axis < 3; ++axis)
+      for (float side : {-1.0f, 1.0f}) {
+        vec3 corner(-1), a(0), b(0);
+        corner[axis] = side, a[(axis + 1) % 3] = 2, b[(axis + 2) % 3] = 2;
+        addQuad(lamp, wall, scale * (turn * corner), scale * (turn * a), scale * (turn * b));
+      }
+    Scene ball;
+    addSphere(ball, addMaterial(ball, lambert(Rgb(0.8f))), vec3(0.3f, 0.2f, 0.1f) * scale, -scale,
+              24, false);
+
+    const int samples = std::max(1, int(wanted / 2 / (64.0 * 64 * 12)));
+    const Camera outside = Camera::lookAt(scale * vec3(2, 3, 4), vec3(0), {0, 1, 0}, 0.6f);
+    const RenderResult a =
+        renderScene(lamp, outside, black, "importance", smallRender(64, 64, 4 * samples, 3));
+    const Camera inside =
+        Camera::lookAt(scale * vec3(0.1f, 0, 0.2f), scale * vec3(1, 0.3f, -0.5f), {0, 1, 0}, 2.5f);
+    const RenderResult b =
+        renderScene(ball, inside, bright, "importance", smallRender(64, 64, samples, 8));
+    for (const RenderResult* r : {&a, &b}) {
+      const Image mean = r->film.mean();
+      EXPECT_EQ(*std::max_element(mean.texels.begin(), mean.texels.end()), 0)
+          << "a leak at scale " << scale;
+      EXPECT_EQ(r->invalid.total(), 0u);
+      rays += double(r->rays.camera + r->rays.shadow + r->rays.bounce);
+    }
+  }
+  RecordProperty("rays", std::to_string(rays));
+  std::printf("%.3g rays, none leaked\n", rays);
+}
+
+// Walls 1e-5 thick around a lamp, beside coordinates of a metre.
+TEST(EnvelopeGeometry, ThinWallsHoldTheLight) {
+  Scene scene;
+  Material glow = lambert(Rgb(0.5f));
+  glow.emission = Rgb(1e10f);
+  const int light = addMaterial(scene, glow), wall = addMaterial(scene, lambert(Rgb(0.8f)));
+  addSphere(scene, light, vec3(0), 0.3f, 6);
+  for (float half : {0.5f, 0.5f + 1e-5f})
+    for (int axis = 0; axis < 3; ++axis)
+      for (float side : {-half, half}) {
+        vec3 corner(-half), a(0), b(0);
+        corner[axis] = side, a[(axis + 1) % 3] = 2 * half, b[(axis + 2) % 3] = 2 * half;
+        addQuad(scene, wall, corner, a, b);
+      }
+  const Camera camera = Camera::lookAt({1, 1.5f, 2}, vec3(0), {0, 1, 0}, 0.8f);
+  const Probe black(constantProbe({4, 2}, Rgb(0)));
+  const RenderResult r =
+      renderScene(scene, camera, black, "importance", smallRender(64, 64, 16, 4));
+  EXPECT_EQ(validMean(r), 0);
+}
+
+}  // namespace
+}  // namespace chromeball

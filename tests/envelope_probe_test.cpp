@@ -1,0 +1,182 @@
+// tests/ENVELOPE.md, the probe's rows.
+#include <algorithm>
+
+#include "envelope.h"
+#include "math/cdf.h"
+#include "math/error.h"
+#include "probe/load.h"
+#include "probe/repair.h"
+
+namespace chromeball {
+namespace {
+
+constexpr const char* kEvery[] = {"bsdf",
+                                  "uniform",
+                                  "importance",
+                                  "suns",
+                                  "median-cut:8",
+                                  "kollig-keller-strata:4",
+                                  "lightgen:4",
+                                  "variance-cut:8",
+                                  "cube-grid:2",
+                                  "kollig-keller:4",
+                                  "penrose:32",
+                                  "irradiance-fit:2",
+                                  "irradiance-fit-ambient:2"};
+
+RenderResult litPlane(const Probe& probe, const std::string& strategy, int samples,
+                      const Material& material = lambert(Rgb(0.5f))) {
+  return renderScene(plane(material), topCamera(3, 40), probe, strategy,
+                     smallRender(16, 16, samples, 1));
+}
+
+TEST(EnvelopeProbe, RadianceFrom1e_8To1e10) {
+  double noise = 0;
+  for (float radiance : {1.0f, 1e-8f, 1e10f}) {
+    const Probe probe(gradientProbe({64, 32}, Rgb(radiance), {0.2, 0.6, 0.3}));
+    const RenderResult r = litPlane(probe, "importance", 64);
+    EXPECT_NEAR(validMean(r) / radiance, 0.5 * (1 + 2.0 / 3 * 0.6), 1e-3) << radiance;
+    if (noise == 0) noise = r.film.noise();
+    EXPECT_NEAR(r.film.noise() / noise, 1, 1e-3) << radiance;  // the estimate scales along
+  }
+}
+
+// Beyond: squares of radiance leave the range of the float in which the film keeps scatter.
+TEST(EnvelopeProbe, TheErrorEstimateDegradesAbove1e18) {
+  Film film(1, 1);
+  for (int block = 0; block < 2; ++block) {
+    SampleSums sums;
+    for (float x : {0.5e25f, 1.5e25f}) sums.add(Rgb(x));
+    film.addBlock(0, 0, sums);
+  }
+  EXPECT_NEAR(film.mean().rgb(0, 0).x / 1e25f, 1, 1e-6);
+  EXPECT_FALSE(std::isfinite(film.noise()));
+}
+
+TEST(SlowEnvelopeProbe, ADynamicRangeOf1e12InOneProbe) {
+  Image image = constantProbe({32, 16}, Rgb(1e-2f));
+  image.setRgb(11, 4, Rgb(1e10f));
+  const Probe probe(image);
+  const double expected = 0.5 * irradianceOverPi(probe, {0, 1, 0}, 1500);
+  for (const char* strategy : {"importance", "suns"})
+    // `suns` makes a disc of the lamp, which shifts its light a little.
+    EXPECT_NEAR(validMean(litPlane(probe, strategy, 256)) / expected, 1,
+                std::string(strategy) == "suns" ? 0.02 : 5e-3)
+        << strategy;
+  // What the lamp does not reach still gets its light from the rest: seen from below.
+  Image below = constantProbe({32, 16}, Rgb(1e-2f));
+  below.setRgb(11, 13, Rgb(1e10f));
+  const RenderResult r = litPlane(Probe(below), "importance", 4096);
+  EXPECT_NEAR(validMean(r) / 5e-3, 1, 0.02);
+}
+
+// Tables are double: after a texel 1e12 times as bright, the others of a row of 16384 keep their
+// width to 1e-3, and each can be drawn.
+TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirWidth) {
+  const int width = 16384, sun = 3;
+  std::vector<double> weights(width, 1.0);
+  weights[sun] = 1e12;
+  CdfRows table(1, width);
+  const double total = table.setRow(0, weights);
+  EXPECT_EQ(total, 1e12 + width - 1);
+  for (int column : {sun + 1, 5000, width - 1}) {
+    const long double before = 1e12L + column - 1;
+    double low = double((before + 0.01L) / total), high = double((before + 0.99L) / total);
+    EXPECT_EQ(table.sample(0, low), column);
+    EXPECT_EQ(table.sample(0, high), column);
+    EXPECT_NEAR(low, 0.01, 1e-3);
+    EXPECT_NEAR(high, 0.99, 1e-3);
+  }
+}
+
+TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {
+  struct Case {
+    const char* name;
+    Image image;
+    double expected;  // of the plane of albedo 1/2 that looks up; below 0: by brute force
+  };
+  Image oneTexel = constantProbe({16, 8}, Rgb(0)), tall = constantProbe({3, 7}, Rgb(1));
+  oneTexel.setRgb(6, 1, Rgb(50));
+  tall.setRgb(1, 2, Rgb(9));
+  const Case cases[] = {{"black", constantProbe({16, 8}, Rgb(0)), 0},
+                        {"constant", constantProbe({16, 8}, Rgb(2)), 1},
+                        {"1x1", constantProbe({1, 1}, Rgb(2)), 1},
+                        {"2x1", constantProbe({2, 1}, Rgb(2)), 1},
+                        {"1x5", constantProbe({1, 5}, Rgb(2)), 1},
+                        {"one texel", oneTexel, -1},
+                        {"3x7", tall, -1}};
+  for (const Case& c : cases) {
+    const Probe probe(c.image);
+    const double expected =
+        c.expected >= 0 ? c.expected : 0.5 * irradianceOverPi(probe, {0, 1, 0}, 600);
+    for (const std::string strategy : kEvery) {
+      const double mean = validMean(litPlane(probe, strategy, 64));
+      const bool exact = strategy == "uniform" || strategy == "importance" || strategy == "bsdf" ||
+                         strategy.starts_with("kollig-keller-strata");
+      const double tolerance = exact ? 0.03 : 1;  // approximations promise less of an odd probe
+      EXPECT_NEAR(mean, expected, tolerance * expected) << c.name << ' ' << strategy;
+    }
+  }
+}
+
+TEST(SlowEnvelopeProbe, ASunAtThePolesAndOnTheSeam) {
+  const int width = 64, height = 32;
+  struct Case {
+    const char* name;
+    std::vector<glm::ivec2> texels;
+    vec3 normal;
+  };
+  std::vector<glm::ivec2> zenith, nadir;
+  for (int x = 0; x < width; ++x) zenith.push_back({x, 0}), nadir.push_back({x, height - 1});
+  const Case cases[] = {{"zenith", zenith, {0, 1, 0}},
+                        {"nadir", nadir, {0, -1, 0}},
+                        {"beside the zenith", {{17, 0}}, {0, 1, 0}},
+                        {"beside the nadir", {{0, height - 1}}, {0, -1, 0}},
+                        {"on the seam", {{0, 15}, {width - 1, 15}}, {0, 0, 1}},
+                        {"beside the seam", {{0, 15}}, {0, 0, 1}}};
+  for (const Case& c : cases) {
+    Image image = constantProbe({width, height}, Rgb(0));
+    for (const glm::ivec2& t : c.texels) image.setRgb(t.x, t.y, Rgb(1000));
+    const Probe probe(image);
+    const double expected = 0.5 * irradianceOverPi(probe, c.normal, 2000);
+    Scene scene;
+    const vec3 across = std::fabs(c.normal.y) > 0.5f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    const vec3 along = glm::cross(c.normal, across);
+    addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), -across - along, 2.0f * across,
+            2.0f * along);
+    const Camera camera = Camera::lookAt(3.0f * c.normal, vec3(0), across, 0.3f);
+    for (const char* strategy : {"importance", "suns", "uniform"}) {
+      const bool coarse = std::string(strategy) == "uniform";
+      const double mean = validMean(
+          renderScene(scene, camera, probe, strategy, smallRender(16, 16, coarse ? 1024 : 128, 1)));
+      // `suns` makes discs of sources: its shape is its own.
+      EXPECT_NEAR(mean / expected, 1, std::string(strategy) == "importance" ? 3e-3 : 0.1)
+          << c.name << ' ' << strategy;
+    }
+  }
+}
+
+TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndSaid) {
+  Image image = constantProbe({16, 8}, Rgb(1));
+  image.setRgb(3, 2, Rgb(65504));
+  image.setRgb(4, 2, Rgb(INFINITY, 1, 1));
+  image.setRgb(9, 5, Rgb(NAN));
+  image.setRgb(2, 7, Rgb(1, -INFINITY, 1));
+  const RepairReport report = repair(image, true);
+  EXPECT_EQ(report.infinite, 2);
+  EXPECT_EQ(report.nan, 1);
+  EXPECT_EQ(image.rgb(4, 2), Rgb(65504, 1, 1));
+  EXPECT_EQ(image.rgb(9, 5), Rgb(1));
+  EXPECT_EQ(image.rgb(2, 7), Rgb(1, 0, 1));
+  validMean(litPlane(Probe(image), "importance", 16));
+}
+
+TEST(EnvelopeProbe, ScalesThatLeaveTheRangeOfFloatAreRefused) {
+  const Image bright = constantProbe({4, 2}, Rgb(1e30f));
+  EXPECT_THROW(Probe(bright, 0, 1e10f), InputError);
+  EXPECT_THROW(Probe(bright, NAN), InputError);
+  EXPECT_THROW(Probe(bright, 0, -1), InputError);
+}
+
+}  // namespace
+}  // namespace chromeball

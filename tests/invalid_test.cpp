@@ -1,0 +1,125 @@
+// Samples that are no radiance, and those the user had clamped: what is left out is accounted for.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+
+#include "measure/statistics.h"
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = INFINITY;
+
+// Which of its samples a pixel is at.
+class Counter {
+ public:
+  int next(const CameraSample& sample) const { return seen_[size_t(sample.y * 9 + sample.x)]++; }
+
+ private:
+  mutable std::array<std::atomic<int>, 64> seen_{};
+};
+
+// Every pixel's radiance is 1, but for each second sample of some.
+class Faulty : public Integrator {
+ public:
+  explicit Faulty(bool isSigned = false) : signed_(isSigned) {}
+  bool isSigned() const override { return signed_; }
+
+  Rgb radiance(const CameraSample& sample, PathMemory&, FirstHit*) const override {
+    const bool second = counter_.next(sample) % 2 == 1;
+    const auto at = [&](int x, int y) { return sample.x == x && sample.y == y && second; };
+    if (at(5, 2)) return {1, kNan, kInf};
+    if (at(1, 3)) return {1, kInf, -1};
+    if (at(7, 3)) return {1, 1, -0.5f};
+    if (at(0, 4)) return {1, -kInf, 1};
+    return Rgb(1);
+  }
+
+ private:
+  bool signed_;
+  Counter counter_;
+};
+
+RenderResult renderWith(const Integrator& integrator, RenderSettings settings) {
+  const Scene scene;
+  const Accel accel(scene);
+  const std::atomic<bool> stop = false;
+  return render(
+      integrator, accel, Camera(), settings, [](double) {}, stop);
+}
+
+TEST(InvalidSamples, AreCountedByCauseAndPixelAndLeftOut) {
+  RenderSettings settings = smallRender(9, 6, 8, 1);
+  settings.aovs = {Aov::Invalid};
+  const RenderResult r = renderWith(Faulty(), settings);
+  EXPECT_EQ(r.invalid.of(Defect::Nan), 4u);
+  EXPECT_EQ(r.invalid.of(Defect::Infinite), 8u);
+  EXPECT_EQ(r.invalid.of(Defect::Negative), 4u);
+  EXPECT_EQ(r.invalid.total(), 16u);
+  EXPECT_EQ(std::pair(r.invalid.x, r.invalid.y), std::pair(5, 2));  // the first in reading order
+
+  const Image counts = r.aovs.finished(Aov::Invalid), mean = r.film.mean();
+  const Image samples = r.film.sampleCounts();
+  Rgb sum(0);
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 9; ++x) {
+      sum += counts.rgb(x, y);
+      EXPECT_EQ(mean.rgb(x, y), Rgb(1)) << x << ' ' << y;
+      EXPECT_EQ(*samples.at(x, y),
+                8 - counts.rgb(x, y).x - counts.rgb(x, y).y - counts.rgb(x, y).z);
+    }
+  EXPECT_EQ(sum, Rgb(4, 8, 4));
+  EXPECT_EQ(counts.rgb(5, 2), Rgb(4, 0, 0));
+  EXPECT_EQ(counts.rgb(1, 3), Rgb(0, 4, 0));
+  EXPECT_EQ(counts.rgb(7, 3), Rgb(0, 0, 4));
+  EXPECT_EQ(counts.rgb(0, 4), Rgb(0, 4, 0));
+}
+
+TEST(InvalidSamples, NegativeDifferencesAreAnswers) {
+  const RenderResult r = renderWith(Faulty(true), smallRender(9, 6, 8, 1));
+  EXPECT_EQ(r.invalid.of(Defect::Negative), 0u);
+  EXPECT_EQ(r.invalid.total(), 12u);
+}
+
+class Firefly : public Integrator {
+ public:
+  Rgb radiance(const CameraSample& sample, PathMemory&, FirstHit*) const override {
+    return counter_.next(sample) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1);
+  }
+
+ private:
+  Counter counter_;
+};
+
+TEST(Clamp, IsOffUnlessAskedAndSaysWhatItTook) {
+  RenderSettings settings = smallRender(3, 2, 4, 1);
+  RenderResult r = renderWith(Firefly(), settings);
+  const double bright = luminance(Rgb(20, 10, 0));
+  EXPECT_EQ(r.clamped.count, 0u);
+  EXPECT_EQ(r.clamped.shareRemoved(), 0);
+  EXPECT_NEAR(luminance(r.film.mean().rgb(0, 0)), 0.5 * (1 + bright), 1e-5);  // two blocks of two
+
+  settings.clamp = 4.0f;
+  r = renderWith(Firefly(), settings);
+  EXPECT_EQ(r.clamped.count, 12u);
+  EXPECT_NEAR(r.clamped.shareRemoved(), bright * 0.8 / (1 + bright), 1e-6);
+  const Rgb clamped = r.film.mean().rgb(0, 0);
+  EXPECT_NEAR(clamped.x, 0.5 * (1 + 4), 1e-6);  // the hue stays
+  EXPECT_NEAR(clamped.y, 0.5 * (1 + 2), 1e-6);
+
+  settings.clamp = 20.0f;
+  EXPECT_EQ(renderWith(Firefly(), settings).clamped.count, 0u);
+}
+
+// A direction that is not a number finds no texel, and no memory outside the map.
+TEST(InvalidSamples, AProbeAnswersNanWithNan) {
+  const Probe probe(constantProbe({8, 4}, Rgb(1)));
+  const Rgb radiance = probe.radiance(vec3(kNan));
+  EXPECT_TRUE(std::isnan(radiance.x));
+}
+
+}  // namespace
+}  // namespace chromeball

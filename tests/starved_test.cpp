@@ -1,0 +1,168 @@
+// Runs that are stopped, or lack what they need: one line, the right status, and no half of a file.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gltf_writer.h"
+#include "image/file.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+// A triangle under a constant probe, and a folder that holds an earlier picture.
+class Starved : public testing::Test {
+ protected:
+  void SetUp() override {
+    addTriangle(writer_);
+    model_ = writer_.save();
+    probe_ = (writer_.folder() / "probe.exr").string();
+    writeImage(probe_, constantProbe({8, 4}, Rgb(1)));
+  }
+
+  Words words(const std::string& output, const Words& more = {}) const {
+    Words all{"render", model_, "--probe", probe_, "-o", output};
+    all.insert(all.end(), more.begin(), more.end());
+    const auto isGiven = [&](const char* option) {
+      return std::find(more.begin(), more.end(), option) != more.end();
+    };
+    if (!isGiven("--size")) all.insert(all.end(), {"--size", "64x64"});
+    if (!isGiven("--samples")) all.insert(all.end(), {"--samples", "1"});
+    if (!isGiven("--progress")) all.push_back("--quiet");
+    return all;
+  }
+
+  // The run failed while running: one line, and `folder` holds what it held.
+  static void expectFailed(const CommandResult& result, const std::string& reason) {
+    EXPECT_EQ(result.status, 1) << result.error;
+    EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+    EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+  }
+
+  GltfWriter writer_;
+  std::string model_, probe_;
+};
+
+using SlowStarved = Starved;
+
+TEST_F(SlowStarved, FilesThatMayNotGrowLeaveTheOldOnes) {
+  const TemporaryFolder out;
+  for (const char* name : {"a.exr", "a.png", "a.hdr", "a.pfm"}) {
+    std::ofstream(out / name) << "old";
+    const CommandLimits limits{.fileSize = 2000};
+    expectFailed(runCommand(words(out / name, {"--size", "200x200", "--aov", "normal,depth"}), "",
+                            SIGINT, limits),
+                 name);
+    EXPECT_EQ(fileContents(out / name), "old") << name;
+  }
+  EXPECT_EQ(out.files(), (Words{"a.exr", "a.hdr", "a.pfm", "a.png"}));
+}
+
+TEST_F(SlowStarved, AFullDiskLeavesTheOldFile) {
+  const TemporaryFolder folder;
+  const std::string disk = folder / "disk";
+  fs::create_directory(disk);
+  if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=8k") != 0)
+    GTEST_SKIP() << "cannot mount a small file system here (that takes root)";
+  for (const char* name : {"a.exr", "a.png", "a.hdr", "a.pfm"}) {
+    const std::string path = disk + "/" + name;
+    std::ofstream(path) << "old";
+    expectFailed(runCommand(words(path, {"--size", "400x400", "--aov", "normal,depth,albedo"})),
+                 name);
+    EXPECT_EQ(fileContents(path), "old") << name;
+    EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1) << name;
+    fs::remove(path);
+  }
+  umount(disk.c_str());
+}
+
+TEST_F(SlowStarved, APlaceThatTakesNoFileIsSaidBeforeRendering) {
+  const TemporaryFolder out;
+  fs::create_directory(out / "folder.exr");
+  expectRefused(words(out / "folder.exr"), "is a folder");
+  expectRefused(words(out / "none/a.exr"), "no folder");
+  expectRefused(words(out / "a.exr", {"--stats", out / "none/a.json"}), "no folder");
+  expectFailed(runCommand(words("/proc/a.exr")), "/proc/a.exr: cannot be written: ");
+  EXPECT_EQ(out.files(), Words{"folder.exr"});
+}
+
+TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write and read everywhere";
+  const TemporaryFolder out;
+  fs::permissions(out / "", fs::perms::owner_read | fs::perms::owner_exec);
+  expectRefused(words(out / "a.exr"), "Permission denied");
+  fs::permissions(out / "", fs::perms::owner_all);
+  fs::permissions(probe_, fs::perms::none);
+  expectRefused(words(out / "a.exr"), "Permission denied");
+  fs::permissions(probe_, fs::perms::owner_all);
+}
+
+TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
+  for (int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder out;
+    const Words all = words(out / "a.exr", {"--samples", "100000000", "--progress", "--stats",
+                                            out / "a.json", "--aov", "samples"});
+    const CommandResult result = runCommand(all, "%", signal);
+    EXPECT_EQ(result.status, 130) << result.error;
+    EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));
+    const auto stats = nlohmann::json::parse(fileContents(out / "a.json"));
+    EXPECT_EQ(stats["interrupted"], true);
+    // The header tells whole passes, the layer what each pixel has.
+    const Image samples = *findLayer(readImageFile(out / "a.exr"), "samples");
+    EXPECT_GT(*std::max_element(samples.texels.begin(), samples.texels.end()), 0);
+  }
+}
+
+// SIGKILL between the first byte of the new file and its rename.
+TEST_F(SlowStarved, AKillDuringTheWriteLeavesTheOldFile) {
+  const TemporaryFolder out;
+  const std::string path = out / "a.pfm";
+  std::ofstream(path) << "old";
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const AtomicFile file(path);
+      std::ofstream stream(file.temporary());
+      stream << "half of the new o" << std::flush;
+      raise(SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(fileContents(path), "old");
+  }
+  // What was left behind does not stand in the way of the next run.
+  EXPECT_EQ(runCommand(words(path)).status, 0);
+  EXPECT_EQ(readImage(path).width, 64);
+}
+
+TEST_F(SlowStarved, PicturesTooLargeAreRefusedBeforeTheirMemoryIsTaken) {
+  const TemporaryFolder out;
+  expectRefused(words(out / "a.exr", {"--size", "12000x12000", "--memory", "4"}),
+                "12000x12000 takes 2");
+  expectRefused(words(out / "a.exr", {"--size", "16384x16384"}), "16384 x 16384 texels");
+  expectRefused(words(out / "a.exr", {"--size", "100x100", "--memory", "0"}), "above 0");
+  EXPECT_EQ(runCommand(words(out / "a.exr", {"--size", "1x1"})).status, 0);
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_F(SlowStarved, OutOfMemoryIsOneLine) {
+  const TemporaryFolder out;
+  const CommandLimits limits{.memory = size_t(1) << 30};
+  const CommandResult result = runCommand(
+      words(out / "a.exr", {"--size", "3000x3000", "--memory", "1000"}), "", SIGINT, limits);
+  expectFailed(result, "out of memory");
+  EXPECT_EQ(out.files(), Words{});
+}
+#endif
+
+}  // namespace
+}  // namespace chromeball
