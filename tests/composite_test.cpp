@@ -164,7 +164,7 @@ std::vector<std::vector<double>> tileMeans(const Worlds& w, const char* strategy
         smallRender(kSize, kSize, samples, 5, firstSeed + uint64_t(repeat));
     const CompositeRender r =
         composite(w, probe, strategy, settings, noisyPlate(kSize, kSize), passes);
-    EXPECT_EQ(r.result.invalid.count, 0u);
+    EXPECT_EQ(r.result.invalid.total(), 0u);
     for (int t = 0; t < tiles * tiles; ++t) {
       glm::dvec3 sum(0);
       for (int i = 0; i < kTile * kTile; ++i)
