@@ -128,6 +128,7 @@ LoadedScene loadScene(RenderJob& job) {
       origin != glm::dvec3(0)) {
     scene = loadModels(job.file, origin, notes);
     if (job.file.camera) job.file.camera->position -= vec3(origin);
+    if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
   }
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));

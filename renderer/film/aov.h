@@ -37,7 +37,9 @@ struct AovInfo {
 };
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);
-inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects; }
+inline bool isOfComposite(Aov aov) {
+  return aov >= Aov::WithObjects && aov <= Aov::Reflectance;
+}
 // `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& place);
 

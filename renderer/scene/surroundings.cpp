@@ -27,6 +27,10 @@ Surroundings::Point Surroundings::behind(const vec3& origin, const vec3& directi
   return {position, normal};
 }
 
+void Surroundings::move(const vec3& by) {
+  for (vec3* point : {&min, &max, &center, &capture}) *point += by;
+}
+
 void Surroundings::grow(float share) {
   const vec3 margin = share * (max - min);
   min -= margin, max += margin;

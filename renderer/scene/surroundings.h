@@ -23,6 +23,7 @@ struct Surroundings {
   Point behind(const vec3& origin, const vec3& direction) const;
 
   bool contains(const vec3& point) const;
+  void move(const vec3& by);
   void grow(float share);  // of its size, to all sides
 };
 
