@@ -149,8 +149,9 @@ TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
     for (float angle : {0.0f, 30.0f, 60.0f, 80.0f, 88.0f}) {
       const Rgb a = albedo(c.from(angle), 1 << 13);
       for (int k = 0; k < 3; ++k) {
-        if (c.extended.iridescence == 0)  // a coloured film hides the base in all channels alike
+        if (c.extended.iridescence == 0) {  // a coloured film hides the base in all channels alike
           EXPECT_GT(a[k], 0.99f) << c.name << " angle " << angle;
+        }
         EXPECT_LT(a[k], 1.01f) << c.name << " angle " << angle;
       }
     }
