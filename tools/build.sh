@@ -1,8 +1,15 @@
 #!/usr/bin/env bash
 # Installs what the build needs and this machine lacks (Debian and Ubuntu, as root or with sudo),
-# then builds everything into build/. Arguments go to the configure step (-DNAME=VALUE).
+# then builds everything into build/, or one target (--target NAME). Other arguments go to the
+# configure step (-DNAME=VALUE).
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+target=()
+if [[ ${1:-} == --target ]]; then
+  target=(--target "$2")
+  shift 2
+fi
 
 packages=(build-essential cmake pkg-config
   libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libtomlplusplus-dev libcli11-dev
@@ -44,4 +51,4 @@ if ! cmake -S . -B build -DCMAKE_BUILD_TYPE=Release "$@"; then
   command -v dpkg-query >/dev/null || needs "${packages[@]}"
   exit 1
 fi
-cmake --build build --parallel "$jobs"
+cmake --build build --parallel "$jobs" "${target[@]}"

@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-tools/build.sh
+tools/build.sh --target chromeball
 mkdir -p out
 build/chromeball render scenes/demo.toml -o out/demo.exr -o out/demo.png --tonemap neutral "$@"
 echo "The pictures: $PWD/out/demo.png (tone mapped), $PWD/out/demo.exr (radiance)"

@@ -1,0 +1,21 @@
+// Every image reader (the first bytes choose which), the layers of an EXR, and what makes a probe
+// of the colour.
+#include "fuzz.h"
+#include "image/decode.h"
+#include "image/read.h"
+#include "probe/load.h"
+#include "probe/probe.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
+  using namespace chromeball;
+  const std::string path = fuzzFile(bytes, size, "image");
+  readOrRefuse([&] { decodeImage({bytes, size}, "texture"); });
+  return readOrRefuse([&] {
+    const ImageFile file = readImageFile(path);
+    for (const std::string& layer : layerNames(file)) findLayer(file, layer);
+    const auto color = findColor(file);
+    if (!color || color->texels.size() > 1 << 16) return;
+    const LoadedProbe loaded = loadProbe(path, "auto", "");
+    if (!isFinite(Probe(loaded.latLong).radiance({0, 1, 0}))) std::abort();
+  });
+}

@@ -1,0 +1,9 @@
+#include "scene/scene_file.h"
+
+#include "fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
+  using namespace chromeball;
+  const std::string path = fuzzFile(bytes, size, "scene.toml");
+  return readOrRefuse([&] { readSceneFile(path); });
+}
