@@ -21,7 +21,7 @@ std::string lineIn(const char* path, const std::string& key, char separator) {
   return "";
 }
 
-std::string quoted(const std::string& argument) {
+std::string shellWord(const std::string& argument) {
   const bool plain = !argument.empty() && argument.find_first_not_of(
                                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                               "0123456789-_=+,./:@%") == std::string::npos;
@@ -35,7 +35,7 @@ std::string commandLine() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string command;
   for (std::string argument; std::getline(file, argument, '\0');)
-    command += (command.empty() ? "" : " ") + quoted(argument);
+    command += (command.empty() ? "" : " ") + shellWord(argument);
   return command;
 }
 

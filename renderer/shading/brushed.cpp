@@ -62,11 +62,7 @@ bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
   } else {
     out.wi = frame_.toWorld(squareToCosineHemisphere(u));
   }
-  const Bsdf::Value v = evaluate(out.wi);
-  if (!(v.pdf > 0)) return false;
-  out.weight = v.fCos / v.pdf;
-  out.pdf = v.pdf;
-  return true;
+  return completeSample(evaluate(out.wi), out);
 }
 
 }  // namespace chromeball

@@ -134,11 +134,7 @@ bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
       return out.pdf > 0 && glm::dot(geometricNormal_, out.wi) > 0;
     }
   }
-  const Value v = evaluate(out.wi);
-  if (!(v.pdf > 0)) return false;
-  out.weight = v.fCos / v.pdf;
-  out.pdf = v.pdf;
-  return true;
+  return completeSample(evaluate(out.wi), out);
 }
 
 }  // namespace chromeball

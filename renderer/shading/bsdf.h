@@ -92,4 +92,13 @@ class Bsdf {
   EnergyTable::Row energy_;
 };
 
+// Completes a sample in direction out.wi, where the lobes have `value`; false where none would have
+// been sampled there. NaN goes on, to be counted.
+inline bool completeSample(const Bsdf::Value& value, BsdfSample& out) {
+  if (value.pdf <= 0) return false;
+  out.weight = value.fCos / value.pdf;
+  out.pdf = value.pdf;
+  return true;
+}
+
 }  // namespace chromeball

@@ -138,10 +138,7 @@ bool ExtendedBsdf::samplePart(const Part<Lobe>& part, vec2 u, float lobe, BsdfSa
     out.weight *= part.factor / part.share;
     return true;
   }
-  const Bsdf::Value v = evaluate(out.wi);
-  out.weight = v.fCos / v.pdf;
-  out.pdf = v.pdf;
-  return v.pdf > 0;
+  return completeSample(evaluate(out.wi), out);
 }
 
 bool ExtendedBsdf::sample(vec2 u, float lobe, BsdfSample& out) const {

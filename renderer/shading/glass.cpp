@@ -126,11 +126,7 @@ bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
     out.pdf = 0;
     return true;
   }
-  const Bsdf::Value v = evaluate(out.wi);
-  if (!(v.pdf > 0)) return false;
-  out.weight = v.fCos / v.pdf;
-  out.pdf = v.pdf;
-  return true;
+  return completeSample(evaluate(out.wi), out);
 }
 
 }  // namespace chromeball

@@ -98,11 +98,7 @@ Bsdf::Value Sheen::evaluate(const vec3& wi) const {
 
 bool Sheen::sample(vec2 u, float, BsdfSample& out) const {
   out.wi = frame_.toWorld(squareToUniformHemisphere(u));
-  const Bsdf::Value v = evaluate(out.wi);
-  if (!(v.pdf > 0)) return false;
-  out.weight = v.fCos / v.pdf;
-  out.pdf = v.pdf;
-  return true;
+  return completeSample(evaluate(out.wi), out);
 }
 
 }  // namespace chromeball

@@ -62,6 +62,11 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   if (!isBlack(query.transmittance)) arguments->valid[0] = 0;
 }
 
+RTCRay embreeRay(const Ray& ray) {
+  const vec3 &o = ray.origin, &d = ray.direction;
+  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.tMax, ~0u, 0, 0};
+}
+
 // Embree knows no coordinates beyond 1.8e18, and as Debian builds it ends the program at a ray
 // beyond them or with a NaN.
 bool isTraceable(const Ray& ray) {
@@ -184,18 +189,7 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   initQueryContext(query.embree);
   query.key = key;
   RTCRayHit r;
-  r.ray = {ray.origin.x,
-           ray.origin.y,
-           ray.origin.z,
-           0,
-           ray.direction.x,
-           ray.direction.y,
-           ray.direction.z,
-           0,
-           ray.tMax,
-           ~0u,
-           0,
-           0};
+  r.ray = embreeRay(ray);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
@@ -244,18 +238,7 @@ Rgb Accel::transmittance(const Ray& ray) const {
   Query query;
   initQueryContext(query.embree);
   query.direction = ray.direction;
-  RTCRay r{ray.origin.x,
-           ray.origin.y,
-           ray.origin.z,
-           0,
-           ray.direction.x,
-           ray.direction.y,
-           ray.direction.z,
-           0,
-           ray.tMax,
-           ~0u,
-           0,
-           0};
+  RTCRay r = embreeRay(ray);
   rtcOccluded(scene_, r, query.embree);
   return r.tfar < 0 ? Rgb(0) : query.transmittance;
 }
