@@ -67,6 +67,12 @@ TEST_F(SceneFileTest, ModelAloneLeavesAllElseOpen) {
   EXPECT_TRUE(scene.outputs.empty() && scene.aovs.empty());
 }
 
+// What fuzzing found: an assertion of the TOML library ended the process.
+TEST_F(SceneFileTest, HeadersThatAreNoKeysAreErrors) {
+  for (const char* header : {"[[&odel]]", "[[ &]]", "[&]", "[a.&]"})
+    expectError(header, 2, {"not valid TOML", "&"});
+}
+
 TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
   const auto choice = [&](const std::string& keys) {
     return read("[[model]]\nfile = '../ball.glb'\n" + keys).models.at(0).choice;

@@ -1,12 +1,11 @@
 #include "image/decode.h"
 
 #include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <memory>
 #include <string_view>
 
+#include "image/open.h"
 #include "image/quiet.h"
 #include "image/webp.h"
 #include "math/error.h"
@@ -26,11 +25,11 @@ bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// The file name extension that leads OpenImageIO to the right reader. The content decides, since
-// models often label their images wrongly.
-const char* formatOf(std::span<const uint8_t> file, const std::string& name) {
-  if (startsWith(file, "\x89PNG\r\n\x1a\n")) return "texture.png";
-  if (startsWith(file, "\xff\xd8\xff")) return "texture.jpg";
+// The content decides, since models often label their images wrongly.
+const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
+  const char* reader = readerFor(file);
+  if (reader && (reader == std::string_view("png") || reader == std::string_view("jpeg")))
+    return reader;
   const char* found = startsWith(file, "\xabKTX 20")                ? "KTX2"
                       : startsWith(file, "DDS ")                    ? "DDS"
                       : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
@@ -71,15 +70,20 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
   if (startsWith(file, "RIFF") && startsWith(file, "WEBP", 8)) return decodeWebp(file, name);
-  const char* format = formatOf(file, name);
+  const char* reader = readerOf(file, name);
   const QuietStandardError quiet;
   OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());
   ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   OIIO::Filesystem::IOProxy* proxy = &memory;
   config.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
-  const std::unique_ptr<ImageInput> input = ImageInput::open(format, &config, proxy);
-  if (!input) throwInput("{}: damaged image: {}", name, firstLine(OIIO::geterror()));
+  const auto input = [&] {
+    try {
+      return openImage(reader, name, config);
+    } catch (const std::runtime_error& error) {
+      throwInput("{}: damaged image: {}", name, firstLine(error.what()));
+    }
+  }();
   checkSize(input->spec(), file.size(), name);
 
   DecodedImage image;

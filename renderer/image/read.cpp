@@ -1,13 +1,13 @@
 #include "image/read.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <fstream>
 
+#include "image/exr_header.h"
 #include "image/file.h"
 #include "image/limits.h"
+#include "image/open.h"
 #include "image/pfm.h"
 #include "image/quiet.h"
 #include "image/radiance_hdr.h"
@@ -68,9 +68,9 @@ void checkPlausible(const fs::path& path, const std::string& format, const OIIO:
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
-ImageFile readThroughLibrary(const fs::path& path, IntegerTexels integers) {
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) fail(path, OIIO::geterror());
+ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
+  if (reader == std::string_view("openexr")) checkExrHeaders(path);
+  const auto input = openImage(reader, path.string());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
   checkImageSize(path, spec.width, spec.height, spec.nchannels);
@@ -117,9 +117,12 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
+  const char* reader =
+      readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
+  if (!reader) fail(path, "is neither EXR, Radiance HDR, PFM, PNG, JPEG nor TIFF");
   try {
     const QuietStandardError quiet;
-    return readThroughLibrary(path, integers);
+    return readThroughLibrary(path, reader, integers);
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -159,7 +162,9 @@ std::vector<std::string> layerNames(const ImageFile& file) {
 }
 
 Image readImage(const fs::path& path, IntegerTexels integers) {
-  std::optional<Image> color = findColor(readImageFile(path, integers));
+  ImageFile file = readImageFile(path, integers);
+  if (file.channels == std::vector<std::string>{"R", "G", "B"}) return std::move(file.image);
+  std::optional<Image> color = findColor(file);
   if (!color) throwInput("{}: has no channels R, G and B, and is not grey", path.string());
   return *std::move(color);
 }
