@@ -1,6 +1,7 @@
 // What the fuzz targets share: the readers take files, the fuzzer gives bytes.
 #pragma once
 
+#include <oneapi/tbb/global_control.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -12,6 +13,9 @@
 #include "math/error.h"
 
 namespace chromeball {
+
+// Inputs are so small that a second thread only adds waiting; and one runs the same every time.
+inline const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
 
 // The bytes as a file in a folder of this process's own; the same file every time.
 inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string& name) {
