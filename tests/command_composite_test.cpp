@@ -246,6 +246,14 @@ TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
           "has no `radius`");
 }
 
+TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {
+  const std::string room = "[surroundings]\nshape = \"model\"\nfile = \"model.gltf\"\n";
+  ASSERT_EQ(render(scene(kGood, room + "capture = [0, 0.25, 0]"), {}).status, 0);
+  refused(scene(kGood, room), "has no `capture`");
+  refused(scene(kGood, room + "capture = [0, 50, 0]"), "lies outside the room");
+  refused(scene(kGood, "[surroundings]\nshape = \"model\"\nfile = \"hall.glb\""), "hall.glb");
+}
+
 // A phone's photograph and the probe that was taken with it.
 TEST_F(SlowCommandComposite, TakesARealPhotograph) {
   const std::string folder = "reference/differential_rendering/kartikagrawal27/";

@@ -86,8 +86,8 @@ TEST(InvalidSamples, NegativeDifferencesAreAnswers) {
 
 class Firefly : public Integrator {
  public:
-  Rgb radiance(const CameraSample& sample, PathMemory&, FirstHit*) const override {
-    return counter_.next(sample) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1);
+  Rgb radiance(const CameraSample& sample, PathMemory& memory, FirstHit*) const override {
+    return memory.clamp(counter_.next(sample) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1));
   }
 
  private:
@@ -112,6 +112,15 @@ TEST(Clamp, IsOffUnlessAskedAndSaysWhatItTook) {
 
   settings.clamp = 20.0f;
   EXPECT_EQ(renderWith(Firefly(), settings).clamped.count, 0u);
+}
+
+TEST(Clamp, LimitsDifferencesBothWaysAndLeavesInvalidOnesToBeCounted) {
+  Clamp clamp(2.0f);
+  EXPECT_EQ(clamp(Rgb(-8, 4, 0)), Rgb(-2, 1, 0));
+  EXPECT_EQ(clamp.clamped().count, 1u);
+  EXPECT_EQ(clamp(Rgb(kInf, 1, 1)).x, kInf);
+  EXPECT_TRUE(std::isnan(clamp(Rgb(1, kNan, 9)).y));
+  EXPECT_EQ(clamp.clamped().count, 1u);
 }
 
 // A direction that is not a number finds no texel, and no memory outside the map.

@@ -28,7 +28,7 @@ void differential(benchmark::State& state, demo::Finish finish) {
   std::vector<DirectionSample> scratch;
   RayCounts counts;
   const SobolTable unused(1, 4, 0);
-  PathMemory memory{PixelSampler(unused, 0), {}, {}};
+  PathMemory memory{PixelSampler(unused, 0), {}, {}, {}};
   double plain = 0, both = 0;
   Rgb plainSum(0), withObjects(0);
   for (auto _ : state) {

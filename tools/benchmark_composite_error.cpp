@@ -18,16 +18,16 @@ namespace chromeball {
 namespace {
 
 constexpr int kColumns = 120, kRows = 80, kTruthSamples = 4096, kCompositeSamples = 1024;
-constexpr float kLeastRoughness = 0.7f;
+constexpr float kRough = 0.7f;
 const std::atomic<bool> kGoOn = false;
 const auto kQuiet = [](double) {};
 
-Scene load(demo::Terrace what) {
+Scene load(demo::Terrace what, float leastRoughness = kRough) {
   const auto file = std::filesystem::temp_directory_path() / "chromeball-terrace.glb";
   demo::writeTerrace(file, what);
   Scene scene = loadGltf(file, {}, [](const std::string&) {});
   std::filesystem::remove(file);
-  for (Material& m : scene.materials) m.roughness = std::max(m.roughness, kLeastRoughness);
+  for (Material& m : scene.materials) m.roughness = std::max(m.roughness, leastRoughness);
   return scene;
 }
 
@@ -83,12 +83,15 @@ void errorOf(const Image& found, const DifferentialFilm& film, const char* name,
   state.counters[std::string(name) + " bias %"] = 100 * sum / reference;
 }
 
+ObjectMask objectsOf(const Scene& scene) {
+  return findObjects(scene, {{"floor", ""}, {"wall", ""}, {"pillar", ""}, {"vase", ""}}, "");
+}
+
 void compositeError(benchmark::State& state, const Mistake& mistake) {
   const Truth& truth = Truth::get();
   const bool isTrue = mistake.reflectance == Reflectance::True;
   Scene scene = load(isTrue ? demo::Terrace::Whole : demo::Terrace::Model);
-  const ObjectMask isObject =
-      findObjects(scene, {{"floor", ""}, {"wall", ""}, {"pillar", ""}, {"vase", ""}}, "");
+  const ObjectMask isObject = objectsOf(scene);
   for (size_t i = 0; i < isObject.size(); ++i)
     if (!isObject[i]) {
       vec4& color = scene.materials[size_t(scene.instances[i].material)].baseColor;
@@ -133,6 +136,45 @@ MISTAKE(probe + 30 %, {.exposure = 1.3f});
 MISTAKE(probe - 30 % and solved, {.reflectance = Reflectance::Solved, .exposure = 0.7f});
 MISTAKE(no interreflection, {.maxDepth = 1});
 #undef MISTAKE
+
+// How many times less the variance of the difference is from one pass than from two renders, in the
+// pixels of the local scene that the objects change.
+void compositeNoise(benchmark::State& state, float leastRoughness) {
+  const Truth& truth = Truth::get();
+  const Scene scene = load(demo::Terrace::Whole, leastRoughness);
+  const ObjectMask isObject = objectsOf(scene);
+  const Probe probe(truth.probe);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  const auto passes = [&](Passes passes) {
+    return renderComposite(scene, Accel(scene), isObject, scene.cameras.front(), *lighting,
+                           truth.plate, settingsOf(kCompositeSamples, 3), passes, false, kQuiet,
+                           kGoOn);
+  };
+  for (auto _ : state) {
+    const CompositeRender one = passes(Passes::One), two = passes(Passes::Two);
+    std::vector<double> gains;
+    double sumOne = 0, sumTwo = 0;
+    for (int y = 0; y < kRows; ++y)
+      for (int x = 0; x < kColumns; ++x) {
+        const double plate = luminance(truth.plate.rgb(x, y)),
+                     whole = luminance(truth.whole.rgb(x, y));
+        if (one.film.at(x, y).covered > 0 || !(std::abs(whole - plate) > 0.02 * plate)) continue;
+        const double a = luminance(one.squaredStandardError.rgb(x, y));
+        const double b = luminance(two.squaredStandardError.rgb(x, y));
+        gains.push_back(b / a);
+        sumOne += a, sumTwo += b;
+      }
+    std::nth_element(gains.begin(), gains.begin() + gains.size() / 2, gains.end());
+    state.counters["gain"] = sumTwo / sumOne;
+    state.counters["median gain"] = gains[gains.size() / 2];
+  }
+}
+BENCHMARK_CAPTURE(compositeNoise, rough objects, kRough)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(compositeNoise, mirrors and gold, 0.0f)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace chromeball

@@ -95,8 +95,8 @@ double meanAlpha(const DifferentialFilm& film) {
 
 CompositeJob planComposite(RenderJob& job, bool twoPass) {
   const CompositeEntry& entry = *job.file.composite;
-  if (job.settings.clamp)
-    throwInput("--clamp: would clamp the plate as well; a composite is rendered without");
+  if (job.settings.clamp && twoPass)
+    throwInput("--clamp: leave it out; --two-pass is there to show what is right");
   CompositeJob composite;
   composite.mode = parseMode(entry.mode);
   composite.passes = twoPass ? Passes::Two : Passes::One;

@@ -110,6 +110,20 @@ void chooseSize(RenderJob& job, const Scene& scene) {
         settings.width, settings.height, needed * 1e-9, budget * 1e-9);
 }
 
+// Null where the surroundings are no model.
+std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin) {
+  const auto& surroundings = job.file.surroundings;
+  if (!surroundings || surroundings->shape != Surroundings::Shape::Model) return nullptr;
+  GltfChoice choice = job.file.models.front().choice;
+  choice.animation.reset();
+  choice.variant.reset();
+  choice.origin = origin;
+  return std::make_unique<const Room>(
+      loadGltf(
+          surroundings->model, {}, [](const std::string&) {}, choice),
+      surroundings->capture, surroundings->model);
+}
+
 void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
   surroundings.grow(1e-4f);  // what stands on the floor touches it
   for (const Instance& instance : scene.instances)
@@ -124,21 +138,22 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 LoadedScene loadScene(RenderJob& job) {
   std::vector<std::string> notes;
   Scene scene = loadModels(job.file, glm::dvec3(0), notes);
-  if (const glm::dvec3 origin = originFor(scene, job.file.models.front().file);
-      origin != glm::dvec3(0)) {
+  const glm::dvec3 origin = originFor(scene, job.file.models.front().file);
+  if (origin != glm::dvec3(0)) {
     scene = loadModels(job.file, origin, notes);
     if (job.file.camera) job.file.camera->position -= vec3(origin);
     if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
   }
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));
-  if (job.file.surroundings)
+  std::unique_ptr<const Room> room = loadRoom(job, origin);
+  if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
   return {std::move(scene),      camera,          std::move(loaded), std::move(probe),
-          job.file.surroundings, std::move(notes)};
+          job.file.surroundings, std::move(room), std::move(notes)};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
@@ -146,7 +161,7 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   auto lighting = makeStrategy(strategy.name, loaded.probe, mis, strategy.place);
   if (!loaded.surroundings) return lighting;
   return std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                              *loaded.surroundings);
+                                              *loaded.surroundings, loaded.room.get());
 }
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {

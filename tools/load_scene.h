@@ -5,6 +5,7 @@
 #include "probe/load.h"
 #include "render_job.h"
 #include "scene/scene.h"
+#include "trace/room.h"
 
 namespace chromeball {
 
@@ -14,6 +15,7 @@ struct LoadedScene {
   LoadedProbe loadedProbe;  // what was found in its file; the map itself is in `probe`
   Probe probe;              // black where the scene lights itself
   std::optional<Surroundings> surroundings;  // the model is inside
+  std::unique_ptr<const Room> room;          // where they are a model
   std::vector<std::string> modelNotes;       // what the models' files hold that is not rendered
 };
 

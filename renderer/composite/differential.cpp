@@ -20,13 +20,15 @@ Rgb DifferentialIntegrator::radiance(const CameraSample& camera, PathMemory& mem
   ++pixel.count;
   if (s.objectFirst) {
     ++pixel.covered;
-    pixel.objects += glm::dvec3(withObjects);
+    const Rgb seen = memory.clamp(withObjects);
+    pixel.objects += glm::dvec3(seen);
     pixel.behind += glm::dvec3(without);
-    return withObjects;
+    return seen;
   }
+  const Rgb difference = memory.clamp(s.difference());
   pixel.local += glm::dvec3(without);
-  pixel.difference += glm::dvec3(s.difference());
-  return plate_.rgb(camera.x, camera.y) + s.difference();
+  pixel.difference += glm::dvec3(difference);
+  return plate_.rgb(camera.x, camera.y) + difference;
 }
 
 }  // namespace chromeball

@@ -26,7 +26,8 @@ struct DifferentialFilm {
 };
 
 // A sample's radiance is that of the composite by the difference formula: the object's where the
-// camera sees one, else plate + L_obj - L_noobj, which may be negative.
+// camera sees one, else plate + L_obj - L_noobj, which may be negative. A limit (clamp.h) applies to
+// objects and differences, never to the plate.
 class DifferentialIntegrator : public Integrator {
  public:
   // All of them must outlive this; `film` is of the plate's size.

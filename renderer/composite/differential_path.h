@@ -89,7 +89,9 @@ struct DifferentialScene {
 inline DifferentialSample differentialRadiance(const DifferentialScene& scene,
                                                const CameraSample& camera, PathMemory& memory,
                                                FirstHit* first) {
-  auto& [sampler, samples, counts] = memory;
+  PixelSampler& sampler = memory.sampler;
+  std::vector<DirectionSample>& samples = memory.samples;
+  RayCounts& counts = memory.rays;
   const auto& [whole, local, isObject, looksBehind] = scene;
   const WatchedRays rays(whole.rays, local.rays);
   const PathScene<WatchedRays> shared{

@@ -1,6 +1,7 @@
 // What a render estimates: light that comes along rays from the camera.
 #pragma once
 
+#include "integrate/clamp.h"
 #include "integrate/path.h"
 #include "trace/accel.h"
 
@@ -18,6 +19,7 @@ struct PathMemory {
   PixelSampler sampler;  // at the sample that is asked for
   std::vector<DirectionSample> samples;
   RayCounts rays;
+  Clamp clamp;  // for the integrator to apply to what it traced
 };
 
 class Integrator {
@@ -37,8 +39,8 @@ class PathIntegrator : public Integrator {
   explicit PathIntegrator(const PathScene<Accel>& path) : path_(path) {}
 
   Rgb radiance(const CameraSample& sample, PathMemory& memory, FirstHit* first) const override {
-    return pathRadiance(path_, sample.ray, sample.hit, memory.sampler, memory.samples, memory.rays,
-                        first);
+    return memory.clamp(pathRadiance(path_, sample.ray, sample.hit, memory.sampler, memory.samples,
+                                     memory.rays, first));
   }
 
  private:

@@ -74,7 +74,6 @@ class Schedule {
 struct Worker {
   PathMemory memory;
   InvalidSamples invalid;
-  ClampedSamples clamped;
 };
 
 class Renderer {
@@ -91,7 +90,7 @@ class Renderer {
                    dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
                settings.seed),
         workers_([this] {
-          return Worker{{PixelSampler(table_, settings_.seed), {}, {}}, {}, {}};
+          return Worker{{PixelSampler(table_, settings_.seed), {}, {}, Clamp(settings_.clamp)}, {}};
         }) {}
 
   // Adds one block to every pixel. `progress` is told the share of the pass.
@@ -119,7 +118,7 @@ class Renderer {
     for (const Worker& worker : workers_) {
       result_.rays.add(worker.memory.rays);
       result_.invalid.add(worker.invalid);
-      result_.clamped.add(worker.clamped);
+      result_.clamped.add(worker.memory.clamp.clamped());
     }
   }
 
@@ -169,7 +168,7 @@ class Renderer {
         worker.invalid.add(*defect, x, y);
         result_.aovs.add(x, y, *defect);
       } else {
-        sums.add(settings_.clamp ? clamped(radiance, worker.clamped) : radiance);
+        sums.add(radiance);
       }
       if (wantsFirst) {
         first.depth = camera_.depth(sample.ray.direction, first.depth);
@@ -177,18 +176,6 @@ class Renderer {
       }
     }
     result_.film.addBlock(x, y, sums);
-  }
-
-  // Keeps the hue.
-  Rgb clamped(const Rgb& radiance, ClampedSamples& clamped) const {
-    const float largest = maxComponent(glm::abs(radiance));
-    const float scale = largest > *settings_.clamp ? *settings_.clamp / largest : 1;
-    const double light = std::fabs(double(luminance(radiance)));
-    clamped.kept += light * scale;
-    if (scale == 1) return radiance;
-    ++clamped.count;
-    clamped.removed += light * (1 - double(scale));
-    return radiance * scale;
   }
 
   const Integrator& integrator_;

@@ -25,17 +25,6 @@ struct RenderSettings {
   std::vector<Aov> aovs;
 };
 
-// Samples brighter than the limit, which were scaled down to it: an error the user asked for.
-struct ClampedSamples {
-  uint64_t count = 0;
-  double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
-
-  double shareRemoved() const { return removed > 0 ? removed / (removed + kept) : 0; }
-  void add(const ClampedSamples& other) {
-    count += other.count, removed += other.removed, kept += other.kept;
-  }
-};
-
 struct RenderResult {
   Film film;
   AovFilm aovs;

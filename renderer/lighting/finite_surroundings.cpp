@@ -17,9 +17,10 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
   strategy_->sample(point, sampler, out);
   size_t kept = before;
   for (size_t i = before; i < out.size(); ++i) {
-    const Surroundings::Point y = surroundings_.behind(surroundings_.capture, out[i].wi);
+    const Surroundings::Point y = behind(surroundings_.capture, out[i].wi);
     const float larger = enlargement(point.position, y);
-    if (!(larger > 0)) continue;  // the point lies on the surface itself
+    // The point may lie on the surface itself.
+    if (!(larger > 0) || !isSeen(y, point.position)) continue;
     out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * larger,
                    out[i].density / larger};
   }
@@ -28,15 +29,17 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
 
 LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
                                                       const vec3& wi) const {
-  const Surroundings::Point y = surroundings_.behind(point.position, wi);
+  const Surroundings::Point y = behind(point.position, wi);
   Escaped found = strategy_->escaped(point, glm::normalize(y.position - surroundings_.capture));
+  if (found.density == 0) return found;
   const float larger = enlargement(point.position, y);
-  if (found.density > 0) found.density = larger > 0 ? found.density / larger : 0;
+  const bool isSampled = larger > 0 && isSeen(y, surroundings_.capture);
+  found.density = isSampled ? found.density / larger : 0;
   return found;
 }
 
 Rgb FiniteSurroundings::background(const vec3& origin, const vec3& wi) const {
-  const Surroundings::Point y = surroundings_.behind(origin, wi);
+  const Surroundings::Point y = behind(origin, wi);
   return probe_.radiance(glm::normalize(y.position - surroundings_.capture));
 }
 

@@ -14,13 +14,19 @@ namespace chromeball {
 // (HDRI book, 9.2.3). What it samples concentrated, suns or delta lights, so becomes a lamp on the
 // surface, nearer to some points than to others.
 //
+// What of a room the capture point does not see, the strategy does not sample; a ray that ends
+// there finds what the probe shows in front of it. A sample at a wall that another hides is left
+// out.
+//
 // The camera and mirrors see the probe as it was taken: a lamp that a strategy took out of it
 // shines on matte and glossy surfaces only (RADIANCE's "illum"; HDRI book, 9.6.1).
 class FiniteSurroundings : public LightingStrategy {
  public:
+  // `room` must outlive this; it takes the place of the box or the sphere, and is null where there
+  // is one of them.
   FiniteSurroundings(std::unique_ptr<LightingStrategy> strategy, const Probe& probe,
-                     const Surroundings& surroundings)
-      : strategy_(std::move(strategy)), probe_(probe), surroundings_(surroundings) {}
+                     const Surroundings& surroundings, const Walls* room = nullptr)
+      : strategy_(std::move(strategy)), probe_(probe), surroundings_(surroundings), room_(room) {}
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
@@ -30,12 +36,20 @@ class FiniteSurroundings : public LightingStrategy {
   bool unbiased() const override { return strategy_->unbiased(); }
 
  private:
+  Surroundings::Point behind(const vec3& origin, const vec3& direction) const {
+    return room_ ? room_->behind(origin, direction) : surroundings_.behind(origin, direction);
+  }
+  bool isSeen(const Surroundings::Point& y, const vec3& from) const {
+    return !room_ || room_->isSeen(y.position, from);
+  }
+
   // How much larger the solid angle of a patch at y is from x than from the capture point.
   float enlargement(const vec3& x, const Surroundings::Point& y) const;
 
   std::unique_ptr<LightingStrategy> strategy_;
   const Probe& probe_;
   Surroundings surroundings_;
+  const Walls* room_;
 };
 
 }  // namespace chromeball

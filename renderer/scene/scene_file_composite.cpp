@@ -29,7 +29,7 @@ CompositeEntry readComposite(const Section& root) {
 
 Surroundings readSurroundings(const Section& root) {
   const Section section =
-      root.section("surroundings", {"shape", "min", "max", "center", "radius", "capture"});
+      root.section("surroundings", {"shape", "min", "max", "center", "radius", "file", "capture"});
   const auto need = [&](const char* key) {
     const Entry entry = section[key];
     if (!entry) failAt(section.place(), "[surroundings] has no `{}`", key);
@@ -47,8 +47,13 @@ Surroundings readSurroundings(const Section& root) {
     s.shape = Surroundings::Shape::Sphere;
     s.capture = s.center = need("center").vector();
     s.radius = float(need("radius").positive());
+  } else if (shape.text() == "model") {
+    s.shape = Surroundings::Shape::Model;
+    s.model = existing(need("file"));
+    s.capture = need("capture").vector();
+    return s;
   } else {
-    failAt(shape.place(), "`shape` is \"box\" or \"sphere\", not \"{}\"", shape.text());
+    failAt(shape.place(), "`shape` is \"box\", \"sphere\" or \"model\", not \"{}\"", shape.text());
   }
   if (const Entry e = section["capture"]) s.capture = e.vector();
   if (!s.contains(s.capture))

@@ -1,0 +1,48 @@
+// A limit to what a sample may show, where the user asks for one: an error with a name and a size.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// What a limit took away.
+struct ClampedSamples {
+  uint64_t count = 0;
+  double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
+
+  double shareRemoved() const { return removed > 0 ? removed / (removed + kept) : 0; }
+  void add(const ClampedSamples& other) {
+    count += other.count, removed += other.removed, kept += other.kept;
+  }
+};
+
+class Clamp {
+ public:
+  explicit Clamp(std::optional<float> limit = {}) : limit_(limit) {}
+
+  // The radiance, or difference of two, scaled down until no channel exceeds the limit either way;
+  // the hue stays. What is not finite stays as it is, to be counted as invalid.
+  Rgb operator()(const Rgb& radiance) {
+    if (!limit_ || !isFinite(radiance)) return radiance;
+    const float largest = maxComponent(glm::abs(radiance));
+    const float scale = largest > *limit_ ? *limit_ / largest : 1;
+    const double light = std::fabs(double(luminance(radiance)));
+    clamped_.kept += light * scale;
+    if (scale == 1) return radiance;
+    ++clamped_.count;
+    clamped_.removed += light * (1 - double(scale));
+    return radiance * scale;
+  }
+
+  const ClampedSamples& clamped() const { return clamped_; }
+
+ private:
+  std::optional<float> limit_;
+  ClampedSamples clamped_;
+};
+
+}  // namespace chromeball
