@@ -22,6 +22,7 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin, std::vector<st
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
+    choice.environment = !file.probe;
     append(scene, loadGltf(model.file, model.placement, note, choice));
   }
   if (scene.instances.empty())
@@ -45,9 +46,15 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   return glm::length(centre) > kFar * size ? centre : glm::dvec3(0);
 }
 
-// The probe as a lat-long map; black where the scene lights itself.
-LoadedProbe loadProbeOf(const RenderJob& job, const Scene& scene) {
+// The probe as a lat-long map: the file that was named, else the model's own; black where the scene
+// lights itself.
+LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
   const SceneFile& file = job.file;
+  if (!file.probe && scene.environment) {
+    LoadedProbe own;
+    own.latLong = std::move(*scene.environment);
+    return own;
+  }
   if (!file.probe) {
     const bool lit =
         !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -171,7 +178,10 @@ void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
     fmt::print(stderr, "chromeball: a picture of {}x{} takes {:.3g} GB of memory\n", s.width,
                s.height, bytes * 1e-9);
   if (!job.file.probe) {
-    if (!quiet && !loaded.scene.lights.empty())
+    if (!quiet && loaded.scene.environment)
+      fmt::print(stderr, "chromeball: {}: no probe; lit by the model's own environment\n",
+                 job.file.models[0].file);
+    else if (!quiet && !loaded.scene.lights.empty())
       fmt::print(stderr, "chromeball: {}: no probe; its {} lights shine alone\n",
                  job.file.models[0].file, loaded.scene.lights.size());
     return;

@@ -156,7 +156,7 @@ void planOutputs(RenderJob& job, const RenderOptions& options) {
 
 void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
-  command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm");
+  command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm (else the model's own)");
   command.add_option("--probe-mapping", o.mapping,
                      "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
   command.add_option("--probe-rotation", o.rotation,

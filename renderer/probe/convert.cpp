@@ -67,9 +67,18 @@ int samplesPerSide(const ImageSize& source, const ImageSize& target) {
   return std::max(2, int(std::ceil(2 * std::sqrt(sourceTexels / targetTexels))));
 }
 
-dvec3 turnAboutY(const dvec3& d, double degrees) {
+glm::dmat3 turnAboutY(double degrees) {
   const double angle = degrees * kPiD / 180, c = std::cos(angle), s = std::sin(angle);
-  return {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+  return glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+}
+
+// From a cube map or a disc.
+Image resample(const Image& image, Mapping from, Mapping to, const ImageSize& size,
+               const glm::dmat3& rotation) {
+  const int samples = samplesPerSide({image.width, image.height}, size);
+  const PatchSource patches(image, from);
+  const glm::dmat3 back = glm::transpose(rotation);
+  return bake(to, size, samples, [&](const dvec3& d) { return patches.radiance(back * d); });
 }
 
 }  // namespace
@@ -102,15 +111,17 @@ Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& siz
       size.height == image.height)
     return image;
 
-  const int samples = samplesPerSide(source, size);
   if (from == Mapping::LatLong) {
+    const int samples = samplesPerSide(source, size);
     const Probe probe(image, rotationDegrees);
     return bake(to, size, samples, [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
   }
-  const PatchSource patches(image, from);
-  return bake(to, size, samples, [&](const dvec3& d) {
-    return patches.radiance(turnAboutY(d, -double(rotationDegrees)));
-  });
+  return resample(image, from, to, size, turnAboutY(double(rotationDegrees)));
+}
+
+Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation) {
+  return resample(image, from, Mapping::LatLong, latLongSize(from, {image.width, image.height}),
+                  rotation);
 }
 
 }  // namespace chromeball

@@ -24,4 +24,8 @@ ImageSize sizeFor(Mapping mapping, const ImageSize& latLong);
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
               float rotationDegrees = 0);
 
+// A cube map or disc as a lat-long map of latLongSize, the environment turned by `rotation` (any
+// rotation: the direction d of the source becomes rotation * d).
+Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation);
+
 }  // namespace chromeball

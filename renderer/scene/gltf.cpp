@@ -2,6 +2,7 @@
 
 #include "scene/gltf_animation.h"
 #include "scene/gltf_draco.h"
+#include "scene/gltf_environment.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_instances.h"
 #include "scene/gltf_lights.h"
@@ -83,6 +84,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
   scene.lights = readLights(file, tree);
+  if (choice.environment) scene.environment = readEnvironment(file);
   scene.nodeNames = tree.names;
   scene.nodeParents = tree.parents;
   return scene;

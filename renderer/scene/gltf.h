@@ -34,7 +34,8 @@ struct GltfChoice {
   std::optional<AnimationTime> animation;  // else the rest pose
   std::optional<VariantChoice> variant;    // else the materials that the primitives name
   ExternalFiles external = ExternalFiles::Refuse;
-  glm::dvec3 origin{0};  // of the scene in the world: subtracted while numbers are still doubles
+  bool environment = true;  // whether the file's own light probe is wanted
+  glm::dvec3 origin{0};     // of the scene in the world: subtracted while numbers are still doubles
 };
 
 // Reads the default scene of the file (the first where none is named), with `placement` applied to

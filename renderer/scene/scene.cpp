@@ -77,6 +77,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
   moveToEnd(scene.lights, other.lights);
+  if (!scene.environment) scene.environment = std::move(other.environment);
   scene.nodeParents.resize(scene.nodeNames.size(), -1);
   other.nodeParents.resize(other.nodeNames.size(), -1);
   for (int& parent : other.nodeParents)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/image.h"
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
@@ -53,6 +54,7 @@ struct Scene {
   std::vector<std::unique_ptr<TexelGrid>> grids;  // owns the texels that textures point to
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
+  std::optional<Image> environment;  // the model's own light probe: lat-long, fit to render with
   std::vector<std::string> nodeNames;
   std::vector<int> nodeParents;  // by node, -1 for none; or empty, where no node has one
 

@@ -1,0 +1,197 @@
+// The environment that a glTF file brings along.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "image/png.h"
+#include "image/read.h"
+#include "image/write.h"
+#include "probe/probe.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFace = 32;
+
+// Where the faces look and how their images lie, by the specification's figure: the direction at
+// (u, v) in [-1, 1] is forward + u right + v down.
+struct Face {
+  vec3 forward, right, down;
+};
+const Face kFaces[] = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                       {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
+                       {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}}};
+
+uint8_t encode(float radiance) {
+  const float c =
+      radiance <= 0.0031308f ? 12.92f * radiance : 1.055f * std::pow(radiance, 1 / 2.4f) - 0.055f;
+  return uint8_t(std::lround(255 * c));
+}
+
+// Different in every direction, between 0 and 1.
+Rgb colors(const vec3& d) { return 0.5f + 0.5f * glm::normalize(d); }
+
+// Writes a triangle lit by an environment of `radiance`, which is at most 1 and stored divided by
+// `scale` (RGBD) where that is not 1.
+void addEnvironment(GltfWriter& w, Rgb (*radiance)(const vec3&) = colors, float scale = 1) {
+  addTriangle(w);
+  json level = json::array();
+  for (int f = 0; f < 6; ++f) {
+    std::vector<uint8_t> bytes;
+    for (int y = 0; y < kFace; ++y)
+      for (int x = 0; x < kFace; ++x) {
+        const float u = 2 * (float(x) + 0.5f) / kFace - 1, v = 2 * (float(y) + 0.5f) / kFace - 1;
+        const Face& face = kFaces[f];
+        const Rgb c = radiance(face.forward + u * face.right + v * face.down);
+        for (int k = 0; k < 3; ++k) bytes.push_back(encode(c[k]));
+        if (scale != 1) bytes.push_back(uint8_t(std::lround(255 / scale)));
+      }
+    const std::string name = "face" + std::to_string(f) + ".png";
+    w.write(name, encodePng(kFace, kFace, scale == 1 ? 3 : 4, bytes));
+    level.push_back(w.add("images", {{"uri", name}}));
+  }
+  w.root["extensionsUsed"] = {"EXT_lights_image_based"};
+  w.root["extensions"]["EXT_lights_image_based"]["lights"] = {
+      {{"specularImageSize", kFace}, {"specularImages", {level}}}};
+  w.root["scenes"] = {
+      {{"nodes", {0}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}};
+}
+
+json& light(GltfWriter& w) { return w.root["extensions"]["EXT_lights_image_based"]["lights"][0]; }
+
+const std::vector<vec3>& directions() {
+  static const std::vector<vec3> kDirections = [] {
+    std::vector<vec3> all;
+    for (int x = -2; x <= 2; ++x)
+      for (int y = -2; y <= 2; ++y)
+        for (int z = -2; z <= 2; ++z)
+          if (x || y || z) all.push_back(glm::normalize(vec3(x, y, z)));
+    return all;
+  }();
+  return kDirections;
+}
+
+void expectRadiance(const Scene& scene, const std::function<Rgb(const vec3&)>& expected,
+                    float tolerance) {
+  ASSERT_TRUE(scene.environment);
+  const Probe probe(*scene.environment);
+  for (const vec3& d : directions())
+    EXPECT_NEAR(glm::distance(probe.radiance(d), expected(d)), 0, tolerance)
+        << d.x << " " << d.y << " " << d.z;
+}
+
+TEST(GltfEnvironment, FacesLieAsTheFigureHasThem) {
+  GltfWriter w;
+  addEnvironment(w);
+  expectRadiance(w.load(), colors, 0.03f);
+  EXPECT_TRUE(w.warnings.empty());
+}
+
+TEST(GltfEnvironment, AlphaDividesAndIntensityMultiplies) {
+  GltfWriter w;
+  addEnvironment(w, colors, 5);
+  light(w)["intensity"] = 3;
+  expectRadiance(
+      w.load(), [](const vec3& d) { return 15.0f * colors(d); }, 0.45f);
+}
+
+TEST(GltfEnvironment, Turns) {
+  GltfWriter w;
+  addEnvironment(w);
+  const glm::quat q = glm::normalize(glm::quat(0.7f, 0.3f, -0.5f, 0.2f));
+  light(w)["rotation"] = {q.x, q.y, q.z, q.w};
+  expectRadiance(
+      w.load(), [&](const vec3& d) { return colors(glm::inverse(q) * d); }, 0.03f);
+}
+
+TEST(GltfEnvironment, IsReadOnlyWhereTheSceneNamesItAndItIsWanted) {
+  GltfWriter w;
+  addEnvironment(w);
+  const std::string path = w.save();
+  GltfChoice choice;
+  choice.environment = false;
+  EXPECT_FALSE(loadGltf(path, {}, nullptr, choice).environment);
+  w.root["scenes"][0].erase("extensions");
+  EXPECT_FALSE(w.load().environment);
+}
+
+// The first coefficient is the mean irradiance over Y00.
+TEST(GltfEnvironment, DisagreeingCoefficientsAreSaid) {
+  GltfWriter w;
+  addEnvironment(w, [](const vec3&) { return Rgb(0.5f); });
+  const float y00 = std::sqrt(1 / (4 * kPi));
+  const auto coefficients = [&](float irradiance) {
+    json all = json::array();
+    for (int i = 0; i < 9; ++i) all.push_back(json::array({0, 0, 0}));
+    all[0] = {irradiance / y00, irradiance / y00, irradiance / y00};
+    return all;
+  };
+  light(w)["irradianceCoefficients"] = coefficients(0.5f * kPi);
+  w.load();
+  EXPECT_TRUE(w.warnings.empty());
+  light(w)["irradianceCoefficients"] = coefficients(0.25f * kPi);
+  w.load();
+  ASSERT_EQ(w.warnings.size(), 1u);
+  EXPECT_NE(w.warnings[0].find("2.01 times the light"), std::string::npos) << w.warnings[0];
+}
+
+TEST(GltfEnvironment, BadOnesAreRefused) {
+  const auto refusal = [](const std::function<void(GltfWriter&)>& spoil) {
+    GltfWriter w;
+    addEnvironment(w);
+    spoil(w);
+    return w.refusal();
+  };
+  const auto expect = [&](const std::string& reason,
+                          const std::function<void(GltfWriter&)>& spoil) {
+    const std::string said = refusal(spoil);
+    EXPECT_NE(said.find(reason), std::string::npos) << "\"" << said << "\", not " << reason;
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+  };
+  const char* used = "EXT_lights_image_based";
+  expect("lights[1] does not exist",
+         [&](auto& w) { w.root["scenes"][0]["extensions"][used]["light"] = 1; });
+  expect("lights[-1] does not exist",
+         [&](auto& w) { w.root["scenes"][0]["extensions"][used].erase("light"); });
+  expect("lights[0] does not exist", [&](auto& w) { w.root.erase("extensions"); });
+  expect("six faces", [&](auto& w) { light(w)["specularImages"][0].erase(5); });
+  expect("six faces", [&](auto& w) { light(w).erase("specularImages"); });
+  expect("images[99] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = 99; });
+  expect("images[-1] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = "a"; });
+  expect("length 0", [&](auto& w) { light(w)["rotation"] = {0, 0, 0, 0}; });
+  expect("is square", [&](auto& w) { w.write("face3.png", kPng); });
+  expect("is 1 x 1, and the first face 32 x 32", [&](auto& w) {
+    w.write("face3.png", encodePng(1, 1, 3, std::vector<uint8_t>{1, 2, 3}));
+  });
+  expect("damaged", [&](auto& w) {
+    w.write("face3.png", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'});
+  });
+  expect("leaves the model's folder",
+         [&](auto& w) { w.root["images"][0]["uri"] = "../face0.png"; });
+}
+
+// It lights the scene where no probe is given, as the probe would that it holds.
+TEST(GltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
+  GltfWriter w;
+  addEnvironment(w, [](const vec3&) { return Rgb(1); });
+  const TemporaryFolder folder;
+  const std::string model = w.save(), picture = folder / "a.pfm";
+  const auto corner = [&](std::vector<std::string> more) {  // which shows the surroundings
+    std::vector<std::string> arguments = {"render", model, "-o",        picture,
+                                          "--size", "8x8", "--samples", "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = runCommand(arguments);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return readImage(picture).rgb(7, 0).y;
+  };
+  EXPECT_NEAR(corner({}), 1, 1e-3f);
+  EXPECT_NEAR(corner({"--probe-scale", "3"}), 3, 3e-3f);
+  writeImage(folder / "probe.pfm", constantProbe({4, 2}, Rgb(0.25f)));
+  EXPECT_NEAR(corner({"--probe", folder / "probe.pfm"}), 0.25f, 1e-3f);
+}
+
+}  // namespace
+}  // namespace chromeball
