@@ -37,6 +37,7 @@ void ExtendedBsdf::forEachPart(Self& self, Function&& function) {
   if (self.coat_) function(*self.coat_);
   if (self.base_) function(*self.base_);
   if (self.brushed_) function(*self.brushed_);
+  if (self.underFilm_) function(*self.underFilm_);
   if (self.sheen_) function(*self.sheen_);
   if (self.glass_) function(*self.glass_);
   if (self.sheet_) function(*self.sheet_);
@@ -79,18 +80,39 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
   });
 }
 
-float ExtendedBsdf::addMetallicRoughness(const MaterialPoint& m, const Rgb& diffuse,
-                                         const Rgb& metalF0, const ExtendedPoint& e,
-                                         const Surface& surface, const vec3& wo, float mirrorAlpha,
-                                         float factor) {
-  const auto add = [&](auto& part, const auto& lobe) {
+// Under a coloured film the lobe's diffuse part gets what the film lets through of its strongest
+// colour; what passes of the others is a diffuse lobe of its own.
+Rgb ExtendedBsdf::addMetallicRoughness(const MaterialPoint& m, const Rgb& diffuse,
+                                       const Rgb& metalF0, const ExtendedPoint& e,
+                                       const Surface& surface, const vec3& wo, float mirrorAlpha,
+                                       float factor) {
+  const auto add = [&](auto& part, const auto& lobeOf) {
+    const auto lobe = lobeOf(m);
     part = {lobe, factor, factor * lobe.albedo()};
     normal_ = lobe.normal();
-    return lobe.surfaceAlbedo();
+    Rgb reflected(lobe.surfaceAlbedo());
+    if (e.iridescence == 0) return reflected;
+    MaterialPoint grey = m;
+    for (int c = 0; c < 3; ++c) {
+      grey.dielectricF0 = Rgb(m.dielectricF0[c]);
+      reflected[c] = lobeOf(grey).surfaceAlbedo();
+    }
+    const Rgb through = diffuse * glm::max(lobe.surfaceAlbedo() - reflected, 0.0f);
+    if (isBlack(through)) return reflected;
+    Surface beneath = surface;
+    beneath.normal = normal_;
+    const Bsdf lambert({through, 0, 1, Rgb(0), 0}, beneath, wo);
+    underFilm_ = {lambert, factor, factor * lambert.albedo()};
+    return reflected;
   };
-  if (e.anisotropy == 0) return add(base_, Bsdf(m, diffuse, metalF0, surface, wo, mirrorAlpha));
-  return add(brushed_, Brushed(m, diffuse, metalF0, e.anisotropy, e.anisotropyTangent, surface, wo,
-                               mirrorAlpha));
+  if (e.anisotropy == 0)
+    return add(base_, [&](const MaterialPoint& p) {
+      return Bsdf(p, diffuse, metalF0, surface, wo, mirrorAlpha);
+    });
+  return add(brushed_, [&](const MaterialPoint& p) {
+    return Brushed(p, diffuse, metalF0, e.anisotropy, e.anisotropyTangent, surface, wo,
+                   mirrorAlpha);
+  });
 }
 
 void ExtendedBsdf::addBase(const MaterialPoint& m, const Rgb& metalF0, const ExtendedPoint& e,
@@ -98,12 +120,12 @@ void ExtendedBsdf::addBase(const MaterialPoint& m, const Rgb& metalF0, const Ext
                            float mirrorAlpha, float factor) {
   const float transmission = e.transmission * (1 - m.metallic);
   if (e.thinWalled) {
-    const float reflected = addMetallicRoughness(m, m.baseColor * (1 - m.metallic - transmission),
-                                                 metalF0, e, surface, wo, mirrorAlpha, factor);
+    const Rgb reflected = addMetallicRoughness(m, m.baseColor * (1 - m.metallic - transmission),
+                                               metalF0, e, surface, wo, mirrorAlpha, factor);
     if (transmission == 0) return;
-    const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha;
+    const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha && e.iridescence == 0;
     const Rgb share = smooth ? sheetTransmittance(m, e.transmission, glm::dot(surface.normal, wo))
-                             : m.baseColor * (transmission * (1 - reflected));
+                             : m.baseColor * transmission * (1.0f - reflected);
     const Sheet sheet(share, m.roughness, surface, wo, mirrorAlpha);
     sheet_ = {sheet, factor, factor * sheet.albedo()};
     return;

@@ -20,7 +20,8 @@ void prepareExtendedBsdf(const Material& material);
 //   the base: metallic-roughness, brushed where it is anisotropic, of which a share `transmission`
 //   of the dielectric is glass, or, for a sheet without thickness, of which that share of the
 //   diffuse light passes. A thin film changes the base's F0 to what it reflects under the viewer's
-//   angle: exact where the base is smooth. Glass ignores anisotropy.
+//   angle: exact where the base is smooth. What it does not reflect of a colour reaches the diffuse
+//   light in that colour. Glass ignores anisotropy.
 // Layers look at the viewer's direction alone, as the extensions' simple forms do: that keeps the
 // energy exactly, and costs reciprocity.
 class ExtendedBsdf {
@@ -50,13 +51,13 @@ class ExtendedBsdf {
                const RefractiveIndex& index, const Surface& surface, const vec3& wo,
                float mirrorAlpha, float factor);
   // Metallic-roughness; returns what its dielectric surface reflects.
-  float addMetallicRoughness(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
-                             const ExtendedPoint& extended, const Surface& surface, const vec3& wo,
-                             float mirrorAlpha, float factor);
+  Rgb addMetallicRoughness(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
+                           const ExtendedPoint& extended, const Surface& surface, const vec3& wo,
+                           float mirrorAlpha, float factor);
 
   vec3 normal_;
   bool continuous_ = false;
-  std::optional<Part<Bsdf>> coat_, base_;
+  std::optional<Part<Bsdf>> coat_, base_, underFilm_;
   std::optional<Part<Brushed>> brushed_;
   std::optional<Part<Sheen>> sheen_;
   std::optional<Part<Glass>> glass_;

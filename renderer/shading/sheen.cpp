@@ -24,7 +24,7 @@ float distribution(float z, float alpha) {
   return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) * (0.5f * kInvPi);
 }
 
-// Estevez and Kulla's fit to Smith's Lambda for it (section 3).
+// Estevez and Kulla's fit to Smith's Lambda for it (section 3). Rounding may leave z above 1.
 float lambda(float z, float alpha) {
   const float t = (1 - alpha) * (1 - alpha);
   const auto between = [t](float rough, float smooth) { return rough + t * (smooth - rough); };
@@ -32,7 +32,7 @@ float lambda(float z, float alpha) {
   const float c = between(0.19823f, 0.16801f), d = between(-1.97760f, -1.27393f);
   const float e = between(-4.32054f, -4.85967f);
   const auto fit = [&](float x) { return a / (1 + b * std::pow(x, c)) + d * x + e; };
-  return z < 0.5f ? std::exp(fit(z)) : std::exp(2 * fit(0.5f) - fit(1 - z));
+  return z < 0.5f ? std::exp(fit(z)) : std::exp(2 * fit(0.5f) - fit(std::max(1 - z, 0.0f)));
 }
 
 // f cos of the white lobe.
