@@ -5,18 +5,11 @@
 #include <map>
 
 #include "probe/synth.h"
-#include "scene/gltf.h"
-#include "shared_data.h"
+#include "sample_model.h"
 #include "test_scene.h"
 
 namespace chromeball {
 namespace {
-
-std::optional<Scene> sample(const std::string& name) {
-  const auto path = sharedData("gltf/" + name + "/glTF/" + name + ".gltf");
-  if (!path) return std::nullopt;
-  return loadGltf(path->string(), {}, nullptr);
-}
 
 // From the front, without perspective, in even light; exactly as wide and high as the model.
 struct Front {
@@ -69,7 +62,7 @@ vec3 centreOf(const Scene& scene, const Instance& instance) {
 // A wrong answer shows a red cross, a right one a green check.
 TEST(GltfPixels, ChecksAndNoCrosses) {
   for (const char* name : {"TextureSettingsTest", "NegativeScaleTest", "AlphaBlendModeTest"}) {
-    const auto scene = sample(name);
+    const auto scene = sampleModel(name);
     if (!scene) GTEST_SKIP() << "no sample models";
     const Front front(*scene, 160);
     EXPECT_EQ(front.count(isRed), 0) << name;
@@ -79,7 +72,7 @@ TEST(GltfPixels, ChecksAndNoCrosses) {
 
 // Vertex colours take two channels from each check; were they ignored, a cross in them would show.
 TEST(GltfPixels, VertexColorTest) {
-  const auto scene = sample("VertexColorTest");
+  const auto scene = sampleModel("VertexColorTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 160);
   const auto secondary = [](const Rgb& c) {  // cyan, magenta or yellow
@@ -94,7 +87,7 @@ TEST(GltfPixels, VertexColorTest) {
 
 // In each row of spheres, factors and three encodings of textures mean the same material.
 TEST(GltfPixels, TextureEncodingTest) {
-  const auto scene = sample("TextureEncodingTest");
+  const auto scene = sampleModel("TextureEncodingTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 160, 256);
   std::map<int, std::vector<Rgb>> rows;
@@ -113,7 +106,7 @@ TEST(GltfPixels, TextureEncodingTest) {
 
 // Halfway between a black texel and a green one is half the light.
 TEST(GltfPixels, TextureLinearInterpolationTest) {
-  const auto scene = sample("TextureLinearInterpolationTest");
+  const auto scene = sampleModel("TextureLinearInterpolationTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 80);
   const Rgb factor = front.at({-1.5f, -1, 0}), texture = front.at({1.5f, -1, 0});
@@ -124,7 +117,7 @@ TEST(GltfPixels, TextureLinearInterpolationTest) {
 // The upper quads show checks on green, blue and cyan; yellow would be a missing offset. On the
 // lower ones the arrow's tip lies at the marker named "Correct".
 TEST(GltfPixels, TextureTransformTest) {
-  const auto scene = sample("TextureTransformTest");
+  const auto scene = sampleModel("TextureTransformTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 200);
   int yellow = 0;
@@ -159,7 +152,7 @@ TEST(GltfPixels, TextureTransformTest) {
 
 // Each arrow, turned by its node, points at a target of its colour that no node turns.
 TEST(GltfPixels, OrientationTest) {
-  const auto scene = sample("OrientationTest");
+  const auto scene = sampleModel("OrientationTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   std::map<std::string, const Instance*> byName;
   for (const Instance& i : scene->instances) byName[scene->nodeNames[size_t(i.node)]] = &i;

@@ -18,6 +18,7 @@ options=("$@")
 given() { [[ " ${options[*]} " == *" $1 "* ]]; }
 given --size || options+=(--size 320x240)
 given --samples || options+=(--samples 64)
+given --exposure || options+=(--exposure -1)  # white things in the studio are to stay grey
 if ! given --probe; then
   "$chromeball" probe synth studio "$out/studio.exr" >/dev/null
   options+=(--probe "$out/studio.exr")

@@ -1,0 +1,41 @@
+// Khronos's sample models, where they are present.
+#pragma once
+
+#include "scene/gltf.h"
+#include "shared_data.h"
+#include "test_scene.h"
+
+namespace chromeball {
+
+inline std::optional<Scene> sampleModel(const std::string& name) {
+  const auto path = sharedData("gltf/" + name + "/glTF/" + name + ".gltf");
+  if (!path) return std::nullopt;
+  return loadGltf(path->string(), {}, nullptr);
+}
+
+// A square of the scene around `centre`, seen along -Z without perspective.
+inline Image squareView(const Scene& scene, const vec3& centre, float halfHeight, int pixels,
+                        const Probe& probe, RenderSettings settings) {
+  Camera camera;
+  camera.orthographic = true;
+  camera.halfHeight = halfHeight;
+  camera.position = {centre.x, centre.y, centre.z};
+  settings.width = settings.height = pixels;
+  return renderScene(scene, camera, probe, "importance", settings).film.mean();
+}
+
+inline Material& materialNamed(Scene& scene, const std::string& name) {
+  for (Material& m : scene.materials)
+    if (m.name == name) return m;
+  throw std::runtime_error("no material " + name);
+}
+
+// A black body that shines white to all sides.
+inline void makeLamp(Material& material) {
+  material.baseColor = vec4(0, 0, 0, 1);
+  material.specular = material.metallic = 0;
+  material.emission = Rgb(1);
+  material.doubleSided = true;
+}
+
+}  // namespace chromeball
