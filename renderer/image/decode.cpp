@@ -49,19 +49,29 @@ void checkSize(const ImageSpec& spec, size_t fileBytes, const std::string& name)
                spec.width, spec.height, fileBytes);
 }
 
-// Reads the image as T, spread over RGBA.
+// Reads the image as T, spread over RGBA. A few rows at a time, so that each page of the result is
+// touched once and nothing else is large: pages cost about as much as decoding does.
 template <class T, class Texel>
 std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
+  constexpr int kRows = 32;
   const ImageSpec& spec = input.spec();
   const int channels = std::min(spec.nchannels, 4);
-  std::vector<Texel> texels(size_t(spec.width) * size_t(spec.height));
-  if (!input.read_image(0, 0, 0, channels, type, texels.data(), sizeof(Texel)))
-    throwInput("{}: damaged image: {}", name, firstLine(input.geterror()));
-  if (channels == 4) return texels;
-  for (Texel& t : texels) {
-    if (channels == 3) t[3] = opaque;
-    if (channels == 2) t = {t[0], t[0], t[0], t[1]};
-    if (channels == 1) t = {t[0], t[0], t[0], opaque};
+  std::vector<T> rows(size_t(spec.width) * kRows * size_t(channels));
+  std::vector<Texel> wide(size_t(spec.width) * kRows), texels;
+  texels.reserve(size_t(spec.width) * size_t(spec.height));
+  for (int y = 0; y < spec.height; y += kRows) {
+    const int end = std::min(y + kRows, spec.height);
+    if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, channels, type, rows.data()))
+      throwInput("{}: damaged image: {}", name, firstLine(input.geterror()));
+    const size_t count = size_t(end - y) * size_t(spec.width);
+    const T* from = rows.data();
+    for (size_t i = 0; i < count; ++i, from += channels) {
+      if (channels >= 3)
+        wide[i] = {from[0], from[1], from[2], channels == 4 ? from[3] : opaque};
+      else
+        wide[i] = {from[0], from[0], from[0], channels == 2 ? from[1] : opaque};
+    }
+    texels.insert(texels.end(), wide.begin(), wide.begin() + std::ptrdiff_t(count));
   }
   return texels;
 }

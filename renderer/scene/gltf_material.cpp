@@ -1,7 +1,6 @@
 #include "scene/gltf_material.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 
@@ -169,28 +168,24 @@ TexelGrid* MaterialReader::grid(int image) {
   return grids_[size_t(found->second)].get();
 }
 
-// Textures that differ in their samplers alone share them.
-void MaterialReader::makeSmallerVersions() {
-  std::map<std::pair<const TexelGrid*, bool>, std::vector<TexelGrid>> made;
-  for (const Texture& t : textures_) made[{t.grid, t.srgb}];
-  tbb::parallel_for_each(made.begin(), made.end(), [](auto& entry) {
-    entry.second = makeSmaller(*entry.first.first, entry.first.second);
-  });
-  std::map<std::pair<const TexelGrid*, bool>, std::shared_ptr<const std::vector<TexelGrid>>> shared;
-  for (auto& [key, levels] : made)
-    shared[key] = std::make_shared<const std::vector<TexelGrid>>(std::move(levels));
-  for (Texture& t : textures_) t.smaller = shared[{t.grid, t.srgb}];
-}
-
+// Each image with its smaller versions at once, while its texels are in the cache. Textures that
+// differ in their samplers alone share them.
 void MaterialReader::moveInto(Scene& scene) {
+  using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
+  std::map<std::pair<const TexelGrid*, bool>, Chain> chains;
+  for (const Texture& t : textures_) chains[{t.grid, t.srgb}];
   tbb::parallel_for(size_t(0), grids_.size(), [&](size_t i) {
     Bytes storage;
     const std::span<const uint8_t> bytes = file_.image(imageOf_[i], storage);
     DecodedImage decoded = decodeImage(bytes, file_.describeImage(imageOf_[i]));
-    *grids_[i] = {decoded.width, decoded.height, std::move(decoded.texels8),
-                  std::move(decoded.texelsFloat)};
+    TexelGrid& grid = *grids_[i];
+    grid = {decoded.width, decoded.height, std::move(decoded.texels8),
+            std::move(decoded.texelsFloat)};
+    for (bool srgb : {false, true})
+      if (const auto wanted = chains.find({&grid, srgb}); wanted != chains.end())
+        wanted->second = std::make_shared<const std::vector<TexelGrid>>(makeSmaller(grid, srgb));
   });
-  makeSmallerVersions();
+  for (Texture& t : textures_) t.smaller = chains[{t.grid, t.srgb}];
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

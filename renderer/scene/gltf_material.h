@@ -33,7 +33,6 @@ class MaterialReader {
   TextureSlot slot(const tinygltf::Value& textureInfo, bool srgb, const std::string& where);
   int texture(int index, bool srgb, const std::string& where);
   TexelGrid* grid(int image);
-  void makeSmallerVersions();
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
   // Nothing where the extensions change nothing.
   std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,

@@ -8,7 +8,8 @@ namespace chromeball {
 namespace {
 
 template <class T>
-T interpolate(const std::vector<T>& vertices, const Triangle& t, vec2 b) {
+[[gnu::always_inline]] inline T interpolate(const std::vector<T>& vertices, const Triangle& t,
+                                            vec2 b) {
   return (1 - b.x - b.y) * vertices[t.x] + b.x * vertices[t.y] + b.y * vertices[t.z];
 }
 

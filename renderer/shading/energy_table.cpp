@@ -24,16 +24,15 @@ float angleNode(int i) {
 
 // Averages over visible normals h: albedo = E[F(wo.h) G2/G1]. The smoothest are mirrors (bsdf.cpp),
 // whose facets mask nothing even at grazing angles.
-SpecularAlbedo integrate(float mu, float alpha) {
-  constexpr uint32_t kSamples = 4096;
+SpecularAlbedo integrate(float mu, float alpha, const std::vector<vec2>& points) {
   if (alpha <= kMirrorAlpha) {
     const float c = 1 - mu, grazing = c * c * c * c * c;
     return {1 - grazing, grazing};
   }
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
   double a = 0, b = 0;
-  for (uint32_t i = 0; i < kSamples; ++i) {
-    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))});
+  for (const vec2& u : points) {
+    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, u);
     const float woH = glm::dot(wo, h);
     const vec3 wi = 2 * woH * h - wo;
     if (wi.z <= 0) continue;
@@ -42,7 +41,7 @@ SpecularAlbedo integrate(float mu, float alpha) {
     a += double(weight) * (1 - grazing);
     b += double(weight) * grazing;
   }
-  return {float(a / kSamples), float(b / kSamples)};
+  return {float(a / double(points.size())), float(b / double(points.size()))};
 }
 
 SpecularAlbedo mix(const SpecularAlbedo& x, const SpecularAlbedo& y, float t) {
@@ -52,10 +51,13 @@ SpecularAlbedo mix(const SpecularAlbedo& x, const SpecularAlbedo& y, float t) {
 }  // namespace
 
 EnergyTable::EnergyTable() : cells_(kRoughnesses * kAngles), averages_(kRoughnesses) {
+  constexpr uint32_t kSamples = 4096;
+  std::vector<vec2> points(kSamples);
+  for (uint32_t i = 0; i < kSamples; ++i) points[i] = {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))};
   tbb::parallel_for(0, kRoughnesses, [&](int r) {
     const float roughness = roughnessNode(r);
     for (int i = 0; i < kAngles; ++i)
-      cells_[r * kAngles + i] = integrate(angleNode(i), roughness * roughness);
+      cells_[r * kAngles + i] = integrate(angleNode(i), roughness * roughness, points);
     // The average of the very interpolant that at() returns, so that compensation balances.
     constexpr int kSteps = 4096;
     Row row;
