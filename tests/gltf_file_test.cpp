@@ -75,11 +75,11 @@ TEST(GltfFile, VersionsAndExtensions) {
   EXPECT_EQ(w.refusal(), "asks for glTF 2.1; 2.0 can be read");
   w.root["asset"] = {{"version", "2.0"}};
   w.root["extensionsUsed"] =
-      json::array({"KHR_xmp_json_ld", "KHR_materials_unlit", "EXT_lights_image_based"});
+      json::array({"KHR_xmp_json_ld", "KHR_materials_unlit", "EXT_lights_ies"});
   w.load();
   ASSERT_EQ(w.warnings.size(), 1u);
   EXPECT_TRUE(
-      w.warnings[0].ends_with(": ignored extensions: EXT_lights_image_based, KHR_xmp_json_ld"));
+      w.warnings[0].ends_with(": ignored extensions: EXT_lights_ies, KHR_xmp_json_ld"));
   w.root["extensionsRequired"] = json::array({"KHR_texture_basisu"});
   EXPECT_EQ(w.refusal(),
             "requires the extension KHR_texture_basisu, which is not supported; turn its KTX2 "

@@ -52,7 +52,8 @@ class PatchSource {
  private:
   bool isDisc() const { return mapping_ == Mapping::AngularMap || mapping_ == Mapping::MirrorBall; }
   bool insideDisc(int x, int y) const {
-    return std::hypot((x + 0.5) / image_.width - 0.5, (y + 0.5) / image_.height - 0.5) <= 0.5;
+    const dvec2 fromCentre = dvec2((x + 0.5) / image_.width, (y + 0.5) / image_.height) - 0.5;
+    return glm::dot(fromCentre, fromCentre) <= 0.25;
   }
 
   const Image& image_;

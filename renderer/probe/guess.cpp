@@ -16,7 +16,7 @@ bool isBlackOutside(const Image& image, Mapping mapping) {
     for (int x = 0; x < image.width; ++x) {
       const float brightness = maxComponent(image.rgb(x, y));
       if (!std::isfinite(brightness)) continue;
-      if (uvToDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
+      if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
         sumInside += brightness;
         ++countInside;
       } else {

@@ -89,14 +89,14 @@ std::optional<dvec3> cubeToDirection(Mapping mapping, const dvec2& uv) {
 
 // Both disc mappings: the point at `radius` (1 at the rim) from the centre, on the side of (x, y).
 dvec2 discUv(double x, double y, double radius) {
-  const double length = std::hypot(x, y);
+  const double length = std::sqrt(x * x + y * y);
   if (length == 0) return {0.5 + 0.5 * radius, 0.5};
   return {0.5 + 0.5 * radius * x / length, 0.5 - 0.5 * radius * y / length};
 }
 
 std::optional<dvec3> discToDirection(Mapping mapping, const dvec2& uv) {
   const double x = 2 * uv.x - 1, y = 1 - 2 * uv.y;
-  const double radius = std::hypot(x, y);
+  const double radius = std::sqrt(x * x + y * y);
   if (radius > 1) return std::nullopt;
   if (radius == 0) return -kZ;
   const double theta = mapping == Mapping::AngularMap ? kPiD * radius : 2 * std::asin(radius);
@@ -128,7 +128,7 @@ Layout faceLayout(Mapping mapping) {
 }
 
 dvec2 directionToUv(Mapping mapping, const dvec3& d) {
-  const auto fromCentre = [&] { return std::atan2(std::hypot(d.x, d.y), -d.z); };
+  const auto fromCentre = [&] { return std::atan2(std::sqrt(d.x * d.x + d.y * d.y), -d.z); };
   switch (mapping) {
     case Mapping::LatLong:
       return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD),
@@ -140,6 +140,13 @@ dvec2 directionToUv(Mapping mapping, const dvec3& d) {
     default:
       return directionToCube(mapping, d);
   }
+}
+
+bool showsDirection(Mapping mapping, const dvec2& uv) {
+  if (mapping != Mapping::AngularMap && mapping != Mapping::MirrorBall)
+    return uvToDirection(mapping, uv).has_value();
+  const dvec2 fromCentre = 2.0 * uv - 1.0;
+  return std::sqrt(glm::dot(fromCentre, fromCentre)) <= 1;
 }
 
 std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {

@@ -34,6 +34,9 @@ dvec2 directionToUv(Mapping mapping, const dvec3& direction);
 // The unit direction shown at `uv`; nullopt outside the disc or the faces.
 std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv);
 
+// Whether there is one.
+bool showsDirection(Mapping mapping, const dvec2& uv);
+
 // Cube maps: how many faces lie side by side and one above another; {1, 1} for the others.
 struct Layout {
   int columns, rows;

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "image/decode.h"
 #include "scene/gltf_value.h"
@@ -168,17 +169,30 @@ TexelGrid* MaterialReader::grid(int image) {
   return grids_[size_t(found->second)].get();
 }
 
-// Each image with its smaller versions at once, while its texels are in the cache. Textures that
-// differ in their samplers alone share them.
+// Each image with its smaller versions at once, while its texels are in the cache; the longest
+// files first, so that no thread is left with one at the end. Textures that differ in their
+// samplers alone share them.
 void MaterialReader::moveInto(Scene& scene) {
   using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
   std::map<std::pair<const TexelGrid*, bool>, Chain> chains;
   for (const Texture& t : textures_) chains[{t.grid, t.srgb}];
-  tbb::parallel_for(size_t(0), grids_.size(), [&](size_t i) {
+  struct Source {
+    size_t grid;
     Bytes storage;
-    const std::span<const uint8_t> bytes = file_.image(imageOf_[i], storage);
-    DecodedImage decoded = decodeImage(bytes, file_.describeImage(imageOf_[i]));
-    TexelGrid& grid = *grids_[i];
+    std::span<const uint8_t> bytes;
+  };
+  std::vector<Source> sources(grids_.size());
+  for (size_t i = 0; i < sources.size(); ++i) {
+    sources[i].grid = i;
+    sources[i].bytes = file_.image(imageOf_[i], sources[i].storage);
+  }
+  std::sort(sources.begin(), sources.end(),
+            [](const Source& a, const Source& b) { return a.bytes.size() > b.bytes.size(); });
+  std::atomic<size_t> next = 0;
+  tbb::parallel_for(size_t(0), sources.size(), [&](size_t) {
+    const Source& source = sources[next++];
+    DecodedImage decoded = decodeImage(source.bytes, file_.describeImage(imageOf_[source.grid]));
+    TexelGrid& grid = *grids_[source.grid];
     grid = {decoded.width, decoded.height, std::move(decoded.texels8),
             std::move(decoded.texelsFloat)};
     for (bool srgb : {false, true})

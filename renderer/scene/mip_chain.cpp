@@ -56,16 +56,21 @@ TexelGrid halvedEvenly(const TexelGrid& grid, bool srgb) {
     const uint8_t c = uint8_t(code);
     light[size_t(code)] = 0.25f * linearTexel({1, 1, {{c, c, c, c}}, {}}, srgb, 0, 0).x;
   }
+  const auto mean = [](uint8_t a, uint8_t b, uint8_t c, uint8_t d) {
+    return uint8_t((a + b + c + d + 2) / 4);
+  };
   for (int y = 0; y < half.height; ++y) {
     const auto* above = &grid.texels8[size_t(2 * y) * size_t(grid.width)];
     const auto* below = above + grid.width;
     auto* out = &half.texels8[size_t(y) * size_t(half.width)];
     for (int x = 0; x < half.width; ++x, above += 2, below += 2, ++out) {
-      for (size_t k = 0; k < 3; ++k)
-        (*out)[k] =
-            code8(light[above[0][k]] + light[above[1][k]] + light[below[0][k]] + light[below[1][k]],
-                  srgb);
-      (*out)[3] = uint8_t((above[0][3] + above[1][3] + below[0][3] + below[1][3] + 2) / 4);
+      for (size_t k = 0; k < 4; ++k)
+        if (srgb && k < 3)
+          (*out)[k] = code8(
+              light[above[0][k]] + light[above[1][k]] + light[below[0][k]] + light[below[1][k]],
+              true);
+        else
+          (*out)[k] = mean(above[0][k], above[1][k], below[0][k], below[1][k]);
     }
   }
   return half;
