@@ -1,21 +1,10 @@
 // Surroundings at a finite distance.
 #include <gtest/gtest.h>
 
-#include "lighting/finite_surroundings.h"
-#include "measure/statistics.h"
-#include "probe/synth.h"
-#include "test_scene.h"
+#include "floor_in_surroundings.h"
 
 namespace chromeball {
 namespace {
-
-Surroundings room() {
-  Surroundings s;
-  s.shape = Surroundings::Shape::Box;
-  s.min = {-2, 0, -3}, s.max = {3, 2.5f, 2};
-  s.capture = {0.5f, 1, -0.5f};
-  return s;
-}
 
 Surroundings dome() {
   Surroundings s;
@@ -25,18 +14,8 @@ Surroundings dome() {
   return s;
 }
 
-Image spotted() {
-  Image probe = gradientProbe({32, 16}, Rgb(0.3f), {0.2, 0.6, 0.3});
-  probe.setRgb(12, 4, Rgb(60, 40, 30));
-  return probe;
-}
-
-vec3 sphereDirection(int i) {
-  return squareToUniformSphere({toUnit(uint32_t(hash(2 * i))), toUnit(uint32_t(hash(2 * i + 1)))});
-}
-
 TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
-  for (const Surroundings& s : {room(), dome()})
+  for (const Surroundings& s : {box(), dome()})
     for (int i = 0; i < 500; ++i) {
       const vec3 from = s.capture + 0.9f * toUnit(uint32_t(hash(i, 7))) * sphereDirection(i + 1000);
       const vec3 d = sphereDirection(i);
@@ -57,35 +36,13 @@ std::unique_ptr<LightingStrategy> inside(const Surroundings& s, const char* name
                                               probe, s);
 }
 
-Moments floorRadiance(const LightingStrategy& lighting, const Camera& camera, int repeats) {
-  Scene scene;
-  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},
-          {0, 0, -3.8f});
-  const Accel accel(scene);
-  const std::atomic<bool> stop = false;
-  std::vector<double> means;
-  for (int i = 0; i < repeats; ++i) {
-    const RenderSettings settings = smallRender(4, 4, 512, 1, uint64_t(i));
-    means.push_back(
-        luminance(meanColor(render(
-                                scene, accel, camera, lighting, settings, [](double) {}, stop)
-                                .film.mean())));
-  }
-  return Moments::of(means);
-}
-
-// Looks down on a hand's breadth of the floor about (x, z).
-Camera above(float x, float z) {
-  return Camera::lookAt({x, 1.5f, z}, {x, 0, z}, {0, 0, -1}, 0.02f);
-}
-
 // In equally bright surroundings it does not matter where they are.
 TEST(Surroundings, ConstantOnesAreTheSameEverywhere) {
   const Probe probe(constantProbe({8, 4}, Rgb(2)));
-  for (const Surroundings& s : {room(), dome()})
+  for (const Surroundings& s : {box(), dome()})
     for (const char* name : {"bsdf", "uniform", "importance"})
       for (const vec2 at : {vec2(0, 0), vec2(-1, 1)}) {
-        const Moments m = floorRadiance(*inside(s, name, probe), above(at.x, at.y), 6);
+        const Moments m = floorRadiance(*inside(s, name, probe), at.x, at.y, 6);
         EXPECT_NEAR(m.mean, 1, 0.01) << name;
       }
 }
@@ -110,13 +67,13 @@ double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x)
 TEST(SlowSurroundings, LightChangesWithThePlace) {
   const Probe probe(spotted(), 25);
   double near = 0, far = 0;
-  for (const Surroundings& s : {room(), dome()})
+  for (const Surroundings& s : {box(), dome()})
     for (const char* name : kStrategies) {
       const auto lighting = inside(s, name, probe);
       for (const vec2 at : {vec2(0.5f, -0.5f), vec2(-1.5f, 1.5f)}) {
         const double expected = 0.5 / kPiD * floorIrradiance(s, probe, {at.x, 0.001f, at.y});
         (at.x > 0 ? near : far) = expected;
-        const Moments m = floorRadiance(*lighting, above(at.x, at.y), 6);
+        const Moments m = floorRadiance(*lighting, at.x, at.y, 6);
         if (lighting->unbiased() && std::string(name) != "suns") {
           EXPECT_GT(tTest(m, expected), sidak(1e-3, 20))
               << name << " " << m.mean << " " << expected;
@@ -132,7 +89,7 @@ TEST(Surroundings, DensitiesAgree) {
   const Probe probe(spotted(), 25);
   const SobolTable table(64, 16, 0);
   PixelSampler sampler(table, 0);
-  for (const Surroundings& s : {room(), dome()})
+  for (const Surroundings& s : {box(), dome()})
     for (const char* name : {"uniform", "importance"}) {
       const auto lighting = inside(s, name, probe);
       for (uint32_t i = 0; i < 640; ++i) {
