@@ -121,6 +121,16 @@ TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
   }
 }
 
+TEST_F(SlowStarved, AKillDuringTheRenderLeavesTheOldFile) {
+  const TemporaryFolder out;
+  std::ofstream(out / "a.exr") << "old";
+  const CommandResult result =
+      runCommand(words(out / "a.exr", {"--samples", "100000000", "--progress"}), "%", SIGKILL);
+  EXPECT_EQ(result.status, -SIGKILL) << result.error;
+  EXPECT_EQ(fileContents(out / "a.exr"), "old");
+  EXPECT_EQ(out.files(), Words{"a.exr"});
+}
+
 // SIGKILL between the first byte of the new file and its rename.
 TEST_F(SlowStarved, AKillDuringTheWriteLeavesTheOldFile) {
   const TemporaryFolder out;
