@@ -124,6 +124,7 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   GltfChoice choice = job.file.models.front().choice;
   choice.animation.reset();
   choice.variant.reset();
+  choice.environment = false;
   choice.origin = origin;
   return std::make_unique<const Room>(
       loadGltf(
