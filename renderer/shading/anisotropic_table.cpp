@@ -4,34 +4,15 @@
 
 #include <array>
 
-#include "math/hash.h"
-#include "math/sobol.h"
-#include "shading/ggx_anisotropic.h"
+#include "shading/albedo_quadrature.h"
 
 namespace chromeball {
 namespace {
 
 constexpr std::array<int, 4> kNodes = {16, 9, 16, 7};  // roughness, strength, angle, azimuth
 
-SpecularAlbedo integrate(const vec3& wo, vec2 alpha) {
-  constexpr uint32_t kSamples = 512;
-  const float lambdaO = ggx::lambda(wo, alpha);
-  double a = 0, b = 0;
-  for (uint32_t i = 0; i < kSamples; ++i) {
-    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))});
-    const float woH = glm::dot(wo, h);
-    const vec3 wi = 2 * woH * h - wo;
-    if (wi.z <= 0) continue;
-    const float weight = (1 + lambdaO) / (1 + lambdaO + ggx::lambda(wi, alpha));
-    const float c = 1 - woH, grazing = c * c * c * c * c;
-    a += double(weight) * (1 - grazing);
-    b += double(weight) * grazing;
-  }
-  return {float(a / kSamples), float(b / kSamples)};
-}
-
 // Node i along dimension d as a share of the way; roughness and angle crowd towards 0, as in
-// EnergyTable.
+// albedo_quadrature.h.
 float node(int d, int i) { return float(i) / float(kNodes[size_t(d)] - 1); }
 
 }  // namespace
@@ -44,6 +25,7 @@ vec2 anisotropicAlpha(float roughness, float strength) {
 
 AnisotropicTable::AnisotropicTable()
     : cells_(size_t(kNodes[0] * kNodes[1] * kNodes[2] * kNodes[3])) {
+  const std::vector<vec2> points = quadraturePoints(512);
   tbb::parallel_for(0, kNodes[0] * kNodes[1], [&](int row) {
     const float r = node(0, row / kNodes[1]);
     const vec2 alpha = anisotropicAlpha(r * r, node(1, row % kNodes[1]));
@@ -51,7 +33,7 @@ AnisotropicTable::AnisotropicTable()
       for (int j = 0; j < kNodes[3]; ++j) {
         const float mu = std::max(node(2, i) * node(2, i), 1e-4f);
         const vec3 wo = unitVector(mu, 0.25f * node(3, j));
-        cells_[size_t((row * kNodes[2] + i) * kNodes[3] + j)] = integrate(wo, alpha);
+        cells_[size_t((row * kNodes[2] + i) * kNodes[3] + j)] = specularAlbedo(wo, alpha, points);
       }
   });
 }

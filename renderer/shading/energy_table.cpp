@@ -2,9 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "math/hash.h"
-#include "math/sobol.h"
-#include "shading/ggx.h"
+#include "shading/albedo_quadrature.h"
 
 namespace chromeball {
 namespace {
@@ -12,36 +10,10 @@ namespace {
 constexpr int kRoughnesses = 32, kAngles = 64;
 constexpr float kMirrorAlpha = 1.001e-4f;  // bsdf.cpp's kSmoothAlpha, and the least node squared
 
-// Nodes crowd towards smooth surfaces and grazing angles, where the albedo bends: both are t^2.
-float roughnessNode(int i) {
-  const float t = float(i) / (kRoughnesses - 1);
-  return std::max(t * t, 0.01f);
-}
-float angleNode(int i) {
-  const float t = float(i) / (kAngles - 1);
-  return std::max(t * t, 1e-4f);
-}
-
-// Averages over visible normals h: albedo = E[F(wo.h) G2/G1]. The smoothest are mirrors (bsdf.cpp),
-// whose facets mask nothing even at grazing angles.
-SpecularAlbedo integrate(float mu, float alpha, const std::vector<vec2>& points) {
-  if (alpha <= kMirrorAlpha) {
-    const float c = 1 - mu, grazing = c * c * c * c * c;
-    return {1 - grazing, grazing};
-  }
-  const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
-  double a = 0, b = 0;
-  for (const vec2& u : points) {
-    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, u);
-    const float woH = glm::dot(wo, h);
-    const vec3 wi = 2 * woH * h - wo;
-    if (wi.z <= 0) continue;
-    const float weight = ggx::g2(mu, wi.z, alpha) / ggx::g1(mu, alpha);
-    const float c = 1 - woH, grazing = c * c * c * c * c;
-    a += double(weight) * (1 - grazing);
-    b += double(weight) * grazing;
-  }
-  return {float(a / double(points.size())), float(b / double(points.size()))};
+// The smoothest surfaces are mirrors (bsdf.cpp), whose facets mask nothing even at grazing angles.
+SpecularAlbedo mirrorAlbedo(float mu) {
+  const float c = 1 - mu, grazing = c * c * c * c * c;
+  return {1 - grazing, grazing};
 }
 
 SpecularAlbedo mix(const SpecularAlbedo& x, const SpecularAlbedo& y, float t) {
@@ -51,13 +23,15 @@ SpecularAlbedo mix(const SpecularAlbedo& x, const SpecularAlbedo& y, float t) {
 }  // namespace
 
 EnergyTable::EnergyTable() : cells_(kRoughnesses * kAngles), averages_(kRoughnesses) {
-  constexpr uint32_t kSamples = 4096;
-  std::vector<vec2> points(kSamples);
-  for (uint32_t i = 0; i < kSamples; ++i) points[i] = {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))};
+  const std::vector<vec2> points = quadraturePoints(4096);
   tbb::parallel_for(0, kRoughnesses, [&](int r) {
-    const float roughness = roughnessNode(r);
-    for (int i = 0; i < kAngles; ++i)
-      cells_[r * kAngles + i] = integrate(angleNode(i), roughness * roughness, points);
+    const float roughness = roughnessNode(r, kRoughnesses), alpha = roughness * roughness;
+    for (int i = 0; i < kAngles; ++i) {
+      const float mu = angleNode(i, kAngles);
+      const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
+      cells_[r * kAngles + i] =
+          alpha <= kMirrorAlpha ? mirrorAlbedo(mu) : specularAlbedo(wo, alpha, points);
+    }
     // The average of the very interpolant that at() returns, so that compensation balances.
     constexpr int kSteps = 4096;
     Row row;

@@ -20,6 +20,7 @@ inline float lambda(float z, float alpha) {
   const float z2 = z * z;
   return 0.5f * (std::sqrt(1 + alpha * alpha * (1 - z2) / z2) - 1);
 }
+inline float lambda(const vec3& w, float alpha) { return lambda(w.z, alpha); }
 // Height-correlated masking and shadowing of two directions, and of one.
 inline float g2(float zo, float zi, float alpha) {
   return 1 / (1 + lambda(zo, alpha) + lambda(zi, alpha));

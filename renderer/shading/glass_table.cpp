@@ -2,10 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include "math/hash.h"
-#include "math/sobol.h"
+#include "shading/albedo_quadrature.h"
 #include "shading/dielectric.h"
-#include "shading/ggx.h"
 
 namespace chromeball {
 namespace {
@@ -13,7 +11,7 @@ namespace {
 constexpr int kEtas = 33, kRoughnesses = 16, kAngles = 32;
 
 // (eta - 1) / (eta + 1) from -1/2 to 1/2, crowded about 0, where facets cease to bend light; the
-// other two crowd as in EnergyTable.
+// other two as in albedo_quadrature.h.
 constexpr float kLargest = 0.5f;
 float etaNode(int i) {
   const float t = 2 * float(i) / (kEtas - 1) - 1, x = kLargest * t * std::fabs(t);
@@ -23,23 +21,13 @@ float etaCoordinate(float eta) {
   const float x = (eta - 1) / ((eta + 1) * kLargest);
   return 0.5f + 0.5f * std::copysign(std::sqrt(std::fabs(x)), x);
 }
-float roughnessNode(int i) {
-  const float t = float(i) / (kRoughnesses - 1);
-  return std::max(t * t, 0.01f);
-}
-float angleNode(int i) {
-  const float t = float(i) / (kAngles - 1);
-  return std::max(t * t, 1e-4f);
-}
-
 // The mean over visible normals of G2/G1, reflected and refracted by Fresnel's shares.
-float integrate(float mu, float alpha, float eta) {
-  constexpr uint32_t kSamples = 512;
+float integrate(float mu, float alpha, float eta, std::span<const vec2> points) {
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
   const float masked = ggx::g1(mu, alpha);
   double sum = 0;
-  for (uint32_t i = 0; i < kSamples; ++i) {
-    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, {toUnit(sobol(i, 0)), toUnit(sobol(i, 1))});
+  for (const vec2& u : points) {
+    const vec3 h = ggx::sampleVisibleNormal(wo, alpha, u);
     const float woH = glm::dot(wo, h), reflectance = fresnelDielectric(woH, eta);
     const float up = 2 * woH * h.z - mu;
     if (up > 0) sum += double(reflectance * ggx::g2(mu, up, alpha) / masked);
@@ -47,7 +35,7 @@ float integrate(float mu, float alpha, float eta) {
     const float down = -refracted(wo, h, eta).z;
     if (down > 0) sum += double((1 - reflectance) * ggx::g2(mu, down, alpha) / masked);
   }
-  return float(sum / kSamples);
+  return float(sum / double(points.size()));
 }
 
 // Where between which two nodes a coordinate in [0, 1] lies.
@@ -64,11 +52,12 @@ struct Place {
 }  // namespace
 
 GlassTable::GlassTable() : cells_(kEtas * kRoughnesses * kAngles) {
+  const std::vector<vec2> points = quadraturePoints(512);
   tbb::parallel_for(0, kEtas * kRoughnesses, [&](int row) {
-    const float roughness = roughnessNode(row % kRoughnesses);
+    const float roughness = roughnessNode(row % kRoughnesses, kRoughnesses);
     for (int i = 0; i < kAngles; ++i)
-      cells_[size_t(row * kAngles + i)] =
-          integrate(angleNode(i), roughness * roughness, etaNode(row / kRoughnesses));
+      cells_[size_t(row * kAngles + i)] = integrate(angleNode(i, kAngles), roughness * roughness,
+                                                    etaNode(row / kRoughnesses), points);
   });
 }
 
