@@ -8,6 +8,8 @@ using glm::dvec3;
 // Share of the picture's mean L_noobj below which the ratio is not formed.
 constexpr double kLeastForRatio = 1e-3;
 
+bool isNegative(const Rgb& c) { return c.x < 0 || c.y < 0 || c.z < 0; }
+
 double alphaOf(const DifferentialPixel& p) {
   return p.count ? double(p.covered) / double(p.count) : 0;
 }
@@ -56,12 +58,9 @@ Composite compose(const DifferentialFilm& film, const Image& mean, const Image& 
         color = Rgb((p.objects + dvec3(gain) * p.difference) / double(p.count) +
                     (1 - alphaOf(p)) * dvec3(behind));
       }
-      if (color.x < 0 || color.y < 0 || color.z < 0) {
-        const bool wasNegative = behind.x < 0 || behind.y < 0 || behind.z < 0;
-        if (!wasNegative) {
-          ++result.darkerThanBlack;
-          color = glm::max(color, Rgb(0));
-        }
+      if (isNegative(color) && !isNegative(behind)) {  // a plate's own negatives are kept
+        ++result.darkerThanBlack;
+        color = glm::max(color, Rgb(0));
       }
       result.color.setRgb(x, y, color);
       result.gain.setRgb(x, y, gain);

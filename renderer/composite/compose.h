@@ -1,11 +1,8 @@
 // The formulas of differential rendering (HDRI book, 9.7.1).
 #pragma once
 
-#include <optional>
-
 #include "composite/differential.h"
 #include "film/aov.h"
-#include "film/film.h"
 
 namespace chromeball {
 

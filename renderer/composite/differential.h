@@ -11,8 +11,8 @@ struct DifferentialPixel {
   glm::dvec3 objects{0};  // sum of L_obj where an object is seen
   glm::dvec3 behind{0};   // sum of L_noobj there, where that was asked for
   glm::dvec3 local{0};    // sum of L_noobj elsewhere
-  glm::dvec3 difference{
-      0};  // sum of L_obj - L_noobj elsewhere; exactly 0 where objects change nothing
+  // Sum of L_obj - L_noobj elsewhere; exactly 0 where objects change nothing.
+  glm::dvec3 difference{0};
 };
 
 // An image of such pixels.
@@ -26,8 +26,8 @@ struct DifferentialFilm {
 };
 
 // A sample's radiance is that of the composite by the difference formula: the object's where the
-// camera sees one, else plate + L_obj - L_noobj, which may be negative. A limit (clamp.h) applies to
-// objects and differences, never to the plate.
+// camera sees one, else plate + L_obj - L_noobj, which may be negative. A limit (clamp.h) applies
+// to objects and differences, never to the plate.
 class DifferentialIntegrator : public Integrator {
  public:
   // All of them must outlive this; `film` is of the plate's size.
