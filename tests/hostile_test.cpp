@@ -171,6 +171,9 @@ TEST(Hostile, SizeBombsAreRefusedByTheirHeaders) {
           "\xff\xda\x00\x0c\x03\x01\x00\x02\x11\x03\x11\x00\x3f\x00\xff\xd9",
           35);
   expectRefused({"probe", "info", write("a.jpg", jpeg)}, "65500 x 65500", kGibibyte);
+  std::string truncated = jpeg;
+  truncated.replace(jpeg.find("\xff\xdc"), 4, std::string("\4\0\4\0", 4));
+  expectRefused({"probe", "info", write("a.jpg", truncated)}, "too short for 1024 x 1024");
 
   GltfWriter model;
   model.write("bomb.jpg", {jpeg.begin(), jpeg.end()});

@@ -41,7 +41,8 @@ inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int
   Mesh mesh;
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= 2 * n; ++j) {
-      const float theta = kPi * float(i) / float(n), phi = kPi * float(j) / float(n);
+      const float theta = kPi * float(i) / float(n);
+      const float phi = kPi * float(j % (2 * n)) / float(n);  // no crack along the seam
       vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
       if (i == 0 || i == n) d = {0, i == 0 ? 1.0f : -1.0f, 0};
       mesh.positions.push_back(centre + radius * d);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "image/limits.h"
 #include "image/open.h"
 #include "image/quiet.h"
 #include "image/webp.h"
@@ -38,19 +39,24 @@ const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
   throwInput("{}: is neither PNG, JPEG nor WebP", name);
 }
 
-void checkSize(const ImageSpec& spec, size_t fileBytes, const std::string& name) {
+void checkSize(const ImageSpec& spec, const char* reader, size_t fileBytes,
+               const std::string& name) {
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxImageSide ||
       spec.height > kMaxImageSide || spec.nchannels < 1)
     throwInput("{}: {} x {} texels of {} channels; at most {} x {} can be read", name, spec.width,
                spec.height, spec.nchannels, kMaxImageSide, kMaxImageSide);
-  // Deflate shrinks at most 1032 times, and a texel has at least one bit.
-  if (uint64_t(spec.width) * uint64_t(spec.height) > fileBytes * uint64_t(1032 * 8))
+  // A PNG's texel has at least a bit.
+  const uint64_t perByte =
+      reader == std::string_view("jpeg") ? kMostTexelsPerJpegByte : 8 * kMostDeflated;
+  if (uint64_t(spec.width) * uint64_t(spec.height) > fileBytes * perByte)
     throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
                spec.width, spec.height, fileBytes);
 }
 
 // Reads the image as T, spread over RGBA. A few rows at a time, so that each page of the result is
-// touched once and nothing else is large: pages cost about as much as decoding does.
+// touched once and nothing else is large: pages cost about as much as decoding does. `type`: what
+// to convert to; UNKNOWN where the file holds T, since asking for T itself makes OpenImageIO take a
+// buffer of 64 MB for every call.
 template <class T, class Texel>
 std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
   constexpr int kRows = 32;
@@ -94,13 +100,14 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name)
       throwInput("{}: damaged image: {}", name, firstLine(error.what()));
     }
   }();
-  checkSize(input->spec(), file.size(), name);
+  checkSize(input->spec(), reader, file.size(), name);
 
   DecodedImage image;
   image.width = input->spec().width;
   image.height = input->spec().height;
   if (input->spec().format == TypeDesc::UINT8)
-    image.texels8 = readTexels<uint8_t, std::array<uint8_t, 4>>(*input, TypeDesc::UINT8, 255, name);
+    image.texels8 =
+        readTexels<uint8_t, std::array<uint8_t, 4>>(*input, TypeDesc::UNKNOWN, 255, name);
   else
     image.texelsFloat = readTexels<float, vec4>(*input, TypeDesc::FLOAT, 1.0f, name);
   return image;

@@ -57,14 +57,15 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
   return metadata;
 }
 
-// No encoding packs texels tighter than this; a header that asks for more in a large image lies.
-// Deflate shrinks at most 1032 times, JPEG's Huffman codes less; OpenEXR's wavelets know no such
-// bound.
-void checkPlausible(const fs::path& path, const std::string& format, const OIIO::ImageSpec& spec) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20;
-  const uint64_t maxRatio = format == "png" || format == "jpeg" ? 1032 : 100'000;
-  const uint64_t decoded = spec.image_bytes(true);
-  if (decoded > kAlwaysAllowed && decoded / maxRatio > fs::file_size(path))
+// Throws where the file is too short for what its header says. Of OpenEXR's and TIFF's encodings
+// only a guess is known, which small images need not keep.
+void checkPlausible(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMostPacked = 100'000;
+  const uint64_t decoded = spec.image_bytes(true), bytes = fs::file_size(path);
+  const uint64_t most =
+      std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMostDeflated : kMostPacked));
+  const bool isShortJpeg = reader == "jpeg" && spec.image_pixels() > bytes * kMostTexelsPerJpegByte;
+  if (decoded > most || isShortJpeg)
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
@@ -74,7 +75,7 @@ ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTe
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
   checkImageSize(path, spec.width, spec.height, spec.nchannels);
-  checkPlausible(path, input->format_name(), spec);
+  checkPlausible(path, reader, spec);
 
   ImageFile file;
   file.channels = spec.channelnames;
@@ -117,8 +118,7 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
-  const char* reader =
-      readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
+  const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
   if (!reader) fail(path, "is neither EXR, Radiance HDR, PFM, PNG, JPEG nor TIFF");
   try {
     const QuietStandardError quiet;

@@ -8,6 +8,7 @@
 #include "math/hash.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
+#include "trace/edge.h"
 #include "trace/embree.h"
 
 namespace chromeball {
@@ -99,7 +100,7 @@ void throwOnError(RTCDevice device) {
 
 }  // namespace
 
-Accel::Accel(const Scene& scene, const std::vector<bool>& shown) {
+Accel::Accel(const Scene& scene, const std::vector<bool>& shown) : described_(scene) {
   device_ = rtcNewDevice(nullptr);
   if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   try {
@@ -183,7 +184,7 @@ void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
   throwOnError(device_);
 }
 
-bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
+bool Accel::closest(const Ray& ray, uint32_t key, Hit& hit) const {
   if (!isTraceable(ray)) return false;
   Query query;
   initQueryContext(query.embree);
@@ -195,6 +196,27 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
   rtcIntersect(scene_, r, query.embree);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit = {instanceOf(r.hit.instID[0], r.hit.geomID), r.hit.primID, {r.hit.u, r.hit.v}, r.ray.tfar};
+  return true;
+}
+
+// What stands before the triangle of `hit` at an edge that the ray grazes (trace/edge.h); and
+// before that, at a corner.
+void Accel::settleEdge(Ray ray, uint32_t key, Hit& hit) const {
+  for (int i = 0; i < 3 && isBesideEdge(hit); ++i) {
+    const auto turned = aimedInside(described_, ray, hit);
+    Hit before;
+    if (!turned || !closest(*turned, key, before) ||
+        (before.triangle == hit.triangle && before.instance == hit.instance) ||
+        std::fabs(before.distance - hit.distance) > 0.5f * hit.distance)
+      return;
+    ray = *turned;
+    hit = before;
+  }
+}
+
+bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
+  if (!closest(ray, key, hit)) return false;
+  settleEdge(ray, key, hit);
   return true;
 }
 
@@ -224,12 +246,14 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
   Query query;
   initQueryContext(query.embree);
   rtcIntersect(scene_, valid, r, query.embree);
-  for (size_t i = 0; i < rays.size(); ++i)
-    if (valid[i] && r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-      hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
-                 r.hit.primID[i],
-                 {r.hit.u[i], r.hit.v[i]},
-                 r.ray.tfar[i]};
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
+               r.hit.primID[i],
+               {r.hit.u[i], r.hit.v[i]},
+               r.ray.tfar[i]};
+    settleEdge(rays[i], keys[i], *hits[i]);
+  }
   return hits;
 }
 

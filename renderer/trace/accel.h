@@ -44,10 +44,13 @@ class Accel {
 
  private:
   void build(const Scene& scene, const std::vector<bool>& shown);
+  bool closest(const Ray& ray, uint32_t key, Hit& hit) const;
+  void settleEdge(Ray ray, uint32_t key, Hit& hit) const;
   void release();
   RTCGeometryTy* meshGeometry(const Scene& scene, int mesh) const;
   RTCSceneTy* meshScene(const Scene& scene, int mesh);
 
+  const Scene& described_;
   RTCDeviceTy* device_ = nullptr;
   RTCSceneTy* scene_ = nullptr;
   std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null where a mesh stands in one place only

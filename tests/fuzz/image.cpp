@@ -12,9 +12,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   readOrRefuse([&] { decodeImage({bytes, size}, "texture"); });
   return readOrRefuse([&] {
     const ImageFile file = readImageFile(path);
+    if (file.image.texels.size() > 1 << 20) return;  // copied slowly under the sanitizers
     for (const std::string& layer : layerNames(file)) findLayer(file, layer);
     const auto color = findColor(file);
-    if (!color || color->texels.size() > 1 << 16) return;
+    if (!color) return;
     const LoadedProbe loaded = loadProbe(path, "auto", "");
     if (!isFinite(Probe(loaded.latLong).radiance({0, 1, 0}))) std::abort();
   });

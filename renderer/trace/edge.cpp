@@ -1,0 +1,44 @@
+#include "trace/edge.h"
+
+#include <algorithm>
+#include <array>
+
+namespace chromeball {
+
+std::optional<Ray> aimedInside(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const Instance& instance = scene.instances[hit.instance];
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  const Triangle& triangle = mesh.triangles[hit.triangle];
+  std::array<vec3, 3> corners;  // as the ray sees them: from its origin, at right angles to it
+  for (int i = 0; i < 3; ++i) {
+    const vec3 away = instance.point(mesh.positions[triangle[i]]) - ray.origin;
+    corners[i] = away - glm::dot(away, ray.direction) * ray.direction;
+  }
+  const vec2& b = hit.barycentric;
+  const std::array weights{1 - b.x - b.y, b.x, b.y};
+
+  // Of a hit point: coordinates are sums of the origin's and the distance's, each rounded twice.
+  const vec3 origin = glm::abs(ray.origin);
+  const float rounding =
+      2 * std::numeric_limits<float>::epsilon() * (origin.x + origin.y + origin.z + hit.distance);
+  const float move = 8 * rounding;
+  if (move > 1e-3f * hit.distance) return std::nullopt;
+
+  float nearest = 4 * rounding;
+  vec3 inwards(0);  // unit, away from the nearest edge
+  for (int i = 0; i < 3; ++i) {
+    const vec3& start = corners[(i + 1) % 3];
+    const vec3 edge = corners[(i + 2) % 3] - start, side = corners[i] - start;
+    const vec3 height = side - edge * (glm::dot(side, edge) / glm::dot(edge, edge));
+    const float length = glm::length(height);
+    if (length > 0 && weights[i] * length < nearest) {
+      nearest = weights[i] * length;
+      inwards = height / length;
+    }
+  }
+  if (inwards == vec3(0)) return std::nullopt;
+  const vec3 target = hit.distance * ray.direction + move * inwards;
+  return Ray{ray.origin, glm::normalize(target), ray.tMax};
+}
+
+}  // namespace chromeball
