@@ -137,6 +137,14 @@ TEST_F(SlowCommandCompare, badInputIsRefused) {
 
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   refused(with(kSmall, {"--seed", "1"}), "another folder");
+  const fs::path stored = renders().begin()->first;
+  const ImageFile file = readImageFile(stored);
+  for (const Layer& spoilt : {Layer{"", "RGB", Image(8, 8, 3)}, Layer{"N", "XYZ", file.image}}) {
+    writeImage(stored, OutputImage{{spoilt}, file.metadata});
+    refused(kSmall, "is not the render that it was");
+  }
+  fs::resize_file(stored, fs::file_size(stored) / 2);
+  refused(kSmall, stored.filename().c_str());
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ void compare(const Arguments& a) {
   study.seed = job.settings.seed;
   study.identity = identityOf(a.scene, job);
 
-  const RenderStore store(study);
+  const RenderStore store(study, {job.settings.width, job.settings.height});
   StudyRun run(study, store, loaded, job.settings);
   checkReference(run, study);
   if (!study.referenceFile.empty())

@@ -50,8 +50,11 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   if (const std::string made = textIn(metadata, "study"); made != study_.identity)
     throwInput("--output: {} was made for `{}`, and this is `{}`; give another folder", path(key),
                made, study_.identity);
+  const std::optional<Image> color = findColor(file);
+  if (!color || color->width != size_.width || color->height != size_.height)
+    throwInput("--output: {} is not the render that it was: delete it", path(key));
   StoredRender render;
-  render.image = findColor(file).value();
+  render.image = *color;
   render.samples = numberIn(metadata, "samples");
   render.seconds = numberIn(metadata, "seconds");
   render.prepareSeconds = numberIn(metadata, "prepareSeconds");

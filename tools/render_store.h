@@ -6,6 +6,7 @@
 #include <string>
 
 #include "image/image.h"
+#include "probe/mapping.h"
 #include "study.h"
 
 namespace chromeball {
@@ -19,19 +20,22 @@ struct StoredRender {
 
 class RenderStore {
  public:
-  explicit RenderStore(const Study& study) : study_(study) {}
+  // `size`: of the study's pictures.
+  RenderStore(const Study& study, const ImageSize& size) : study_(study), size_(size) {}
 
   // Makes the folder where there is none. Throws InputError where it cannot.
   void makeFolder() const;
 
   std::string path(const RenderKey& key) const;  // FOLDER/renders/median-cut.64-16spp-1.exr
 
-  // nullopt where it is not there yet. Throws InputError where the file is another study's.
+  // nullopt where it is not there yet. Throws InputError where the file is another study's or is
+  // damaged.
   std::optional<StoredRender> find(const RenderKey& key) const;
   void save(const RenderKey& key, const StoredRender& render) const;
 
  private:
   const Study& study_;
+  ImageSize size_;
 };
 
 }  // namespace chromeball
