@@ -1,4 +1,6 @@
 // tests/ENVELOPE.md, the probe's rows.
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "envelope.h"
@@ -6,6 +8,7 @@
 #include "math/error.h"
 #include "probe/load.h"
 #include "probe/repair.h"
+#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -87,6 +90,26 @@ TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirWidth) {
     EXPECT_NEAR(low, 0.01, 1e-3);
     EXPECT_NEAR(high, 0.99, 1e-3);
   }
+}
+
+// The largest probe, for real: a plane that the sun lights, and one that only the rest does.
+TEST(SlowEnvelopeProbe, AOneTexelSunIn16384x8192) {
+  if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) < 8e9)
+    GTEST_SKIP() << "takes 5 GB of memory";
+  const int width = 16384, height = 8192, x = 12000, y = 2000;
+  Image image = constantProbe({width, height}, Rgb(1));
+  image.setRgb(x, y, Rgb(1e9f));
+  const Probe probe(image);
+  const double sun =
+      1e9 * texelSolidAngle(y, width, height) * std::cos(kPiD * (y + 0.5) / height);
+  EXPECT_NEAR(validMean(litPlane(probe, "importance", 64)) / (0.5 * (1 + sun / kPiD)), 1, 1e-3);
+
+  Scene ceiling;
+  addQuad(ceiling, addMaterial(ceiling, lambert(Rgb(0.5f))), {-1, 0, -1}, {2, 0, 0}, {0, 0, 2});
+  const Camera below = Camera::lookAt({0, -3, 0}, vec3(0), {0, 0, 1}, 0.3f);
+  const RenderResult r =
+      renderScene(ceiling, below, probe, "importance", smallRender(16, 16, 1024, 1));
+  EXPECT_NEAR(validMean(r), 0.5, 5e-3);
 }
 
 TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {

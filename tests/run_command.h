@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -57,13 +59,17 @@ inline std::string fileContents(const std::string& path) {
 
 // What the command is given to live on, in bytes; 0 is as much as there is.
 struct CommandLimits {
-  size_t memory = 0;    // address space
-  size_t fileSize = 0;  // of each file it writes, as on a disk that fills up
+  size_t memory = 0;         // address space
+  size_t fileSize = 0;       // of each file it writes, as on a disk that fills up
+  bool permissions = false;  // those of files bind it, even where root runs the tests
 
   void apply() const {
     const rlimit addressSpace{memory, memory}, file{fileSize, fileSize};
     if (memory) setrlimit(RLIMIT_AS, &addressSpace);
     if (fileSize) setrlimit(RLIMIT_FSIZE, &file);
+    if (permissions)
+      for (int capability : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH})
+        prctl(PR_CAPBSET_DROP, capability);
   }
 };
 

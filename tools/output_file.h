@@ -7,8 +7,8 @@
 
 namespace chromeball {
 
-// Throws InputError unless `path` ends in one of `extensions` (".svg") and names a file that can be
-// created or replaced.
+// Throws InputError unless `path` ends in one of `extensions` (".svg"); and as checkReplaceable
+// (image/file.h) does.
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions);
 
 // Writes text atomically. Throws RunError.

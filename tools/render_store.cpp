@@ -32,7 +32,7 @@ double numberIn(const Metadata& metadata, const std::string& key) {
 void RenderStore::makeFolder() const {
   std::error_code error;
   fs::create_directories(fs::path(study_.folder) / "renders", error);
-  if (error) throwInput("--output: {}: {}", study_.folder, error.message());
+  if (error) throwRun("--output: {}: {}", study_.folder, error.message());
 }
 
 std::string RenderStore::path(const RenderKey& key) const {

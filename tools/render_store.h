@@ -23,7 +23,7 @@ class RenderStore {
   // `size`: of the study's pictures.
   RenderStore(const Study& study, const ImageSize& size) : study_(study), size_(size) {}
 
-  // Makes the folder where there is none. Throws InputError where it cannot.
+  // Makes the folder where there is none. Throws RunError where it cannot.
   void makeFolder() const;
 
   std::string path(const RenderKey& key) const;  // FOLDER/renders/median-cut.64-16spp-1.exr

@@ -30,6 +30,16 @@ std::vector<uint8_t> readFile(const fs::path& path) {
   return bytes;
 }
 
+void checkReplaceable(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!fs::is_directory(folder))
+    throwInput("{}: there is no folder {}", path.string(), folder.string());
+  if (fs::is_directory(path)) throwRun("{}: cannot be written: is a folder", path.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    throwRun("{}: nothing can be written into {}: {}", path.string(), folder.string(),
+             std::strerror(errno));
+}
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
   // The process number keeps two runs that write the same target apart.
   temporary_.replace_filename(

@@ -14,6 +14,11 @@ void checkReadable(const std::filesystem::path& path);
 // All bytes of a regular file. Throws InputError.
 std::vector<uint8_t> readFile(const std::filesystem::path& path);
 
+// Asked before the work whose result is to stand there, since only a write that fails is sure.
+// Throws InputError where there is no such folder, RunError where no file can be created or
+// replaced in it.
+void checkReplaceable(const std::filesystem::path& path);
+
 // A file that appears under its name only when complete: written under a temporary name in the same
 // folder, renamed by commit(), removed where commit() was not reached.
 class AtomicFile {

@@ -1,7 +1,6 @@
 #include "image/write.h"
 
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -104,13 +103,7 @@ void checkWritable(const fs::path& path) {
   if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
     throwInput("{}: cannot write this kind of image; end the name in .exr, .hdr, .pfm or .png",
                path.string());
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!fs::is_directory(folder))
-    throwInput("{}: there is no folder {}", path.string(), folder.string());
-  if (fs::is_directory(path)) throwInput("{}: is a folder", path.string());
-  if (access(folder.c_str(), W_OK) != 0)
-    throwInput("{}: nothing can be written into {}: {}", path.string(), folder.string(),
-               std::strerror(errno));
+  checkReplaceable(path);
 }
 
 void writeImage(const fs::path& path, const OutputImage& output,

@@ -25,12 +25,12 @@ struct OutputImage {
   Metadata metadata;
 };
 
-// Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png and names a file that can be
-// created or replaced. Ask this before rendering.
+// Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png; and as checkReplaceable
+// (image/file.h) does. Ask this before rendering.
 void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
-// colour and its alpha through `transform`, 8 bits, sRGB. Throws InputError as checkWritable does,
+// colour and its alpha through `transform`, 8 bits, sRGB. Throws as checkWritable does, and
 // RunError where writing fails.
 void writeImage(const std::filesystem::path& path, const OutputImage& output,
                 const DisplayTransform& transform = {});
