@@ -24,24 +24,30 @@ LightRig exampleRig() {
   return rig;
 }
 
-TEST(LightFile, JsonRoundTrip) {
+vec3 triple(const json& numbers) {
+  EXPECT_EQ(numbers.size(), 3u);
+  return {numbers[0].get<float>(), numbers[1].get<float>(), numbers[2].get<float>()};
+}
+
+TEST(LightFile, JsonHoldsEveryDigit) {
   const TemporaryFolder folder;
   const LightRig rig = exampleRig();
   writeLights(folder / "a.json", rig);
-  const LightRig read = readLights(folder / "a.json");
-  EXPECT_EQ(read.probe, rig.probe);
-  EXPECT_EQ(read.method, rig.method);
-  EXPECT_EQ(read.ambient, rig.ambient);
-  ASSERT_EQ(read.lights.size(), rig.lights.size());
+  const json read = json::parse(fileContents(folder / "a.json"));
+  EXPECT_EQ(read["probe"], rig.probe);
+  EXPECT_EQ(read["method"], rig.method);
+  EXPECT_EQ(triple(read["ambient"]), rig.ambient);
+  ASSERT_EQ(read["lights"].size(), rig.lights.size());
   for (size_t i = 0; i < rig.lights.size(); ++i) {
-    EXPECT_LT(distance(read.lights[i].direction, rig.lights[i].direction), 1e-7f);
-    EXPECT_EQ(read.lights[i].irradiance, rig.lights[i].irradiance);
-    EXPECT_EQ(read.lights[i].angle, rig.lights[i].angle);
+    const json& light = read["lights"][i];
+    EXPECT_EQ(triple(light["direction"]), rig.lights[i].direction);
+    EXPECT_EQ(triple(light["irradiance"]), rig.lights[i].irradiance);
+    EXPECT_EQ(light["angle"].get<float>(), rig.lights[i].angle);
   }
-  LightRig empty{"p", "m", {}, {}};
-  writeLights(folder / "empty.json", empty);
-  EXPECT_FALSE(json::parse(fileContents(folder / "empty.json")).contains("ambient"));
-  EXPECT_TRUE(readLights(folder / "empty.json").lights.empty());
+  writeLights(folder / "empty.json", {"p", "m", {}, {}});
+  const json empty = json::parse(fileContents(folder / "empty.json"));
+  EXPECT_FALSE(empty.contains("ambient"));
+  EXPECT_EQ(empty["lights"], json::array());
 }
 
 // Turns (0, 0, -1) by the quaternion x, y, z, w.
@@ -96,39 +102,6 @@ TEST(LightFile, WritesNothingThatIsWrong) {
   rig.lights[1].irradiance.y = INFINITY;
   EXPECT_THROW(writeLights(folder / "a.json", rig), RunError);
   EXPECT_TRUE(folder.files().empty());
-}
-
-TEST(LightFile, HostileJsonIsRefusedWithTheReason) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "a.json";
-  const std::pair<std::string, std::string> cases[] = {
-      {"", "parse error"},
-      {"{\"lights\": [", "parse error"},
-      {std::string(200000, '['), "parse error"},
-      {"[]", "`lights`"},
-      {"{}", "`lights`"},
-      {R"({"lights": 3})", "lights should be a list"},
-      {R"({"lights": [3]})", "lights[0]"},
-      {R"({"lights": [{"direction": [0,1,0]}]})", "`irradiance`"},
-      {R"({"lights": [{"direction": [0,1], "irradiance": [1,1,1]}]})", "three numbers"},
-      {R"({"lights": [{"direction": [0,1,"x"], "irradiance": [1,1,1]}]})", "three numbers"},
-      {R"({"lights": [{"direction": [0,0,0], "irradiance": [1,1,1]}]})", "direction"},
-      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,-1,1]}]})", "negative"},
-      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,1e99,1]}]})", "1e99"},
-      {R"({"lights": [{"direction": [0,1,0], "irradiance": [1,1,1], "angle": -1}]})", "angle"},
-      {R"({"lights": [], "ambient": "blue"})", "ambient"},
-      {R"({"lights": [], "method": 7})", "method"}};
-  for (const auto& [text, reason] : cases) {
-    std::ofstream(path) << text;
-    try {
-      readLights(path);
-      ADD_FAILURE() << text.substr(0, 80);
-    } catch (const InputError& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with(path));
-      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-    }
-  }
-  EXPECT_THROW(readLights(folder / "none.json"), InputError);
 }
 
 TEST(LightError, MeanAndMaximumAgainstClosedForms) {

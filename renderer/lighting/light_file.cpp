@@ -87,56 +87,6 @@ std::string formatCsv(const LightRig& rig) {
   return result;
 }
 
-// The error of a file that does not say what it should, where.
-struct Reader {
-  std::string file;
-
-  [[noreturn]] void fail(const std::string& where, const char* expected) const {
-    throwInput("{}: {} should be {}", file, where, expected);
-  }
-  const Json& member(const Json& object, const char* key, const std::string& where) const {
-    if (!object.is_object() || !object.contains(key))
-      fail(where, fmt::format("an object with a `{}`", key).c_str());
-    return object[key];
-  }
-  std::string string(const Json& json, const std::string& where) const {
-    if (!json.is_string()) fail(where, "a string");
-    return json.get<std::string>();
-  }
-  vec3 triple(const Json& json, const std::string& where) const {
-    if (!json.is_array() || json.size() != 3) fail(where, "three numbers");
-    for (const Json& number : json)
-      if (!number.is_number()) fail(where, "three numbers");
-    return {json[0].get<float>(), json[1].get<float>(), json[2].get<float>()};
-  }
-  Rgb color(const Json& json, const std::string& where) const {
-    const Rgb result = triple(json, where);
-    if (glm::any(glm::lessThan(result, Rgb(0)))) fail(where, "three numbers that are not negative");
-    return result;
-  }
-  DirectionalLight light(const Json& json, const std::string& where) const {
-    const dvec3 direction = triple(member(json, "direction", where), where + ".direction");
-    if (direction == dvec3(0)) fail(where + ".direction", "a direction, not zero");
-    DirectionalLight result{normalize(direction),
-                            color(member(json, "irradiance", where), where + ".irradiance")};
-    if (!json.contains("angle")) return result;
-    const Json& angle = json["angle"];
-    if (!angle.is_number() || angle < 0 || angle > 360)
-      fail(where + ".angle", "a number of degrees");
-    result.angle = angle.get<float>();
-    return result;
-  }
-};
-
-Json parse(const std::filesystem::path& path) {
-  const std::vector<uint8_t> bytes = readFile(path);
-  try {
-    return Json::parse(bytes);
-  } catch (const Json::exception& error) {
-    throwInput("{}: {}", path.string(), error.what());
-  }
-}
-
 }  // namespace
 
 void writeLights(const std::filesystem::path& path, const LightRig& rig) {
@@ -151,20 +101,6 @@ void writeLights(const std::filesystem::path& path, const LightRig& rig) {
     throwInput("{}: the name should end in .json, .gltf or .csv", path.string());
   const std::string contents = format->second(rig);
   writeFile(path, {reinterpret_cast<const uint8_t*>(contents.data()), contents.size()});
-}
-
-LightRig readLights(const std::filesystem::path& path) {
-  const Json json = parse(path);
-  const Reader reader{path.string()};
-  LightRig rig;
-  const Json& lights = reader.member(json, "lights", "the file");
-  if (!lights.is_array()) reader.fail("lights", "a list");
-  for (size_t i = 0; i < lights.size(); ++i)
-    rig.lights.push_back(reader.light(lights[i], fmt::format("lights[{}]", i)));
-  if (json.contains("probe")) rig.probe = reader.string(json["probe"], "probe");
-  if (json.contains("method")) rig.method = reader.string(json["method"], "method");
-  if (json.contains("ambient")) rig.ambient = reader.color(json["ambient"], "ambient");
-  return rig;
 }
 
 }  // namespace chromeball

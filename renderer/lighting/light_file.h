@@ -1,4 +1,4 @@
-// Directional lights as files, for other programs and for ours.
+// Directional lights as files, for other programs.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,5 @@ struct LightRig {
 //          Ambient light and angles, which the format does not have, are in extras.
 //   .csv   a line a light, under the header x,y,z,r,g,b,angle; the ambient light is left out
 void writeLights(const std::filesystem::path& path, const LightRig& rig);
-
-// Reads the JSON above. Directions of any length become unit. Throws InputError.
-LightRig readLights(const std::filesystem::path& path);
 
 }  // namespace chromeball
