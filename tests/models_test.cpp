@@ -1,6 +1,8 @@
 // Real models under real probes: every sample of every picture is valid.
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "math/error.h"
 #include "probe/load.h"
 #include "scene/framing.h"
@@ -23,47 +25,51 @@ std::vector<fs::path> filesBelow(const fs::path& root, std::initializer_list<con
   return files;
 }
 
-void expectValid(const Scene& scene, const Probe& probe, const fs::path& file) {
-  const Camera camera = scene.cameras.empty() ? framingCamera(scene, 1) : scene.cameras.front();
-  const RenderResult r = renderScene(scene, camera, probe, "importance", smallRender(32, 32, 4, 8));
-  EXPECT_EQ(r.invalid.total(), 0u)
-      << file << ": " << r.invalid.of(Defect::Nan) << " NaN, " << r.invalid.of(Defect::Infinite)
-      << " infinite, " << r.invalid.of(Defect::Negative) << " negative, the first at "
-      << r.invalid.x << ' ' << r.invalid.y;
+struct LitBy {
+  fs::path file;
+  std::unique_ptr<LightingStrategy> lighting;
+};
+
+std::vector<LitBy> everyProbe(const fs::path& root, std::deque<Probe>& probes) {
+  std::vector<LitBy> lit;
+  for (const fs::path& file : filesBelow(root, {".hdr", ".exr"})) {
+    if (file.string().find("/pisaHDR/") != std::string::npos) continue;  // single faces of a cube
+    probes.emplace_back(loadProbe(file, "auto", "").latLong);
+    lit.push_back({file, makeStrategy("importance", probes.back(), Mis::Balance, "test")});
+  }
+  return lit;
 }
 
-TEST(SlowModels, EveryModelRendersWithoutAnInvalidSample) {
-  const auto models = sharedData("gltf");
-  const auto map = sharedData("probes/probulator/grace_latlong_small.hdr");
-  if (!models || !map) GTEST_SKIP() << "../shared/data/gltf or its probes are not there";
-  const Probe probe(loadProbe(*map, "lat-long", "").latLong);
+TEST(SlowModels, EveryModelUnderEveryProbeHasNoInvalidSample) {
+  const auto models = sharedData("gltf"), maps = sharedData("probes");
+  if (!models || !maps) GTEST_SKIP() << "../shared/data/gltf or its probes are not there";
+  std::deque<Probe> probes;
+  const std::vector<LitBy> lit = everyProbe(*maps, probes);
+  const RenderSettings settings = smallRender(16, 16, 4, 8);
+  const std::atomic<bool> stop = false;
   int rendered = 0;
   for (const fs::path& file : filesBelow(*models, {".gltf", ".glb"})) {
+    Scene scene;
     try {
-      const Scene scene = loadGltf(file.string(), {}, nullptr);
-      if (scene.instances.empty()) continue;
-      expectValid(scene, probe, file);
-      ++rendered;
+      scene = loadGltf(file.string(), {}, nullptr);
     } catch (const InputError&) {
-      // What is refused, and why, is gltf_samples_test's.
+      continue;  // what is refused, and why, is gltf_samples_test's
+    }
+    if (scene.instances.empty()) continue;
+    ++rendered;
+    const Accel accel(scene);
+    const Camera camera = scene.cameras.empty() ? framingCamera(scene, 1) : scene.cameras.front();
+    for (const LitBy& by : lit) {
+      const RenderResult r = render(
+          scene, accel, camera, *by.lighting, settings, [](double) {}, stop);
+      EXPECT_EQ(r.invalid.total(), 0u)
+          << file << " under " << by.file << ": " << r.invalid.of(Defect::Nan) << " NaN, "
+          << r.invalid.of(Defect::Infinite) << " infinite, " << r.invalid.of(Defect::Negative)
+          << " negative, the first at " << r.invalid.x << ' ' << r.invalid.y;
     }
   }
+  EXPECT_GT(lit.size(), 25u);
   EXPECT_GT(rendered, 60);
-}
-
-TEST(SlowModels, EveryProbeLightsWithoutAnInvalidSample) {
-  const auto probes = sharedData("probes");
-  const auto model = sharedData("gltf/DamagedHelmet/glTF/DamagedHelmet.gltf");
-  if (!probes || !model) GTEST_SKIP() << "../shared/data/probes or its models are not there";
-  const Scene scene = loadGltf(model->string(), {}, nullptr);
-  int lit = 0;
-  for (const fs::path& file : filesBelow(*probes, {".hdr", ".exr"})) {
-    if (file.string().find("/pisaHDR/") != std::string::npos) continue;  // single faces of a cube
-    const Probe probe(loadProbe(file, "auto", "").latLong);
-    expectValid(scene, probe, file);
-    ++lit;
-  }
-  EXPECT_GT(lit, 25);
 }
 
 }  // namespace
