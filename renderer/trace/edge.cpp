@@ -1,7 +1,7 @@
 #include "trace/edge.h"
 
-#include <algorithm>
 #include <array>
+#include <limits>
 
 namespace chromeball {
 

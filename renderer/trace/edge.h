@@ -1,6 +1,7 @@
 // Rays that meet a triangle so close to its edge that rounding decides which side of it they pass.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "scene/scene.h"
