@@ -200,7 +200,8 @@ bool Accel::closest(const Ray& ray, uint32_t key, Hit& hit) const {
 }
 
 // What stands before the triangle of `hit` at an edge that the ray grazes (trace/edge.h); and
-// before that, at a corner.
+// before that, at a corner: three triangles are enough. Whatever shares an edge is about as far
+// away; anything else that the turned ray meets is not asked for.
 void Accel::settleEdge(Ray ray, uint32_t key, Hit& hit) const {
   for (int i = 0; i < 3 && isBesideEdge(hit); ++i) {
     const auto turned = aimedInside(described_, ray, hit);
