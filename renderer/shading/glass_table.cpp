@@ -21,6 +21,7 @@ float etaCoordinate(float eta) {
   const float x = (eta - 1) / ((eta + 1) * kLargest);
   return 0.5f + 0.5f * std::copysign(std::sqrt(std::fabs(x)), x);
 }
+
 // The mean over visible normals of G2/G1, reflected and refracted by Fresnel's shares.
 float integrate(float mu, float alpha, float eta, std::span<const vec2> points) {
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
