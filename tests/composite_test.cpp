@@ -231,9 +231,10 @@ TEST(Composite, StatesItsError) {
     const RenderSettings settings = smallRender(kSize, kSize, 64, 5, 70 + uint64_t(repeat));
     const CompositeRender r =
         composite(w, Probe(sunnyProbe()), "importance", settings, noisyPlate(kSize, kSize));
+    const Image variance = varianceImage(r.errors);
     for (size_t i = 0; i < pixels.size(); ++i) {
       pixels[i].push_back(r.mean.texels[i]);
-      stated += r.squaredStandardError.texels[i] / kRepeats;
+      stated += variance.texels[i] / kRepeats;
     }
   }
   for (const auto& repeats : pixels) spread += Moments::of(repeats).variance;
@@ -258,11 +259,11 @@ TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
   const Film truth = render(w.scene, wholeAccel, w.camera, *lighting, settings, quiet, stop).film;
   const CompositeRender r =
       composite(w, probe, "importance", smallRender(kSize, kSize, 256, 5, 9), photograph.mean());
-  const Image truthMean = truth.mean(), truthError = truth.squaredStandardError(),
-              plateError = photograph.squaredStandardError();
+  const Image truthMean = truth.mean(), truthError = varianceImage(truth.errors()),
+              plateError = varianceImage(photograph.errors());
   for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio}) {
     const Composite c = compose(r.film, r.mean, photograph.mean(), mode);
-    const Image error = compositeVariance(r.film, c, r.squaredStandardError);
+    const Image error = varianceImage(compositeErrors(r.film, c, r.errors));
     double sum = 0, squares = 0, n = 0;
     for (size_t i = 0; i < truthMean.texels.size(); ++i) {
       const double variance = double(error.texels[i]) + truthError.texels[i] + plateError.texels[i];

@@ -50,7 +50,6 @@ TEST(SlowEnvelopePrecision, FilmOfAMillionSamples) {
   std::mt19937_64 random(2);
   Film film(1, 1);
   long double sum = 0, squares = 0;
-  double least = 1e30, most = 0;
   uint64_t count = 0;
   for (int block = 0; count < 1'000'000; ++block) {
     SampleSums sums;
@@ -61,20 +60,14 @@ TEST(SlowEnvelopePrecision, FilmOfAMillionSamples) {
       sum += x;
       squares += (long double)(x)*x;
     }
-    film.addBlock(0, 0, sums);
-    if (block % 16 == 15) {
-      const double scaled = film.squaredStandardError().texels[0] * double(count);
-      least = std::min(least, scaled), most = std::max(most, scaled);
-    }
+    film.add(0, 0, block % Film::kHalves, sums);
   }
   const long double mean = sum / count, variance = squares / count - mean * mean;
   const long double error = std::fabs(film.mean().texels[0] / mean - 1);
   std::printf("film, %.2g samples: relative error of the mean %.1Le\n", double(count), error);
   EXPECT_LT(error, 1.2e-7L);  // half a float's last place, which is what is written
-  // The squared error falls as 1/N: the estimate times N stays the variance (as far as the
-  // difference of a few hundred blocks can tell).
-  EXPECT_GT(least / double(variance), 0.3);
-  EXPECT_LT(most / double(variance), 3);
+  // The squared error of the mean of independent samples.
+  EXPECT_NEAR(film.errors().scatter[0].w * double(count) / double(variance), 1, 1e-5);
 }
 
 // The mean does not stall: sample 16 million still counts as much as the first.
@@ -91,7 +84,7 @@ TEST(SlowEnvelopePrecision, AccumulatorsDoNotStall) {
         sums.add(Rgb(part == 0 ? 1 : 3));
         aovs.add(0, 0, hit);
       }
-      film.addBlock(0, 0, sums);
+      film.add(0, 0, part, sums);
     }
   EXPECT_NEAR(film.mean().texels[0], 2, 1e-6);
   EXPECT_NEAR(aovs.finished(Aov::Albedo).texels[0], 0.2f, 1e-6);

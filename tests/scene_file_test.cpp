@@ -139,11 +139,11 @@ aovs = ["albedo", "depth"]
   EXPECT_EQ(scene.mis->name, "power");
   EXPECT_EQ(scene.size->width, 800);
   EXPECT_EQ(scene.size->height, 600);
-  EXPECT_EQ(scene.samples, 256);
+  EXPECT_EQ(scene.samples, 256u);
   EXPECT_EQ(scene.maxDepth, 0);
   EXPECT_EQ(scene.seed, 7u);
   EXPECT_EQ(scene.timeLimit, 1.5);
-  EXPECT_EQ(scene.noiseLimit, 2.0);
+  EXPECT_EQ(scene.noiseLimit, 0.02);
   const std::vector<std::string> outputs{(root_ / "scenes/out/a.exr").string(), "/b.png"};
   EXPECT_EQ(scene.outputs, outputs);
   ASSERT_EQ(scene.aovs.size(), 2u);

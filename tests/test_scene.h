@@ -71,7 +71,7 @@ inline RenderResult renderScene(const Scene& scene, const Camera& camera, const 
   return render(scene, accel, camera, *lighting, settings, [](double) {}, stop);
 }
 
-inline RenderSettings smallRender(int width, int height, int samples, int maxDepth,
+inline RenderSettings smallRender(int width, int height, uint32_t samples, int maxDepth,
                                   uint64_t seed = 0) {
   RenderSettings s;
   s.width = width;

@@ -37,8 +37,8 @@ Rgb tracePicture(const BenchmarkScene& s, const Rays& rays, int samples) {
   RayCounts counts;
   return sumOverPicture(s.scene.cameras.front(), samples,
                         [&](const Ray& ray, PixelSampler& sampler) {
-                          return pathRadiance(path, ray, closestHit(rays, ray, sampler), sampler,
-                                              scratch, counts, nullptr);
+                          return pathRadiance(path, PathState{ray}, closestHit(rays, ray, sampler),
+                                              sampler, scratch, counts, nullptr);
                         });
 }
 

@@ -34,8 +34,8 @@ void differential(benchmark::State& state, demo::Finish finish) {
   for (auto _ : state) {
     const double start = cpuSeconds();
     plainSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return pathRadiance(worlds.whole, ray, closestHit(s.accel, ray, sampler), sampler, scratch,
-                          counts, nullptr);
+      return pathRadiance(worlds.whole, PathState{ray}, closestHit(s.accel, ray, sampler), sampler,
+                          scratch, counts, nullptr);
     });
     const double middle = cpuSeconds();
     withObjects = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {

@@ -158,12 +158,14 @@ void compositeNoise(benchmark::State& state, float leastRoughness) {
   };
   for (auto _ : state) {
     const CompositeRender one = passes(Passes::One), two = passes(Passes::Two);
+    const auto oneErrors = squaredStandardErrors(one.errors);
+    const auto twoErrors = squaredStandardErrors(two.errors);
     glm::dvec2 all(0), changed(0);  // sums of squared standard errors
     for (int y = 0; y < kRows; ++y)
       for (int x = 0; x < kColumns; ++x) {
         if (one.film.at(x, y).covered > 0) continue;
-        const glm::dvec2 errors(luminance(one.squaredStandardError.rgb(x, y)),
-                                luminance(two.squaredStandardError.rgb(x, y)));
+        const size_t i = size_t(y) * kColumns + size_t(x);
+        const glm::dvec2 errors(oneErrors[i].w, twoErrors[i].w);
         all += errors;
         if (isChanged(x, y)) changed += errors;
       }

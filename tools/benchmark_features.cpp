@@ -97,7 +97,7 @@ void unusedFeatures(benchmark::State& state) {
   for (auto _ : state) {
     const double start = cpuSeconds();
     fullSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return pathRadiance(full, ray, closestHit(s.accel, ray, sampler), sampler, scratch, counts,
+      return pathRadiance(full, PathState{ray}, closestHit(s.accel, ray, sampler), sampler, scratch, counts,
                           nullptr);
     });
     const double middle = cpuSeconds();

@@ -65,7 +65,7 @@ void solve(CompositeJob& job, const RenderJob& render, const LoadedScene& loaded
 }
 
 Layer layerOf(Aov aov, const CompositeJob& job, const CompositeRender& render,
-              const Composite& composite) {
+              const Image& variance) {
   const AovInfo& info = aovInfo(aov);
   switch (aov) {
     case Aov::WithObjects:
@@ -74,8 +74,7 @@ Layer layerOf(Aov aov, const CompositeJob& job, const CompositeRender& render,
     case Aov::Alpha:
       return {info.name, info.channels, ingredient(render.film, aov)};
     case Aov::Variance:
-      return {info.name, info.channels,
-              compositeVariance(render.film, composite, render.squaredStandardError)};
+      return {info.name, info.channels, variance};
     case Aov::Reflectance:
       return {info.name, info.channels, job.projection->colors()};
     case Aov::Samples:
@@ -83,6 +82,14 @@ Layer layerOf(Aov aov, const CompositeJob& job, const CompositeRender& render,
     default:
       return {info.name, info.channels, render.result.aovs.finished(aov)};
   }
+}
+
+std::vector<double> luminancesOf(const Image& image) {
+  std::vector<double> luminances;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      luminances.push_back(luminance(glm::dvec3(image.rgb(x, y))));
+  return luminances;
 }
 
 double meanAlpha(const DifferentialFilm& film) {
@@ -164,10 +171,13 @@ Rendered renderComposite(CompositeJob& job, const RenderJob& render, const Loade
       stop);
   const Composite composite = compose(rendered.film, rendered.mean, job.plate, job.mode);
 
+  const PictureNoise noise(luminancesOf(composite.color),
+                           compositeErrors(rendered.film, composite, rendered.errors));
   OutputImage output;
   output.layers.push_back({"", "RGB", composite.color});
-  for (Aov aov : job.layers) output.layers.push_back(layerOf(aov, job, rendered, composite));
-  Rendered out{std::move(rendered.result), std::move(output), std::move(details), std::move(notes)};
+  for (Aov aov : job.layers) output.layers.push_back(layerOf(aov, job, rendered, noise.variance));
+  Rendered out{std::move(rendered.result), std::move(output), noise, std::move(details),
+               std::move(notes)};
   out.details["composite"] = {{"objects", meanAlpha(rendered.film)},
                               {"darker_than_black", composite.darkerThanBlack}};
   if (composite.darkerThanBlack)

@@ -8,6 +8,7 @@
 #include "composite/render_composite.h"
 #include "image/write.h"
 #include "load_scene.h"
+#include "picture_noise.h"
 
 namespace chromeball {
 
@@ -36,6 +37,7 @@ void sayPlateNotes(const CompositeEntry& entry);
 struct Rendered {
   RenderResult result;
   OutputImage output;
+  PictureNoise noise;  // of the output
   nlohmann::json details = nlohmann::json::object();  // for the statistics
   std::vector<std::string> notes;                     // for the user
 };

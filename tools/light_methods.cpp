@@ -22,9 +22,9 @@ std::vector<std::string_view> methodNames() {
 }
 
 int fitCount(int count) {
-  constexpr int kMost = 1024;
-  if (count < 1 || count > kMost)
-    throwInput("{}: a count of {} is out of range; give 1 to {}", kFit, count, kMost);
+  if (count < 1 || count > kMostFittedLights)
+    throwInput("{}: a count of {} is out of range; give 1 to {}", kFit, count,
+               kMostFittedLights);
   return count;
 }
 

@@ -4,7 +4,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
@@ -43,7 +43,8 @@ struct Report {
 };
 
 Report describe(const RenderJob& job, const RenderOptions& options, const Scene& scene,
-                const RenderResult& result, const Seconds& seconds, double noise) {
+                const RenderResult& result, const Seconds& seconds,
+                const PictureNoise& noise) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const uint64_t rays = result.rays.camera + result.rays.shadow + result.rays.bounce;
@@ -76,7 +77,9 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
         {"negative", result.invalid.of(Defect::Negative)}}},
       {"clamped",
        {{"samples", result.clamped.count}, {"light_removed", result.clamped.shareRemoved()}}},
-      {"noise", noise},  // NaN becomes null
+      {"noise", noise.noise},  // NaN becomes null
+      {"noise_median", noise.median},
+      {"noise_p95", noise.p95},
       {"triangles", scene.triangleCount()},
       {"scene_bytes", scene.byteCount()},
       {"texture_bytes", scene.texelByteCount()},
@@ -86,11 +89,13 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
   r.metadata = {{"Software", "chromeball " CHROMEBALL_VERSION},
                 {"scene", options.scene},
                 {"strategy", strategy},
-                {"samples", result.samples},
+                {"samples", int(result.samples)},
                 {"seed", std::to_string(job.settings.seed)},
                 {"seconds", float(seconds.render)},
                 {"rays", std::to_string(rays)},
-                {"noise", float(noise)}};
+                {"noise", float(noise.noise)},
+                {"noise_median", float(noise.median)},
+                {"noise_p95", float(noise.p95)}};
   if (job.settings.clamp) {
     r.metadata["clamp"] = *job.settings.clamp;
     r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
@@ -108,7 +113,8 @@ Image withAlpha(const Image& color, const Image& alpha) {
   return image;
 }
 
-OutputImage assemble(const RenderResult& result, const RenderSettings& settings) {
+OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
+                     const Image& variance) {
   OutputImage output;
   if (settings.hideProbe)
     output.layers.push_back(
@@ -118,7 +124,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings)
   for (Aov aov : settings.aovs) {
     const AovInfo& info = aovInfo(aov);
     output.layers.push_back({info.name, info.channels,
-                             aov == Aov::Variance  ? result.film.squaredStandardError()
+                             aov == Aov::Variance  ? variance
                              : aov == Aov::Samples ? result.film.sampleCounts()
                                                    : result.aovs.finished(aov)});
   }
@@ -129,8 +135,18 @@ Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Acce
                      const LightingStrategy& lighting, const Progress& progress) {
   RenderResult result =
       render(loaded.scene, accel, loaded.camera, lighting, job.settings, progress, interrupted);
-  OutputImage output = assemble(result, job.settings);
-  return {std::move(result), std::move(output)};
+  const PictureNoise noise(result.film.luminances(), result.film.errors());
+  OutputImage output = assemble(result, job.settings, noise.variance);
+  return {std::move(result), std::move(output), noise};
+}
+
+// A picture that lacks pixels does not replace one that may have them all.
+void nameAsPartial(std::vector<std::string>& outputs) {
+  for (std::string& output : outputs) {
+    std::filesystem::path path = output;
+    path.replace_extension(".partial" + path.extension().string());
+    output = path.string();
+  }
 }
 
 void writeStats(const std::string& path, const nlohmann::json& json) {
@@ -185,21 +201,24 @@ void render(const RenderOptions& options) {
   const RenderResult& result = rendered.result;
   seconds.render = watch.lap();
 
-  const double noise = result.film.noise();
   OutputImage& output = rendered.output;
-  output.metadata = describe(job, options, scene, result, seconds, noise).metadata;
+  output.metadata = describe(job, options, scene, result, seconds, rendered.noise).metadata;
+  if (result.samples == 0) nameAsPartial(job.outputs);
   for (const std::string& path : job.outputs) writeImage(path, output, job.display);
   seconds.write = watch.lap();
-  Report report = describe(job, options, scene, result, seconds, noise);
+  Report report = describe(job, options, scene, result, seconds, rendered.noise);
   report.json.update(rendered.details);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
   sayWhatIsMissing(result);
   for (const std::string& note : rendered.notes) warn(note);
+  if (result.interrupted && result.samples == 0)
+    throw Interrupted(fmt::format("interrupted before every pixel had a sample; what there is: {}",
+                                  fmt::join(job.outputs, ", ")));
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
   if (!options.quiet)
     fmt::print("{} samples a pixel in {:.2f} s, noise {:.2f}%: {}\n", result.samples,
-               seconds.render, 100 * noise, fmt::join(job.outputs, ", "));
+               seconds.render, 100 * rendered.noise.noise, fmt::join(job.outputs, ", "));
 }
 
 }  // namespace

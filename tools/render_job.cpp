@@ -13,9 +13,6 @@
 namespace chromeball {
 namespace {
 
-// Where only the time or the noise limits a render.
-constexpr int kEndless = 1 << 30;
-
 SceneFile openScene(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
@@ -46,13 +43,17 @@ Mis parseMis(const NamedSetting& setting) {
 }
 
 template <class T>
-void require(bool valid, const char* option, T given, const char* expected) {
+void require(bool valid, const char* option, T given, std::string_view expected) {
   if (!valid) throwInput("{}: {} is not {}", option, given, expected);
 }
 
 void checkRanges(const RenderOptions& o) {
-  if (o.samples) require(*o.samples >= 1, "--samples", *o.samples, "1 or more");
-  if (o.maxDepth) require(*o.maxDepth >= 0, "--max-depth", *o.maxDepth, "0 or more");
+  if (o.samples)
+    require(*o.samples >= 1 && *o.samples <= kMostSamples, "--samples", *o.samples,
+            fmt::format("a number from 1 to {}", kMostSamples));
+  if (o.maxDepth)
+    require(*o.maxDepth >= 0 && *o.maxDepth <= kMostDepth, "--max-depth", *o.maxDepth,
+            fmt::format("a number from 0 to {}", kMostDepth));
   if (o.time) require(*o.time > 0 && std::isfinite(*o.time), "--time", *o.time, "above 0 seconds");
   if (o.noise)
     require(*o.noise > 0 && std::isfinite(*o.noise), "--noise", *o.noise, "above 0 percent");
@@ -102,9 +103,10 @@ RenderJob planJob(const RenderOptions& o) {
   if (o.samples || o.time || o.noise) {  // how long to render is one decision
     file.samples = o.samples;
     file.timeLimit = o.time;
-    file.noiseLimit = o.noise;
+    file.noiseLimit.reset();
+    if (o.noise) file.noiseLimit = *o.noise / 100;
   }
-  overlay(file.maxDepth, o.maxDepth);
+  if (o.maxDepth) file.maxDepth = int(*o.maxDepth);
   overlay(file.seed, o.seed);
 
   job.size = file.size;
@@ -118,9 +120,9 @@ RenderJob planJob(const RenderOptions& o) {
 
   RenderSettings& settings = job.settings;
   settings.timeLimit = file.timeLimit;
-  if (file.noiseLimit) settings.noiseLimit = *file.noiseLimit / 100;
+  settings.noiseLimit = file.noiseLimit;
   const bool limited = file.timeLimit || file.noiseLimit;
-  settings.samples = file.samples.value_or(limited ? kEndless : settings.samples);
+  settings.samples = file.samples.value_or(limited ? kMostSamples : settings.samples);
   settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
   settings.seed = file.seed.value_or(0);
   settings.hideProbe = o.transparent;

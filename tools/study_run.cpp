@@ -6,8 +6,6 @@
 namespace chromeball {
 namespace {
 
-constexpr int kEndless = 1 << 30;
-
 double now() {
   using namespace std::chrono;
   return duration<double>(steady_clock::now().time_since_epoch()).count();
@@ -49,7 +47,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
   RenderSettings settings = settings_;
   settings.seed = seedOf(key, study_.seed);
-  settings.samples = key.budget.timed ? kEndless : int(key.budget.amount);
+  settings.samples = key.budget.timed ? kMostSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
   return chromeball::render(loaded_.scene, accel_, loaded_.camera, strategy(key.strategy), settings,
@@ -82,10 +80,10 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
   const double seconds = now() - start;
   if (result.interrupted) return;
   Built& built = built_.at(key.strategy);
-  built.secondsPerSample = seconds / std::max(1, result.samples);
+  built.secondsPerSample = seconds / std::max(1u, result.samples);
   const RayCounts& rays = result.rays;
   store_.save(key, {result.film.mean(), double(result.samples), seconds, built.prepareSeconds,
-                    result.film.noise(), double(rays.camera + rays.shadow + rays.bounce),
+                    result.film.noise().noise, double(rays.camera + rays.shadow + rays.bounce),
                     double(result.invalid.total())});
   ++stored_;
 }

@@ -68,16 +68,17 @@ Composite compose(const DifferentialFilm& film, const Image& mean, const Image& 
   return result;
 }
 
-Image compositeVariance(const DifferentialFilm& film, const Composite& composite,
-                        const Image& squaredStandardError) {
-  Image variance = squaredStandardError;
-  for (int y = 0; y < film.height; ++y)
-    for (int x = 0; x < film.width; ++x) {
-      const float alpha = float(alphaOf(film.at(x, y)));
-      const Rgb gain = alpha + (1 - alpha) * composite.gain.rgb(x, y);
-      variance.setRgb(x, y, gain * gain * variance.rgb(x, y));
-    }
-  return variance;
+PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
+                            PixelErrors errors) {
+  for (size_t i = 0; i < film.pixels.size(); ++i) {
+    const int x = int(i % size_t(film.width)), y = int(i / size_t(film.width));
+    const float alpha = float(alphaOf(film.pixels[i]));
+    const Rgb gain = alpha + (1 - alpha) * composite.gain.rgb(x, y);
+    const glm::dvec4 squared(gain * gain, luminance(gain) * luminance(gain));
+    errors.halves[i] *= squared;
+    errors.scatter[i] *= squared;
+  }
+  return errors;
 }
 
 Image ingredient(const DifferentialFilm& film, Aov aov) {

@@ -3,6 +3,7 @@
 
 #include "composite/differential.h"
 #include "film/aov.h"
+#include "film/noise.h"
 
 namespace chromeball {
 
@@ -24,10 +25,10 @@ struct Composite {
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode);
 
-// Squared standard error of the composite, from that of the difference formula's; for the ratio to
+// The errors of the composite's pixels, from those of the difference formula's; for the ratio to
 // first order, L_noobj taken as known.
-Image compositeVariance(const DifferentialFilm& film, const Composite& composite,
-                        const Image& squaredStandardError);
+PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
+                            PixelErrors errors);
 
 // What the composite is made of: Aov::WithObjects (L_obj), Aov::WithoutObjects (L_noobj),
 // Aov::Difference ((1 - alpha) (L_obj - L_noobj)) or Aov::Alpha.

@@ -1,20 +1,13 @@
 #include "composite/differential.h"
 
-#include <limits>
-
 namespace chromeball {
-namespace {
 
-bool isRadiance(const Rgb& c) { return isFinite(c) && glm::all(glm::greaterThanEqual(c, Rgb(0))); }
-
-}  // namespace
-
-Rgb DifferentialIntegrator::radiance(const CameraSample& camera, PathMemory& memory,
-                                     FirstHit* first) const {
+Sample DifferentialIntegrator::sample(const CameraSample& camera, PathMemory& memory,
+                                      FirstHit* first) const {
   const DifferentialSample s = differentialRadiance(scene_, camera, memory, first);
   const Rgb withObjects = s.both + s.withObjects, without = s.both + s.without;
-  if (!isRadiance(withObjects) || !isRadiance(without))
-    return Rgb(std::numeric_limits<float>::quiet_NaN());
+  for (const Rgb& radiance : {withObjects, without})
+    if (const auto defect = defectOf(radiance, false)) return {radiance, defect};
 
   DifferentialPixel& pixel = film_.at(camera.x, camera.y);
   ++pixel.count;
@@ -28,7 +21,7 @@ Rgb DifferentialIntegrator::radiance(const CameraSample& camera, PathMemory& mem
   const Rgb difference = memory.clamp(s.difference());
   pixel.local += glm::dvec3(without);
   pixel.difference += glm::dvec3(difference);
-  return plate_.rgb(camera.x, camera.y) + difference;
+  return {plate_.rgb(camera.x, camera.y) + difference, std::nullopt};
 }
 
 }  // namespace chromeball

@@ -34,8 +34,7 @@ class DifferentialIntegrator : public Integrator {
   DifferentialIntegrator(const DifferentialScene& scene, const Image& plate, DifferentialFilm& film)
       : scene_(scene), plate_(plate), film_(film) {}
 
-  Rgb radiance(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override;
-  bool isSigned() const override { return true; }
+  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override;
 
  private:
   const DifferentialScene& scene_;

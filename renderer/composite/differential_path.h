@@ -74,6 +74,20 @@ inline bool isUnseen(const Scene& scene, const PathState& state, const Hit& hit)
          !surfaceAt(scene, instance, hit.triangle, hit.barycentric, -state.ray.direction).frontFace;
 }
 
+// Takes the camera's path past hidden backs, to before the first surface that it sees.
+template <class Rays>
+std::optional<Hit> passUnseen(const Scene& scene, const Rays& rays, PathState& state,
+                              std::optional<Hit> hit, const PixelSampler& sampler) {
+  while (hit && isUnseen(scene, state, *hit)) {
+    const Surface back = surfaceAt(scene, scene.instances[hit->instance], hit->triangle,
+                                   hit->barycentric, -state.ray.direction);
+    state.length += hit->distance;
+    state.ray.origin = back.rayOrigin(state.ray.direction);
+    hit = closestHit(rays, state.ray, sampler);
+  }
+  return hit;
+}
+
 // Both worlds in which a sample is taken.
 struct DifferentialScene {
   PathScene<Accel> whole;
@@ -96,10 +110,10 @@ inline DifferentialSample differentialRadiance(const DifferentialScene& scene,
   const WatchedRays rays(whole.rays, local.rays);
   const PathScene<WatchedRays> shared{
       whole.scene,     rays,           whole.lighting, whole.emitters,   whole.mis, whole.maxDepth,
-      whole.hideProbe, whole.punctual, whole.beam,     whole.mirrorAlpha};
+      whole.hideProbe, whole.punctual, whole.mirrorAlpha};
 
   DifferentialSample sample;
-  PathState state{camera.ray};
+  PathState state = camera.path();
   ++counts.camera;
   sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {

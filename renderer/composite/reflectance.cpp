@@ -6,8 +6,8 @@ namespace chromeball {
 namespace {
 
 constexpr Rgb kFirstGuess(0.25f);  // typical of real surfaces
-constexpr int kSightSamples = 16;  // a pixel, to find what the camera sees
-constexpr int kMostSamples = 1024;
+constexpr uint32_t kSightSamples = 16;  // a pixel, to find what the camera sees
+constexpr uint32_t kMostSamples = 1024;
 
 // What is seen of the local scene: how far away, and the model's own base colour.
 struct Sight {
@@ -16,24 +16,27 @@ struct Sight {
 
 class SightIntegrator : public Integrator {
  public:
-  SightIntegrator(const Scene& scene, const CameraRays& camera, Sight& sight)
-      : scene_(scene), camera_(camera), sight_(sight) {}
+  SightIntegrator(const Accel& rays, const CameraRays& camera, Sight& sight)
+      : scene_(rays.scene()), rays_(rays), camera_(camera), sight_(sight) {}
 
-  Rgb radiance(const CameraSample& sample, PathMemory&, FirstHit*) const override {
-    if (!sample.hit || isUnseen(scene_, PathState{sample.ray}, *sample.hit)) return Rgb(0);
-    const Hit& hit = *sample.hit;
-    const vec3& direction = sample.ray.direction;
-    const Surface surface = surfaceAt(scene_, scene_.instances[hit.instance], hit.triangle,
-                                      hit.barycentric, -direction);
-    float& farthest = *sight_.farthest.at(sample.x, sample.y);
-    const float distance = glm::length(surface.position - sample.ray.origin);
+  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit*) const override {
+    memory.sampler.startVertex(0);
+    PathState state = camera.path();
+    const auto hit = passUnseen(scene_, rays_, state, camera.hit, memory.sampler);
+    if (!hit) return Rgb(0);
+    const vec3& direction = state.ray.direction;
+    const Surface surface = surfaceAt(scene_, scene_.instances[hit->instance], hit->triangle,
+                                      hit->barycentric, -direction);
+    float& farthest = *sight_.farthest.at(camera.x, camera.y);
+    const float distance = glm::length(surface.position - camera.ray.origin);
     farthest = std::max(farthest, camera_.depth(direction, distance));
-    sight_.baseColor.setRgb(sample.x, sample.y, materialAt(scene_, surface).baseColor);
+    sight_.baseColor.setRgb(camera.x, camera.y, materialAt(scene_, surface).baseColor);
     return Rgb(0);
   }
 
  private:
   const Scene& scene_;
+  const Accel& rays_;
   const CameraRays& camera_;
   Sight& sight_;
 };
@@ -44,21 +47,22 @@ class RepaintedIntegrator : public Integrator {
   RepaintedIntegrator(const PathScene<LocalRays>& path, const Rgb& baseColor)
       : path_(path), baseColor_(baseColor) {}
 
-  Rgb radiance(const CameraSample& sample, PathMemory& memory, FirstHit* first) const override {
+  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
     ++memory.rays.camera;
-    if (!sample.hit || isUnseen(path_.scene, PathState{sample.ray}, *sample.hit)) return Rgb(0);
-    const Instance& instance = path_.scene.instances[sample.hit->instance];
-    PathState state{sample.ray};
-    state.length = sample.hit->distance;
-    const Surface surface = surfaceAt(path_.scene, instance, sample.hit->triangle,
-                                      sample.hit->barycentric, -sample.ray.direction);
+    memory.sampler.startVertex(0);
+    PathState state = camera.path();
+    const auto hit = passUnseen(path_.scene, path_.rays, state, camera.hit, memory.sampler);
+    if (!hit) return Rgb(0);
+    const Instance& instance = path_.scene.instances[hit->instance];
+    state.length += hit->distance;
+    const Surface surface = surfaceAt(path_.scene, instance, hit->triangle, hit->barycentric,
+                                      -state.ray.direction);
     Rgb found(0);
     if (surface.material->emits()) found += foundEmission(path_, state, surface, instance.material);
     MaterialPoint material = materialAt(path_.scene, surface);
     material.baseColor = baseColor_;
-    first->hit = true;
-    memory.sampler.startVertex(0);
-    const Bsdf bsdf(material, surface, -sample.ray.direction, path_.mirrorAlpha);
+    if (first) first->hit = true;
+    const Bsdf bsdf(material, surface, -state.ray.direction, path_.mirrorAlpha);
     if (!scatter<false>(path_, state, surface, bsdf, memory.sampler, memory.samples, memory.rays,
                         found))
       return found;
@@ -103,7 +107,7 @@ Sight look(const ReflectanceProblem& problem, const Accel& local, const RenderSe
   quick.seed = settings.seed;
   const CameraRays camera(problem.camera, float(settings.width) / float(settings.height));
   render(
-      SightIntegrator(problem.scene, camera, sight), local, problem.camera, quick, [](double) {},
+      SightIntegrator(local, camera, sight), local, problem.camera, quick, [](double) {},
       stop);
   return sight;
 }
@@ -205,10 +209,9 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   const std::unique_ptr<Emitters> emitters = Emitters::make(problem.scene);
   const LocalRays rays{local, problem.isObject};
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(problem.scene);
-  const PathScene<LocalRays> path{
-      problem.scene,  rays,           problem.lighting,
-      emitters.get(), settings.mis,   settings.maxDepth,
-      true,           punctual.get(), beamOf(problem.scene, problem.camera, settings)};
+  const PathScene<LocalRays> path{problem.scene, rays,         problem.lighting,
+                                  emitters.get(), settings.mis, settings.maxDepth,
+                                  true,           punctual.get()};
   prepareBsdfs(problem.scene);
   bool shines = false;  // also where it is black
   for (size_t i = 0; i < problem.isObject.size(); ++i) {

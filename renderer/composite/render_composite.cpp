@@ -11,34 +11,38 @@ class OneWorld : public Integrator {
            DifferentialFilm& film)
       : scene_(scene), withObjects_(withObjects), plate_(plate), film_(film) {}
 
-  Rgb radiance(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
-    const bool objectFirst = camera.hit && scene_.isObject[camera.hit->instance] &&
-                             !isUnseen(scene_.whole.scene, PathState{camera.ray}, *camera.hit);
+  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
+    memory.sampler.startVertex(0);
+    PathState start = camera.path();
+    const auto hit = passUnseen(scene_.whole.scene, scene_.whole.rays, start, camera.hit,
+                                memory.sampler);
+    const bool objectFirst = hit && scene_.isObject[hit->instance];
     DifferentialPixel& pixel = film_.at(camera.x, camera.y);
     if (withObjects_) {
-      const Rgb found = trace(scene_.whole, camera.ray, camera.hit, memory, first);
+      const Rgb found = trace(scene_.whole, start, hit, memory, first);
+      if (const auto defect = defectOf(found, false)) return {found, defect};
       ++pixel.count;
       pixel.covered += objectFirst;
       (objectFirst ? pixel.objects : pixel.difference) += glm::dvec3(found);
-      return objectFirst ? found : plate_.rgb(camera.x, camera.y) + found;
+      if (objectFirst) return found;
+      return {plate_.rgb(camera.x, camera.y) + found, std::nullopt};
     }
     if (objectFirst && !scene_.looksBehind) return Rgb(0);
-    memory.sampler.startVertex(0);
-    const Rgb found =
-        trace(scene_.local, camera.ray, closestHit(scene_.local.rays, camera.ray, memory.sampler),
-              memory, first);
+    start = camera.path();
+    const Rgb found = trace(scene_.local, start,
+                            closestHit(scene_.local.rays, start.ray, memory.sampler), memory, first);
+    if (const auto defect = defectOf(found, false)) return {found, defect};
     (objectFirst ? pixel.behind : pixel.local) += glm::dvec3(found);
     if (objectFirst) return Rgb(0);
     pixel.difference -= glm::dvec3(found);
     return found;
   }
-  bool isSigned() const override { return withObjects_; }  // a plate may be
 
  private:
   template <class Rays>
-  static Rgb trace(const PathScene<Rays>& path, const Ray& ray, const std::optional<Hit>& hit,
-                   PathMemory& memory, FirstHit* first) {
-    return pathRadiance(path, ray, hit, memory.sampler, memory.samples, memory.rays, first);
+  static Rgb trace(const PathScene<Rays>& path, const PathState& start,
+                   const std::optional<Hit>& hit, PathMemory& memory, FirstHit* first) {
+    return pathRadiance(path, start, hit, memory.sampler, memory.samples, memory.rays, first);
   }
 
   const DifferentialScene& scene_;
@@ -47,8 +51,8 @@ class OneWorld : public Integrator {
   DifferentialFilm& film_;
 };
 
-Image combined(Image a, const Image& b, float sign) {
-  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] += sign * b.texels[i];
+Image difference(Image a, const Image& b) {
+  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
   return a;
 }
 
@@ -65,12 +69,11 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   const LocalRays localRays{localAccel, isObject};
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
-  const Beam beam = beamOf(scene, camera, settings);
   constexpr bool kHideProbe = true;  // the plate is the background
   const DifferentialScene worlds{{scene, accel, lighting, emitters.get(), settings.mis,
-                                  settings.maxDepth, kHideProbe, punctual.get(), beam},
+                                  settings.maxDepth, kHideProbe, punctual.get()},
                                  {scene, localRays, lighting, emitters.get(), settings.mis,
-                                  settings.maxDepth, kHideProbe, punctual.get(), beam},
+                                  settings.maxDepth, kHideProbe, punctual.get()},
                                  isObject,
                                  looksBehind};
   prepareBsdfs(scene);
@@ -79,13 +82,17 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   if (passes == Passes::One) {
     RenderResult result = render(DifferentialIntegrator(worlds, plate, film), accel, camera,
                                  settings, progress, stop);
-    Image mean = result.film.mean(), variance = result.film.squaredStandardError();
-    return {std::move(result), std::move(film), std::move(mean), std::move(variance)};
+    Image mean = result.film.mean();
+    PixelErrors errors = result.film.errors();
+    return {std::move(result), std::move(film), std::move(mean), std::move(errors)};
   }
 
   RenderResult result = render(
       OneWorld(worlds, true, plate, film), accel, camera, settings,
       [&](double share) { progress(share / 2); }, stop);
+  Image mean = result.film.mean();
+  PixelErrors errors = result.film.errors();
+  if (result.samples == 0) return {std::move(result), std::move(film), mean, errors};
   RenderSettings again = settings;
   again.seed = hash(settings.seed, 1);
   again.samples = result.samples;  // both the same, also where time or noise ended the first
@@ -94,13 +101,13 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   const RenderResult without = render(
       OneWorld(worlds, false, plate, film), accel, camera, again,
       [&](double share) { progress((1 + share) / 2); }, stop);
+  result.samples = std::min(result.samples, without.samples);
   result.rays.add(without.rays);
   result.interrupted |= without.interrupted;
   result.invalid.add(without.invalid);
-  Image mean = combined(result.film.mean(), without.film.mean(), -1);
-  Image variance =
-      combined(result.film.squaredStandardError(), without.film.squaredStandardError(), 1);
-  return {std::move(result), std::move(film), std::move(mean), std::move(variance)};
+  errors.add(without.film.errors());
+  return {std::move(result), std::move(film), difference(mean, without.film.mean()),
+          std::move(errors)};
 }
 
 }  // namespace chromeball

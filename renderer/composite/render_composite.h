@@ -15,7 +15,7 @@ struct CompositeRender {
   RenderResult result;  // of the one pass, or of the one with objects
   DifferentialFilm film;
   Image mean;  // the composite by the difference formula
-  Image squaredStandardError;
+  PixelErrors errors;  // of the mean
 };
 
 // `accel` holds the whole scene; the plate is of the picture's size. `looksBehind`: L_noobj is

@@ -1,68 +1,66 @@
 // What the render has found so far: per pixel the mean, and how far it may be off.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "film/noise.h"
 #include "image/image.h"
 #include "math/vec.h"
 
 namespace chromeball {
 
-// Sums over samples that share one randomisation (a block), in double: a million samples of 1e10
-// beside 1e-8 neither stall nor overflow. Red, green, blue and luminance.
+// Sums over samples of a pixel, in double: a million samples of 1e10 beside 1e-8 neither stall nor
+// overflow. Squares are of red, green, blue and luminance.
 struct SampleSums {
   uint32_t count = 0;
-  glm::dvec4 sum{0}, sumOfSquares{0};
+  glm::dvec3 sum{0};
+  glm::dvec4 sumOfSquares{0};
 
   void add(const Rgb& radiance) {
-    const glm::dvec4 x(radiance, luminance(radiance));
+    const glm::dvec3 rgb(radiance);
+    const glm::dvec4 x(rgb, luminance(rgb));
     ++count;
-    sum += x;
+    sum += rgb;
     sumOfSquares += x * x;
   }
 };
 
 // Box filter: a pixel is the mean of the samples inside it.
 //
-// The samples of a block are quasi-random, so their scatter overstates the error of their mean; the
-// scatter of independent blocks' means is true but rests on few numbers. So the standard error of a
-// pixel is its samples' scatter, times the ratio of both measures over the 7 x 7 pixels around it.
+// The samples of a pixel belong to two halves, each a quasi-random sequence with a randomisation of
+// its own. However many samples there are, the halves are independent, so their difference tells
+// the error of their mean without bias; the samples' scatter alone would overstate it.
 class Film {
  public:
+  static constexpr int kHalves = 2;
+
   Film(int width, int height);
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Pixels may be added to concurrently, each by one thread.
-  void addBlock(int x, int y, const SampleSums& block);
+  // Concurrently for different pixels.
+  void add(int x, int y, int half, const SampleSums& samples);
 
-  Image mean() const;                    // RGB radiance
-  Image squaredStandardError() const;    // of each pixel's mean, RGB
-  Image sampleCounts() const;            // one channel
+  Image mean() const;          // RGB radiance
+  Image sampleCounts() const;  // one channel
   static size_t bytesPerPixel() { return sizeof(Pixel); }
 
-  // Mean over pixels of s / max(m, 0.01 M): s the standard error of the pixel's luminance, m the
-  // luminance, M the image's mean luminance. NaN where there are fewer than two samples a pixel.
-  double noise() const;
+  std::vector<double> luminances() const;  // of the means
+  PixelErrors errors() const;
+  Noise noise() const { return estimateNoise(luminances(), errors()); }
 
  private:
   struct Pixel {
-    uint32_t count = 0, blocks = 0;
-    glm::dvec4 mean{0};
-    glm::vec4 scatter{0};       // sum over samples of squared deviation from their block's mean
-    glm::vec4 blockScatter{0};  // sum over blocks of count x squared deviation from the mean
+    std::array<uint32_t, kHalves> counts{};
+    std::array<glm::dvec3, kHalves> sums{};
+    glm::dvec4 sumOfSquares{0};
 
-    // As if all samples were independent.
-    glm::dvec4 sampleVariance() const {
-      return glm::dvec4(scatter + blockScatter) / double(count - 1);
-    }
+    uint32_t count() const { return counts[0] + counts[1]; }
+    glm::dvec3 mean() const;
   };
-  const Pixel& pixel(int x, int y) const { return pixels_[size_t(y) * width_ + x]; }
-
-  // Squared standard errors of red, green, blue and luminance, for every pixel.
-  std::vector<glm::dvec4> squaredErrors() const;
 
   int width_, height_;
   std::vector<Pixel> pixels_;

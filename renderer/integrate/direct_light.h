@@ -35,7 +35,6 @@ struct PathScene {
   int maxDepth;                              // 0: emission seen by the camera; 1: direct light; ...
   bool hideProbe = false;                    // from the camera
   const PunctualLights* punctual = nullptr;  // null where there are none
-  Beam beam{};                               // of the camera's rays, where the scene has textures
   float mirrorAlpha = lighting.mirrorAlpha();
 };
 

@@ -1,6 +1,7 @@
 // What a render estimates: light that comes along rays from the camera.
 #pragma once
 
+#include "film/invalid.h"
 #include "integrate/clamp.h"
 #include "integrate/path.h"
 #include "trace/accel.h"
@@ -12,6 +13,18 @@ struct CameraSample {
   int x, y;
   Ray ray;
   std::optional<Hit> hit;
+  Beam beam{};  // around the ray, where the scene has textures to filter
+
+  PathState path() const { return {.ray = ray, .beam = beam}; }
+};
+
+// What a sample adds to its pixel: radiance, or the reason why it is left out.
+struct Sample {
+  Rgb radiance{0};
+  std::optional<Defect> defect;
+
+  Sample(const Rgb& found) : radiance(found), defect(defectOf(found, false)) {}
+  Sample(const Rgb& found, std::optional<Defect> cause) : radiance(found), defect(cause) {}
 };
 
 // What a thread needs of its own.
@@ -26,11 +39,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // Radiance for one sample of a pixel. Concurrently for different pixels. `first` may be null.
-  virtual Rgb radiance(const CameraSample& sample, PathMemory& memory, FirstHit* first) const = 0;
-
-  // Whether negative radiance is an answer and no mistake: a difference may be.
-  virtual bool isSigned() const { return false; }
+  // One sample of a pixel. Concurrently for different pixels. `first` may be null.
+  virtual Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const = 0;
 };
 
 // Path tracing of the whole scene.
@@ -38,9 +48,9 @@ class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const PathScene<Accel>& path) : path_(path) {}
 
-  Rgb radiance(const CameraSample& sample, PathMemory& memory, FirstHit* first) const override {
-    return memory.clamp(pathRadiance(path_, sample.ray, sample.hit, memory.sampler, memory.samples,
-                                     memory.rays, first));
+  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
+    return memory.clamp(pathRadiance(path_, camera.path(), camera.hit, memory.sampler,
+                                     memory.samples, memory.rays, first));
   }
 
  private:

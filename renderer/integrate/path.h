@@ -39,6 +39,7 @@ struct PathState {
   int straight = 0;   // vertices so far where the ray just went on; they are no bounces
   Media media;        // that the ray is in
   float length = 0;   // metres from the camera
+  Beam beam{};        // around the camera's ray, where textures are filtered
 };
 
 // What the path finds where its ray meets nothing.
@@ -149,7 +150,7 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
   const Instance& instance = path.scene.instances[hit->instance];
   // Bounces leave the beam as it is: on rough surfaces it would widen, and what follows blur.
   state.length += hit->distance;
-  const float crossSection = path.beam ? path.beam.crossSection(state.length) : 0;
+  const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
   const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric,
                                     -state.ray.direction, crossSection);
   if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
@@ -188,14 +189,14 @@ Rgb followPath(const PathScene<Rays>& path, PathState state, std::optional<Hit> 
   return radiance;
 }
 
-// Radiance towards the camera along `ray`, which meets `hit` first. `samples` is scratch memory;
-// `first` may be null.
+// Radiance towards the camera along the ray of `start`, which meets `hit` first. `samples` is
+// scratch memory; `first` may be null.
 template <class Rays>
-Rgb pathRadiance(const PathScene<Rays>& path, const Ray& ray, const std::optional<Hit>& hit,
+Rgb pathRadiance(const PathScene<Rays>& path, const PathState& start, const std::optional<Hit>& hit,
                  PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
                  FirstHit* first) {
   ++counts.camera;
-  return followPath(path, PathState{ray}, hit, sampler, samples, counts, first);
+  return followPath(path, start, hit, sampler, samples, counts, first);
 }
 
 }  // namespace chromeball

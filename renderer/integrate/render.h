@@ -14,7 +14,7 @@ namespace chromeball {
 
 struct RenderSettings {
   int width = 800, height = 600;
-  int samples = 256;                 // per pixel; the most where a limit below is set
+  uint32_t samples = 256;            // per pixel, >= 1; the most where a limit below is set
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film.h)
   int maxDepth = 8;
@@ -31,15 +31,16 @@ struct RenderResult {
   RayCounts rays;
   InvalidSamples invalid;
   ClampedSamples clamped;
-  int samples = 0;  // per pixel
+  uint32_t samples = 0;  // that every pixel has; 0 where a render was stopped before its first pass
   bool interrupted = false;
 };
 
 // Told now and then which share of the work is done, in [0, 1]; NaN where that is not known.
 using Progress = std::function<void(double)>;
 
-// Renders until the samples, the time or the noise is reached, or `stop` is set. Depends on the
-// settings alone, not on the number of threads (but for the time limit).
+// Renders until the samples, the time or the noise is reached, or `stop` is set. Passes over the
+// whole picture begin with a few samples and double, so that a picture of the whole is there soon.
+// The result depends on the settings alone, not on the number of threads (but for the time limit).
 RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
                     const LightingStrategy& lighting, const RenderSettings& settings,
                     const Progress& progress, const std::atomic<bool>& stop);
@@ -48,12 +49,5 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
 RenderResult render(const Integrator& integrator, const Accel& accel, const Camera& camera,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop);
-
-// The beam of a render's rays from the camera; none where the scene has no textures to filter.
-Beam beamOf(const Scene& scene, const Camera& camera, const RenderSettings& settings);
-
-// Sizes of the blocks, each a power of two, that make up exactly `samples`: two equal ones as large
-// as will fit (the error is estimated from how they differ), then what is left.
-std::vector<uint32_t> planBlocks(uint32_t samples);
 
 }  // namespace chromeball

@@ -14,13 +14,15 @@ struct IrradianceFit {
   double meanError = 0, maxError = 0;  // percent, of 20480 normals (light_error.h)
 };
 
+inline constexpr int kMostFittedLights = 256;
+
 struct FitOptions {
   int count = 8;
   bool ambient = false;
   // Instead of `count`: the fewest lights, up to maxCount, whose mean error is not above this.
   // Where maxCount lights do not reach it, they are the result.
   std::optional<double> maxErrorPercent;
-  int maxCount = 256;
+  int maxCount = kMostFittedLights;
 };
 
 // The lights that minimise the squared difference in irradiance over all orientations (Madsen et

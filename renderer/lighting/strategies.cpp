@@ -73,10 +73,10 @@ const std::vector<Entry>& strategies() {
       constellation("cube-grid", {1, 26, 10}),
       constellation("penrose", {2, 4096, 300}),
       {"irradiance-fit",
-       {1, 256, 16},
+       {1, kMostFittedLights, 16},
        [](const Probe& probe, Mis, int count) { return fittedLights(probe, count, false); }},
       {"irradiance-fit-ambient",
-       {1, 256, 16},
+       {1, kMostFittedLights, 16},
        [](const Probe& probe, Mis, int count) { return fittedLights(probe, count, true); }},
   };
   return kStrategies;

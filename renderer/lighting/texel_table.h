@@ -12,7 +12,6 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-inline double luminance(const dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 // Sums over texels, in double, so that a sun of 1e12 leaves the texels around it their share.
 struct TexelSum {

@@ -113,11 +113,11 @@ void readRender(const Section& render, SceneFile& scene) {
     if (!e.isArrayOf(2)) e.mustBe("[width, height]");
     scene.size = {int(e.element(0).integer(1, 65536)), int(e.element(1).integer(1, 65536))};
   }
-  if (const Entry e = render["samples"]) scene.samples = int(e.integer(1, INT_MAX));
-  if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, INT_MAX));
+  if (const Entry e = render["samples"]) scene.samples = uint32_t(e.integer(1, kMostSamples));
+  if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMostDepth));
   if (const Entry e = render["seed"]) scene.seed = uint64_t(e.integer(0, INT64_MAX));
   if (const Entry e = render["time"]) scene.timeLimit = e.positive();
-  if (const Entry e = render["noise"]) scene.noiseLimit = e.positive();
+  if (const Entry e = render["noise"]) scene.noiseLimit = e.positive() / 100;
 }
 
 }  // namespace

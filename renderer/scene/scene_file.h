@@ -39,6 +39,10 @@ struct CompositeEntry {
   std::optional<NamedSetting> mode;      // "difference" or "ratio"
 };
 
+// Largest values of settings, the same on the command line.
+inline constexpr uint32_t kMostSamples = 2'000'000'000;
+inline constexpr int kMostDepth = 1'000'000;
+
 // What the file says; what it leaves out is nullopt or empty, for the command line or the default
 // to fill. File names are resolved against the scene file's folder.
 struct SceneFile {
@@ -65,11 +69,11 @@ struct SceneFile {
     int width, height;  // 1..65536
   };
   std::optional<Size> size;
-  std::optional<int> samples;   // >= 1, per pixel
-  std::optional<int> maxDepth;  // >= 0
+  std::optional<uint32_t> samples;  // 1..kMostSamples, per pixel
+  std::optional<int> maxDepth;      // 0..kMostDepth
   std::optional<uint64_t> seed;
   std::optional<double> timeLimit;   // seconds, > 0
-  std::optional<double> noiseLimit;  // percent, > 0
+  std::optional<double> noiseLimit;  // fraction, > 0 (the file states percent)
 
   std::optional<CompositeEntry> composite;
   std::optional<Surroundings> surroundings;

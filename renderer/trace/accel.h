@@ -28,6 +28,8 @@ class Accel {
   Accel(const Accel&) = delete;
   Accel& operator=(const Accel&) = delete;
 
+  const Scene& scene() const { return described_; }
+
   // The closest hit; none for a ray with NaN or coordinates beyond 1e18. `key` decides where a
   // blended surface lets the ray pass: it does so with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit) const;
