@@ -1,8 +1,7 @@
 #include "image/decode.h"
 
-#include <OpenImageIO/filesystem.h>
-
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "image/limits.h"
@@ -39,18 +38,17 @@ const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
   throwInput("{}: is neither PNG, JPEG nor WebP", name);
 }
 
-void checkSize(const ImageSpec& spec, const char* reader, size_t fileBytes,
+// Of a JPEG, bareJpeg() has looked whether the bytes can hold as many texels.
+void checkSize(int width, int height, int channels, const char* reader, size_t fileBytes,
                const std::string& name) {
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxImageSide ||
-      spec.height > kMaxImageSide || spec.nchannels < 1)
-    throwInput("{}: {} x {} texels of {} channels; at most {} x {} can be read", name, spec.width,
-               spec.height, spec.nchannels, kMaxImageSide, kMaxImageSide);
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide || channels < 1)
+    throwInput("{}: {} x {} texels of {} channels; at most {} x {} can be read", name, width,
+               height, channels, kMaxImageSide, kMaxImageSide);
   // A PNG's texel has at least a bit.
-  const uint64_t perByte =
-      reader == std::string_view("jpeg") ? kMostTexelsPerJpegByte : 8 * kMostDeflated;
-  if (uint64_t(spec.width) * uint64_t(spec.height) > fileBytes * perByte)
-    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
-               spec.width, spec.height, fileBytes);
+  if (reader == std::string_view("png") &&
+      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMostDeflated)
+    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name, width,
+               height, fileBytes);
 }
 
 // Reads the image as T, spread over RGBA. A few rows at a time, so that each page of the result is
@@ -88,28 +86,29 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name)
   if (startsWith(file, "RIFF") && startsWith(file, "WEBP", 8)) return decodeWebp(file, name);
   const char* reader = readerOf(file, name);
   const QuietStandardError quiet;
-  OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());
   ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  config.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);
-  const auto input = [&] {
-    try {
-      return openImage(reader, name, config);
-    } catch (const std::runtime_error& error) {
-      throwInput("{}: damaged image: {}", name, firstLine(error.what()));
-    }
-  }();
-  checkSize(input->spec(), reader, file.size(), name);
+  const auto check = [&](int width, int height, int channels) {
+    checkSize(width, height, channels, reader, file.size(), name);
+  };
+  std::optional<MemoryInput> memory;
+  try {
+    memory.emplace(reader, file, name, check, config);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throwInput("{}: damaged image: {}", name, firstLine(error.what()));
+  }
+  ImageInput& input = memory->input();
 
   DecodedImage image;
-  image.width = input->spec().width;
-  image.height = input->spec().height;
-  if (input->spec().format == TypeDesc::UINT8)
+  image.width = input.spec().width;
+  image.height = input.spec().height;
+  if (input.spec().format == TypeDesc::UINT8)
     image.texels8 =
-        readTexels<uint8_t, std::array<uint8_t, 4>>(*input, TypeDesc::UNKNOWN, 255, name);
+        readTexels<uint8_t, std::array<uint8_t, 4>>(input, TypeDesc::UNKNOWN, 255, name);
   else
-    image.texelsFloat = readTexels<float, vec4>(*input, TypeDesc::FLOAT, 1.0f, name);
+    image.texelsFloat = readTexels<float, vec4>(input, TypeDesc::FLOAT, 1.0f, name);
   return image;
 }
 

@@ -5,7 +5,21 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "image/bare.h"
+
 namespace chromeball {
+namespace {
+
+std::vector<uint8_t> bareFile(std::string_view reader, std::span<const uint8_t> file,
+                              const std::string& name, const CheckSize& check) {
+  if (reader == "png") return barePng(file);
+  if (reader == "tiff") return bareTiff(file);
+  BareJpeg jpeg = bareJpeg(file, name);
+  check(jpeg.width, jpeg.height, jpeg.components);
+  return std::move(jpeg.file);
+}
+
+}  // namespace
 
 const char* readerFor(std::span<const uint8_t> firstBytes) {
   constexpr std::pair<std::string_view, const char*> kReaders[] = {
@@ -35,6 +49,16 @@ std::unique_ptr<OIIO::ImageInput> openImage(const char* reader, const std::strin
   OIIO::ImageSpec spec;
   if (!input->open(path, spec, config)) throw std::runtime_error(input->geterror());
   return input;
+}
+
+MemoryInput::MemoryInput(const char* reader, std::span<const uint8_t> file, const std::string& name,
+                         const CheckSize& check, OIIO::ImageSpec config)
+    : file_(bareFile(reader, file, name, check)), memory_(file_.data(), file_.size()) {
+  OIIO::Filesystem::IOProxy* proxy = &memory_;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  input_ = openImage(reader, name, config);
+  const OIIO::ImageSpec& spec = input_->spec();
+  check(spec.width, spec.height, spec.nchannels);
 }
 
 }  // namespace chromeball

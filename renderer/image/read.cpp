@@ -25,11 +25,11 @@ namespace fs = std::filesystem;
   const size_t repeated = reason.rfind(path.string());
   if (repeated != std::string::npos) {
     const std::string after = reason.substr(repeated + path.string().size());
-    const bool saysMore = after.find_first_not_of(kPunctuation) != std::string::npos;
-    reason = saysMore ? after : reason.substr(0, repeated);
+    const size_t more = after.find_first_not_of(kPunctuation);
+    reason = more != std::string::npos ? after.substr(more) : reason.substr(0, repeated);
+    if (more == std::string::npos) reason.erase(reason.find_last_not_of(kPunctuation) + 1);
   }
-  reason.erase(0, reason.find_first_not_of(kPunctuation));
-  reason.erase(reason.find_last_not_of(kPunctuation) + 1);
+  reason.erase(reason.find_last_not_of(".: \n") + 1);
   for (char& c : reason)
     if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
   throwInput("{}: cannot be read: {}", path.string(),
@@ -58,37 +58,64 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
 }
 
 // Throws where the file is too short for what its header says. Of OpenEXR's and TIFF's encodings
-// only a guess is known, which small images need not keep.
+// only a guess is known, which small images need not keep. JPEG's frames are judged in bareJpeg().
 void checkPlausible(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
   constexpr uint64_t kAlwaysAllowed = 64 << 20, kMostPacked = 100'000;
   const uint64_t decoded = spec.image_bytes(true), bytes = fs::file_size(path);
   const uint64_t most =
       std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMostDeflated : kMostPacked));
-  const bool isShortJpeg = reader == "jpeg" && spec.image_pixels() > bytes * kMostTexelsPerJpegByte;
-  if (decoded > most || isShortJpeg)
+  if (decoded > most)
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
-ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
-  if (reader == std::string_view("openexr")) checkExrHeaders(path);
-  const auto input = openImage(reader, path.string());
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
-  checkImageSize(path, spec.width, spec.height, spec.nchannels);
-  checkPlausible(path, reader, spec);
+// Colour becomes what is seen before black, which for linear texels is a product.
+void associate(Image& image, int alphaChannel) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      float* texel = image.at(x, y);
+      for (int c = 0; c < image.channels; ++c)
+        if (c != alphaChannel) texel[c] *= texel[alphaChannel];
+    }
+}
 
+ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexels integers) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
   ImageFile file;
   file.channels = spec.channelnames;
   file.metadata = metadataOf(spec);
+  file.integers = !spec.format.is_floating_point();
   file.image = Image(spec.width, spec.height, spec.nchannels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
-    fail(path, input->geterror());
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
+    fail(path, input.geterror());
 
-  if (!spec.format.is_floating_point() && integers == IntegerTexels::Srgb)
+  if (file.integers && integers == IntegerTexels::Srgb)
     for (size_t i = 0; i < file.image.texels.size(); ++i)
       if (int(i % spec.nchannels) != spec.alpha_channel)
         file.image.texels[i] = srgbToLinear(file.image.texels[i]);
+  if (spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha"))
+    associate(file.image, spec.alpha_channel);
   return file;
+}
+
+ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
+  const auto checkSize = [&](int width, int height, int channels) {
+    checkImageSize(path, width, height, channels);
+  };
+  if (reader != std::string_view("openexr")) {
+    // Associating alpha is left to us: the library does it to encoded texels.
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    MemoryInput memory(reader, readFile(path), path.string(), checkSize, config);
+    checkPlausible(path, reader, memory.input().spec());
+    return readTexels(path, memory.input(), integers);
+  }
+  checkExrHeaders(path);
+  const auto input = openImage(reader, path.string());
+  const OIIO::ImageSpec& spec = input->spec();
+  checkSize(spec.width, spec.height, spec.nchannels);
+  checkPlausible(path, reader, spec);
+  return readTexels(path, *input, integers);
 }
 
 Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
@@ -141,6 +168,11 @@ std::optional<Image> findColor(const ImageFile& file) {
   return extract(file, {0, 0, 0});
 }
 
+std::optional<Image> findColorAndAlpha(const ImageFile& file) {
+  if (auto color = findChannels(file, "", {"R", "G", "B", "A"})) return color;
+  return findColor(file);
+}
+
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
   const std::string prefix = name + ".";
   if (auto image = findChannels(file, prefix, {"R", "G", "B"})) return image;
@@ -161,12 +193,15 @@ std::vector<std::string> layerNames(const ImageFile& file) {
   return names;
 }
 
-Image readImage(const fs::path& path, IntegerTexels integers) {
-  ImageFile file = readImageFile(path, integers);
+Image colorOf(ImageFile&& file, const fs::path& path) {
   if (file.channels == std::vector<std::string>{"R", "G", "B"}) return std::move(file.image);
   std::optional<Image> color = findColor(file);
   if (!color) throwInput("{}: has no channels R, G and B, and is not grey", path.string());
   return *std::move(color);
+}
+
+Image readImage(const fs::path& path, IntegerTexels integers) {
+  return colorOf(readImageFile(path, integers), path);
 }
 
 }  // namespace chromeball

@@ -18,11 +18,13 @@ using Metadata = std::map<std::string, std::variant<std::string, int, float>>;
 // What the texels of integer files (8 or 16 bits) mean. Float files are linear whatever is asked.
 enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear; alpha never is
 
-// Everything in a file: all channels, interleaved in `image`, in the file's order.
+// Everything in a file: all channels, interleaved in `image`, in the file's order. Colour is
+// associated with alpha (premultiplied, in linear light), whichever way the file states it.
 struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
+  bool integers = false;  // texels of 8 or 16 bits: nothing is brighter than 1
 };
 
 ImageFile readImageFile(const std::filesystem::path& path,
@@ -33,6 +35,9 @@ ImageFile readImageFile(const std::filesystem::path& path,
 // these.
 std::optional<Image> findColor(const ImageFile& file);
 
+// The same, with alpha as a fourth channel where the file has R, G, B and A.
+std::optional<Image> findColorAndAlpha(const ImageFile& file);
+
 // The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME.Z, NAME.Y
 // or NAME (one channel). nullopt where the file has no such layer.
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
@@ -40,7 +45,8 @@ std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
 // The names findLayer knows.
 std::vector<std::string> layerNames(const ImageFile& file);
 
-// The colour of a file.
+// The colour of the file at `path`; throws where findColor() finds none.
+Image colorOf(ImageFile&& file, const std::filesystem::path& path);
 Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
 
 }  // namespace chromeball
