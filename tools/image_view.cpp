@@ -30,6 +30,12 @@ void normaliseDepth(Image& depth) {
 }
 
 Image viewOf(const std::string& path, const std::string& layer) {
+Image colorOf(const std::string& path) {
+  ImageFile file = readImageFile(path);
+  if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
+  return colorOf(std::move(file), path);
+}
+
   const ImageFile file = readImageFile(path);
   std::optional<Image> image = findLayer(file, layer);
   if (!image) {
@@ -50,7 +56,7 @@ void run(const Arguments& arguments) {
   if (!std::isfinite(transform.exposure)) throwInput("--exposure: should be a number of stops");
   writeImage(
       arguments.out,
-      arguments.layer.empty() ? readImage(arguments.in) : viewOf(arguments.in, arguments.layer),
+      arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer),
       transform);
 }
 

@@ -73,6 +73,12 @@ void writeExr(const fs::path& path, const OutputImage& output) {
   writeThroughLibrary(path, "openexr", spec, all.texels.data());
 }
 
+// PNG's colour is not multiplied by alpha; where nothing is covered it is black. Before the tone
+// curve, which is not linear.
+Rgb unassociated(const Rgb& color, float alpha) {
+  return alpha > 0 ? color / alpha : Rgb(0);
+}
+
 void writePng(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
   const bool hasAlpha = color.channels == 4;
@@ -80,9 +86,10 @@ void writePng(const fs::path& path, const Image& color, const DisplayTransform& 
   bytes.reserve(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
-      const Rgb shown = display(transform, color.rgb(x, y));
+      const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
+      const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
       for (int c = 0; c < 3; ++c) bytes.push_back(byte(linearToSrgb(shown[c])));
-      if (hasAlpha) bytes.push_back(byte(std::clamp(color.at(x, y)[3], 0.0f, 1.0f)));
+      if (hasAlpha) bytes.push_back(byte(alpha));
     }
   writeFile(path, encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes));
 }

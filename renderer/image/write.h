@@ -30,7 +30,8 @@ struct OutputImage {
 void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
-// colour and its alpha through `transform`, 8 bits, sRGB. Throws as checkWritable does, and
+// colour through `transform`, 8 bits, sRGB, and its alpha, by which the colour, associated in the
+// layer, is divided first. Throws as checkWritable does, and
 // RunError where writing fails.
 void writeImage(const std::filesystem::path& path, const OutputImage& output,
                 const DisplayTransform& transform = {});
