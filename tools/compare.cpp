@@ -135,6 +135,24 @@ void checkReference(const StudyRun& run, const Study& study) {
                study.referenceStrategy);
 }
 
+// The files of a report; its renders are read again, never overwritten.
+struct ReportFiles {
+  explicit ReportFiles(const fs::path& folder)
+      : csv((folder / "results.csv").string()),
+        json((folder / "results.json").string()),
+        samples((folder / "samples.svg").string()),
+        seconds((folder / "seconds.svg").string()),
+        page((folder / "index.html").string()) {}
+  std::string csv, json, samples, seconds, page;
+};
+
+void checkOutputs(const ReportFiles& files, const Arguments& a, const LoadedScene& loaded) {
+  std::vector<std::string> inputs = loaded.files;
+  inputs.push_back(a.scene.scene);
+  inputs.push_back(a.reference);
+  checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
+}
+
 void compare(const Arguments& a) {
   RenderJob job = planJob(a.scene);
   Study study = planStudy(a);
@@ -142,6 +160,8 @@ void compare(const Arguments& a) {
   if (a.scene.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, a.scene.threads);
   const LoadedScene loaded = loadScene(job);
+  const ReportFiles files(a.folder);
+  checkOutputs(files, a, loaded);
   job.settings.aovs.clear();
   job.settings.noiseLimit.reset();
   study.seed = job.settings.seed;
@@ -164,13 +184,12 @@ void compare(const Arguments& a) {
   for (const std::string& name : study.strategies)
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
-    const fs::path folder = study.folder;
     const Machine machine = thisMachine();
-    writeText((folder / "results.csv").string(), resultsCsv(r));
-    writeText((folder / "results.json").string(), resultsJson(study, r, machine).dump(2) + "\n");
-    writeText((folder / "samples.svg").string(), samplesPlot(r));
-    writeText((folder / "seconds.svg").string(), secondsPlot(r));
-    writeText((folder / "index.html").string(), reportHtml(study, store, r, about, machine));
+    writeText(files.csv, resultsCsv(r));
+    writeText(files.json, resultsJson(study, r, machine).dump(2) + "\n");
+    writeText(files.samples, samplesPlot(r));
+    writeText(files.seconds, secondsPlot(r));
+    writeText(files.page, reportHtml(study, store, r, about, machine));
   };
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });

@@ -119,6 +119,7 @@ void run(const Arguments& arguments) {
     throwInput("--map: `{}` is not known; {}", arguments.map,
                didYouMean(arguments.map, {kMaps.begin(), kMaps.end()}));
   if (!arguments.output.empty()) checkOutputFile(arguments.output, {".png"});
+  checkDistinct({arguments.output}, {arguments.a, arguments.b});
   const Side a(arguments.a), b(arguments.b);
   if (a.color.width != b.color.width || a.color.height != b.color.height)
     throwInput("{}: is {} x {}, but {} is {} x {}; only images of one size can be compared",

@@ -8,6 +8,7 @@
 #include "image_commands.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "output_file.h"
 
 namespace chromeball {
 namespace {
@@ -29,13 +30,13 @@ void normaliseDepth(Image& depth) {
   for (float& d : depth.texels) d = d < kBackground ? 1 - 0.95f * (d - nearest) / range : 0;
 }
 
-Image viewOf(const std::string& path, const std::string& layer) {
 Image colorOf(const std::string& path) {
   ImageFile file = readImageFile(path);
   if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
   return colorOf(std::move(file), path);
 }
 
+Image viewOf(const std::string& path, const std::string& layer) {
   const ImageFile file = readImageFile(path);
   std::optional<Image> image = findLayer(file, layer);
   if (!image) {
@@ -52,6 +53,7 @@ Image colorOf(const std::string& path) {
 
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   if (!std::isfinite(transform.exposure)) throwInput("--exposure: should be a number of stops");
   writeImage(

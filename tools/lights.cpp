@@ -34,6 +34,7 @@ void run(Arguments arguments) {
   checkLightOptions(options);
   checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
+  checkDistinct({arguments.output, arguments.preview}, {arguments.probe});
 
   const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.probe))

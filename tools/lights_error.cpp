@@ -78,6 +78,7 @@ void run(const Arguments& arguments) {
   for (const std::string& method : arguments.methods) checkLightMethod(method, "--methods");
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
+  checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
   const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
   const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.probe))

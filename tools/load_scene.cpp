@@ -118,7 +118,8 @@ void chooseSize(RenderJob& job, const Scene& scene) {
 }
 
 // Null where the surroundings are no model.
-std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin) {
+std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
+                                     std::vector<std::string>& files) {
   const auto& surroundings = job.file.surroundings;
   if (!surroundings || surroundings->shape != Surroundings::Shape::Model) return nullptr;
   GltfChoice choice = job.file.models.front().choice;
@@ -126,10 +127,11 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   choice.variant.reset();
   choice.environment = false;
   choice.origin = origin;
-  return std::make_unique<const Room>(
-      loadGltf(
-          surroundings->model, {}, [](const std::string&) {}, choice),
-      surroundings->capture, surroundings->model);
+  Scene model = loadGltf(
+      surroundings->model, {}, [](const std::string&) {}, choice);
+  files.insert(files.end(), model.files.begin(), model.files.end());
+  return std::make_unique<const Room>(std::move(model), surroundings->capture,
+                                      surroundings->model);
 }
 
 void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
@@ -154,14 +156,17 @@ LoadedScene loadScene(RenderJob& job) {
   }
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));
-  std::unique_ptr<const Room> room = loadRoom(job, origin);
+  std::vector<std::string> files = scene.files;
+  if (job.file.probe) files.push_back(*job.file.probe);
+  if (job.file.composite) files.push_back(job.file.composite->plate);
+  std::unique_ptr<const Room> room = loadRoom(job, origin, files);
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
   return {std::move(scene),      camera,          std::move(loaded), std::move(probe),
-          job.file.surroundings, std::move(room), std::move(notes)};
+          job.file.surroundings, std::move(room), std::move(notes),  std::move(files)};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,

@@ -17,6 +17,7 @@ struct LoadedScene {
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // where they are a model
   std::vector<std::string> modelNotes;       // what the models' files hold that is not rendered
+  std::vector<std::string> files;            // all that were read: none may be written
 };
 
 // Reads models and probe, chooses the camera, and the size where the job left it to the camera.

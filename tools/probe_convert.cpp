@@ -4,6 +4,7 @@
 #include "arguments.h"
 #include "image/write.h"
 #include "math/error.h"
+#include "output_file.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe_commands.h"
@@ -33,6 +34,7 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
 
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
   if (!std::isfinite(arguments.rotation)) throwInput("--rotation: should be a number of degrees");
   const LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
   for (const std::string& warning : warnings(probe, arguments.in))

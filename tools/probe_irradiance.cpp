@@ -3,6 +3,7 @@
 #include "image/write.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "output_file.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe_commands.h"
@@ -16,6 +17,7 @@ struct Arguments {
 
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
   const bool exact = arguments.method == "exact";
   if (!exact && arguments.method != "sh")
     throwInput("--method: unknown method `{}`; {}", arguments.method,

@@ -185,6 +185,7 @@ void render(const RenderOptions& options) {
   const Accel accel(scene);
   seconds.build = watch.lap();
   const auto lighting = makeLighting(job.strategy, job.settings.mis, loaded);
+  prepareOutputs(job, options, loaded.files);
   seconds.prepare = watch.lap();
   sayNotes(job, loaded, options.quiet);
   if (composite && !options.quiet) sayPlateNotes(*job.file.composite);

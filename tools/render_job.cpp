@@ -152,8 +152,19 @@ void planOutputs(RenderJob& job, const RenderOptions& options) {
   job.outputs = options.outputs.empty() ? job.file.outputs : options.outputs;
   if (job.outputs.empty())
     throwInput("{}: nowhere to write the picture; give --output FILE", options.scene);
-  for (const std::string& output : job.outputs) checkWritable(output);
+  for (const std::string& output : job.outputs)
+    options.outputs.empty() ? checkSceneOutput(output) : checkWritable(output);
   if (!options.stats.empty()) checkOutputFile(options.stats, {".json"});
+}
+
+void prepareOutputs(const RenderJob& job, const RenderOptions& options,
+                    std::vector<std::string> inputs) {
+  inputs.push_back(options.scene);
+  std::vector<std::string> outputs = job.outputs;
+  outputs.push_back(options.stats);
+  checkDistinct(outputs, inputs);
+  if (options.outputs.empty())
+    for (const std::string& output : job.outputs) makeFolder(output);
 }
 
 void addSceneOptions(CLI::App& command, RenderOptions& o) {

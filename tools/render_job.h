@@ -46,6 +46,12 @@ RenderJob planJob(const RenderOptions& options);
 // Where the pictures go. Throws InputError where there is no such place.
 void planOutputs(RenderJob& job, const RenderOptions& options);
 
+// To be called when all files are read (`inputs`, the scene itself aside) and nothing else can be
+// wrong: throws InputError where one of them would be overwritten, and makes the folders that the
+// scene file names for its pictures.
+void prepareOutputs(const RenderJob& job, const RenderOptions& options,
+                    std::vector<std::string> inputs);
+
 // The options of every command that renders a scene.
 void addSceneOptions(CLI::App& command, RenderOptions& options);
 

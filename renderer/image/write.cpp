@@ -105,11 +105,15 @@ Image withColor(const Image& image) {
 
 }  // namespace
 
-void checkWritable(const fs::path& path) {
+void checkImageName(const fs::path& path) {
   constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
   if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
     throwInput("{}: cannot write this kind of image; end the name in .exr, .hdr, .pfm or .png",
                path.string());
+}
+
+void checkWritable(const fs::path& path) {
+  checkImageName(path);
   checkReplaceable(path);
 }
 

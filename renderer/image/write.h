@@ -25,8 +25,10 @@ struct OutputImage {
   Metadata metadata;
 };
 
-// Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png; and as checkReplaceable
-// (image/file.h) does. Ask this before rendering.
+// Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.
+void checkImageName(const std::filesystem::path& path);
+
+// The same; and throws as checkReplaceable (image/file.h) does. Ask this before rendering.
 void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the

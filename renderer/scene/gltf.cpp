@@ -87,6 +87,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   if (choice.environment) scene.environment = readEnvironment(file);
   scene.nodeNames = tree.names;
   scene.nodeParents = tree.parents;
+  scene.files = file.files();
   return scene;
 }
 

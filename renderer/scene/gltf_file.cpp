@@ -116,7 +116,7 @@ std::string oneLine(std::string text) {
 }
 
 GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
-    : path_(path), warn_(std::move(warn)), external_(external) {
+    : path_(path), files_{path}, warn_(std::move(warn)), external_(external) {
   try {
     file_ = readWholeFile(path);
     const GltfChunks chunks = splitContainer(file_);
@@ -128,6 +128,7 @@ GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
       const auto view = image.find("bufferView");
       const bool inView = view != image.end() && view->is_number_integer();
       images.push_back({inView ? view->get<int>() : -1, stringMember(image, "uri")});
+      note(images.back().uri);
     }
     readModel(root);
   } catch (const InputError&) {
@@ -156,6 +157,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
     const std::string uri = stringMember(buffers[i], "uri");
     std::span<const uint8_t> bytes = i == 0 ? binaryChunk : std::span<const uint8_t>();
     if (!uri.empty()) {
+      note(uri);
       storage_.push_back(resolve(uri, where + ".uri"));
       bytes = storage_.back();
     }
@@ -226,6 +228,11 @@ std::string GltfFile::describeImage(int index) const {
 
 Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const {
   if (uri.starts_with("data:")) {
+void GltfFile::note(const std::string& uri) {
+  if (uri.empty() || uri.starts_with("data:")) return;
+  files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
+}
+
     Bytes bytes;
     if (!decodeDataUri(uri, bytes)) fail("{}: is not a well-formed data URI", where);
     return bytes;

@@ -35,6 +35,9 @@ class GltfFile {
   tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
 
+  // The file itself and those that its buffers and images name.
+  const std::vector<std::string>& files() const { return files_; }
+
   // A part of a buffer. `where` names the user of it in the message.
   std::span<const uint8_t> bytes(int buffer, size_t offset, size_t length,
                                  const std::string& where) const;
@@ -74,9 +77,11 @@ class GltfFile {
   void checkExtensions(const nlohmann::json& root);
   void readBuffers(const nlohmann::json& buffers, std::span<const uint8_t> binaryChunk);
   void readModel(nlohmann::json& root);
+  void note(const std::string& uri);  // among files()
   Bytes resolve(const std::string& uri, const std::string& where) const;
 
   std::string path_;
+  std::vector<std::string> files_;
   Warn warn_;
   ExternalFiles external_;
   std::set<std::string> said_;

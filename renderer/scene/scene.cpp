@@ -84,6 +84,7 @@ void append(Scene& scene, Scene&& other) {
     if (parent >= 0) parent += nodes;
   moveToEnd(scene.nodeParents, other.nodeParents);
   moveToEnd(scene.nodeNames, other.nodeNames);
+  moveToEnd(scene.files, other.files);
 }
 
 }  // namespace chromeball

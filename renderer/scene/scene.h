@@ -57,6 +57,7 @@ struct Scene {
   std::optional<Image> environment;  // the model's own light probe: lat-long, fit to render with
   std::vector<std::string> nodeNames;
   std::vector<int> nodeParents;  // by node, -1 for none; or empty, where no node has one
+  std::vector<std::string> files;  // that it comes from: models, their buffers and images
 
   size_t triangleCount() const;  // instanced triangles count once per instance
   size_t byteCount() const;      // of geometry and texels, for the statistics

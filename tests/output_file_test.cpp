@@ -1,0 +1,146 @@
+// No command overwrites what it reads, or one of its results by another.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+// A folder with everything that a composite is made of: scene file, plate, probe, model with its
+// buffer and texture, the room around it.
+class SlowOutputFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    room_.add("nodes", {{"mesh", room_.mesh({{"attributes", {{"POSITION", room_.vec3s(kBox)}}}})}});
+    room_.save();
+    model_.write("wood.png", kPng);
+    model_.add("images", {{"uri", "wood.png"}});
+    model_.add("textures", {{"source", 0}});
+    model_.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    addTriangle(model_, {{"material", 0}}, {{"name", "ground"}});
+    addTriangle(model_, {{"material", 0}}, {{"name", "thing"}});
+    model_.save();
+    writeImage(in("probe.exr"), constantProbe({8, 4}, Rgb(1)));
+    writeImage(in("plate.exr"), constantProbe({8, 4}, Rgb(1)));
+    fs::copy(room_.folder(), in("room"));
+    std::ofstream(in("scene.toml")) << "model = \"model.gltf\"\n[probe]\nfile = \"probe.exr\"\n"
+                                       "[composite]\nplate = \"plate.exr\"\n"
+                                       "local_scene = [\"ground\"]\n[surroundings]\n"
+                                       "shape = \"model\"\nfile = \"room/model.gltf\"\n"
+                                       "capture = [0, 0, 0]\n";
+  }
+
+  std::string in(const std::string& name) const { return (model_.folder() / name).string(); }
+
+  // Refused with `reason`, before anything in the folder changed.
+  void expectKept(const Words& words, const std::string& reason) const {
+    const auto contents = [&] {
+      std::vector<std::string> all;
+      for (const auto& entry : fs::recursive_directory_iterator(model_.folder()))
+        if (entry.is_regular_file())
+          all.push_back(entry.path().string() + fileContents(entry.path().string()));
+      std::sort(all.begin(), all.end());
+      return all;
+    };
+    const auto before = contents();
+    expectRefused(words, reason);
+    EXPECT_EQ(contents(), before) << reason;
+  }
+
+  static constexpr const char* kInput = "would overwrite the input";
+  inline static const std::vector<float> kBox = {-9, -9, -9, 9, -9, -9, 0, 9, -9,
+                                                 -9, -9, 9,  9, -9, 9,  0, 9, 9};
+  GltfWriter model_, room_;
+};
+
+TEST_F(SlowOutputFiles, RenderKeepsAllThatItReads) {
+  const auto render = [&](const std::string& output, const Words& more = {}) {
+    Words words{"render", in("scene.toml"), "--samples", "1", "-o", output};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  for (const char* name : {"probe.exr", "plate.exr", "wood.png"})
+    expectKept(render(in(name)), kInput);
+  for (const char* name : {"scene.toml", "model.gltf", "data.bin", "room/model.gltf",
+                           "room/data.bin"}) {  // by a link whose name is that of an image
+    fs::create_symlink(in(name), in("link.exr"));
+    expectKept(render(in("link.exr")), kInput);
+    fs::remove(in("link.exr"));
+  }
+  fs::create_hard_link(in("probe.exr"), in("same.exr"));
+  expectKept(render(in("same.exr")), kInput);
+  expectKept(render((model_.folder() / ".." / model_.folder().filename() / "probe.exr").string()),
+             kInput);
+  fs::create_symlink(in("model.gltf"), in("link.json"));
+  expectKept(render(in("a.exr"), {"--stats", in("link.json")}), kInput);
+  // Results against each other, though none is there yet.
+  constexpr const char* kOther = "would overwrite the other output";
+  expectKept(render(in("a.exr"), {"-o", in("a.exr")}), kOther);
+  fs::create_directory_symlink(in("room"), in("again"));
+  expectKept(render(in("room/a.exr"), {"-o", in("again/a.exr")}), kOther);
+  std::ofstream(in("a.json")) << "old";
+  fs::create_symlink(in("a.json"), in("b.exr"));
+  expectKept(render(in("b.exr"), {"--stats", in("a.json")}), kOther);
+  // And what is neither is written.
+  const CommandResult result = runCommand(render(in("fresh.exr"), {"--quiet"}));
+  EXPECT_EQ(result.status, 0) << result.error;
+}
+
+TEST_F(SlowOutputFiles, OtherCommandsKeepWhatTheyRead) {
+  const std::string probe = in("probe.exr"), plate = in("plate.exr");
+  expectKept({"probe", "convert", probe, probe, "--to", "angular"}, kInput);
+  expectKept({"probe", "irradiance", probe, probe}, kInput);
+  fs::create_symlink(probe, in("link.png"));
+  expectKept({"image", "view", probe, in("link.png")}, kInput);
+  expectKept({"image", "error", plate, probe, "-o", in("link.png")}, kInput);
+  expectKept({"image", "error", probe, plate, "-o", in("link.png")}, kInput);
+  for (const char* name : {"a.json", "a.csv", "a.svg"}) fs::create_symlink(probe, in(name));
+  const Words lights = {"lights", probe, "--method", "median-cut", "--count", "4"};
+  const auto with = [](Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expectKept(with(lights, {"-o", in("a.json")}), kInput);
+  expectKept(with(lights, {"-o", in("b.json"), "--preview", probe}), kInput);
+  const Words errors = {"lights-error", probe, "--methods", "median-cut", "--counts", "2"};
+  expectKept(with(errors, {"--csv", in("a.csv")}), kInput);
+  expectKept(with(errors, {"--plot", in("a.svg")}), kInput);
+  std::ofstream(in("new.svg")) << "old";
+  fs::create_hard_link(in("new.svg"), in("new.csv"));
+  expectKept(with(errors, {"--csv", in("new.csv"), "--plot", in("new.svg")}), "the other output");
+  fs::create_directory(in("report"));
+  fs::create_symlink(probe, in("report/index.html"));
+  expectKept({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8", "--samples", "1", "-o",
+              in("report")},
+             kInput);
+}
+
+// A folder for results that a scene file names is the scene file's to make; one that the user names
+// must be there.
+TEST_F(SlowOutputFiles, TheFolderThatASceneFileNamesIsMade) {
+  const auto scene = [&](const std::string& output) {
+    std::ofstream(in("plain.toml")) << "model = \"model.gltf\"\n[probe]\nfile = \"probe.exr\"\n"
+                                       "[render]\nsize = [8, 8]\nsamples = 1\n[output]\nfile = \""
+                                    << output << "\"\n";
+    return in("plain.toml");
+  };
+  const CommandResult made = runCommand({"render", scene("out/a.exr"), "--quiet"});
+  EXPECT_EQ(made.status, 0) << made.error;
+  EXPECT_TRUE(fs::exists(in("out/a.exr")));
+  EXPECT_EQ(runCommand({"render", scene("out/a.exr"), "--quiet"}).status, 0);
+  expectRefused({"render", scene("none/deeper/a.exr")}, "no folder");
+  expectRefused({"render", scene("out/a.exr"), "-o", in("none/a.exr")}, "no folder");
+  expectRefused({"render", scene("other/a.gif")}, "cannot write this kind of image");
+  expectRefused({"render", scene("other/a.exr"), "--strategy", "nonsense"}, "nonsense");
+  EXPECT_FALSE(fs::exists(in("none")));
+  EXPECT_FALSE(fs::exists(in("other")));
+}
+
+}  // namespace
+}  // namespace chromeball
