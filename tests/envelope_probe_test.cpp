@@ -6,6 +6,8 @@
 #include "envelope.h"
 #include "math/cdf.h"
 #include "math/error.h"
+#include "probe/info.h"
+#include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/repair.h"
 #include "probe/solid_angle.h"
@@ -16,6 +18,7 @@ namespace {
 constexpr const char* kEvery[] = {"bsdf",
                                   "uniform",
                                   "importance",
+                                  "product",
                                   "suns",
                                   "median-cut:8",
                                   "kollig-keller-strata:4",
@@ -42,6 +45,69 @@ TEST(EnvelopeProbe, RadianceFrom1e_8To1e10) {
     const double found = r.film.noise().noise;
     if (noise == 0) noise = found;
     EXPECT_NEAR(found / noise, 1, 1e-3) << radiance;  // the estimate scales along
+  }
+}
+
+// Scaled by a power of two, and so without rounding.
+Image scaled(Image image, int exponent) {
+  for (float& x : image.texels) x = std::ldexp(x, exponent);
+  return image;
+}
+
+// A bright texel before a gradient.
+Image sunny(float sun) {
+  Image image = gradientProbe({32, 16}, Rgb(1), {0.2, 0.6, 0.3});
+  image.setRgb(11, 4, Rgb(sun));
+  return image;
+}
+
+// The picture under a probe that is 1e30 times as bright, or as dark, is as many times as bright.
+TEST(SlowEnvelopeProbe, RadianceFrom1e_30To1e30UnderEveryStrategy) {
+  for (const std::string strategy : kEvery) {
+    const double mean = validMean(litPlane(Probe(sunny(50)), strategy, 16));
+    for (const int exponent : {-100, 100}) {
+      const Probe probe(scaled(sunny(50), exponent));
+      EXPECT_NEAR(std::ldexp(validMean(litPlane(probe, strategy, 16)), -exponent) / mean, 1, 1e-4)
+          << strategy << " 2^" << exponent;
+    }
+  }
+}
+
+// A sun so bright, or all else so dark, that squares would leave the range of a float.
+TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
+  for (const float sun : {1e20f, 1e30f})
+    for (const std::string strategy : {"importance", "product", "kollig-keller-strata:4", "suns"}) {
+      const Probe probe(sunny(sun));
+      const double expected = 0.5 * irradianceOverPi(probe, {0, 1, 0}, 1500);
+      EXPECT_NEAR(validMean(litPlane(probe, strategy, 256)) / expected, 1,
+                  strategy == "suns" ? 0.02 : 5e-3)
+          << strategy << ' ' << sun;
+    }
+  const Probe dim(scaled(oneHotProbe({32, 16}, 11, 4, Rgb(1)), -80));
+  EXPECT_NEAR(validMean(litPlane(dim, "importance", 256)) /
+                  (0.5 * irradianceOverPi(dim, {0, 1, 0}, 1500)),
+              1, 5e-3);
+}
+
+// What is said of a probe, and its exact irradiance.
+TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
+  const Image image = sunny(1e6f);
+  const ProbeInfo info = probeInfo(image);
+  ASSERT_EQ(info.suns.size(), 1u);
+  const vec3 normal = glm::normalize(vec3(0.3f, 0.9f, 0.1f));
+  const double irradiance = exactIrradiance(image, {&normal, 1})[0].y;
+  for (const int exponent : {-100, 100}) {
+    const Image other = scaled(image, exponent);
+    const ProbeInfo found = probeInfo(other);
+    ASSERT_EQ(found.suns.size(), 1u) << exponent;
+    EXPECT_NEAR(found.suns[0].angle, info.suns[0].angle, 1e-6);
+    EXPECT_NEAR(std::ldexp(found.suns[0].irradiance.y, -exponent) / info.suns[0].irradiance.y, 1,
+                1e-6);
+    EXPECT_NEAR(std::ldexp(found.meanRadiance.y, -exponent) / info.meanRadiance.y, 1, 1e-12);
+    EXPECT_NEAR(found.dynamicRange / info.dynamicRange, 1, 1e-6);
+    EXPECT_NEAR(found.brightestShares[0].share, info.brightestShares[0].share, 1e-6);
+    EXPECT_NEAR(std::ldexp(exactIrradiance(other, {&normal, 1})[0].y, -exponent) / irradiance, 1,
+                1e-6);
   }
 }
 

@@ -69,8 +69,12 @@ class LuminanceField {
             weight(c.c11) * bottom};
   }
 
-  // A number in [0, 1) with density proportional to a (1 - x) + b x.
+  // A number in [0, 1) with density proportional to a (1 - x) + b x. Squares of what is not within
+  // 1e+-19 leave the range of a float, so a and b count as shares of the greater.
   static float sampleLinear(float u, float a, float b) {
+    const float greater = std::max(a, b);
+    if (!(greater > 0)) return u;
+    a /= greater, b /= greater;
     const float root = std::sqrt(std::max(a * a + u * (b * b - a * a), 0.0f));
     return std::min(u * (a + b) / std::max(a + root, std::numeric_limits<float>::min()),
                     0x1.fffffep-1f);
