@@ -232,6 +232,34 @@ TEST(ShIrradiance, IsNegativeNextToASun) {
 
 // Probulator's references: irradiance over pi, linear, 8 bits, rounded down. Its Monte Carlo is of
 // 5000 samples, the same for all normals, so within 2% or so; its spherical harmonics are of 20000.
+// What nine coefficients leave out of real probes: little energy, more than that of error.
+TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyAndErrsByPercents) {
+  int probes = 0;
+  double least = 1, most = 0;
+  const std::vector<vec3> normals = icosphereNormals(3);
+  for (const char* name :
+       {"debevec/galileo_probe.hdr", "debevec/stpeters_cross.hdr", "polyhaven/pmndrs_sunrise.hdr",
+        "polyhaven/venice_sunset_1k.hdr", "polyhaven/qwantani_afternoon_puresky_1k.hdr",
+        "probulator/ennis_latlong_small.hdr"}) {
+    const auto path = sharedData(std::string("probes/") + name);
+    if (!path) continue;
+    ++probes;
+    const Image latLong = loadProbe(*path).latLong;
+    const std::vector<dvec3> exact = exactIrradiance(latLong, normals);
+    const std::vector<dvec3> sh = shIrradiance(latLong, normals);
+    double sum = 0, error = 0, energy = 0, lost = 0;
+    for (size_t i = 0; i < normals.size(); ++i) {
+      const double e = luminance(Rgb(exact[i])), off = luminance(Rgb(sh[i] - exact[i]));
+      sum += e, error += std::fabs(off), energy += e * e, lost += off * off;
+    }
+    EXPECT_LT(lost / energy, 0.01) << name;
+    least = std::min(least, error / sum), most = std::max(most, error / sum);
+  }
+  if (probes < 6) GTEST_SKIP() << "no real probes";
+  EXPECT_NEAR(least, 0.011, 0.002);
+  EXPECT_NEAR(most, 0.10, 0.01);
+}
+
 TEST(SlowIrradiance, PublishedImages) {
   int compared = 0;
   for (const std::string name : {"Ennis", "Grace", "Pisa", "Uffizi", "Wells"}) {

@@ -44,7 +44,7 @@ void addProbeIrradianceCommand(CLI::App& probe) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
   command
       ->add_option("--method", arguments->method,
-                   "exact, or sh: spherical harmonics to order 2, about 1% off, may be negative")
+                   "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
       ->capture_default_str();
   command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto guesses");
   command->callback([arguments] { run(*arguments); });

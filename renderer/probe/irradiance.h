@@ -17,8 +17,8 @@ namespace chromeball {
 // of the largest E. Uses all cores; the same bits for any number of them.
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals);
 
-// The same from nine spherical harmonics (spherical_harmonics.h): fast, about 1% off on average,
-// and negative opposite to suns.
+// The same from nine spherical harmonics: fast, 1 to 10% off on real probes (spherical_harmonics.h),
+// and negative some 120 degrees away from suns.
 std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> normals);
 
 // The directions of the texel centres of a lat-long map, row by row: the normals of a map of
