@@ -3,11 +3,15 @@
 
 #include "image/write.h"
 #include "math/error.h"
+#include "probe/convert.h"
+#include "probe/icosphere.h"
 #include "probe/info.h"
 #include "probe/load.h"
+#include "probe/probe.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "shared_data.h"
 
 namespace chromeball {
 namespace {
@@ -49,6 +53,92 @@ TEST(ProbeFile, InvalidTexelsAreRepairedAndReported) {
   const std::vector<std::string> lines = warnings(probe, "p.exr");
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_NE(lines[0].find("(4, 3)"), std::string::npos) << lines[0];
+}
+
+void writeEnvironment(const std::string& path, const Image& image, const char* format) {
+  writeImage(path, OutputImage{{{"", "RGB", image}}, {{"textureformat", format}}});
+}
+
+// The same place as a cube and as a lat-long map, both by OpenEXR's convention. A linear function of
+// direction tells where everything is.
+TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
+  const TemporaryFolder folder;
+  const dvec3 slope(0.3, 0.2, -0.4);
+  const Image ours = gradientProbe({64, 32}, Rgb(1), slope);
+  // OpenEXR: the centre looks along +Z, the left quarter along +X.
+  writeEnvironment(folder / "even.exr", gradientProbe({64, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
+                   "LatLong Environment");
+  writeEnvironment(folder / "odd.exr", gradientProbe({63, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
+                   "LatLong Environment");
+  writeEnvironment(folder / "cube.exr",
+                   convert(ours, Mapping::LatLong, Mapping::VerticalStrip, {32, 192}),
+                   "CubeFace Environment");
+  writeImage(folder / "plain.exr", ours);
+  for (const char* name : {"even.exr", "odd.exr", "cube.exr", "plain.exr"}) {
+    const LoadedProbe loaded = loadProbe(folder / name);
+    const bool isStated = std::string(name) == "even.exr" || std::string(name) == "odd.exr";
+    EXPECT_EQ(loaded.turned, isStated) << name;
+    EXPECT_EQ(warnings(loaded, name).size(), isStated ? 1u : 0u) << name;
+    const Probe probe(loaded.latLong);
+    for (const vec3& d : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1),
+                          vec3(0.6f, 0.64f, 0.48f)})
+      EXPECT_NEAR(probe.radiance(d).x, 1 + glm::dot(slope, dvec3(d)), 0.02) << name;
+  }
+  // The attribute is followed where the mapping is given, too.
+  EXPECT_TRUE(loadProbe(folder / "even.exr", "lat-long").turned);
+}
+
+TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
+  const auto folder = sharedData("probes/openexr");
+  if (!folder) GTEST_SKIP() << "../shared/data/probes/openexr is not there";
+  for (const std::string place : {"Orientation", "StageEnv"}) {
+    const Probe cube(loadProbe(*folder / (place + "Cube.exr")).latLong);
+    const Probe latLong(loadProbe(*folder / (place + "LatLong.exr")).latLong);
+    double agree = 0, turned = 0;  // sums of absolute differences of what a screen would show
+    for (const vec3& d : icosphereNormals(4)) {
+      const auto shown = [](const Probe& probe, const vec3& to) {
+        return glm::min(probe.radiance(to), Rgb(1));
+      };
+      const Rgb seen = shown(cube, d);
+      agree += luminance(glm::abs(seen - shown(latLong, d)));
+      turned += luminance(glm::abs(seen - shown(latLong, {-d.x, d.y, -d.z})));
+    }
+    EXPECT_LT(agree, 0.5 * turned) << place;
+  }
+}
+
+TEST(ProbeFile, LightThatWasCutOffIsSaid) {
+  const TemporaryFolder folder;
+  Image image = gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3});
+  const auto said = [&](const char* name, const Image& probe) {
+    writeImage(folder / name, probe);
+    std::string all;
+    for (const std::string& line : warnings(loadProbe(folder / name), name)) all += line;
+    return all;
+  };
+  EXPECT_EQ(said("a.exr", image), "");
+  EXPECT_EQ(said("constant.exr", constantProbe({64, 32}, Rgb(1))), "");
+  EXPECT_NE(said("a.png", image).find("brighter than 1 was cut off"), std::string::npos);
+  EXPECT_NE(said("black.exr", constantProbe({64, 32}, Rgb(0))).find("is black"), std::string::npos);
+  for (float& x : image.texels) x = std::min(x, 1.0f);
+  EXPECT_NE(said("clipped.exr", image).find("have the greatest value, 1:"), std::string::npos);
+  EXPECT_GT(loadProbe(folder / "clipped.exr").shareAtMaximum, 0.2);
+}
+
+// Of texels that are equally bright, at the equator and at a pole, which have little solid angle.
+TEST(ProbeInfo, BrighterSetsHoldTheSmallerOnes) {
+  Image image = constantProbe({64, 32}, Rgb(1e-3f));
+  for (int x = 0; x < 64; ++x) image.setRgb(x, 0, Rgb(5)), image.setRgb(x, 31, Rgb(5));
+  for (const int x : {0, 63}) image.setRgb(x, 16, Rgb(5));
+  const ProbeInfo info = probeInfo(image);
+  ASSERT_GE(info.brightestShares.size(), 3u);
+  for (size_t i = 1; i < info.brightestShares.size(); ++i) {
+    EXPECT_GT(info.brightestShares[i].texels, info.brightestShares[i - 1].texels);
+    EXPECT_GT(info.brightestShares[i].share, info.brightestShares[i - 1].share);
+  }
+  EXPECT_NEAR(info.brightestShares[0].share,
+              5 * texelSolidAngle(16, 64, 32) / (4 * kPiD * luminance(Rgb(info.meanRadiance))),
+              1e-6);
 }
 
 TEST(ProbeInfo, OneTexel) {

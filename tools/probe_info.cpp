@@ -31,10 +31,12 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"mapping", mappingName(probe.mapping)},
           {"mapping_guessed", probe.guessed},
           {"mapping_reason", probe.guessed ? probe.reason : "given"},
+          {"turned", probe.turned},
           {"lat_long", {{"width", probe.latLong.width}, {"height", probe.latLong.height}}},
           {"min", toJson(info.min)},
           {"mean", toJson(info.mean)},
           {"max", toJson(info.max)},
+          {"share_at_max", probe.shareAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"invalid_texels",
            {{"nan", probe.repair.nan},
@@ -58,11 +60,14 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("resolution       {} x {}\n", probe.fileWidth, probe.fileHeight);
   fmt::print("mapping          {} ({})\n", mappingName(probe.mapping),
              probe.guessed ? "guessed: " + probe.reason : "given");
+  if (probe.turned)
+    fmt::print("turned           by 180 degrees: by its attribute `envmap` the centre looks along +Z\n");
   if (probe.mapping != Mapping::LatLong)
     fmt::print("as lat-long      {} x {}, of which the following speaks\n", probe.latLong.width,
                probe.latLong.height);
   fmt::print("min RGB          {}\nmean RGB         {}\nmax RGB          {}\n", triple(info.min),
              triple(info.mean), triple(info.max));
+  fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.shareAtMaximum);
   fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
   fmt::print("invalid texels   {}\n",
              probe.repair.total() > 0 ? describe(probe.repair) + ", repaired" : "none");
@@ -92,6 +97,8 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
   command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments] {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
+    for (const std::string& warning : lightWarnings(probe, arguments->file))
+      fmt::print(stderr, "chromeball: warning: {}\n", warning);
     const ProbeInfo info = probeInfo(probe.latLong);
     if (arguments->json)
       fmt::print(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
@@ -28,8 +29,12 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
     flux[i] = fluxOf(image, x, y);
     brightness[i] = luminance(image.rgb(x, y));
   }
+  // Of equally bright texels the one with the most flux first: each set holds those before it.
   std::vector<size_t> order(count);
   std::iota(order.begin(), order.end(), size_t(0));
+  const auto isBrighter = [&](size_t a, size_t b) {
+    return std::tuple(brightness[b], flux[b], a) < std::tuple(brightness[a], flux[a], b);
+  };
   const double total = std::accumulate(flux.begin(), flux.end(), 0.0);
 
   const size_t percent = std::max<size_t>(1, count / 100);
@@ -40,7 +45,7 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
   for (const size_t brightest : counts) {
     if (brightest > count) continue;
     std::nth_element(order.begin(), order.begin() + (brightest - 1), order.end(),
-                     [&](size_t a, size_t b) { return brightness[a] > brightness[b]; });
+                     isBrighter);
     double sum = 0;
     for (size_t i = 0; i < brightest; ++i) sum += flux[order[i]];
     shares.push_back({brightest, total > 0 ? sum / total : 0});

@@ -18,10 +18,17 @@ struct LoadedProbe {
   int fileWidth = 0, fileHeight = 0;
   bool guessed = false, certain = true;  // how the mapping is known; certain: no warning needed
   std::string reason;                    // of the guess: "its shape is 2:1"
+  bool turned = false;  // the file said that its centre looks along +Z (OpenEXR's lat-long maps)
   RepairReport repair;
+  bool isScreenImage = false;  // texels of 8 or 16 bits
+  float maximum = 0;           // the greatest channel of a texel
+  double shareAtMaximum = 0;   // of the texels; 0 where all are alike
 };
 
-// `mapping` is a name as on the command line; "auto" guesses. A lat-long file of any shape keeps
+// `mapping` is a name as on the command line; "auto" guesses, unless the file is an EXR whose
+// attribute `envmap` says what it is. Of such a lat-long map the centre looks along +Z and the left
+// quarter along +X (OpenEXR's ImfEnvmap.h), and is turned by half a circle, to agree with the cube
+// map of the same place. A lat-long file of any shape keeps
 // its texels; others are converted at latLongSize (convert.h). Throws InputError, begun by
 // `mappingPlace` where the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
@@ -29,5 +36,8 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
 
 // What is worth telling the user on standard error, "FILE: ..." each; often nothing.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
+
+// The part of it that speaks of the light: none, or cut off at the greatest number of its format.
+std::vector<std::string> lightWarnings(const LoadedProbe& probe, const std::filesystem::path& path);
 
 }  // namespace chromeball

@@ -11,8 +11,9 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-// All look along -Z in the centre of the image (of the front face), +Y up. OpenEXR's and other
-// programs' lat-long maps may look elsewhere; turn those with a rotation.
+// All look along -Z in the centre of the image (of the front face), +Y up. Other programs' lat-long
+// maps may look elsewhere; turn those with a rotation. (What OpenEXR marks as one is turned when it
+// is loaded, load.h.)
 enum class Mapping {
   LatLong,          // u = (1 + atan2(Dx, -Dz)/pi)/2, v = acos(Dy)/pi
   AngularMap,       // the disc's radius is proportional to the angle from -Z
