@@ -213,6 +213,14 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
 }
 
+TEST(CommandRender, OneSampleHasNoNoiseToTell) {
+  const RenderScene s;
+  const CommandResult result = s.render({"--probe", s.constant, "--size", "16x16", "--samples", "1",
+                                         "-o", s.out / "a.exr"});
+  EXPECT_NE(result.out.find("noise unknown"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("nan"), std::string::npos) << result.out;
+}
+
 TEST(SlowCommandRender, ThreadsChangeNoBitAndSeedsDo) {
   const RenderScene scene;
   const auto render = [&](const char* threads, const char* seed) {

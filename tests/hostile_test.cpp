@@ -37,6 +37,14 @@ std::vector<fs::path> filesBelow(const fs::path& root, const std::set<std::strin
   return files;
 }
 
+// One line, nothing cut off: what is opened is closed.
+void expectWhole(const std::string& message) {
+  const auto count = [&](char c) { return std::count(message.begin(), message.end(), c); };
+  EXPECT_EQ(count('\n'), 0) << message;
+  EXPECT_EQ(count('('), count(')')) << message;
+  EXPECT_EQ(count('"') % 2, 0) << message;
+}
+
 // Why the file is refused, or "" where it renders, by all samples valid. Anything but an InputError
 // fails the test; a crash or a hang fails all of them.
 std::string refusalOfModel(const fs::path& path) {
@@ -51,7 +59,7 @@ std::string refusalOfModel(const fs::path& path) {
   } catch (const InputError& error) {
     const std::string message = error.what();
     EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    expectWhole(message);
     return message.substr(std::min(message.size(), path.string().size() + 2));
   }
 }
@@ -65,7 +73,7 @@ std::string refusalOfImage(const fs::path& path) {
     EXPECT_TRUE(isFinite(probe.radiance({0, 1, 0}))) << path;
     return "";
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    expectWhole(error.what());
     return error.what();
   }
 }

@@ -217,9 +217,11 @@ void render(const RenderOptions& options) {
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; what there is: {}",
                                   fmt::join(job.outputs, ", ")));
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
+  const double noise = rendered.noise.noise;
   if (!options.quiet)
-    fmt::print("{} samples a pixel in {:.2f} s, noise {:.2f}%: {}\n", result.samples,
-               seconds.render, 100 * rendered.noise.noise, fmt::join(job.outputs, ", "));
+    fmt::print("{} samples a pixel in {:.2f} s, noise {}: {}\n", result.samples, seconds.render,
+               std::isfinite(noise) ? fmt::format("{:.2f}%", 100 * noise) : "unknown",
+               fmt::join(job.outputs, ", "));
 }
 
 }  // namespace

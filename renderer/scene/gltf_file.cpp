@@ -178,8 +178,10 @@ void GltfFile::readModel(json& root) {
   tinygltf::TinyGLTF reader;
   const bool read =
       reader.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), "");
+  error.erase(0, error.find_first_not_of(" \n"));
   if (!read || !error.empty())
-    fail("is not well-formed glTF: {}", error.empty() ? "unknown reason" : firstLine(error));
+    fail("is not well-formed glTF: {}",
+         error.empty() ? "a member is missing or has another type than glTF says" : firstLine(error));
   model.bufferViews.pop_back();
   for (tinygltf::Accessor& accessor : model.accessors)
     if (accessor.bufferView == noView) accessor.bufferView = -1;
@@ -226,13 +228,13 @@ std::string GltfFile::describeImage(int index) const {
   return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
 }
 
-Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const {
-  if (uri.starts_with("data:")) {
 void GltfFile::note(const std::string& uri) {
   if (uri.empty() || uri.starts_with("data:")) return;
   files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
 }
 
+Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const {
+  if (uri.starts_with("data:")) {
     Bytes bytes;
     if (!decodeDataUri(uri, bytes)) fail("{}: is not a well-formed data URI", where);
     return bytes;
