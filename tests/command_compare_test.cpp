@@ -131,6 +131,12 @@ TEST_F(SlowCommandCompare, badInputIsRefused) {
   refused({"--baseline", "uniform", "--strategies", "bsdf"}, "--baseline");
   refused({"--reference-strategy", "median-cut"}, "biased");
   refused({"--reference-samples", "3"}, "--reference-samples");
+  Image sunny = constantProbe({32, 16}, Rgb(0.1f));
+  sunny.setRgb(9, 4, Rgb(1e4f));
+  writeImage(folder_ / "sunny.exr", sunny);
+  std::vector<std::string> underSun = command({"--reference-strategy", "suns"});
+  underSun[3] = folder_ / "sunny.exr";
+  expectRefused(underSun, "biased");
   writeImage(folder_ / "other.exr", Image(8, 8, 3));
   refused({"--reference", folder_ / "other.exr"}, "--size 8x8");
   EXPECT_FALSE(fs::exists(dir())) << "nothing is made before all is right";

@@ -188,6 +188,13 @@ TEST(Suns, PenumbraOfAStraightEdge) {
   }
 }
 
+// The discs give the probe's light and not its picture.
+TEST(Suns, AreUnbiasedWhereThereAreNone) {
+  const Probe sunny(sunnySky(1)), overcast(overcastProbe({64, 32}, Rgb(1), 0.2));
+  EXPECT_FALSE(Suns(sunny, true).unbiased());
+  EXPECT_TRUE(Suns(overcast, true).unbiased());
+}
+
 // Full renders: what is sampled separately is the same light as what is sampled together.
 TEST(SlowSuns, PictureIsThatOfImportance) {
   Scene scene;

@@ -27,8 +27,13 @@ TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
     }
 }
 
-constexpr const char* kStrategies[] = {
-    "bsdf", "uniform", "importance", "suns", "kollig-keller-strata:4", "irradiance-fit-ambient:8"};
+// With how far each may be off at a place on the floor.
+constexpr std::pair<const char*, double> kStrategies[] = {{"bsdf", 0.03},
+                                                          {"uniform", 0.03},
+                                                          {"importance", 0.03},
+                                                          {"suns", 0.03},
+                                                          {"kollig-keller-strata:4", 0.03},
+                                                          {"irradiance-fit-ambient:8", 0.3}};
 
 std::unique_ptr<LightingStrategy> inside(const Surroundings& s, const char* name,
                                          const Probe& probe) {
@@ -68,17 +73,17 @@ TEST(SlowSurroundings, LightChangesWithThePlace) {
   const Probe probe(spotted(), 25);
   double near = 0, far = 0;
   for (const Surroundings& s : {box(), dome()})
-    for (const char* name : kStrategies) {
+    for (const auto& [name, tolerance] : kStrategies) {
       const auto lighting = inside(s, name, probe);
       for (const vec2 at : {vec2(0.5f, -0.5f), vec2(-1.5f, 1.5f)}) {
         const double expected = 0.5 / kPiD * floorIrradiance(s, probe, {at.x, 0.001f, at.y});
         (at.x > 0 ? near : far) = expected;
         const Moments m = floorRadiance(*lighting, at.x, at.y, 6);
-        if (lighting->unbiased() && std::string(name) != "suns") {
+        if (lighting->unbiased()) {
           EXPECT_GT(tTest(m, expected), sidak(1e-3, 20))
               << name << " " << m.mean << " " << expected;
         }
-        EXPECT_NEAR(m.mean / expected, 1, lighting->unbiased() ? 0.03 : 0.3) << name;
+        EXPECT_NEAR(m.mean / expected, 1, tolerance) << name;
       }
       EXPECT_GT(std::abs(near / far - 1), 0.05);
     }

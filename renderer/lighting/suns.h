@@ -13,10 +13,10 @@ namespace chromeball {
 
 // One stratified sample of each sun and one of the remainder. Of more than two suns one is chosen
 // by power: with four, that takes 45% fewer rays to the same noise. The probe becomes the remainder
-// plus discs for every ray, mirrors' and the camera's as well, so energy is counted once and
-// nothing is biased but by the suns' shape: each is a disc with the irradiance and the spread of
-// what it stands for (probe/sun_extraction.h). (In the row of texels at a pole, where interpolation
-// between texels adds light, discs have up to 8% less.)
+// plus discs for every ray, mirrors' and the camera's as well, so energy is counted once. The only
+// bias is the shape of the suns, which highlights and penumbras show: each is a disc with the
+// irradiance and the spread of what it stands for (probe/sun_extraction.h). (In the row of texels at
+// a pole, where interpolation between texels adds light, discs have up to 8% less.)
 //
 // All samples are weighted together by the balance heuristic: in a direction that several of the
 // techniques can find, density is the sum of theirs, and radiance that of remainder and discs.
@@ -32,7 +32,8 @@ class Suns : public LightingStrategy {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   Rgb background(const vec3&, const vec3& wi) const override;
-  bool unbiased() const override { return true; }
+  // Where the probe has no suns there are no discs, and the probe is sampled as it is.
+  bool unbiased() const override { return discs_.empty(); }
 
  private:
   // Discs are measured by chords: the one from the centre to wi has no rounding error to speak of
