@@ -171,6 +171,41 @@ TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
     }
 }
 
+// KHR_materials_specular changes how much glass reflects, and so how much of it is masked; what it
+// does not reflect passes. Also at a boundary with another body, where the index is relative.
+TEST(SlowExtendedBsdf, glassOfAnySpecularStrengthLosesNothing) {
+  struct Index {
+    float ior, outer;
+  };
+  for (const Index index : {Index{1.0001f, 1},
+                            {1.01f, 1},
+                            {1.33f, 1},
+                            {1.5f, 1},
+                            {2.4f, 1},
+                            {3, 1},
+                            {1.5f, 1.33f},
+                            {1.33f, 1.5f},
+                            {1, 1.5f}})
+    for (const bool frontFace : {true, false})
+      for (const float specular : {0.0f, 0.3f, 1.0f})
+        for (const Rgb& color : {Rgb(1), Rgb(0.1f, 0.6f, 3)})
+          for (const float roughness : {0.0f, 0.05f, 0.2f, 0.45f, 0.7f, 1.0f})
+            for (const float angle : {0.0f, 40.0f, 65.0f, 80.0f}) {
+              Case c{"", dielectric(roughness, index.ior), transmissive(1, false)};
+              const float eta = index.ior / index.outer;
+              c.index = {Rgb(frontFace ? eta : 1 / eta), index.ior};
+              c.frontFace = frontFace;
+              c.material.dielectricF0 = glm::min(c.material.dielectricF0 * color, 1.0f) * specular;
+              c.material.dielectricF90 = specular;
+              const Rgb a = albedo(c.from(angle), 1 << 11);
+              for (int k = 0; k < 3; ++k)
+                ASSERT_NEAR(a[k], 1, 0.01f)
+                    << "ior " << index.ior << " in " << index.outer << (frontFace ? "" : ", inside")
+                    << ", specular " << specular << " color " << color[k] << ", roughness "
+                    << roughness << ", angle " << angle;
+            }
+}
+
 TEST(ExtendedBsdf, weightsAreValueOverDensity) {
   for (const Case& c : whiteCases({0.3f, 0.7f})) {
     const ExtendedBsdf bsdf = c.from(50);

@@ -11,6 +11,19 @@ namespace {
 
 constexpr float kUnbending = 1e-3f;  // |eta - 1| below which facets turn nothing aside
 
+// By Fresnel's equations, at normal incidence.
+float normalReflectance(float eta) {
+  const float r = (eta - 1) / (eta + 1);
+  return r * r;
+}
+
+// F0 of KHR_materials_specular over that of an index of `front` against air. It holds for whatever
+// medium is around the body, so that next to one of nearly its own index the body vanishes.
+float specularTint(const MaterialPoint& m, int channel, float front) {
+  const float own = normalReflectance(front);
+  return own > 0 ? m.dielectricF0[channel] / own : m.dielectricF90;
+}
+
 }  // namespace
 
 Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface& surface,
@@ -21,27 +34,31 @@ Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface
       eta_(index.eta),
       dispersive_(eta_.x != eta_.y || eta_.y != eta_.z),
       tint_(m.baseColor),
-      f0_(m.dielectricF0),
-      f90_(m.dielectricF90),
       alpha_(m.roughness * m.roughness),
       gain_(1) {
   wo_.z = std::max(wo_.z, 1e-6f);
-  const float r = (index.front - 1) / (index.front + 1);
-  own_ = r * r;
+  for (int c = 0; c < 3; ++c) {
+    const float own = normalReflectance(eta_[c]);
+    const float f0 = std::min(own * specularTint(m, c, index.front), m.dielectricF90);
+    slope_[c] = own < 1 ? (m.dielectricF90 - f0) / (1 - own) : 0;
+    offset_[c] = f0 - slope_[c] * own;
+  }
   smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kUnbending;
   mirror_ = smooth_ || alpha_ < mirrorAlpha;
   lambdaO_ = ggx::lambda(wo_.z, alpha_);
   if (smooth_) return;
   const GlassTable& table = GlassTable::get();
-  for (int c = 0; c < 3; ++c)
-    gain_[c] = c > 0 && !dispersive_ ? gain_[0] : 1 / table.albedo(wo_.z, m.roughness, eta_[c]);
+  GlassAlbedo once = table.albedo(wo_.z, m.roughness, eta_.x);
+  for (int c = 0; c < 3; ++c) {
+    if (c > 0 && dispersive_) once = table.albedo(wo_.z, m.roughness, eta_[c]);
+    gain_[c] = 1 / once.at(offset_[c], slope_[c]);
+  }
 }
 
-// Fresnel's equations, stretched so that they reach F0 and F90 of KHR_materials_specular.
 float Glass::fresnel(float cosine, int c) const {
   const float exact = fresnelDielectric(cosine, eta_[c]);
   if (exact >= 1) return 1;
-  return glm::clamp(f0_[c] + (f90_ - f0_[c]) * (exact - own_) / (1 - own_), 0.0f, 1.0f);
+  return glm::clamp(offset_[c] + slope_[c] * exact, 0.0f, 1.0f);
 }
 
 Rgb Glass::fresnel(float cosine) const {

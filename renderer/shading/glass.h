@@ -17,7 +17,9 @@ struct RefractiveIndex {
 
 // GGX microfacets that reflect by Fresnel's equations and refract the rest (Walter et al. 2007),
 // both raised by 1 / (their albedo in one bounce), so that nothing is lost (Turquin 2019). That is
-// exact for every view and reciprocal only where the surface is smooth. Carries basic radiance,
+// exact for every view and reciprocal only where the surface is smooth. KHR_materials_specular
+// scales Fresnel's reflectance F before the critical angle, which keeps it affine in F:
+//   F0 + (F90 - F0) (F - F(0)) / (1 - F(0)). Carries basic radiance,
 // L / n^2, and so has no factor eta^2: it cancels between the eye and a light in the same medium.
 class Glass {
  public:
@@ -48,8 +50,7 @@ class Glass {
   Rgb eta_;
   bool dispersive_;
   Rgb tint_;
-  Rgb f0_;           // of the front at normal incidence,
-  float f90_, own_;  // at grazing incidence, and what Fresnel's equations alone say of the first
+  Rgb offset_, slope_;  // reflectance, where it is not total: offset + slope F
   float alpha_;
   float lambdaO_;
   Rgb gain_;  // 1 / albedo in one bounce

@@ -2,41 +2,60 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
+
 #include "shading/albedo_quadrature.h"
 #include "shading/dielectric.h"
 
 namespace chromeball {
 namespace {
 
-constexpr int kEtas = 33, kRoughnesses = 16, kAngles = 32;
+constexpr int kEtas = 49, kRoughnesses = 20, kAngles = 40;
 
-// (eta - 1) / (eta + 1) from -1/2 to 1/2, crowded about 0, where facets cease to bend light; the
-// other two as in albedo_quadrature.h.
-constexpr float kLargest = 0.5f;
+// (eta - 1) / (eta + 1) from -1/2 to 1/2, crowded about 0, where facets cease to bend light and
+// the critical angle runs towards the grazing one; the other two as in albedo_quadrature.h.
+constexpr float kLargest = 0.5f, kCrowding = 2.5f;
 float etaNode(int i) {
-  const float t = 2 * float(i) / (kEtas - 1) - 1, x = kLargest * t * std::fabs(t);
+  const float t = 2 * float(i) / (kEtas - 1) - 1;
+  const float x = kLargest * std::copysign(std::pow(std::fabs(t), kCrowding), t);
   return (1 + x) / (1 - x);
 }
 float etaCoordinate(float eta) {
   const float x = (eta - 1) / ((eta + 1) * kLargest);
-  return 0.5f + 0.5f * std::copysign(std::sqrt(std::fabs(x)), x);
+  return 0.5f + 0.5f * std::copysign(std::pow(std::fabs(x), 1 / kCrowding), x);
 }
 
-// The mean over visible normals of G2/G1, reflected and refracted by Fresnel's shares.
-float integrate(float mu, float alpha, float eta, std::span<const vec2> points) {
+// For all nodes of eta, the means over visible normals of G2/G1: of what facets reflect totally and
+// refract wholly, of what reflection has more than refraction, and of that times Fresnel's
+// reflectance.
+std::array<GlassAlbedo, kEtas> integrate(float mu, float alpha, std::span<const vec2> points) {
+  std::array<float, kEtas> etas;
+  for (int e = 0; e < kEtas; ++e) etas[e] = etaNode(e);
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
-  const float masked = ggx::g1(mu, alpha);
-  double sum = 0;
+  const float masked = ggx::g1(mu, alpha), share = 1 / (masked * float(points.size()));
+  const auto passed = [&](float z) { return z > 0 ? share * ggx::g2(mu, z, alpha) : 0; };
+  std::array<GlassAlbedo, kEtas> sums{};
   for (const vec2& u : points) {
     const vec3 h = ggx::sampleVisibleNormal(wo, alpha, u);
-    const float woH = glm::dot(wo, h), reflectance = fresnelDielectric(woH, eta);
-    const float up = 2 * woH * h.z - mu;
-    if (up > 0) sum += double(reflectance * ggx::g2(mu, up, alpha) / masked);
-    if (reflectance >= 1) continue;
-    const float down = -refracted(wo, h, eta).z;
-    if (down > 0) sum += double((1 - reflectance) * ggx::g2(mu, down, alpha) / masked);
+    const float woH = glm::dot(wo, h), up = passed(2 * woH * h.z - mu);
+    for (int e = 0; e < kEtas; ++e) {
+      const float reflectance = fresnelDielectric(woH, etas[e]);
+      if (reflectance >= 1) {
+        sums[e].plain += up;
+        continue;
+      }
+      const float down = passed(-refracted(wo, h, etas[e]).z);
+      sums[e].plain += down;
+      sums[e].a += up - down;
+      sums[e].b += reflectance * (up - down);
+    }
   }
-  return float(sum / double(points.size()));
+  return sums;
+}
+
+GlassAlbedo mix(const GlassAlbedo& low, const GlassAlbedo& high, float t) {
+  return {glm::mix(low.plain, high.plain, t), glm::mix(low.a, high.a, t),
+          glm::mix(low.b, high.b, t)};
 }
 
 // Where between which two nodes a coordinate in [0, 1] lies.
@@ -53,12 +72,12 @@ struct Place {
 }  // namespace
 
 GlassTable::GlassTable() : cells_(kEtas * kRoughnesses * kAngles) {
-  const std::vector<vec2> points = quadraturePoints(512);
-  tbb::parallel_for(0, kEtas * kRoughnesses, [&](int row) {
-    const float roughness = roughnessNode(row % kRoughnesses, kRoughnesses);
-    for (int i = 0; i < kAngles; ++i)
-      cells_[size_t(row * kAngles + i)] = integrate(angleNode(i, kAngles), roughness * roughness,
-                                                    etaNode(row / kRoughnesses), points);
+  const std::vector<vec2> points = quadraturePoints(1024);
+  tbb::parallel_for(0, kRoughnesses * kAngles, [&](int place) {
+    const float roughness = roughnessNode(place / kAngles, kRoughnesses);
+    const auto albedos =
+        integrate(angleNode(place % kAngles, kAngles), roughness * roughness, points);
+    for (int e = 0; e < kEtas; ++e) cells_[size_t(e * kRoughnesses * kAngles + place)] = albedos[e];
   });
 }
 
@@ -67,19 +86,17 @@ const GlassTable& GlassTable::get() {
   return table;
 }
 
-float GlassTable::albedo(float mu, float roughness, float eta) const {
+GlassAlbedo GlassTable::albedo(float mu, float roughness, float eta) const {
   const Place e(etaCoordinate(eta), kEtas);
   const Place r(std::sqrt(roughness), kRoughnesses), a(std::sqrt(mu), kAngles);
   const auto line = [&](int eIndex, int rIndex) {
-    const float* cell = &cells_[size_t((eIndex * kRoughnesses + rIndex) * kAngles + a.low)];
-    return cell[0] + a.blend * (cell[1] - cell[0]);
+    const GlassAlbedo* cell = &cells_[size_t((eIndex * kRoughnesses + rIndex) * kAngles + a.low)];
+    return mix(cell[0], cell[1], a.blend);
   };
   const auto plane = [&](int eIndex) {
-    const float low = line(eIndex, r.low);
-    return low + r.blend * (line(eIndex, r.low + 1) - low);
+    return mix(line(eIndex, r.low), line(eIndex, r.low + 1), r.blend);
   };
-  const float low = plane(e.low);
-  return low + e.blend * (plane(e.low + 1) - low);
+  return mix(plane(e.low), plane(e.low + 1), e.blend);
 }
 
 }  // namespace chromeball
