@@ -58,7 +58,7 @@ class RepaintedIntegrator : public Integrator {
     const Surface surface = surfaceAt(path_.scene, instance, hit->triangle, hit->barycentric,
                                       -state.ray.direction);
     Rgb found(0);
-    if (surface.material->emits()) found += foundEmission(path_, state, surface, instance.material);
+    if (surface.material->emits()) found += foundEmission(path_, state, surface, instance);
     MaterialPoint material = materialAt(path_.scene, surface);
     material.baseColor = baseColor_;
     if (first) first->hit = true;

@@ -97,7 +97,7 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const Instance& instance = path.scene.instances[emitter.instance];
   const Surface source =
       surfaceAt(path.scene, instance, emitter.triangle, emitter.barycentric, -wi);
-  const Rgb radiance = emittedRadiance(path.scene, source);
+  const Rgb radiance = emittedRadiance(path.scene, instance, source, -wi);
   const float cosine = glm::dot(source.geometricNormal, -wi);
   if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
 

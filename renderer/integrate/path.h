@@ -56,13 +56,13 @@ Rgb escapedRadiance(const PathScene<Rays>& path, const PathState& state) {
 // What the path finds where its ray meets a surface that emits.
 template <class Rays>
 Rgb foundEmission(const PathScene<Rays>& path, const PathState& state, const Surface& surface,
-                  int material) {
+                  const Instance& instance) {
   float density = 0;
   if (path.emitters && !surface.material->unlit)
     density = path.emitters->density(
-        material, glm::length(surface.position - state.from.position),
+        instance.material, glm::length(surface.position - state.from.position),
         std::max(-glm::dot(surface.geometricNormal, state.ray.direction), 1e-12f));
-  return state.throughput * emittedRadiance(path.scene, surface) *
+  return state.throughput * emittedRadiance(path.scene, instance, surface, -state.ray.direction) *
          bsdfSampleWeight(path.mis, state.pdf, density);
 }
 
@@ -158,7 +158,7 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     state.ray.origin = surface.rayOrigin(state.ray.direction);
     return true;
   }
-  if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance.material);
+  if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance);
   const bool ends = state.depth - state.straight == path.maxDepth || surface.material->unlit;
   if (ends && !(first && state.depth == 0))
     return passThrough(path.scene, state, instance, surface);

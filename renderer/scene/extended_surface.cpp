@@ -72,4 +72,13 @@ ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance, c
   return p;
 }
 
+float coatTransmittance(const Scene& scene, const Instance& instance, const Surface& s,
+                        const vec3& wo) {
+  if (s.material->extended->clearcoat == 0) return 1;
+  const ExtendedPoint p = extendedMaterialAt(scene, instance, s);
+  if (isInsideBody(s, p)) return 1;
+  const float c = 1 - std::min(std::fabs(glm::dot(p.clearcoatNormal, wo)), 1.0f), c2 = c * c;
+  return 1 - p.clearcoat * (kCoatF0 + (1 - kCoatF0) * (c2 * c2 * c));
+}
+
 }  // namespace chromeball

@@ -5,6 +5,8 @@
 
 namespace chromeball {
 
+inline constexpr float kCoatF0 = 0.04f;  // of a clear coat, whose index is 1.5
+
 struct ExtendedPoint {
   float transmission = 0;
   bool thinWalled = true;
@@ -20,5 +22,17 @@ struct ExtendedPoint {
 // The surface's material must be an extended one.
 ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance,
                                  const Surface& surface);
+
+// Whether the surface is the inner side of a body's boundary. Coats and sheen lie on the outer
+// side.
+inline bool isInsideBody(const Surface& surface, const ExtendedPoint& point) {
+  return point.transmission > 0 && !point.thinWalled && !surface.frontFace;
+}
+
+// Share of the light emitted towards `wo` that passes the clear coat (KHR_materials_clearcoat):
+// 1 - clearcoat F, with Schlick's Fresnel term F at the coat's normal. The surface's material must
+// be an extended one.
+float coatTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
+                        const vec3& wo);
 
 }  // namespace chromeball

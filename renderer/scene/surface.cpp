@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "scene/extended_surface.h"
 #include "scene/projection.h"
 
 namespace chromeball {
@@ -191,12 +192,15 @@ MaterialPoint materialAt(const Scene& scene, const Surface& s) {
   return p;
 }
 
-Rgb emittedRadiance(const Scene& scene, const Surface& s) {
+Rgb emittedRadiance(const Scene& scene, const Instance& instance, const Surface& s,
+                    const vec3& wo) {
   const Material& m = *s.material;
   if (m.unlit) return materialAt(scene, s).baseColor;
   if (isBlack(m.emission) || !(s.frontFace || m.doubleSided)) return Rgb(0);
-  if (!m.emissiveTexture) return m.emission;
-  return m.emission * Rgb(lookup(scene, m.emissiveTexture, s));
+  Rgb radiance = m.emission;
+  if (m.emissiveTexture) radiance *= Rgb(lookup(scene, m.emissiveTexture, s));
+  if (m.extended) radiance *= coatTransmittance(scene, instance, s, wo);
+  return radiance;
 }
 
 float surfaceAlpha(const Scene& scene, const Instance& instance, uint32_t triangle,

@@ -56,8 +56,10 @@ struct MaterialPoint {
 };
 MaterialPoint materialAt(const Scene& scene, const Surface& surface);
 
-// Radiance emitted towards the viewer. A single-sided material emits from its front only.
-Rgb emittedRadiance(const Scene& scene, const Surface& surface);
+// Radiance emitted towards `wo` (unit, on the side that the surface is seen from). A single-sided
+// material emits from its front only; a clear coat keeps back what it reflects.
+Rgb emittedRadiance(const Scene& scene, const Instance& instance, const Surface& surface,
+                    const vec3& wo);
 
 // Coverage at a point: 1 for opaque surfaces, 0 or 1 for masks, in between for blended ones.
 float surfaceAlpha(const Scene& scene, const Instance& instance, uint32_t triangle,

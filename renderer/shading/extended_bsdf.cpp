@@ -11,9 +11,8 @@ namespace {
 
 // The coat as a black dielectric of index 1.5, with its own normal.
 Bsdf coatBsdf(const ExtendedPoint& e, Surface surface, const vec3& wo, float mirrorAlpha) {
-  constexpr float kF0 = 0.04f;
   surface.normal = e.clearcoatNormal;
-  return Bsdf({Rgb(0), 0, e.clearcoatRoughness, Rgb(kF0 * e.clearcoat), e.clearcoat}, surface, wo,
+  return Bsdf({Rgb(0), 0, e.clearcoatRoughness, Rgb(kCoatF0 * e.clearcoat), e.clearcoat}, surface, wo,
               mirrorAlpha);
 }
 
@@ -47,7 +46,7 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
                            const RefractiveIndex& index, const Surface& surface, const vec3& wo,
                            float mirrorAlpha)
     : normal_(surface.normal) {
-  const bool inside = e.transmission > 0 && !e.thinWalled && !surface.frontFace;
+  const bool inside = isInsideBody(surface, e);
   float through = 1;
   if (e.clearcoat > 0 && !inside) {
     const Bsdf coat = coatBsdf(e, surface, wo, mirrorAlpha);

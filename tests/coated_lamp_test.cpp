@@ -1,0 +1,127 @@
+// Emission under a clear coat (KHR_materials_clearcoat): emission x (1 - clearcoat x Fresnel).
+#include <gtest/gtest.h>
+
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+Material lamp(float clearcoat) {
+  Material m = lambert(Rgb(0));
+  m.emission = Rgb(3, 2, 1);
+  m.extended.emplace();
+  m.extended->clearcoat = clearcoat;
+  return m;
+}
+
+double passed(double clearcoat, double cosine) {
+  return 1 - clearcoat * (0.04 + 0.96 * std::pow(1 - cosine, 5));
+}
+
+// A tile of a lamp, seen under an angle, under a black probe.
+Rgb seenUnder(const Scene& scene, double degrees) {
+  const double a = degrees * kPiD / 180;
+  Camera camera = Camera::lookAt({0, 4 * float(std::cos(a)), 4 * float(std::sin(a))}, vec3(0),
+                                 {0, 0, -1}, 0.1f);
+  camera.orthographic = true;
+  camera.halfHeight = 0.05f;
+  const Probe black(constantProbe({4, 2}, Rgb(0)));
+  return meanColor(
+      renderScene(scene, camera, black, "importance", smallRender(4, 4, 4, 0)).film.mean());
+}
+
+void addTile(Scene& scene, int material) {
+  addQuad(scene, material, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+}
+
+TEST(CoatedLamp, IsDarkenedByWhatTheCoatReflects) {
+  for (const float clearcoat : {0.0f, 0.5f, 1.0f})
+    for (const double degrees : {0.0, 45.0, 85.0}) {
+      Scene scene;
+      addTile(scene, addMaterial(scene, lamp(clearcoat)));
+      const Rgb seen = seenUnder(scene, degrees);
+      const double expected = passed(clearcoat, std::cos(degrees * kPiD / 180));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c] / (3 - c), expected, 1e-4) << degrees;
+    }
+}
+
+// One texel for a whole surface.
+TextureSlot addTexel(Scene& scene, const vec4& color) {
+  auto grid = std::make_unique<TexelGrid>();
+  grid->width = grid->height = 1;
+  grid->texelsFloat = {color};
+  scene.textures.push_back({grid.get()});
+  scene.grids.push_back(std::move(grid));
+  TextureSlot slot;
+  slot.texture = int(scene.textures.size()) - 1;
+  return slot;
+}
+
+// The coat's texture and its normal map count, the base's normal map does not.
+TEST(CoatedLamp, HasTheCoatsTextureAndNormal) {
+  const float tilt = float(0.6 * kPiD / 2);
+  for (const bool tilted : {false, true}) {
+    Scene scene;
+    Material m = lamp(0.8f);
+    m.extended->clearcoatTexture = addTexel(scene, {0.5f, 0, 0, 1});
+    const TextureSlot leaning =
+        addTexel(scene, {0.5f, 0.5f - 0.5f * std::sin(tilt), 0.5f + 0.5f * std::cos(tilt), 1});
+    (tilted ? m.extended->clearcoatNormalTexture : m.normalTexture) = leaning;
+    addTile(scene, addMaterial(scene, m));
+    Mesh& mesh = scene.meshes.back();
+    mesh.normals.assign(4, {0, 1, 0});
+    mesh.tangents.assign(4, {1, 0, 0, 1});  // the bitangent points to -Z, away from the camera
+    mesh.uvs.assign(1, std::vector<vec2>(4, vec2(0.5f)));
+    const double degrees = 20;
+    const double cosine = std::cos(degrees * kPiD / 180 - (tilted ? double(tilt) : 0));
+    EXPECT_NEAR(seenUnder(scene, degrees).y / 2, passed(0.4, cosine), 1e-3) << tilted;
+  }
+}
+
+// Unlit surfaces have no coat, and a body's lies on its outer side.
+TEST(CoatedLamp, OnlyWhereTheCoatIs) {
+  Material unlit = lamp(1);
+  unlit.unlit = true;
+  unlit.baseColor = {0.3f, 0.6f, 0.9f, 1};
+  Scene scene;
+  addTile(scene, addMaterial(scene, unlit));
+  EXPECT_NEAR(seenUnder(scene, 70).y, 0.6f, 1e-6f);
+
+  Material body = lamp(1);
+  body.extended->transmission = 1;
+  body.extended->thinWalled = false;
+  Scene inside;
+  addQuad(inside, addMaterial(inside, body), {-1, 0, 1}, {0, 0, -2}, {2, 0, 0});
+  EXPECT_NEAR(seenUnder(inside, 70).y, 2, 1e-5f);
+}
+
+// Samples of the lamp carry what a ray that finds it would: the irradiance of a floor beside it,
+//   E = integral over the lamp of L passed(cos') cos cos' / d^2 dA.
+TEST(CoatedLamp, ShinesAsItIsSeen) {
+  constexpr double kHeight = 0.5, kAside = 1.5;  // of the lamp's centre; one metre square
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-0.01f, 0, 0.01f}, {0.02f, 0, 0},
+          {0, 0, -0.02f});
+  addQuad(scene, addMaterial(scene, lamp(1)), {kAside - 0.5f, kHeight, -0.5f}, {1, 0, 0},
+          {0, 0, 1});
+  constexpr int kGrid = 400;
+  double expected = 0;
+  for (int i = 0; i < kGrid; ++i)
+    for (int j = 0; j < kGrid; ++j) {
+      const double x = kAside - 0.5 + (i + 0.5) / kGrid, z = -0.5 + (j + 0.5) / kGrid;
+      const double d2 = x * x + kHeight * kHeight + z * z, cosine = kHeight / std::sqrt(d2);
+      expected += 2 * passed(1, cosine) * cosine * cosine / d2 / (double(kGrid) * kGrid);
+    }
+  Camera camera = topCamera(0.4f, 1);
+  const Probe black(constantProbe({4, 2}, Rgb(0)));
+  for (const Mis mis : {Mis::Off, Mis::Balance, Mis::Power}) {
+    RenderSettings settings = smallRender(8, 8, 1024, 1);
+    settings.mis = mis;
+    const Image image = renderScene(scene, camera, black, "importance", settings).film.mean();
+    EXPECT_NEAR(meanColor(image).y * kPiD / expected, 1, 3e-3) << int(mis);
+  }
+}
+
+}  // namespace
+}  // namespace chromeball
