@@ -35,8 +35,9 @@ struct Case {
   RefractiveIndex index{Rgb(1.5f), 1.5f};
   bool frontFace = true;
 
-  ExtendedBsdf from(float degrees) const {
-    return ExtendedBsdf(material, extended, index, flatSurface(frontFace), directionAt(degrees), 0);
+  ExtendedBsdf from(float degrees, float mirrorAlpha = 0) const {
+    return ExtendedBsdf(material, extended, index, flatSurface(frontFace), directionAt(degrees),
+                        mirrorAlpha);
   }
 };
 
@@ -197,7 +198,7 @@ TEST(SlowExtendedBsdf, glassOfAnySpecularStrengthLosesNothing) {
               c.frontFace = frontFace;
               c.material.dielectricF0 = glm::min(c.material.dielectricF0 * color, 1.0f) * specular;
               c.material.dielectricF90 = specular;
-              const Rgb a = albedo(c.from(angle), 1 << 11);
+              const Rgb a = albedo(c.from(angle), 1 << 12);
               for (int k = 0; k < 3; ++k)
                 ASSERT_NEAR(a[k], 1, 0.01f)
                     << "ior " << index.ior << " in " << index.outer << (frontFace ? "" : ", inside")
@@ -218,6 +219,51 @@ TEST(ExtendedBsdf, weightsAreValueOverDensity) {
         ASSERT_NEAR(v.fCos[k] / v.pdf, s.weight[k], 1e-3f * (s.weight[k] + 1e-3f)) << c.name;
     }
   }
+}
+
+// The limit decides which lobes see what, and changes none of them; samples are of one kind.
+TEST(ExtendedBsdf, broadAndNarrowLobesAreTheWhole) {
+  for (const float limit : {0.05f, 0.3f})
+    for (const Case& c : whiteCases({0.1f, 0.4f, 0.8f})) {
+      const ExtendedBsdf whole = c.from(50), parts = c.from(50, limit);
+      for (int i = 0; i < 200; ++i) {
+        const vec3 wi = squareToUniformSphere(random2(i, 0));
+        const Bsdf::Value all = whole.evaluate(wi), broad = parts.evaluate(wi),
+                          narrow = parts.evaluate(wi, Lobes::Narrow);
+        ASSERT_NEAR(broad.pdf + narrow.pdf, all.pdf, 1e-4f * all.pdf) << c.name;
+        for (int k = 0; k < 3; ++k)
+          ASSERT_NEAR(broad.fCos[k] + narrow.fCos[k], all.fCos[k], 1e-4f * all.fCos[k]) << c.name;
+        ASSERT_TRUE(narrow.pdf == 0 || parts.has(Lobes::Narrow)) << c.name;
+        ASSERT_TRUE(broad.pdf == 0 || parts.has(Lobes::Broad)) << c.name;
+        BsdfSample s;
+        if (!parts.sample(random2(i, 0), random1(i, 2), s)) continue;
+        const Bsdf::Value own = parts.evaluate(s.wi, s.lobes);
+        ASSERT_NEAR(own.pdf, s.pdf, 1e-3f * s.pdf) << c.name;
+        for (int k = 0; k < 3; ++k)
+          ASSERT_NEAR(own.fCos[k] / own.pdf, s.weight[k], 1e-3f * (s.weight[k] + 1e-3f)) << c.name;
+      }
+    }
+}
+
+// The coat lies on a body's outer side: from within there is none.
+TEST(ExtendedBsdf, bodiesHaveNoCoatFromInside) {
+  for (const float roughness : {0.0f, 0.4f})
+    for (const bool frontFace : {true, false}) {
+      Case bare{"", dielectric(roughness), transmissive(1, false)};
+      bare.frontFace = frontFace;
+      if (!frontFace) bare.index = {Rgb(1 / 1.5f), 1.5f};
+      Case coat = bare;
+      coat.extended.clearcoat = 1;
+      coat.extended.clearcoatRoughness = 0.3f;
+      coat.extended.clearcoatNormal = {0, 0, 1};
+      const ExtendedBsdf a = bare.from(40), b = coat.from(40);
+      bool same = true;
+      for (int i = 0; i < 500; ++i) {
+        const vec3 wi = squareToUniformSphere(random2(i, 0));
+        same = same && a.evaluate(wi).fCos == b.evaluate(wi).fCos;
+      }
+      EXPECT_EQ(same, !frontFace) << roughness;
+    }
 }
 
 // Fresnel at normal incidence and at Brewster's angle, total reflection, and Snell's law.

@@ -56,6 +56,12 @@ inline float lightSampleWeight(Mis mis, float density, float bsdfPdf) {
   return mis == Mis::Off ? 1 : misWeight(mis, density, bsdfPdf);
 }
 
+// What lamps light beside the broad lobes.
+inline Bsdf::Value narrowLobes(const Bsdf& bsdf, const vec3& wi) {
+  if (!bsdf.has(Lobes::Narrow)) return {Rgb(0), 0};
+  return bsdf.evaluate(wi, Lobes::Narrow);
+}
+
 // Light from the probe by the strategy's samples.
 template <class Rays>
 Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
@@ -91,8 +97,9 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const float distance = glm::length(to);
   if (!(distance > surface.rayOffset)) return Rgb(0);
   const vec3 wi = to / distance;
-  const Bsdf::Value bsdf = point.bsdf->evaluate(wi);
-  if (isBlack(bsdf.fCos)) return Rgb(0);
+  const Bsdf::Value broad = point.bsdf->evaluate(wi);
+  const Bsdf::Value narrow = narrowLobes(*point.bsdf, wi);
+  if (isBlack(broad.fCos) && isBlack(narrow.fCos)) return Rgb(0);
 
   const Instance& instance = path.scene.instances[emitter.instance];
   const Surface source =
@@ -110,7 +117,9 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   if (media.inside() || surface.material->extended)
     passed *= Media(media).follow(surface, wi).transmittance(length);
   const float density = path.emitters->density(instance.material, distance, cosine);
-  return bsdf.fCos * radiance * passed * (lightSampleWeight(path.mis, density, bsdf.pdf) / density);
+  const Rgb fCos = broad.fCos * lightSampleWeight(path.mis, density, broad.pdf) +
+                   narrow.fCos * lightSampleWeight(path.mis, density, narrow.pdf);
+  return fCos * radiance * passed / density;
 }
 
 // Light from the lamps without extent.
@@ -119,7 +128,7 @@ Rgb punctualLight(const PathScene<Rays>& path, const LightPoint& point, const Su
                   const Media& media, const PixelSampler& sampler, RayCounts& counts) {
   Rgb light(0);
   path.punctual->sample(point, sampler, [&](const PunctualSample& s) {
-    const Rgb fCos = point.bsdf->evaluate(s.wi).fCos;
+    const Rgb fCos = point.bsdf->evaluate(s.wi).fCos + narrowLobes(*point.bsdf, s.wi).fCos;
     if (isBlack(fCos)) return;
     ++counts.shadow;
     Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi, s.distance});

@@ -33,13 +33,14 @@ std::optional<Hit> closestHit(const Rays& rays, const Ray& ray, const PixelSampl
 struct PathState {
   Ray ray;
   Rgb throughput{1};
-  LightPoint from{};  // where the ray leaves; nowhere in particular for the camera's
-  float pdf = 0;      // of the ray's direction at `from`; 0 for the camera and mirrors
-  int depth = 0;      // of the vertex to come
-  int straight = 0;   // vertices so far where the ray just went on; they are no bounces
-  Media media;        // that the ray is in
-  float length = 0;   // metres from the camera
-  Beam beam{};        // around the camera's ray, where textures are filtered
+  LightPoint from{};            // where the ray leaves; nowhere in particular for the camera's
+  float pdf = 0;                // of the ray's direction at `from`; 0 for the camera and mirrors
+  Lobes lobes = Lobes::Narrow;  // that chose the direction; the camera sees as mirrors do
+  int depth = 0;                // of the vertex to come
+  int straight = 0;             // vertices so far where the ray just went on; they are no bounces
+  Media media;                  // that the ray is in
+  float length = 0;             // metres from the camera
+  Beam beam{};                  // around the camera's ray, where textures are filtered
 };
 
 // What the path finds where its ray meets nothing.
@@ -47,7 +48,8 @@ template <class Rays>
 Rgb escapedRadiance(const PathScene<Rays>& path, const PathState& state) {
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   if (state.depth == 0 && path.hideProbe) return Rgb(0);
-  if (state.pdf == 0) return state.throughput * path.lighting.background(origin, direction);
+  if (state.lobes == Lobes::Narrow)
+    return state.throughput * path.lighting.background(origin, direction);
   const auto escaped = path.lighting.escaped(state.from, direction);
   return state.throughput * escaped.radiance *
          bsdfSampleWeight(path.mis, state.pdf, escaped.density);
@@ -80,9 +82,12 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surfa
              const Bsdf& bsdf, const PixelSampler& sampler, std::vector<DirectionSample>& samples,
              RayCounts& counts, Rgb& radiance) {
   const LightPoint before = state.from;
-  state.from = {surface.position, bsdf.normal(), -state.ray.direction, &bsdf, state.depth};
-  if (bsdf.hasContinuousLobe()) {
+  state.from = {surface.position, bsdf.normal(),   -state.ray.direction, &bsdf,
+                state.depth,      bsdf.transmits()};
+  const bool broad = bsdf.has(Lobes::Broad);
+  if (broad)
     radiance += state.throughput * probeLight(path, state.from, surface, sampler, samples, counts);
+  if (broad || bsdf.has(Lobes::Narrow)) {
     if (path.emitters)
       radiance +=
           state.throughput * emitterLight(path, state.from, surface, state.media, sampler, counts);
@@ -108,6 +113,7 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surfa
     state.media.follow(surface, next.wi);
   }
   state.pdf = next.pdf;
+  state.lobes = next.lobes;
   state.ray = {surface.rayOrigin(next.wi), next.wi};
   return true;
 }

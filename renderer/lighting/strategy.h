@@ -20,7 +20,8 @@ struct LightPoint {
   vec3 normal;  // shading normal, on the viewer's side
   vec3 wo;      // unit, towards the viewer
   const Bsdf* bsdf;
-  int depth;  // 0 at the first hit: a strategy may do less on later bounces
+  int depth;               // 0 at the first hit: a strategy may do less on later bounces
+  bool transmits = false;  // light from behind counts as well
 };
 
 // One direction worth a shadow ray, as a directional light: `irradiance`, on a surface that faces
@@ -54,8 +55,8 @@ class LightingStrategy {
   // What the camera and mirrors at `origin` see, for which sample() has no competing estimate.
   virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;
 
-  // Specular lobes narrower than this (GGX's alpha) are not for sample(): they see background(), as
-  // perfect mirrors do.
+  // Specular lobes narrower than this (GGX's alpha) are not for sample(): of the probe they see
+  // background(), as perfect mirrors do. Lamps of the scene light them like any other lobe.
   virtual float mirrorAlpha() const { return 0; }
 
   // False for an approximation, whose error does not vanish with the number of samples.

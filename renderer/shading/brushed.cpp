@@ -16,7 +16,7 @@ Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
       f90_(glm::mix(m.dielectricF90, 1.0f, m.metallic)) {
   wo_.z = std::max(wo_.z, 1e-6f);
   lambdaO_ = ggx::lambda(wo_, alpha_);
-  mirror_ = std::max(alpha_.x, alpha_.y) < mirrorAlpha;
+  narrow_ = std::max(alpha_.x, alpha_.y) < mirrorAlpha;
   const SpecularAlbedo once = AnisotropicTable::get().albedo(wo_, m.roughness, strength);
   const float white = once.a + once.b;
   const auto again = [white](const auto& f0) { return 1.0f + f0 * ((1 - white) / white); };
@@ -35,11 +35,13 @@ Rgb Brushed::fresnel(float cosine) const {
   return (f0_ + (f90_ - f0_) * (c2 * c2 * c)) * gain_;
 }
 
-Bsdf::Value Brushed::evaluate(const vec3& wi) const {
+Bsdf::Value Brushed::evaluate(const vec3& wi, Lobes lobes) const {
   const vec3 local = frame_.toLocal(wi);
   if (local.z <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
-  Bsdf::Value v{diffuse_ * (local.z * kInvPi), (1 - specularShare_) * local.z * kInvPi};
-  if (mirror_) return v;
+  Bsdf::Value v{Rgb(0), 0};
+  if (lobes == Lobes::Broad)
+    v = {diffuse_ * (local.z * kInvPi), (1 - specularShare_) * local.z * kInvPi};
+  if (narrow_ != (lobes == Lobes::Narrow)) return v;
   const vec3 h = glm::normalize(wo_ + local);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   v.fCos += fresnel(glm::dot(wo_, h)) * (d / (1 + lambdaO_ + ggx::lambda(local, alpha_)));
@@ -48,21 +50,17 @@ Bsdf::Value Brushed::evaluate(const vec3& wi) const {
 }
 
 bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
+  out.lobes = Lobes::Broad;
   if (lobe < specularShare_) {
+    if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
     out.wi = frame_.toWorld(local);
     if (local.z <= 0 || glm::dot(geometricNormal_, out.wi) <= 0) return false;
-    if (mirror_) {
-      const float passed = (1 + lambdaO_) / (1 + lambdaO_ + ggx::lambda(local, alpha_));
-      out.weight = fresnel(glm::dot(wo_, h)) * (passed / specularShare_);
-      out.pdf = 0;
-      return true;
-    }
   } else {
     out.wi = frame_.toWorld(squareToCosineHemisphere(u));
   }
-  return completeSample(evaluate(out.wi), out);
+  return completeSample(evaluate(out.wi, out.lobes), out);
 }
 
 }  // namespace chromeball

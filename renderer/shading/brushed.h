@@ -16,9 +16,11 @@ class Brushed {
   Brushed(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0, float strength,
           const vec3& tangent, const Surface& surface, const vec3& wo, float mirrorAlpha);
 
-  Bsdf::Value evaluate(const vec3& wi) const;
+  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
-  bool isMirror() const { return mirror_ && specularShare_ >= 1; }
+  bool has(Lobes lobes) const {
+    return lobes == Lobes::Narrow ? narrow_ : !narrow_ || specularShare_ < 1;
+  }
   const vec3& normal() const { return frame_.z; }
   float albedo() const { return albedo_; }
   float surfaceAlbedo() const { return surfaceAlbedo_; }
@@ -31,7 +33,7 @@ class Brushed {
   vec3 wo_;  // in the frame
   vec2 alpha_;
   float lambdaO_;
-  bool mirror_;
+  bool narrow_;
   Rgb f0_, f90_;
   Rgb gain_;     // on the specular lobe, for what it scatters again
   Rgb diffuse_;  // times what passes the surface

@@ -36,8 +36,9 @@ Bsdf::Bsdf(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0, const
 
 Bsdf::Bsdf(const ExtendedBsdf& extended)
     : extended_(&extended), normal_(extended.normal()), specular_(false), frame_(normal_) {
-  mirror_ = !extended.hasContinuousLobe();
-  specularShare_ = 1;
+  hasBroad_ = extended.has(Lobes::Broad);
+  hasNarrow_ = extended.has(Lobes::Narrow);
+  transmits_ = extended.transmits();
 }
 
 void Bsdf::initSpecular(const MaterialPoint& m, const Rgb& metalF0, const vec3& wo,
@@ -48,7 +49,7 @@ void Bsdf::initSpecular(const MaterialPoint& m, const Rgb& metalF0, const vec3& 
   wo_.z = std::max(wo_.z, 1e-6f);
   alpha_ = m.roughness * m.roughness;
   smooth_ = alpha_ < ggx::kSmoothAlpha;
-  mirror_ = smooth_ || alpha_ < mirrorAlpha;
+  narrow_ = smooth_ || alpha_ < mirrorAlpha;
   f0_ = glm::mix(m.dielectricF0, metalF0, m.metallic);
   f90_ = Rgb(glm::mix(m.dielectricF90, 1.0f, m.metallic));
 
@@ -72,6 +73,8 @@ void Bsdf::initSpecular(const MaterialPoint& m, const Rgb& metalF0, const vec3& 
   const float rest = luminance(diffuseAlbedo + againAlbedo);
   albedo_ = specular + rest;
   specularShare_ = albedo_ > 0 ? specular / albedo_ : 1;
+  hasBroad_ = !narrow_ || specularShare_ < 1;
+  hasNarrow_ = narrow_ && !smooth_;
 }
 
 Rgb Bsdf::fresnel(float cosine) const {
@@ -79,23 +82,26 @@ Rgb Bsdf::fresnel(float cosine) const {
   return f0_ + (f90_ - f0_) * (c2 * c2 * c);
 }
 
-Bsdf::Value Bsdf::evaluate(const vec3& wi) const {
+Bsdf::Value Bsdf::evaluate(const vec3& wi, Lobes lobes) const {
   if (extended_) [[unlikely]]
-    return extended_->evaluate(wi);
+    return extended_->evaluate(wi, lobes);
   const float cosine = glm::dot(normal_, wi);
   if (cosine <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
-  if (!specular_) return {diffuse_ * (cosine * kInvPi), cosine * kInvPi};
-  return evaluateLobes(frame_.toLocal(wi));
+  if (specular_) return evaluateLobes(frame_.toLocal(wi), lobes);
+  if (lobes == Lobes::Narrow) return {Rgb(0), 0};
+  return {diffuse_ * (cosine * kInvPi), cosine * kInvPi};
 }
 
-Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
-  const float cosine = wi.z;
-  Value v;
-  const SpecularAlbedo toLight = energy_.at(cosine);
-  v.fCos = (diffuse_ * (1 - coating_.albedo(toLight)) + again_ * (1 - toLight.a - toLight.b)) *
-           (cosine * kInvPi);
-  v.pdf = (1 - specularShare_) * cosine * kInvPi;
-  if (mirror_) return v;
+Bsdf::Value Bsdf::evaluateLobes(const vec3& wi, Lobes lobes) const {
+  Value v{Rgb(0), 0};
+  if (lobes == Lobes::Broad) {
+    const float cosine = wi.z;
+    const SpecularAlbedo toLight = energy_.at(cosine);
+    v.fCos = (diffuse_ * (1 - coating_.albedo(toLight)) + again_ * (1 - toLight.a - toLight.b)) *
+             (cosine * kInvPi);
+    v.pdf = (1 - specularShare_) * cosine * kInvPi;
+  }
+  if (smooth_ || narrow_ != (lobes == Lobes::Narrow)) return v;
 
   const vec3 h = glm::normalize(wo_ + wi);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
@@ -109,20 +115,16 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi) const {
 bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
   if (extended_) [[unlikely]]
     return extended_->sample(u, lobe, out);
+  out.lobes = Lobes::Broad;
   if (specular_ && lobe < specularShare_) {
+    if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
     if (local.z <= 0) return false;
     out.wi = frame_.toWorld(local);
     if (glm::dot(geometricNormal_, out.wi) <= 0) return false;
-    if (mirror_) {
-      // The density of h cancels all but Fresnel's term and G2 / G1.
-      float passed = 1;
-      if (!smooth_) {
-        const float lambdaO = ggx::lambda(wo_.z, alpha_);
-        passed = (1 + lambdaO) / (1 + lambdaO + ggx::lambda(local.z, alpha_));
-      }
-      out.weight = fresnel(std::min(glm::dot(wo_, h), 1.0f)) * (passed / specularShare_);
+    if (smooth_) {
+      out.weight = fresnel(std::min(wo_.z, 1.0f)) / specularShare_;
       out.pdf = 0;
       return true;
     }
@@ -134,7 +136,7 @@ bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
       return out.pdf > 0 && glm::dot(geometricNormal_, out.wi) > 0;
     }
   }
-  return completeSample(evaluate(out.wi), out);
+  return completeSample(evaluate(out.wi, out.lobes), out);
 }
 
 }  // namespace chromeball

@@ -10,10 +10,19 @@ namespace chromeball {
 // Makes the tables that the scene's materials will ask for, while no path is waiting for them.
 void prepareBsdfs(const Scene& scene);
 
+// Lights in the probe's place would show one by one in narrow lobes, which therefore see the probe
+// itself (LightingStrategy::mirrorAlpha). A BSDF is the sum of its lobes of either kind, and each
+// sum has samples, a density and MIS weights of its own.
+enum class Lobes {
+  Broad,
+  Narrow,  // of GGX's alpha below the limit; perfect mirrors too, which evaluate() does not show
+};
+
 struct BsdfSample {
-  vec3 wi;     // unit, away from the surface
-  Rgb weight;  // f cos / pdf
-  float pdf;   // over solid angle; 0 for a mirror's direction, which nothing else is to sample
+  vec3 wi;      // unit, away from the surface
+  Rgb weight;   // f cos / pdf, both of the lobes that were sampled
+  float pdf;    // over solid angle; 0 for a mirror's direction, which nothing else is to sample
+  Lobes lobes;  // that were sampled
 };
 
 class ExtendedBsdf;
@@ -29,8 +38,7 @@ class ExtendedBsdf;
 class Bsdf {
  public:
   // `wo`: unit, towards the viewer; the surface's normals are on its side. A specular lobe whose
-  // alpha (roughness squared) is less than `mirrorAlpha` counts as a perfect mirror's: sample()
-  // alone finds it, with pdf 0.
+  // alpha (roughness squared) is less than `mirrorAlpha` is a narrow one.
   Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo, float mirrorAlpha = 0)
       : Bsdf(material, material.baseColor * (1 - material.metallic), material.baseColor, surface,
              wo, mirrorAlpha) {}
@@ -46,14 +54,19 @@ class Bsdf {
     Rgb fCos;   // f times |cos| at the shading normal
     float pdf;  // of sample(), over solid angle
   };
-  Value evaluate(const vec3& wi) const;
+  Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
 
   // False where the sampled direction is absorbed. `lobe` in [0, 1) chooses the lobe.
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
 
-  // False for a mirror, on which sampling lights is in vain.
-  bool hasContinuousLobe() const { return !(mirror_ && specularShare_ >= 1); }
+  // Whether evaluate() shows any such lobes, so that lights are worth sampling.
+  bool has(Lobes lobes) const { return lobes == Lobes::Broad ? hasBroad_ : hasNarrow_; }
   const vec3& normal() const { return normal_; }
+  // Whether light may also come from beyond the hemisphere of normal(): through the surface, or to
+  // a layer with a normal of its own.
+  bool isExtended() const { return extended_ != nullptr; }
+  // Whether broad lobes pass light from behind.
+  bool transmits() const { return transmits_; }
 
   // Luminance that is reflected of a uniform white surrounding.
   float albedo() const { return specular_ ? albedo_ : luminance(diffuse_); }
@@ -64,7 +77,7 @@ class Bsdf {
  private:
   void initSpecular(const MaterialPoint& material, const Rgb& metalF0, const vec3& wo,
                     float mirrorAlpha);
-  Value evaluateLobes(const vec3& wi) const;  // in the frame of the normal
+  Value evaluateLobes(const vec3& wi, Lobes lobes) const;  // in the frame of the normal
   Rgb fresnel(float cosine) const;
 
   // Scalar form of the dielectric coating's albedo: S(mu) = f0 a + f90 b + again (1 - a - b).
@@ -77,10 +90,11 @@ class Bsdf {
 
   const ExtendedBsdf* extended_ = nullptr;  // answers in this one's stead where it is set
   vec3 normal_, geometricNormal_;
-  Rgb diffuse_;              // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
+  Rgb diffuse_;  // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
+  bool hasBroad_ = true, hasNarrow_ = false, transmits_ = false;
   bool specular_;            // the members below hold only where this is set
   bool smooth_ = false;      // the specular lobe is a delta
-  bool mirror_ = false;      // it is one, or counts as one
+  bool narrow_ = false;      // it is one, or narrower than the limit
   float specularShare_ = 0;  // probability of sampling the specular lobe
   vec3 wo_;                  // in the frame of the normal
   Frame frame_;
@@ -92,7 +106,7 @@ class Bsdf {
   EnergyTable::Row energy_;
 };
 
-// Completes a sample in direction out.wi, where the lobes have `value`; false where none would have
+// Completes a sample in direction out.wi, where out.lobes have `value`; false where none would have
 // been sampled there. NaN goes on, to be counted.
 inline bool completeSample(const Bsdf::Value& value, BsdfSample& out) {
   if (value.pdf <= 0) return false;

@@ -12,14 +12,8 @@ namespace {
 // The coat as a black dielectric of index 1.5, with its own normal.
 Bsdf coatBsdf(const ExtendedPoint& e, Surface surface, const vec3& wo, float mirrorAlpha) {
   surface.normal = e.clearcoatNormal;
-  return Bsdf({Rgb(0), 0, e.clearcoatRoughness, Rgb(kCoatF0 * e.clearcoat), e.clearcoat}, surface, wo,
-              mirrorAlpha);
-}
-
-bool isMirror(const Bsdf& bsdf) { return !bsdf.hasContinuousLobe(); }
-template <class Lobe>
-bool isMirror(const Lobe& lobe) {
-  return lobe.isMirror();
+  return Bsdf({Rgb(0), 0, e.clearcoatRoughness, Rgb(kCoatF0 * e.clearcoat), e.clearcoat}, surface,
+              wo, mirrorAlpha);
 }
 
 }  // namespace
@@ -75,7 +69,8 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
   forEachPart(*this, [&](auto& part) { total += part.share; });
   forEachPart(*this, [&](auto& part) {
     part.share = total > 0 ? part.share / total : 0;
-    continuous_ = continuous_ || !isMirror(part.lobe);
+    hasBroad_ = hasBroad_ || part.lobe.has(Lobes::Broad);
+    hasNarrow_ = hasNarrow_ || part.lobe.has(Lobes::Narrow);
   });
 }
 
@@ -142,10 +137,10 @@ void ExtendedBsdf::addBase(const MaterialPoint& m, const Rgb& metalF0, const Ext
   }
 }
 
-Bsdf::Value ExtendedBsdf::evaluate(const vec3& wi) const {
+Bsdf::Value ExtendedBsdf::evaluate(const vec3& wi, Lobes lobes) const {
   Bsdf::Value sum{Rgb(0), 0};
   forEachPart(*this, [&](const auto& part) {
-    const Bsdf::Value v = part.lobe.evaluate(wi);
+    const Bsdf::Value v = part.lobe.evaluate(wi, lobes);
     sum.fCos += part.factor * v.fCos;
     sum.pdf += part.share * v.pdf;
   });
@@ -159,7 +154,7 @@ bool ExtendedBsdf::samplePart(const Part<Lobe>& part, vec2 u, float lobe, BsdfSa
     out.weight *= part.factor / part.share;
     return true;
   }
-  return completeSample(evaluate(out.wi), out);
+  return completeSample(evaluate(out.wi, out.lobes), out);
 }
 
 bool ExtendedBsdf::sample(vec2 u, float lobe, BsdfSample& out) const {

@@ -30,9 +30,13 @@ class ExtendedBsdf {
                const RefractiveIndex& index, const Surface& surface, const vec3& wo,
                float mirrorAlpha);
 
-  Bsdf::Value evaluate(const vec3& wi) const;
+  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
-  bool hasContinuousLobe() const { return continuous_; }
+  bool has(Lobes lobes) const { return lobes == Lobes::Broad ? hasBroad_ : hasNarrow_; }
+  // Whether broad lobes pass light from behind.
+  bool transmits() const {
+    return (glass_ && glass_->lobe.has(Lobes::Broad)) || (sheet_ && sheet_->lobe.has(Lobes::Broad));
+  }
   const vec3& normal() const { return normal_; }
 
  private:
@@ -56,7 +60,7 @@ class ExtendedBsdf {
                            float mirrorAlpha, float factor);
 
   vec3 normal_;
-  bool continuous_ = false;
+  bool hasBroad_ = false, hasNarrow_ = false;
   std::optional<Part<Bsdf>> coat_, base_, underFilm_;
   std::optional<Part<Brushed>> brushed_;
   std::optional<Part<Sheen>> sheen_;

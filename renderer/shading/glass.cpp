@@ -44,7 +44,7 @@ Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface
     offset_[c] = f0 - slope_[c] * own;
   }
   smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kUnbending;
-  mirror_ = smooth_ || alpha_ < mirrorAlpha;
+  lobes_ = smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad;
   lambdaO_ = ggx::lambda(wo_.z, alpha_);
   if (smooth_) return;
   const GlassTable& table = GlassTable::get();
@@ -70,8 +70,8 @@ float Glass::albedo() const {
   return luminance(reflectance + (1.0f - reflectance) * tint_);
 }
 
-Bsdf::Value Glass::evaluate(const vec3& wi) const {
-  if (mirror_) return {Rgb(0), 0};
+Bsdf::Value Glass::evaluate(const vec3& wi, Lobes lobes) const {
+  if (!has(lobes)) return {Rgb(0), 0};
   const vec3 local = frame_.toLocal(wi);
   const bool above = local.z > 0;
   if (local.z == 0 || above != (glm::dot(geometricNormal_, wi) > 0)) return {Rgb(0), 0};
@@ -136,14 +136,13 @@ bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
   }
   out.wi = frame_.toWorld(local);
   if ((local.z > 0) != (glm::dot(geometricNormal_, out.wi) > 0)) return false;
-  if (mirror_) {
-    const float passed =
-        smooth_ ? 1 : (1 + lambdaO_) / (1 + lambdaO_ + ggx::lambda(std::fabs(local.z), alpha_));
-    out.weight = weight * (gain_ * passed);
+  out.lobes = lobes_;
+  if (smooth_) {
+    out.weight = weight;
     out.pdf = 0;
     return true;
   }
-  return completeSample(evaluate(out.wi), out);
+  return completeSample(evaluate(out.wi, lobes_), out);
 }
 
 }  // namespace chromeball

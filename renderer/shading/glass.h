@@ -26,9 +26,9 @@ class Glass {
   Glass(const MaterialPoint& material, const RefractiveIndex& index, const Surface& surface,
         const vec3& wo, float mirrorAlpha);
 
-  Bsdf::Value evaluate(const vec3& wi) const;
+  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
-  bool isMirror() const { return mirror_; }
+  bool has(Lobes lobes) const { return !smooth_ && lobes == lobes_; }
   const vec3& normal() const { return frame_.z; }
   float albedo() const;
 
@@ -54,7 +54,8 @@ class Glass {
   float alpha_;
   float lambdaO_;
   Rgb gain_;  // 1 / albedo in one bounce
-  bool smooth_, mirror_;
+  bool smooth_;
+  Lobes lobes_;  // what it is
 };
 
 }  // namespace chromeball

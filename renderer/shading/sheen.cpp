@@ -90,13 +90,15 @@ Sheen::Sheen(const Rgb& color, float roughness, const Surface& surface, const ve
   }
 }
 
-Bsdf::Value Sheen::evaluate(const vec3& wi) const {
+Bsdf::Value Sheen::evaluate(const vec3& wi, Lobes lobes) const {
   const vec3 local = frame_.toLocal(wi);
-  if (local.z <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
+  if (lobes == Lobes::Narrow || local.z <= 0 || glm::dot(geometricNormal_, wi) <= 0)
+    return {Rgb(0), 0};
   return {color_ * lobe(wo_, local, alpha_), squareToUniformHemispherePdf(local)};
 }
 
 bool Sheen::sample(vec2 u, float, BsdfSample& out) const {
+  out.lobes = Lobes::Broad;
   out.wi = frame_.toWorld(squareToUniformHemisphere(u));
   return completeSample(evaluate(out.wi), out);
 }

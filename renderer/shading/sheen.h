@@ -28,9 +28,9 @@ class Sheen {
  public:
   Sheen(const Rgb& color, float roughness, const Surface& surface, const vec3& wo);
 
-  Bsdf::Value evaluate(const vec3& wi) const;
+  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
-  bool isMirror() const { return false; }
+  bool has(Lobes lobes) const { return lobes == Lobes::Broad; }
   float albedo() const { return luminance(color_) * albedo_; }
   // Share that what lies beneath does not get.
   float surfaceAlbedo() const { return maxComponent(color_) * albedo_; }

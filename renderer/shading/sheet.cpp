@@ -13,7 +13,7 @@ Sheet::Sheet(const Rgb& share, float roughness, const Surface& surface, const ve
       share_(share),
       alpha_(roughness * roughness),
       smooth_(alpha_ < ggx::kSmoothAlpha),
-      mirror_(smooth_ || alpha_ < mirrorAlpha),
+      lobes_(smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad),
       gain_(1) {
   localWo_.z = std::max(localWo_.z, 1e-6f);
   lambdaO_ = ggx::lambda(localWo_.z, alpha_);
@@ -22,9 +22,9 @@ Sheet::Sheet(const Rgb& share, float roughness, const Surface& surface, const ve
   gain_ = 1 / (white.a + white.b);
 }
 
-Bsdf::Value Sheet::evaluate(const vec3& wi) const {
+Bsdf::Value Sheet::evaluate(const vec3& wi, Lobes lobes) const {
   vec3 local = frame_.toLocal(wi);
-  if (mirror_ || local.z >= 0 || glm::dot(geometricNormal_, wi) >= 0) return {Rgb(0), 0};
+  if (!has(lobes) || local.z >= 0 || glm::dot(geometricNormal_, wi) >= 0) return {Rgb(0), 0};
   local.z = -local.z;
   const vec3 h = glm::normalize(localWo_ + local);
   const float d = ggx::distribution(h, alpha_) / (4 * localWo_.z);
@@ -33,7 +33,7 @@ Bsdf::Value Sheet::evaluate(const vec3& wi) const {
 
 bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
   if (smooth_) {
-    out = {-wo_, share_, 0};
+    out = {-wo_, share_, 0, lobes_};
     return true;
   }
   const vec3 h = ggx::sampleVisibleNormal(localWo_, alpha_, u);
@@ -42,9 +42,8 @@ bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
   local.z = -local.z;
   out.wi = frame_.toWorld(local);
   if (glm::dot(geometricNormal_, out.wi) >= 0) return false;
-  out.weight = share_ * (gain_ * (1 + lambdaO_) / (1 + lambdaO_ + ggx::lambda(-local.z, alpha_)));
-  out.pdf = mirror_ ? 0 : evaluate(out.wi).pdf;
-  return mirror_ || out.pdf > 0;
+  out.lobes = lobes_;
+  return completeSample(evaluate(out.wi, lobes_), out);
 }
 
 }  // namespace chromeball

@@ -17,9 +17,9 @@ class Sheet {
   Sheet(const Rgb& share, float roughness, const Surface& surface, const vec3& wo,
         float mirrorAlpha);
 
-  Bsdf::Value evaluate(const vec3& wi) const;
+  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
-  bool isMirror() const { return mirror_; }
+  bool has(Lobes lobes) const { return !smooth_ && lobes == lobes_; }
   float albedo() const { return luminance(share_); }
 
  private:
@@ -28,8 +28,9 @@ class Sheet {
   vec3 wo_, localWo_;  // in the world and in the frame
   Rgb share_;
   float alpha_, lambdaO_;
-  bool smooth_, mirror_;
-  float gain_;  // 1 / albedo in one bounce of a white lobe
+  bool smooth_;
+  Lobes lobes_;  // what it is
+  float gain_;   // 1 / albedo in one bounce of a white lobe
 };
 
 }  // namespace chromeball
