@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "lighting/constellations.h"
 #include "lighting/irradiance_fit.h"
 #include "math/error.h"
@@ -10,6 +12,7 @@
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
+#include "shading/extended_bsdf.h"
 #include "test_scene.h"
 
 namespace chromeball {
@@ -27,20 +30,20 @@ void expectNear(const Rgb& a, const dvec3& b, double relative) {
 
 // Sum over the samples at `point` of f(wi) x irradiance, averaged over many random numbers.
 template <class F>
-dvec3 meanEstimate(const LightingStrategy& lighting, const LightPoint& point, uint64_t seed, F f) {
-  constexpr uint32_t kSamples = 1024;
-  const SobolTable table(kSamples, dimension::kVertex + 2 * dimension::kPerVertex, seed);
+dvec3 meanEstimate(const LightingStrategy& lighting, const LightPoint& point, uint64_t seed, F f,
+                   uint32_t count = 1024) {
+  const SobolTable table(count, dimension::kVertex + 2 * dimension::kPerVertex, seed);
   PixelSampler sampler(table, seed);
   sampler.startPixel(3, 5, 0);
   dvec3 sum(0);
-  for (uint32_t i = 0; i < kSamples; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     sampler.startSample(i);
     sampler.startVertex(point.depth);
     std::vector<DirectionSample> samples;
     lighting.sample(point, sampler, samples);
     for (const DirectionSample& s : samples) sum += dvec3(s.irradiance) * double(f(s.wi));
   }
-  return sum / double(kSamples);
+  return sum / double(count);
 }
 
 TEST(DeltaLights, aMattePlaneHasTheIrradianceOfTheLights) {
@@ -171,6 +174,86 @@ TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
     EXPECT_GT(tTest(Moments::of(cosines[c]), allCosine[c]), sidak(1e-3, 6));
     EXPECT_GT(tTest(Moments::of(others[c]), allOther[c]), sidak(1e-3, 6));
     EXPECT_NEAR(Moments::of(cosines[c]).mean / allCosine[c], 1, 1e-2);
+  }
+}
+
+// A point whose light may come from behind its normal, or from beyond it to a layer that has
+// another.
+class ExtendedLightPoint {
+ public:
+  ExtendedLightPoint(float roughness, float transmission, bool thinWalled, bool coated) {
+    Surface surface{};
+    surface.geometricNormal = {0, 0, 1};
+    surface.normal = glm::normalize(vec3(1, 0.5f, 0.8f));  // as a bump's; the coat has none
+    surface.frontFace = true;
+    Material material;
+    material.roughness = roughness;
+    material.extended.emplace();
+    material.extended->transmission = transmission;
+    material.extended->thinWalled = thinWalled;
+    prepareExtendedBsdf(material);
+    ExtendedPoint extended;
+    extended.transmission = transmission;
+    extended.thinWalled = thinWalled;
+    extended.clearcoat = coated;
+    extended.clearcoatRoughness = 0.6f;
+    extended.clearcoatNormal = surface.geometricNormal;
+    const vec3 wo = glm::normalize(vec3(0.3f, -0.2f, 1));
+    const MaterialPoint tinted{Rgb(0.8f, 0.7f, 0.6f), 0, roughness, Rgb(0.04f), 1};
+    lobes_.emplace(tinted, extended, RefractiveIndex{Rgb(1.5f), 1.5f}, surface, wo, 0);
+    bsdf_.emplace(*lobes_);
+    point_ = {vec3(0), bsdf_->normal(), wo, &*bsdf_, 0, bsdf_->transmits()};
+  }
+  ExtendedLightPoint(const ExtendedLightPoint&) = delete;
+
+  LightPoint at(int depth) const {
+    LightPoint point = point_;
+    point.depth = depth;
+    return point;
+  }
+  float reflected(const vec3& wi) const { return bsdf_->evaluate(wi).fCos.y; }
+  float fromBeyond(const vec3& wi) const {
+    return glm::dot(wi, bsdf_->normal()) > 0 ? 0 : reflected(wi);
+  }
+
+ private:
+  std::optional<ExtendedBsdf> lobes_;
+  std::optional<Bsdf> bsdf_;
+  LightPoint point_;
+};
+
+// No light that shines on a surface may be out of the reach of later hits, whatever the strategy.
+TEST(SlowDeltaLights, laterHitsReachEveryLightThatShines) {
+  struct Case {
+    const char* name;
+    float roughness, transmission;
+    bool thinWalled, coated;
+  };
+  const Probe probe(studioProbe({64, 32}), 70);
+  for (const std::string_view name : strategyNames()) {
+    const auto lighting = makeStrategy(std::string(name), probe, Mis::Balance, "test");
+    if (lighting->mirrorAlpha() == 0) continue;  // it samples the probe
+    for (const Case& c : {Case{"body", 0.4f, 1, false, false},
+                          {"rougher body", 0.9f, 1, false, false},
+                          {"sheet", 0.5f, 1, true, false},
+                          {"half body", 0.5f, 0.5f, false, false},
+                          {"half sheet", 0.5f, 0.5f, true, false},
+                          {"coat", 0.5f, 0, true, true},
+                          {"coated body", 0.5f, 1, false, true}}) {
+      const ExtendedLightPoint here(c.roughness, c.transmission, c.thinWalled, c.coated);
+      const auto mean = [&](int depth, auto f) {
+        return meanEstimate(*lighting, here.at(depth), 1, f, depth == 0 ? 1 : 256);
+      };
+      const auto reflected = [&](const vec3& wi) { return here.reflected(wi); };
+      const auto fromBeyond = [&](const vec3& wi) { return here.fromBeyond(wi); };
+      const dvec3 all = mean(0, reflected), few = mean(1, reflected);
+      const dvec3 allBeyond = mean(0, fromBeyond), fewBeyond = mean(1, fromBeyond);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(few[k] / all[k], 1, 0.02) << name << ", " << c.name;
+        EXPECT_NEAR(fewBeyond[k] / all[k], allBeyond[k] / all[k], 0.02) << name << ", " << c.name;
+      }
+      EXPECT_GT(allBeyond.y, 1e-3 * all.y) << name << ", " << c.name;
+    }
   }
 }
 

@@ -2,12 +2,19 @@
 
 #include <limits>
 
+#include "shading/bsdf.h"
+
 namespace chromeball {
 namespace {
 
-// In proportion to the light of a Lambertian surface; positive wherever a light shines on any.
-float importance(const DirectionSample& light, const vec3& normal) {
-  return luminance(light.irradiance) * std::max(glm::dot(light.wi, normal), 0.0f);
+constexpr float kDelta = std::numeric_limits<float>::infinity();  // density of a direction alone
+
+// In proportion to the light of a Lambertian surface, which is positive wherever a plain BSDF is;
+// where light may come from behind the normal, in proportion to what the BSDF makes of it.
+float importance(const DirectionSample& light, const LightPoint& point) {
+  if (point.bsdf && point.bsdf->isExtended()) [[unlikely]]
+    return luminance(light.irradiance * point.bsdf->evaluate(light.wi).fCos);
+  return luminance(light.irradiance) * std::max(glm::dot(light.wi, point.normal), 0.0f);
 }
 
 }  // namespace
@@ -17,8 +24,7 @@ DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const 
   const glm::quat turn = glm::angleAxis(glm::radians(probe.rotationDegrees()), vec3(0, 1, 0));
   for (const DirectionalLight& light : lights)
     if (!isBlack(light.irradiance))
-      lights_.push_back({glm::normalize(turn * light.direction), light.irradiance,
-                         std::numeric_limits<float>::infinity()});
+      lights_.push_back({glm::normalize(turn * light.direction), light.irradiance, kDelta});
 }
 
 void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
@@ -27,16 +33,26 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
     out.insert(out.end(), lights_.begin(), lights_.end());
     return;
   }
+  // First the lights that shine here, with their importance in the density's place; then, of these,
+  // the chosen ones.
+  const size_t first = out.size();
   float total = 0;
-  for (const DirectionSample& light : lights_) total += importance(light, point.normal);
+  for (const DirectionSample& light : lights_)
+    if (const float share = importance(light, point); share > 0) {
+      total += share;
+      out.push_back({light.wi, light.irradiance, share});
+    }
   const float step = total / kLater;
   float target = step * sampler.get1(dimension::kLight), sum = 0;
-  for (const DirectionSample& light : lights_) {
-    const float share = importance(light, point.normal);
-    sum += share;
-    for (; sum > target; target += step)
-      out.push_back({light.wi, light.irradiance * (step / share), light.density});
+  size_t kept = first;
+  for (size_t i = first; i < out.size(); ++i) {
+    const float share = out[i].density;
+    int times = 0;
+    for (sum += share; sum > target; target += step) ++times;
+    if (times > 0)
+      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / share), kDelta};
   }
+  out.resize(kept);
 }
 
 }  // namespace chromeball

@@ -10,8 +10,9 @@ namespace chromeball {
 // and see nothing of the probe itself; the camera and mirrors, perfect or nearly so, see the probe
 // and none of the lights (HDRI book, 9.6.2). So each energy counts once.
 //
-// The first hit is lit by all lights. Later ones get kLater lights chosen in proportion to
-// irradiance x cosine, and raised by as much: less noise for the time than all of them.
+// The first hit is lit by all lights. Later ones get kLater choices among them in proportion to
+// irradiance x cosine, or x BSDF where light may come from behind, and raised by as much: less
+// noise for the time than all of them.
 class DeltaLights : public LightingStrategy {
  public:
   static constexpr int kLater = 4;

@@ -86,29 +86,34 @@ void Product::fillBin(int bin, const std::vector<double>& cosines) {
     lifts_[size_t(bin) * field_.blocks() + block] = float(cosines[block] * field_.total() / total);
 }
 
-DirectionSample Product::sampleDirection(const vec3& normal, double u, double v) const {
+float Product::lift(const LightPoint& point, int block) const {
+  const float front = lift(binOf(point.normal), block);
+  return point.transmits ? 0.5f * (front + lift(binOf(-point.normal), block)) : front;
+}
+
+DirectionSample Product::sampleDirection(const LightPoint& point, double u, double v) const {
   if (!(field_.total() > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
-  const int bin = binOf(normal);
+  const bool behind = point.transmits && u >= 0.5;
+  if (point.transmits) u = 2 * u - behind;
+  const int bin = binOf(behind ? -point.normal : point.normal);
   const int row = rows_.sample(bin, v);
   const int block = row * field_.columns() + columns_.sample(bin * field_.rows() + row, u);
-  const LuminanceField::Point point = field_.sample(block, u, v);
-  const float density = point.weight * field_.scale() * lift(bin, block);
-  return {point.direction, point.radiance / density, density};
+  const LuminanceField::Point seen = field_.sample(block, u, v);
+  const float density = seen.weight * field_.scale() * lift(point, block);
+  return {seen.direction, seen.radiance / density, density};
 }
 
 void Product::sample(const LightPoint& point, const PixelSampler& sampler,
                      std::vector<DirectionSample>& out) const {
-  const DirectionSample sample =
-      sampleDirection(point.normal, sampler.bits(dimension::kLight) * 0x1p-32,
-                      sampler.bits(dimension::kLight + 1) * 0x1p-32);
+  const DirectionSample sample = sampleDirection(point, sampler.bits(dimension::kLight) * 0x1p-32,
+                                                 sampler.bits(dimension::kLight + 1) * 0x1p-32);
   if (sample.density > 0) out.push_back(sample);
 }
 
 LightingStrategy::Escaped Product::escaped(const LightPoint& point, const vec3& wi) const {
   const Probe::Position p = probe_.locate(wi);
   const LuminanceField::Point seen = field_.at(wi, p);
-  return {seen.radiance,
-          seen.weight * field_.scale() * lift(binOf(point.normal), field_.blockOf(p))};
+  return {seen.radiance, seen.weight * field_.scale() * lift(point, field_.blockOf(p))};
 }
 
 }  // namespace chromeball

@@ -12,8 +12,9 @@ namespace chromeball {
 // distribution of their own, luminance x the mean cosine between block and bin, with a share
 // wherever the cosine can be positive; inside its block a direction is chosen by luminance alone.
 //   density = (luminance's own density) x lift(bin, block)
-// is known for every direction, so that MIS goes on. What a specular lobe reflects is left to the
-// BSDF's samples.
+// is known for every direction, so that MIS goes on. Where the surface transmits, half of the
+// samples are for the cosine with the normal's opposite. What a specular lobe reflects is left to
+// the BSDF's samples.
 class Product : public LightingStrategy {
  public:
   explicit Product(const Probe& probe);
@@ -25,12 +26,13 @@ class Product : public LightingStrategy {
   bool unbiased() const override { return true; }
 
   // In terms of two numbers in [0, 1), for tests. Black probes give density 0.
-  DirectionSample sampleDirection(const vec3& normal, double u, double v) const;
+  DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
 
  private:
   // From the mean cosine of each block with the bin's normals.
   void fillBin(int bin, const std::vector<double>& cosines);
   float lift(int bin, int block) const { return lifts_[size_t(bin) * field_.blocks() + block]; }
+  float lift(const LightPoint& point, int block) const;
 
   const Probe& probe_;
   BlockedField field_;

@@ -15,8 +15,8 @@ namespace chromeball {
 // by power: with four, that takes 45% fewer rays to the same noise. The probe becomes the remainder
 // plus discs for every ray, mirrors' and the camera's as well, so energy is counted once. The only
 // bias is the shape of the suns, which highlights and penumbras show: each is a disc with the
-// irradiance and the spread of what it stands for (probe/sun_extraction.h). (In the row of texels at
-// a pole, where interpolation between texels adds light, discs have up to 8% less.)
+// irradiance and the spread of what it stands for (probe/sun_extraction.h). (In the row of texels
+// at a pole, where interpolation between texels adds light, discs have up to 8% less.)
 //
 // All samples are weighted together by the balance heuristic: in a direction that several of the
 // techniques can find, density is the sum of theirs, and radiance that of remainder and discs.
