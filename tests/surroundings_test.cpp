@@ -1,6 +1,8 @@
 // Surroundings at a finite distance.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "floor_in_surroundings.h"
 
 namespace chromeball {
@@ -113,6 +115,42 @@ TEST(Surroundings, DensitiesAgree) {
         }
       }
     }
+}
+
+// The lamps that `suns` makes of a probe's sources light what is matte; the camera and mirrors see
+// the probe as it was taken.
+TEST(Surroundings, SunsAreNotSeen) {
+  Image map = spotted();
+  map.setRgb(12, 4, Rgb(6000, 4000, 3000));
+  const Probe probe(map, 25);
+  ASSERT_FALSE(makeStrategy("suns", probe, Mis::Balance, "test")->unbiased()) << "it has one";
+  Scene scene;
+  Material mirror;
+  mirror.roughness = 0;
+  mirror.doubleSided = true;
+  addSphere(scene, addMaterial(scene, mirror), {0.8f, 0.6f, -1}, 0.4f, 24);
+  const Accel accel(scene);
+  const vec3 eye(0, 1.2f, 0.5f);
+  vec3 brightest(0, -1, 0);
+  for (uint64_t i = 0; i < 20000; ++i)
+    if (const vec3 d = sphereDirection(i);
+        luminance(probe.radiance(d)) > luminance(probe.radiance(brightest)))
+      brightest = d;
+  const std::atomic<bool> stop = false;
+  for (const Surroundings& s : {box(), dome()}) {
+    const auto picture = [&](const char* name) {
+      // Towards the source, past the ball.
+      const vec3 to = s.behind(s.capture, brightest).position;
+      const Camera camera = Camera::lookAt(eye, to, {0, 1, 0}, 1.6f);
+      return render(
+                 scene, accel, camera, *inside(s, name, probe), smallRender(32, 32, 4, 2),
+                 [](double) {}, stop)
+          .film.mean();
+    };
+    const Image seen = picture("suns"), expected = picture("importance");
+    EXPECT_EQ(seen.texels, expected.texels);
+    EXPECT_GT(*std::max_element(expected.texels.begin(), expected.texels.end()), 1000);
+  }
 }
 
 // Far away they are the distant probe.
