@@ -49,6 +49,7 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
   getrusage(RUSAGE_SELF, &usage);
   const uint64_t rays = result.rays.camera + result.rays.shadow + result.rays.bounce;
   const std::string strategy = resolveStrategy(job.strategy.name);
+  const DepthCut& cut = result.rays.depthCut;
   Report r;
   r.json = {
       {"version", CHROMEBALL_VERSION},
@@ -59,6 +60,7 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
       {"height", result.film.height()},
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
+      {"max_transmission_depth", job.settings.maxTransmissionDepth},
       {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
       {"seconds",
        {{"load", seconds.load},
@@ -77,6 +79,9 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
         {"negative", result.invalid.of(Defect::Negative)}}},
       {"clamped",
        {{"samples", result.clamped.count}, {"light_removed", result.clamped.shareRemoved()}}},
+      {"depth_cut",
+       {{"max_depth", cut.share(cut.byDepth)},
+        {"max_transmission_depth", cut.share(cut.byTransmission)}}},
       {"noise", noise.noise},  // NaN becomes null
       {"noise_median", noise.median},
       {"noise_p95", noise.p95},
@@ -154,8 +159,15 @@ void writeStats(const std::string& path, const nlohmann::json& json) {
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
+void sayDepthCut(const char* option, int depth, double share) {
+  constexpr double kWorthSaying = 0.01;
+  if (share > kWorthSaying)
+    warn(fmt::format("{} {} cut about {:.2g}% of the light; a higher one finds it", option, depth,
+                     100 * share));
+}
+
 // Light that the picture lacks is never passed over in silence.
-void sayWhatIsMissing(const RenderResult& result) {
+void sayWhatIsMissing(const RenderResult& result, const RenderSettings& settings) {
   if (const InvalidSamples& invalid = result.invalid; invalid.total())
     warn(fmt::format(
         "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
@@ -165,6 +177,10 @@ void sayWhatIsMissing(const RenderResult& result) {
   if (result.clamped.count)
     warn(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the picture's light",
                      result.clamped.count, 100 * result.clamped.shareRemoved()));
+  const DepthCut& cut = result.rays.depthCut;
+  sayDepthCut("--max-depth", settings.maxDepth, cut.share(cut.byDepth));
+  sayDepthCut("--max-transmission-depth", settings.maxTransmissionDepth,
+              cut.share(cut.byTransmission));
 }
 
 void render(const RenderOptions& options) {
@@ -211,7 +227,7 @@ void render(const RenderOptions& options) {
   report.json.update(rendered.details);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 
-  sayWhatIsMissing(result);
+  sayWhatIsMissing(result, job.settings);
   for (const std::string& note : rendered.notes) warn(note);
   if (result.interrupted && result.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; what there is: {}",

@@ -54,6 +54,10 @@ void checkRanges(const RenderOptions& o) {
   if (o.maxDepth)
     require(*o.maxDepth >= 0 && *o.maxDepth <= kMostDepth, "--max-depth", *o.maxDepth,
             fmt::format("a number from 0 to {}", kMostDepth));
+  if (o.maxTransmissionDepth)
+    require(*o.maxTransmissionDepth >= 0 && *o.maxTransmissionDepth <= kMostDepth,
+            "--max-transmission-depth", *o.maxTransmissionDepth,
+            fmt::format("a number from 0 to {}", kMostDepth));
   if (o.time) require(*o.time > 0 && std::isfinite(*o.time), "--time", *o.time, "above 0 seconds");
   if (o.noise)
     require(*o.noise > 0 && std::isfinite(*o.noise), "--noise", *o.noise, "above 0 percent");
@@ -107,6 +111,7 @@ RenderJob planJob(const RenderOptions& o) {
     if (o.noise) file.noiseLimit = *o.noise / 100;
   }
   if (o.maxDepth) file.maxDepth = int(*o.maxDepth);
+  if (o.maxTransmissionDepth) file.maxTransmissionDepth = int(*o.maxTransmissionDepth);
   overlay(file.seed, o.seed);
 
   job.size = file.size;
@@ -124,6 +129,8 @@ RenderJob planJob(const RenderOptions& o) {
   const bool limited = file.timeLimit || file.noiseLimit;
   settings.samples = file.samples.value_or(limited ? kMostSamples : settings.samples);
   settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
+  settings.maxTransmissionDepth =
+      file.maxTransmissionDepth.value_or(settings.maxTransmissionDepth);
   settings.seed = file.seed.value_or(0);
   settings.hideProbe = o.transparent;
   settings.clamp = o.clamp;
@@ -178,6 +185,8 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--size", o.size, "WxH in pixels");
   command.add_option("--mis", o.mis, "off, balance or power");
   command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
+  command.add_option("--max-transmission-depth", o.maxTransmissionDepth,
+                     "Bounces in and on bodies of glass, which --max-depth does not count (64)");
   command.add_option("--camera", o.camera, "Name of one of the model's cameras");
   command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
   command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");

@@ -18,7 +18,7 @@ struct RenderOptions {
   std::vector<std::string> outputs, aovs;
   std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation, variant;
   std::optional<float> rotation, scale, clamp;
-  std::optional<int64_t> samples, maxDepth;
+  std::optional<int64_t> samples, maxDepth, maxTransmissionDepth;
   std::optional<double> time, noise, animationTime, memory;
   std::optional<uint64_t> seed;
   int threads = 0;

@@ -6,6 +6,7 @@ Sample DifferentialIntegrator::sample(const CameraSample& camera, PathMemory& me
                                       FirstHit* first) const {
   const DifferentialSample s = differentialRadiance(scene_, camera, memory, first);
   const Rgb withObjects = s.both + s.withObjects, without = s.both + s.without;
+  memory.rays.depthCut.addFound(withObjects);
   for (const Rgb& radiance : {withObjects, without})
     if (const auto defect = defectOf(radiance, false)) return {radiance, defect};
 

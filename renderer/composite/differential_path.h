@@ -110,7 +110,8 @@ inline DifferentialSample differentialRadiance(const DifferentialScene& scene,
   const WatchedRays rays(whole.rays, local.rays);
   const PathScene<WatchedRays> shared{
       whole.scene,     rays,           whole.lighting, whole.emitters,   whole.mis, whole.maxDepth,
-      whole.hideProbe, whole.punctual, whole.mirrorAlpha};
+      whole.hideProbe, whole.punctual, whole.mirrorAlpha,
+      whole.maxTransmissionDepth};
 
   DifferentialSample sample;
   PathState state = camera.path();
@@ -127,6 +128,7 @@ inline DifferentialSample differentialRadiance(const DifferentialScene& scene,
       sample.without += followPath(local, state, hit, sampler, samples, counts, nullptr);
       return sample;
     }
+    watchDepth(whole, state, hit, sampler, samples, counts);
     PathState before = state;
     Rgb found(0);
     const bool goesOn = pathVertex(shared, state, hit, sampler, samples, counts, first, found);

@@ -209,9 +209,11 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   const std::unique_ptr<Emitters> emitters = Emitters::make(problem.scene);
   const LocalRays rays{local, problem.isObject};
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(problem.scene);
-  const PathScene<LocalRays> path{problem.scene, rays,         problem.lighting,
-                                  emitters.get(), settings.mis, settings.maxDepth,
-                                  true,           punctual.get()};
+  PathScene<LocalRays> path{problem.scene,  rays,         problem.lighting,
+                            emitters.get(), settings.mis, settings.maxDepth,
+                            true,           punctual.get()};
+  path.maxTransmissionDepth = settings.maxTransmissionDepth;
+  path.measuresCut = false;
   prepareBsdfs(problem.scene);
   bool shines = false;  // also where it is black
   for (size_t i = 0; i < problem.isObject.size(); ++i) {

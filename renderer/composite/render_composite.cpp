@@ -70,12 +70,15 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
   constexpr bool kHideProbe = true;  // the plate is the background
-  const DifferentialScene worlds{{scene, accel, lighting, emitters.get(), settings.mis,
-                                  settings.maxDepth, kHideProbe, punctual.get()},
-                                 {scene, localRays, lighting, emitters.get(), settings.mis,
-                                  settings.maxDepth, kHideProbe, punctual.get()},
-                                 isObject,
-                                 looksBehind};
+  DifferentialScene worlds{{scene, accel, lighting, emitters.get(), settings.mis,
+                            settings.maxDepth, kHideProbe, punctual.get()},
+                           {scene, localRays, lighting, emitters.get(), settings.mis,
+                            settings.maxDepth, kHideProbe, punctual.get()},
+                           isObject,
+                           looksBehind};
+  worlds.whole.maxTransmissionDepth = worlds.local.maxTransmissionDepth =
+      settings.maxTransmissionDepth;
+  worlds.local.measuresCut = false;  // of the light with objects
   prepareBsdfs(scene);
 
   DifferentialFilm film(settings.width, settings.height);

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "integrate/depth_cut.h"
 #include "integrate/media.h"
 #include "lighting/emitters.h"
 #include "lighting/punctual.h"
@@ -17,9 +18,11 @@ namespace chromeball {
 
 struct RayCounts {
   uint64_t camera = 0, shadow = 0, bounce = 0;
+  DepthCut depthCut;
 
   void add(const RayCounts& other) {
     camera += other.camera, shadow += other.shadow, bounce += other.bounce;
+    depthCut.add(other.depthCut);
   }
 };
 
@@ -36,6 +39,8 @@ struct PathScene {
   bool hideProbe = false;                    // from the camera
   const PunctualLights* punctual = nullptr;  // null where there are none
   float mirrorAlpha = lighting.mirrorAlpha();
+  int maxTransmissionDepth = kUsualTransmissionDepth;  // bounces in bodies; not part of maxDepth
+  bool measuresCut = true;                             // what the limits of depth take (DepthCut)
 };
 
 // Weight of a sample found with density `own` (> 0; infinite for a delta light) that the other

@@ -2,6 +2,7 @@
 // sampling.
 #pragma once
 
+#include <climits>
 #include <optional>
 #include <vector>
 
@@ -38,10 +39,22 @@ struct PathState {
   Lobes lobes = Lobes::Narrow;  // that chose the direction; the camera sees as mirrors do
   int depth = 0;                // of the vertex to come
   int straight = 0;             // vertices so far where the ray just went on; they are no bounces
+  int transmissions = 0;        // bounces in and on bodies of glass, which have a limit of their own
+  bool isMeasured = false;      // measureCut() has taken the path into account
   Media media;                  // that the ray is in
   float length = 0;             // metres from the camera
   Beam beam{};                  // around the camera's ray, where textures are filtered
+
+  // Those that PathScene::maxDepth limits.
+  int bounces() const { return depth - straight - transmissions; }
 };
+
+// Whether a bounce is one of light on its way through a body: all but what a rough surface throws
+// back from outside.
+inline bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
+  return surface.material->isBody() &&
+         (bounce.pdf == 0 || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
+}
 
 // What the path finds where its ray meets nothing.
 template <class Rays>
@@ -76,18 +89,20 @@ inline void goOn(PathState& state, const Surface& surface) {
 }
 
 // Adds the light that comes straight to a vertex and chooses where the path goes on from there;
-// false where it ends.
+// false where it ends. Where bounces are used up, only a smooth body passes light on: its light
+// samples find nothing that would be left out.
 template <bool kExtended, class Rays>
 bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surface,
              const Bsdf& bsdf, const PixelSampler& sampler, std::vector<DirectionSample>& samples,
              RayCounts& counts, Rgb& radiance) {
+  const bool spent = state.bounces() == path.maxDepth;
   const LightPoint before = state.from;
   state.from = {surface.position, bsdf.normal(),   -state.ray.direction, &bsdf,
                 state.depth,      bsdf.transmits()};
   const bool broad = bsdf.has(Lobes::Broad);
-  if (broad)
+  if (broad && !spent)
     radiance += state.throughput * probeLight(path, state.from, surface, sampler, samples, counts);
-  if (broad || bsdf.has(Lobes::Narrow)) {
+  if ((broad || bsdf.has(Lobes::Narrow)) && !spent) {
     if (path.emitters)
       radiance +=
           state.throughput * emitterLight(path, state.from, surface, state.media, sampler, counts);
@@ -100,6 +115,13 @@ bool scatter(const PathScene<Rays>& path, PathState& state, const Surface& surfa
   BsdfSample next;
   if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
     return false;
+  if constexpr (kExtended) {
+    const bool transmission = isTransmission(surface, next);
+    if (transmission ? state.transmissions == path.maxTransmissionDepth || (spent && next.pdf > 0)
+                     : spent)
+      return false;
+    state.transmissions += transmission;
+  }
   state.throughput *= next.weight;
   if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
   ++state.depth;
@@ -165,7 +187,8 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     return true;
   }
   if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance);
-  const bool ends = state.depth - state.straight == path.maxDepth || surface.material->unlit;
+  const bool ends = surface.material->unlit ||
+                    (state.bounces() == path.maxDepth && !surface.material->isBody());
   if (ends && !(first && state.depth == 0))
     return passThrough(path.scene, state, instance, surface);
 
@@ -181,6 +204,47 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
   return scatter<false>(path, state, surface, bsdf, sampler, samples, counts, radiance);
 }
 
+template <class Rays>
+Rgb followPath(const PathScene<Rays>& path, PathState state, std::optional<Hit> hit,
+               PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
+               FirstHit* first);
+
+// Estimates the light that the limits of depth keep from the picture: of the paths that reach one,
+// one in kEvery is followed from there twice, by the same random numbers, with the limits as they
+// are and with kFarther bounces more. The picture takes no part of this.
+template <class Rays>
+[[gnu::noinline]] void measureCut(const PathScene<Rays>& path, PathState& state, const Hit& hit,
+                                  PixelSampler& sampler, std::vector<DirectionSample>& samples,
+                                  RayCounts& counts) {
+  constexpr uint32_t kEvery = 64;
+  constexpr int kFarther = 256;
+  constexpr uint64_t kPurpose = 0x637574;  // apart from other uses of the key
+  state.isMeasured = true;
+  if (hash(sampler.sampleKey(), kPurpose) % kEvery != 0) return;
+  PathScene<Rays> limited = path;
+  limited.measuresCut = false;
+  PathScene<Rays> farther = limited;
+  farther.maxDepth = std::min(path.maxDepth, INT_MAX - kFarther) + kFarther;
+  farther.maxTransmissionDepth =
+      std::min(path.maxTransmissionDepth, INT_MAX - kFarther) + kFarther;
+  RayCounts uncounted;
+  const auto follow = [&](const PathScene<Rays>& scene) {
+    return luminance(followPath(scene, state, hit, sampler, samples, uncounted, nullptr));
+  };
+  const float cut = follow(farther) - follow(limited);
+  sampler.startVertex(state.depth);
+  if (std::isfinite(cut)) counts.depthCut.add(state.bounces() == path.maxDepth, kEvery * cut);
+}
+
+// To be called before each vertex.
+template <class Rays>
+void watchDepth(const PathScene<Rays>& path, PathState& state, const std::optional<Hit>& hit,
+                PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts) {
+  if (!path.measuresCut || !hit || state.isMeasured) return;
+  if (state.bounces() == path.maxDepth || state.transmissions == path.maxTransmissionDepth)
+    measureCut(path, state, *hit, sampler, samples, counts);
+}
+
 // What a path that stands before `hit` goes on to find.
 template <class Rays>
 Rgb followPath(const PathScene<Rays>& path, PathState state, std::optional<Hit> hit,
@@ -188,11 +252,12 @@ Rgb followPath(const PathScene<Rays>& path, PathState state, std::optional<Hit> 
                FirstHit* first) {
   Rgb radiance(0);
   sampler.startVertex(state.depth);
-  while (pathVertex(path, state, hit, sampler, samples, counts, first, radiance)) {
+  for (;;) {
+    watchDepth(path, state, hit, sampler, samples, counts);
+    if (!pathVertex(path, state, hit, sampler, samples, counts, first, radiance)) return radiance;
     sampler.startVertex(state.depth);
     hit = closestHit(path.rays, state.ray, sampler);
   }
-  return radiance;
 }
 
 // Radiance towards the camera along the ray of `start`, which meets `hit` first. `samples` is
@@ -202,7 +267,9 @@ Rgb pathRadiance(const PathScene<Rays>& path, const PathState& start, const std:
                  PixelSampler& sampler, std::vector<DirectionSample>& samples, RayCounts& counts,
                  FirstHit* first) {
   ++counts.camera;
-  return followPath(path, start, hit, sampler, samples, counts, first);
+  const Rgb radiance = followPath(path, start, hit, sampler, samples, counts, first);
+  counts.depthCut.addFound(radiance);
+  return radiance;
 }
 
 }  // namespace chromeball

@@ -243,7 +243,9 @@ RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera
                               settings.mis,
                               settings.maxDepth,
                               settings.hideProbe,
-                              punctual.get()};
+                              punctual.get(),
+                              lighting.mirrorAlpha(),
+                              settings.maxTransmissionDepth};
   prepareBsdfs(scene);
   return render(PathIntegrator(path), accel, camera, settings, progress, stop);
 }

@@ -18,6 +18,7 @@ struct RenderSettings {
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film.h)
   int maxDepth = 8;
+  int maxTransmissionDepth = kUsualTransmissionDepth;  // bounces in bodies of glass, beside maxDepth
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
   bool hideProbe = false;      // from the camera only: for compositing

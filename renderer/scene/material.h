@@ -31,6 +31,9 @@ struct Material {
   // It is there for all other light, which would leak in otherwise.
   bool hidesBack() const { return !doubleSided && !(extended && extended->transmission > 0); }
 
+  // Whether it is the boundary of a body that light passes (KHR_materials_volume).
+  bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }
+
   // Gives the base colour where it sees the surface; null: none does.
   const Projection* projection = nullptr;
 

@@ -115,6 +115,8 @@ void readRender(const Section& render, SceneFile& scene) {
   }
   if (const Entry e = render["samples"]) scene.samples = uint32_t(e.integer(1, kMostSamples));
   if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMostDepth));
+  if (const Entry e = render["max_transmission_depth"])
+    scene.maxTransmissionDepth = int(e.integer(0, kMostDepth));
   if (const Entry e = render["seed"]) scene.seed = uint64_t(e.integer(0, INT64_MAX));
   if (const Entry e = render["time"]) scene.timeLimit = e.positive();
   if (const Entry e = render["noise"]) scene.noiseLimit = e.positive() / 100;
@@ -137,7 +139,8 @@ SceneFile readSceneFile(const std::string& path) {
   const Section lighting = root.section("lighting", {"strategy", "mis"});
   if (const Entry e = lighting["strategy"]) scene.strategy = e.name();
   if (const Entry e = lighting["mis"]) scene.mis = e.name();
-  readRender(root.section("render", {"size", "samples", "max_depth", "seed", "time", "noise"}),
+  readRender(root.section("render", {"size", "samples", "max_depth", "max_transmission_depth",
+                                     "seed", "time", "noise"}),
              scene);
   if (root["composite"]) scene.composite = readComposite(root);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root);

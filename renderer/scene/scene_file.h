@@ -70,7 +70,7 @@ struct SceneFile {
   };
   std::optional<Size> size;
   std::optional<uint32_t> samples;  // 1..kMostSamples, per pixel
-  std::optional<int> maxDepth;      // 0..kMostDepth
+  std::optional<int> maxDepth, maxTransmissionDepth;  // 0..kMostDepth
   std::optional<uint64_t> seed;
   std::optional<double> timeLimit;   // seconds, > 0
   std::optional<double> noiseLimit;  // fraction, > 0 (the file states percent)

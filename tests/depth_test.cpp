@@ -1,0 +1,185 @@
+// Limits of depth: what they count, and what they take.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "composite/render_composite.h"
+#include "gltf_writer.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+Probe whiteProbe() { return Probe(constantProbe({64, 32}, Rgb(1))); }
+
+Material glass(float roughness) {
+  Material m;
+  m.metallic = 0;
+  m.roughness = roughness;
+  m.extended.emplace();
+  m.extended->transmission = 1;
+  m.extended->thinWalled = false;
+  return m;
+}
+
+// A hollow ball of glass, whose walls carry light along their rim.
+Scene vase(float roughness) {
+  Scene scene;
+  const int material = addMaterial(scene, glass(roughness));
+  addSphere(scene, material, vec3(0), 1, 48);
+  addSphere(scene, material, vec3(0), -0.85f, 48);
+  return scene;
+}
+
+RenderResult look(const Scene& scene, RenderSettings settings, const Probe& probe = whiteProbe()) {
+  return renderScene(scene, topCamera(4, 30), probe, "importance", settings);
+}
+
+// All that is missing of white is what the limits cut.
+TEST(Depth, AWhiteFurnaceHidesAVaseAtTheUsualDepth) {
+  for (const float roughness : {0.0f, 0.2f}) {
+    const RenderResult r = look(vase(roughness), smallRender(16, 16, 40, 8));
+    const Image image = r.film.mean();
+    EXPECT_NEAR(meanColor(image).y, 1, roughness > 0 ? 0.01 : 0.003) << roughness;
+    float darkest = 1;
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) darkest = std::min(darkest, image.rgb(x, y).y);
+    EXPECT_GT(darkest, 0.85f) << roughness;
+  }
+}
+
+TEST(Depth, GlassHasALimitOfItsOwn) {
+  RenderSettings settings = smallRender(16, 16, 64, 8);
+  settings.maxTransmissionDepth = 2;
+  const RenderResult r = look(vase(0), settings);
+  EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
+  const DepthCut& cut = r.rays.depthCut;
+  EXPECT_EQ(cut.byDepth, 0);
+  EXPECT_NEAR(cut.share(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
+}
+
+// Other materials count their bounces as ever: 0 is what the camera sees shine, 1 direct light.
+TEST(Depth, MirrorsAndMatteThingsUseItUp) {
+  Material mirror;
+  mirror.roughness = 0;
+  for (const Material& m : {mirror, lambert(Rgb(1))}) {
+    Scene scene;
+    addQuad(scene, addMaterial(scene, m), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+    EXPECT_EQ(meanColor(look(scene, smallRender(4, 4, 16, 0)).film.mean()).y, 0);
+    EXPECT_NEAR(meanColor(look(scene, smallRender(4, 4, 256, 1)).film.mean()).y, 1, 0.01);
+  }
+}
+
+// A floor under a pane: the bounce on the floor is the one that counts, whatever the pane's
+// refraction takes; what the pane throws back would be a second.
+TEST(Depth, GlassBeforeMatteThingsLeavesThemTheirBounces) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+  const int pane = addMaterial(scene, glass(0));
+  addQuad(scene, pane, {-9, 2, 9}, {18, 0, 0}, {0, 0, -18});
+  addQuad(scene, pane, {-9, 1.9f, -9}, {18, 0, 0}, {0, 0, 18});
+  // Found by the bounce from the floor through the pane alone, until maxDepth lets the floor see
+  // itself in it.
+  const auto mean = [&](int depth) {
+    return meanColor(look(scene, smallRender(8, 8, 256, depth)).film.mean()).y;
+  };
+  EXPECT_GT(mean(1), 0.4f);
+  EXPECT_GT(mean(2), mean(1) + 0.01f);
+}
+
+// In a closed room of albedo a that shines evenly, d bounces find 1 - a^(d+1) of the light.
+TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
+  constexpr double kAlbedo = 0.7;
+  Scene scene;
+  Material wall = lambert(Rgb(float(kAlbedo)));
+  wall.emission = Rgb(1);
+  addSphere(scene, addMaterial(scene, wall), vec3(0), -5, 16, false);
+  for (const int depth : {1, 3}) {
+    const RenderResult r = look(scene, smallRender(16, 16, 512, depth));
+    const DepthCut& cut = r.rays.depthCut;
+    const double expected = std::pow(kAlbedo, depth + 1);
+    EXPECT_NEAR(cut.share(cut.byDepth) / expected, 1, 0.12) << depth;
+    EXPECT_EQ(cut.byTransmission, 0);
+    EXPECT_NEAR(meanColor(r.film.mean()).y, (1 - expected) / (1 - kAlbedo), 0.02);
+  }
+}
+
+TEST(Depth, NothingIsCutOfAnOpenScene) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+  const DepthCut cut = look(scene, smallRender(16, 16, 64, 1)).rays.depthCut;
+  EXPECT_EQ(cut.byDepth, 0);
+  EXPECT_GT(cut.found, 0);
+}
+
+TEST(Depth, LargestLimitsDoNotOverflow) {
+  RenderSettings settings = smallRender(8, 8, 16, INT_MAX);
+  settings.maxTransmissionDepth = INT_MAX;
+  Scene scene = vase(0);
+  scene.materials[0].extended->attenuation = Rgb(1);
+  EXPECT_GT(meanColor(look(scene, settings).film.mean()).y, 0.3f);
+}
+
+// A composite's paths have the same limits, alone and in both worlds.
+TEST(Depth, AVaseInAPhotographIsWhiteToo) {
+  Scene scene = vase(0);
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
+  const ObjectMask isObject{true, true, false};
+  const Probe probe = whiteProbe();
+  const Accel accel(scene);
+  const RenderSettings settings = smallRender(8, 8, 64, 8);
+  const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
+  const std::atomic<bool> stop = false;
+  Camera narrow = Camera::lookAt({0, 0.2f, 4}, {0, 0.2f, 0}, {0, 1, 0}, 0.5f);
+  for (const Passes passes : {Passes::One, Passes::Two}) {
+    const CompositeRender r = renderComposite(scene, accel, isObject, narrow, *lighting,
+                                              Image(8, 8, 3), settings, passes, false,
+                                              [](double) {}, stop);
+    glm::dvec3 objects(0);
+    double covered = 0;
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) {
+        objects += r.film.at(x, y).objects;
+        covered += r.film.at(x, y).covered;
+      }
+    EXPECT_GT(covered, 0);
+    // The camera's background is the plate, black here: only what glass sees by reflection and
+    // refraction, which is the probe.
+    EXPECT_NEAR(objects.y / covered, 1, 0.03) << int(passes);
+  }
+}
+
+TEST(Depth, TheCommandSaysWhatIsCut) {
+  GltfWriter w;  // a closed room that shines: a tetrahedron seen from inside
+  w.add("materials", {{"doubleSided", true},
+                      {"emissiveFactor", {1, 1, 1}},
+                      {"pbrMetallicRoughness",
+                       {{"metallicFactor", 0}, {"baseColorFactor", {0.8, 0.8, 0.8, 1}}}}});
+  const int positions = w.vec3s({-9, -5, -9, 9, -5, -9, 0, -5, 9, 0, 9, 0});
+  w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}}},
+                                   {"indices", w.indices({0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0})},
+                                   {"material", 0}})}});
+  w.add("cameras", {{"type", "perspective"},
+                    {"perspective", {{"yfov", 0.6}, {"znear", 0.1}, {"aspectRatio", 1}}}});
+  w.add("nodes", {{"camera", 0}});
+  const TemporaryFolder folder;
+  const auto render = [&](const char* depth) {
+    const CommandResult r = runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size",
+                                        "16x16", "--samples", "64", "--max-depth", depth,
+                                        "--stats", folder / "a.json"});
+    EXPECT_EQ(r.status, 0) << r.error;
+    return r.error;
+  };
+  const std::string few = render("2");
+  EXPECT_NE(few.find("warning: --max-depth 2 cut about "), std::string::npos) << few;
+  const auto stats = nlohmann::json::parse(fileContents(folder / "a.json"));
+  EXPECT_NEAR(double(stats["depth_cut"]["max_depth"]), 0.512, 0.1);
+  EXPECT_EQ(stats["depth_cut"]["max_transmission_depth"], 0);
+  EXPECT_EQ(stats["max_transmission_depth"], 64);
+  EXPECT_EQ(render("60").find("--max-depth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chromeball
