@@ -157,6 +157,24 @@ TEST(GltfAnimation, IsChosenByNameOrIndex) {
   EXPECT_NE(w.warnings[0].find("shown in its rest pose"), std::string::npos);
 }
 
+// What an extension animates (KHR_animation_pointer) has no node; the specification makes it optional.
+TEST(GltfAnimation, ChannelsWithoutANodeAreLeftOut) {
+  for (const json& target :
+       {json{{"path", "translation"}},
+        json{{"path", "pointer"},
+             {"extensions",
+              {{"KHR_animation_pointer", {{"pointer", "/materials/0/emissiveFactor"}}}}}}}) {
+    GltfWriter w;
+    addTriangle(w);
+    animate(w, 0, "translation", "STEP", scalars(w, {0}), w.vec3s({1, 0, 0}));
+    w.root["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", target}});
+    EXPECT_EQ(origin(w.load()).x, 0);
+    EXPECT_EQ(origin(at(w, 0)).x, 1) << "its other channels move";
+    ASSERT_FALSE(w.warnings.empty());
+    EXPECT_NE(w.warnings.back().find("animation"), std::string::npos) << w.warnings.back();
+  }
+}
+
 TEST(GltfAnimation, WhatIsNotWellFormedIsRefused) {
   const auto refusal = [](const json& channel, const json& sampler, const json& node = {}) {
     GltfWriter w;

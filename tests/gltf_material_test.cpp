@@ -138,6 +138,32 @@ TEST(GltfMaterial, VariantsChooseMaterials) {
   }
 }
 
+TEST(GltfMaterial, VariantsThatDangleAreWarnedOf) {
+  const auto warnings = [](const json& mapping, const char* variant) {
+    GltfWriter w;
+    w.root["extensions"] = {
+        {"KHR_materials_variants", {{"variants", {{{"name", "day"}}, {{"name", "night"}}}}}}};
+    w.root["extensionsUsed"] = {"KHR_materials_variants"};
+    w.root["materials"] = {{{"name", "own"}}, {{"name", "dark"}}};
+    const json mappings = {{"mappings", {mapping}}};
+    addTriangle(w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", mappings}}}});
+    std::string said;
+    loadGltf(w.save(), {}, [&](const std::string& line) { said += line + "\n"; },
+             {.animation = {}, .variant = VariantChoice{variant, "--variant"}});
+    return said;
+  };
+  const auto holds = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_EQ(warnings({{"material", 1}, {"variants", {0, 1}}}, "day"), "");
+  EXPECT_TRUE(holds(warnings({{"material", 1}, {"variants", {0, 5}}}, "day"),
+                    "variants[5], which does not exist (2 in the file)"));
+  EXPECT_TRUE(holds(warnings({{"material", 7}, {"variants", {0}}}, "day"),
+                    "materials[7], which does not exist (2 in the file)"));
+  EXPECT_TRUE(holds(warnings({{"material", 1}, {"variants", {0}}}, "night"),
+                    "variant `night` changes nothing"));
+}
+
 TEST(GltfMaterial, ExtensionsThatChangeNothingCostNothing) {
   GltfWriter w;
   const Scene scene = loadWith(w, {{"extensions",

@@ -93,12 +93,19 @@ void checkVersion(const json& root) {
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// tinygltf refuses two things that the specification allows: a skin without inverse bind matrices,
-// and indices whose accessor has no buffer view. The first gets tinygltf's own "none"; the second a
-// buffer view that does not exist, whose index is returned.
+// tinygltf refuses three things that the specification allows: a skin without inverse bind
+// matrices, an animation channel without a node (an extension may say what it moves), and indices
+// whose accessor has no buffer view. The first two get tinygltf's own "none"; the third a buffer
+// view that does not exist, whose index is returned.
 int fillGaps(json& root) {
   for (json& skin : root["skins"])
     if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
+  for (json& animation : root["animations"])
+    if (animation.is_object() && animation.contains("channels"))
+      for (json& channel : animation["channels"])
+        if (channel.is_object() && channel.contains("target") && channel["target"].is_object() &&
+            !channel["target"].contains("node"))
+          channel["target"]["node"] = -1;
   json& views = root["bufferViews"];
   const int none = int(views.size());
   for (json& accessor : root["accessors"])

@@ -24,18 +24,36 @@ std::vector<std::string> variantNames(const GltfFile& file) {
   return names;
 }
 
-// The material of the mapping that lists the variant; -2 where none does.
-int mappedMaterial(const Value& extension, int variant) {
+// A primitive's mappings, as far as they are well-formed.
+struct Mapping {
+  int material;
+  std::vector<int> variants;
+};
+std::vector<Mapping> mappingsOf(const Value& extension) {
+  std::vector<Mapping> result;
   const Value& mappings = extension.Get("mappings");
   for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
     const Value& mapping = mappings.Get(int(i));
+    if (!mapping.Get("material").IsInt()) continue;
+    Mapping& m = result.emplace_back(mapping.Get("material").GetNumberAsInt());
     const Value& variants = mapping.Get("variants");
     for (size_t k = 0; k < variants.ArrayLen(); ++k)
-      if (variants.Get(int(k)).IsInt() && variants.Get(int(k)).GetNumberAsInt() == variant &&
-          mapping.Get("material").IsInt())
-        return std::max(mapping.Get("material").GetNumberAsInt(), -1);
+      if (variants.Get(int(k)).IsInt()) m.variants.push_back(variants.Get(int(k)).GetNumberAsInt());
   }
-  return -2;
+  return result;
+}
+
+// What a mapping refers to and the file has not got.
+void warnOfDangling(GltfFile& file, const Mapping& mapping, size_t variantCount) {
+  for (const int variant : mapping.variants)
+    if (variant < 0 || size_t(variant) >= variantCount)
+      file.warnOnce(
+          fmt::format("a mapping names variants[{}], which does not exist ({} in the file)",
+                      variant, variantCount));
+  if (mapping.material < 0 || size_t(mapping.material) >= file.model.materials.size())
+    file.warnOnce(
+        fmt::format("a mapping names materials[{}], which does not exist ({} in the file)",
+                    mapping.material, file.model.materials.size()));
 }
 
 }  // namespace
@@ -48,11 +66,25 @@ void applyVariant(GltfFile& file, const VariantChoice& choice) {
     file.fail("has no variant `{}` ({}); {}", choice.name, choice.place,
               didYouMean(choice.name, {names.begin(), names.end()}));
   const int variant = int(found - names.begin());
+  bool isUsed = false;
   for (tinygltf::Mesh& mesh : file.model.meshes)
-    for (tinygltf::Primitive& primitive : mesh.primitives)
-      if (const Value* extension = findExtension(primitive.extensions, kVariants))
-        if (const int material = mappedMaterial(*extension, variant); material != -2)
-          primitive.material = material;
+    for (tinygltf::Primitive& primitive : mesh.primitives) {
+      const Value* extension = findExtension(primitive.extensions, kVariants);
+      if (!extension) continue;
+      for (const Mapping& mapping : mappingsOf(*extension)) {
+        warnOfDangling(file, mapping, names.size());
+        const auto& variants = mapping.variants;
+        const bool exists =
+            mapping.material >= 0 && size_t(mapping.material) < file.model.materials.size();
+        if (!exists || std::find(variants.begin(), variants.end(), variant) == variants.end())
+          continue;
+        primitive.material = mapping.material;
+        isUsed = true;
+      }
+    }
+  if (!isUsed)
+    file.warnOnce(fmt::format("variant `{}` changes nothing: no primitive has a material for it",
+                              choice.name));
 }
 
 }  // namespace chromeball

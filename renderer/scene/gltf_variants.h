@@ -5,8 +5,9 @@
 
 namespace chromeball {
 
-// Gives each primitive the material that the variant has for it. Throws InputError where the file
-// has no such variant.
+// Gives each primitive the material that the variant has for it. Warns of mappings to variants and
+// materials that do not exist, and of a variant that no primitive knows. Throws InputError where
+// the file has no such variant.
 void applyVariant(GltfFile& file, const VariantChoice& choice);
 
 }  // namespace chromeball
