@@ -1,5 +1,7 @@
 #include "scene/framing.h"
 
+#include "scene/interior_view.h"
+
 namespace chromeball {
 namespace {
 
@@ -22,10 +24,55 @@ struct Reach {
   double distance() const { return 0.5 * (upper + lower) / slope; }
 };
 
+void extend(Bounds& box, const Bounds& other) {
+  box.min = glm::min(box.min, other.min);
+  box.max = glm::max(box.max, other.max);
+}
+
+Bounds boundsOf(const Scene& scene, const Instance& instance) {
+  Bounds box;
+  for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
+    const vec3 p = instance.point(position);
+    extend(box, {p, p});
+  }
+  return box;
+}
+
+bool isFlat(const Bounds& box) {
+  constexpr float kFlat = 20;
+  const vec3 size = box.max - box.min;
+  return std::max(size.x, size.z) > kFlat * size.y;
+}
+
+bool reachesBeyond(const Bounds& box, const Bounds& others) {
+  const vec3 size = others.max - others.min;
+  const float most = std::max(size.x, size.z);
+  return box.min.x < others.min.x - most || box.max.x > others.max.x + most ||
+         box.min.z < others.min.z - most || box.max.z > others.max.z + most;
+}
+
+// The instances to be framed: all but grounds.
+std::vector<int> subjects(const Scene& scene) {
+  std::vector<Bounds> boxes;
+  Bounds upright;
+  for (const Instance& instance : scene.instances) {
+    boxes.push_back(boundsOf(scene, instance));
+    if (!isFlat(boxes.back())) extend(upright, boxes.back());
+  }
+  std::vector<int> chosen;
+  for (size_t i = 0; i < boxes.size(); ++i)
+    if (upright.empty() || !isFlat(boxes[i]) || !reachesBeyond(boxes[i], upright))
+      chosen.push_back(int(i));
+  return chosen;
+}
+
 }  // namespace
 
 Camera framingCamera(const Scene& scene, float aspectRatio) {
-  const Bounds box = bounds(scene);
+  const std::vector<int> framed = subjects(scene);
+  if (const auto inside = interiorView(scene, framed)) return *inside;
+  Bounds box;
+  for (const int i : framed) extend(box, boundsOf(scene, scene.instances[size_t(i)]));
   glm::dvec3 centre(0), size(0);
   if (!box.empty()) {
     centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
@@ -43,13 +90,15 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
 
   const double slope = std::tan(0.5 * kFov) / kMargin;
   Reach across{slope * aspectRatio}, upwards{slope};
-  for (const Instance& instance : scene.instances)
-    for (const vec3& position : scene.meshes[instance.mesh].positions) {
+  for (const int i : framed) {
+    const Instance& instance = scene.instances[size_t(i)];
+    for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
       const glm::dvec3 p = glm::dvec3(instance.point(position)) - centre;
       const double z = glm::dot(p, back);
       across.add(glm::dot(p, right), z);
       upwards.add(glm::dot(p, up), z);
     }
+  }
   const double distance = std::max(across.distance(), upwards.distance());
   camera.position =
       vec3(centre + across.position() * right + upwards.position() * up + distance * back);

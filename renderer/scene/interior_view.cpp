@@ -1,0 +1,243 @@
+#include "scene/interior_view.h"
+
+#include <array>
+
+namespace chromeball {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr int kCells = 64;  // a side of the grids from outside
+
+using Corners = std::array<dvec3, 3>;
+
+template <class Visit>  // of the corners of each triangle, counter-clockwise from the front
+void forEachTriangle(const Scene& scene, const std::vector<int>& instances, const Visit& visit) {
+  for (const int i : instances) {
+    const Instance& instance = scene.instances[size_t(i)];
+    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    const bool mirrors = instance.toWorld && glm::determinant(instance.toWorld->linear) < 0;
+    for (const Triangle& triangle : mesh.triangles) {
+      Corners c;
+      for (int k = 0; k < 3; ++k) c[size_t(k)] = instance.point(mesh.positions[triangle[k]]);
+      if (mirrors) std::swap(c[1], c[2]);
+      visit(c);
+    }
+  }
+}
+
+double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+struct Box {
+  dvec3 min{INFINITY}, max{-INFINITY};
+  dvec3 size() const { return max - min; }
+};
+
+Box boundsOf(const Scene& scene, const std::vector<int>& instances) {
+  Box box;
+  forEachTriangle(scene, instances, [&](const Corners& corners) {
+    for (const dvec3& p : corners) box.min = glm::min(box.min, p), box.max = glm::max(box.max, p);
+  });
+  return box;
+}
+
+// What is met first along one axis, from its upper and from its lower end.
+class TwoSides {
+ public:
+  TwoSides(const Box& box, int axis) : box_(box), axis_(axis) {}
+
+  void add(const Corners& corners) {
+    const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+    std::array<dvec2, 3> p;  // in cells; u, v and the axis are right-handed
+    for (size_t k = 0; k < 3; ++k)
+      p[k] = double(kCells) * dvec2((corners[k][u] - box_.min[u]) / box_.size()[u],
+                                    (corners[k][v] - box_.min[v]) / box_.size()[v]);
+    const double area = cross(p[1] - p[0], p[2] - p[0]);  // > 0: faces the upper end
+    if (area == 0) return;
+    const auto cell = [](double x) { return int(std::clamp(x, 0.0, double(kCells))); };
+    const dvec2 low = glm::min(p[0], glm::min(p[1], p[2])),
+                high = glm::max(p[0], glm::max(p[1], p[2]));
+    for (int y = cell(std::ceil(low.y - 0.5)); y < kCells && y + 0.5 <= high.y; ++y)
+      for (int x = cell(std::ceil(low.x - 0.5)); x < kCells && x + 0.5 <= high.x; ++x) {
+        const dvec2 at(x + 0.5, y + 0.5);
+        const double a = cross(p[1] - at, p[2] - at) / area, b = cross(p[2] - at, p[0] - at) / area;
+        if (a < 0 || b < 0 || a + b > 1) continue;
+        const double height =
+            a * corners[0][axis_] + b * corners[1][axis_] + (1 - a - b) * corners[2][axis_];
+        Cell& met = cells_[size_t(y * kCells + x)];
+        if (height > met.high) met.high = height, met.highIsFront = area > 0;
+        if (height < met.low) met.low = height, met.lowIsFront = area < 0;
+      }
+  }
+
+  void count(double& behind, double& all) const {
+    for (const Cell& met : cells_) {
+      if (met.high < met.low) continue;
+      all += 2;
+      behind += !met.highIsFront + !met.lowIsFront;
+    }
+  }
+
+ private:
+  struct Cell {
+    double high = -INFINITY, low = INFINITY;
+    bool highIsFront = true, lowIsFront = true;
+  };
+  const Box& box_;
+  int axis_;
+  std::vector<Cell> cells_ = std::vector<Cell>(size_t(kCells) * kCells);
+};
+
+bool showsItsBack(const Scene& scene, const std::vector<int>& instances, const Box& box) {
+  constexpr double kShare = 0.6;
+  std::array<TwoSides, 3> axes{TwoSides(box, 0), TwoSides(box, 1), TwoSides(box, 2)};
+  forEachTriangle(scene, instances, [&](const Corners& c) {
+    for (TwoSides& sides : axes) sides.add(c);
+  });
+  double behind = 0, all = 0;
+  for (const TwoSides& sides : axes) sides.count(behind, all);
+  return behind > kShare * all;
+}
+
+// A horizontal section: where something is in the way of a view at this height, and which way its
+// fronts look. Cells are square; the room lies in the middle.
+class Section {
+ public:
+  static constexpr int kSide = 256;  // cells; walls are thicker than one
+
+  Section(const Scene& scene, const std::vector<int>& instances, const Box& box, double height)
+      : cell_(std::max(box.size().x, box.size().z) / kSide),
+        corner_(0.5 * dvec2(box.min.x + box.max.x, box.min.z + box.max.z) - 0.5 * kSide * cell_) {
+    forEachTriangle(scene, instances, [&](const Corners& c) { add(c, height); });
+  }
+
+  dvec2 point(int x, int z) const { return corner_ + cell_ * dvec2(x + 0.5, z + 0.5); }
+
+  // Nothing within some hundredths of the room's length.
+  bool isFree(int x, int z) const {
+    constexpr int kRoom = 8;
+    for (int dz = -kRoom; dz <= kRoom; ++dz)
+      for (int dx = -kRoom; dx <= kRoom; ++dx)
+        if (inside(x + dx, z + dz) && at(x + dx, z + dz) != 0) return false;
+    return true;
+  }
+
+  // Metres from there to what is in the way, where that shows its front; else nullopt.
+  std::optional<double> sight(int x, int z, const dvec2& direction) const {
+    constexpr double kStep = 0.7;
+    for (double t = kStep;; t += kStep) {
+      const int cx = int(std::floor(x + 0.5 + t * direction.x));
+      const int cz = int(std::floor(z + 0.5 + t * direction.y));
+      if (!inside(cx, cz)) return std::nullopt;
+      const uint16_t fronts = at(cx, cz);
+      if (fronts == 0) continue;
+      for (int i = 0; i < kNormals; ++i)
+        if ((fronts >> i & 1) && glm::dot(normal(i), direction) < 0) return t * cell_;
+      return std::nullopt;
+    }
+  }
+
+ private:
+  static constexpr int kNormals = 16;  // of the circle; a bit of a cell for each
+
+  static dvec2 normal(int i) {
+    const double angle = (i + 0.5) * 2 * kPiD / kNormals;
+    return {std::cos(angle), std::sin(angle)};
+  }
+  static bool inside(int x, int z) { return x >= 0 && z >= 0 && x < kSide && z < kSide; }
+  uint16_t at(int x, int z) const { return fronts_[size_t(z * kSide + x)]; }
+
+  void add(const Corners& corners, double height) {
+    std::array<dvec2, 2> ends;  // of the triangle's part at that height
+    int count = 0;
+    for (size_t k = 0; k < 3 && count < 2; ++k) {
+      const dvec3 &a = corners[k], &b = corners[(k + 1) % 3];
+      if ((a.y < height) == (b.y < height)) continue;
+      const dvec3 p = a + (height - a.y) / (b.y - a.y) * (b - a);
+      ends[size_t(count++)] = (dvec2(p.x, p.z) - corner_) / cell_;
+    }
+    const dvec3 front = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (count < 2 || (front.x == 0 && front.z == 0)) return;
+    const double turn = std::atan2(front.z, front.x) / (2 * kPiD) + 1;
+    const uint16_t bit = uint16_t(1u << (int(turn * kNormals) % kNormals));
+    const int steps = 1 + int(std::min(2 * glm::length(ends[1] - ends[0]), 4.0 * kSide));
+    for (int i = 0; i <= steps; ++i) {
+      const dvec2 p = glm::mix(ends[0], ends[1], double(i) / steps);
+      const int x = std::clamp(int(p.x), 0, kSide - 1), z = std::clamp(int(p.y), 0, kSide - 1);
+      fronts_[size_t(z * kSide + x)] |= bit;
+    }
+  }
+
+  double cell_;
+  dvec2 corner_;
+  std::vector<uint16_t> fronts_ = std::vector<uint16_t>(size_t(kSide) * kSide);
+};
+
+constexpr int kDirections = 32;
+
+dvec2 direction(int i) {
+  const double angle = 2 * kPiD * i / kDirections;
+  return {std::sin(angle), -std::cos(angle)};
+}
+
+// What is seen from a place, squared: the area of each direction's sector but for a factor; below 0
+// where no front is seen.
+using Panorama = std::array<double, kDirections>;
+
+// A person's room with furniture: what a cup is not, whose walls also surround the place within.
+bool isFurnishedRoom(const Box& box, const std::vector<int>& instances) {
+  constexpr double kLowest = 2, kHighest = 10, kShortest = 2.5;  // metres
+  constexpr size_t kFewest = 5;
+  const dvec3 size = box.size();
+  return size.y >= kLowest && size.y <= kHighest && std::min(size.x, size.z) >= kShortest &&
+         instances.size() >= kFewest;
+}
+
+// Walls all around, but for a window or a door: of a box without a front, the opening takes at
+// least 53 degrees.
+bool isEnclosed(const Panorama& seen) {
+  constexpr int kMostOpen = 3;  // of 32 directions: 34 degrees
+  return std::count_if(seen.begin(), seen.end(), [](double s) { return s < 0; }) <= kMostOpen;
+}
+
+}  // namespace
+
+std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
+  constexpr double kEye = 0.55;  // of the room's height
+  constexpr float kFov = kPi / 3;
+  constexpr int kHalfView = 3;  // a view of 7/32 of a turn, 79 degrees
+  const Box box = boundsOf(scene, instances);
+  if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
+  if (!isFurnishedRoom(box, instances) && !showsItsBack(scene, instances, box)) return std::nullopt;
+
+  const double height = glm::mix(box.min.y, box.max.y, kEye);
+  const Section section(scene, instances, box, height);
+  double widest = 0;
+  std::optional<Camera> best;
+  for (int z = 0; z < Section::kSide; z += 4)
+    for (int x = 0; x < Section::kSide; x += 4) {
+      if (!section.isFree(x, z)) continue;
+      Panorama seen;
+      for (int i = 0; i < kDirections; ++i) {
+        const auto sight = section.sight(x, z, direction(i));
+        seen[size_t(i)] = sight ? *sight * *sight : -1;
+      }
+      if (!isEnclosed(seen)) continue;
+      for (int i = 0; i < kDirections; ++i) {
+        double area = 0;
+        for (int k = -kHalfView; k <= kHalfView; ++k) {
+          const double sector = seen[size_t((i + k + kDirections) % kDirections)];
+          area = sector < 0 ? -INFINITY : area + sector;
+        }
+        if (!(area > widest)) continue;
+        widest = area;
+        const dvec2 at = section.point(x, z), to = at + box.size().y * direction(i);
+        const dvec3 eye(at.x, height, at.y), target(to.x, height - 0.1 * box.size().y, to.y);
+        best = Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);
+      }
+    }
+  return best;
+}
+
+}  // namespace chromeball

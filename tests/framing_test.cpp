@@ -1,0 +1,174 @@
+// The view of a scene that brings no camera: grounds do not count, rooms are seen from inside.
+#include "scene/framing.h"
+
+#include <gtest/gtest.h>
+
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+constexpr float kAspect = 1.5f;
+
+// Where a point is seen, u right and v down, both in [0, 1].
+vec2 seenAt(const Camera& camera, const vec3& point) {
+  const vec3 q = point - camera.position;
+  const float depth = -glm::dot(q, camera.back), half = std::tan(0.5f * camera.fov);
+  return {0.5f + 0.5f * glm::dot(q, camera.right) / (depth * half * kAspect),
+          0.5f - 0.5f * glm::dot(q, camera.up) / (depth * half)};
+}
+
+// The larger of the shares of the picture's width and height that a mesh takes; 0 where a part of
+// it is not seen.
+float shareOf(const Camera& camera, const Mesh& mesh) {
+  vec2 least(1e9f), most(-1e9f);
+  for (const vec3& p : mesh.positions) {
+    if (glm::dot(p - camera.position, camera.back) >= 0) return 0;
+    least = glm::min(least, seenAt(camera, p));
+    most = glm::max(most, seenAt(camera, p));
+  }
+  if (std::min(least.x, least.y) < 0 || std::max(most.x, most.y) > 1) return 0;
+  return std::max(most.x - least.x, most.y - least.y);
+}
+
+Scene ball() {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, lambert(Rgb(0.5f))), vec3(0, 1, 0), 1);
+  return scene;
+}
+
+void addGround(Scene& scene, vec2 from, float size) {
+  addQuad(scene, 0, vec3(from.x, 0, from.y), vec3(0, 0, size), vec3(size, 0, 0));
+}
+
+TEST(Framing, AGroundOfAnySizeAndAnyNumberOfTilesIsLeftOut) {
+  Scene scene = ball();
+  const Camera alone = framingCamera(scene, kAspect);
+  EXPECT_GT(shareOf(alone, scene.meshes[0]), 0.9f);
+  for (const float size : {20.0f, 100.0f, 10000.0f}) {
+    Scene grounded = ball();
+    addGround(grounded, vec2(-size / 2), size);
+    EXPECT_EQ(framingCamera(grounded, kAspect).position, alone.position) << size;
+  }
+  for (int x = -5; x < 5; ++x)
+    for (int z = -5; z < 5; ++z) addGround(scene, 10.0f * vec2(x, z), 10);
+  EXPECT_GT(shareOf(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
+}
+
+TEST(Framing, WhatIsFlatAndNoGroundCounts) {
+  Scene board = ball();  // on a board twice as wide
+  addGround(board, vec2(-2), 4);
+  EXPECT_GT(shareOf(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
+  Scene flat;  // nothing stands on it
+  addMaterial(flat, lambert(Rgb(0.5f)));
+  addGround(flat, vec2(-50), 100);
+  EXPECT_GT(shareOf(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
+}
+
+// Walls, floor and ceiling of a room around the outline (counter-clockwise seen from above), which
+// face inwards.
+Scene room(const std::vector<vec2>& outline, float height, bool inwards = true) {
+  Scene scene;
+  addMaterial(scene, lambert(Rgb(0.5f)));
+  const auto quad = [&](vec3 corner, vec3 a, vec3 b) {
+    inwards ? addQuad(scene, 0, corner, a, b) : addQuad(scene, 0, corner, b, a);
+  };
+  for (size_t i = 0; i < outline.size(); ++i) {
+    const vec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+    quad(vec3(a.x, 0, a.y), vec3(0, height, 0), vec3(b.x - a.x, 0, b.y - a.y));
+  }
+  return scene;
+}
+
+void addFloorAndCeiling(Scene& scene, vec2 from, vec2 size, float height) {
+  addQuad(scene, 0, vec3(from.x, 0, from.y), vec3(0, 0, size.y), vec3(size.x, 0, 0));
+  addQuad(scene, 0, vec3(from.x, height, from.y), vec3(size.x, 0, 0), vec3(0, 0, size.y));
+}
+
+const std::vector<vec2> kHall{{0, 0}, {0, 5}, {8, 5}, {8, 0}};  // 8 m along x, 5 m along z
+
+TEST(Framing, ARoomIsSeenFromInsideAlongItsLength) {
+  for (const float size : {0.01f, 1.0f, 100.0f}) {
+    Scene hall = room(kHall, 3);
+    addFloorAndCeiling(hall, vec2(0), vec2(8, 5), 3);
+    addSphere(hall, 0, vec3(4, 0.5f, 2.5f), 0.5f);  // furniture, which faces outwards
+    for (Mesh& mesh : hall.meshes)
+      for (vec3& p : mesh.positions) p *= size;
+    const Camera camera = framingCamera(hall, kAspect);
+    const vec3 eye = camera.position / size;
+    EXPECT_TRUE(eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
+    EXPECT_TRUE(eye.y > 1 && eye.y < 2.2f) << eye.y;
+    const float wall = camera.back.x < 0 ? 8 - eye.x : eye.x;
+    EXPECT_GT(wall, 6) << "it looks at the far wall";
+    EXPECT_GT(std::fabs(camera.back.x), 0.7f);
+    EXPECT_NEAR(camera.right.y, 0, 1e-6f);
+  }
+}
+
+TEST(Framing, AHouseIsSeenFromOutside) {
+  Scene house = room(kHall, 3, false);
+  const Camera camera = framingCamera(house, kAspect);
+  const vec3 eye = camera.position;
+  EXPECT_TRUE(eye.x < 0 || eye.x > 8 || eye.z < 0 || eye.z > 5);
+}
+
+TEST(Framing, ThePlaceIsInTheRoomWhereTheRoomIsNoBox) {
+  // An L: the notch x > 3, z < 6 lies outside.
+  Scene corner = room({{0, 0}, {0, 9}, {9, 9}, {9, 6}, {3, 6}, {3, 0}}, 3);
+  addFloorAndCeiling(corner, vec2(0), vec2(3, 9), 3);
+  addFloorAndCeiling(corner, vec2(3, 6), vec2(6, 3), 3);
+  const vec3 eye = framingCamera(corner, kAspect).position;
+  EXPECT_TRUE(eye.x > 0 && eye.z < 9 && eye.x < 9 && eye.z > 0);
+  EXPECT_TRUE(eye.x < 3 || eye.z > 6) << eye.x << " " << eye.z;
+}
+
+TEST(Framing, MirroredInstancesKeepTheirFronts) {
+  Scene hall = room(kHall, 3);
+  addFloorAndCeiling(hall, vec2(0), vec2(8, 5), 3);
+  for (Instance& instance : hall.instances) {
+    instance.toWorld = Transform();
+    instance.toWorld->linear[0][0] = -1;
+  }
+  const vec3 eye = framingCamera(hall, kAspect).position;
+  EXPECT_TRUE(eye.x < 0 && eye.x > -8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
+}
+
+// Walls of two faces, 0.2 m thick, without a ceiling; around `furniture` boxes.
+Scene doubleWalls(int furniture, float scale) {
+  Scene scene = room(kHall, 3);
+  const Scene outer = room({{-0.2f, -0.2f}, {-0.2f, 5.2f}, {8.2f, 5.2f}, {8.2f, -0.2f}}, 3, false);
+  for (const Mesh& mesh : outer.meshes) addMesh(scene, 0, mesh);
+  addQuad(scene, 0, vec3(0), vec3(0, 0, 5), vec3(8, 0, 0));
+  Mesh shell;  // all in one
+  for (const Mesh& mesh : scene.meshes) {
+    const uint32_t first = uint32_t(shell.positions.size());
+    shell.positions.insert(shell.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles) shell.triangles.push_back(t + first);
+  }
+  scene.meshes = {shell};
+  scene.instances.resize(1);
+  for (int i = 0; i < furniture; ++i) addSphere(scene, 0, vec3(1 + i, 0.4f, 4), 0.4f, 8);
+  for (Mesh& mesh : scene.meshes)
+    for (vec3& p : mesh.positions) p *= scale;
+  return scene;
+}
+
+TEST(Framing, AFurnishedRoomIsSeenFromInsideAndACupFromOutside) {
+  const auto isInside = [](const Scene& scene, float scale) {
+    const vec3 eye = framingCamera(scene, kAspect).position / scale;
+    return eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5 && eye.y > 0 && eye.y < 3;
+  };
+  EXPECT_TRUE(isInside(doubleWalls(5, 1), 1));
+  EXPECT_FALSE(isInside(doubleWalls(0, 1), 1)) << "nothing in it";
+  EXPECT_FALSE(isInside(doubleWalls(5, 0.02f), 0.02f)) << "a box of beads";
+}
+
+TEST(Framing, AnOpenBoxIsLookedIntoFromOutside) {
+  Scene box = room({{5, 5}, {5, 0}, {0, 0}, {0, 5}}, 5);
+  box.meshes.pop_back(), box.instances.pop_back();  // the front, at z = 5, is open
+  addFloorAndCeiling(box, vec2(0), vec2(5, 5), 5);
+  EXPECT_GT(framingCamera(box, kAspect).position.z, 5);
+}
+
+}  // namespace
+}  // namespace chromeball
