@@ -116,6 +116,53 @@ TEST(CommandImage, ViewShowsLayers) {
   expectRefused({"image", "view", path, png, "--layer", "dept"}, "`depth`");
 }
 
+TEST(CommandImage, ViewShowsEveryKindOfLayer) {
+  const TemporaryFolder folder;
+  const auto row = [](int channels, const std::vector<float>& texels) {
+    Image image(int(texels.size()) / channels, 1, channels);
+    image.texels = texels;
+    return image;
+  };
+  const std::string path = folder / "a.exr", png = folder / "a.png";
+  writeImage(path, OutputImage{{{"", "RGBA", row(4, {1, 1, 1, 0.5f, 1, 1, 1, 1, 1, 1, 1, 0})},
+                                {"alpha", "A", row(1, {0, 0.25f, 1})},
+                                {"node", "", row(1, {0, 1, 2})},
+                                {"samples", "", row(1, {16, 32, 64})},
+                                {"variance", "RGB", row(3, {0, 0, 0, 1, 1, 1, NAN, NAN, NAN})},
+                                {"invalid", "RGB", row(3, {0, 0, 0, 2, 0, 0, 4, 0, 1})},
+                                {"depth", "Z", row(1, {INFINITY, 1, 3})}},
+                               {{"manifest/node", "{\"1\": \"Wheel\", \"2\": \"Door\\nknob\"}"}}});
+  const auto view = [&](const char* layer) {
+    const CommandResult result = run({"image", "view", path, png, "--layer", layer});
+    return std::pair(readImage(png), result.out);
+  };
+  const Image alpha = view("alpha").first;
+  EXPECT_EQ(alpha.rgb(0, 0), Rgb(0));
+  EXPECT_NEAR(alpha.rgb(1, 0).y, 0.25f, 0.01f);
+  EXPECT_EQ(alpha.rgb(2, 0), Rgb(1));
+
+  const auto [node, legend] = view("node");
+  EXPECT_EQ(node.rgb(0, 0), Rgb(0));
+  EXPECT_GT(glm::distance(node.rgb(1, 0), node.rgb(2, 0)), 0.3f);
+  EXPECT_NE(legend.find("  1  Wheel\n"), std::string::npos) << legend;
+  EXPECT_NE(legend.find("  2  Door?knob\n"), std::string::npos) << legend;
+
+  const Image samples = view("samples").first, variance = view("variance").first;
+  EXPECT_LT(luminance(samples.rgb(0, 0)), luminance(samples.rgb(1, 0)));
+  EXPECT_LT(luminance(samples.rgb(1, 0)), luminance(samples.rgb(2, 0)));
+  EXPECT_LT(luminance(variance.rgb(0, 0)), luminance(variance.rgb(1, 0)));
+  EXPECT_EQ(variance.rgb(2, 0), Rgb(1)) << "nothing is known";
+  EXPECT_NEAR(view("invalid").first.rgb(1, 0).x, 0.5f, 0.01f);
+  const Image depth = view("depth").first;
+  EXPECT_EQ(depth.rgb(0, 0), Rgb(0));
+  EXPECT_EQ(depth.rgb(1, 0), Rgb(1));
+  EXPECT_LT(depth.rgb(2, 0).x, 0.1f);
+
+  // Without a layer of that name, the colour's own alpha.
+  writeImage(path, row(4, {1, 1, 1, 0.5f}));
+  EXPECT_NEAR(view("alpha").first.rgb(0, 0).x, 0.5f, 0.01f);
+}
+
 TEST(SlowCommandImage, BadInputIsRefused) {
   const TemporaryFolder folder;
   const std::string a = folder / "a.exr", png = folder / "a.png";

@@ -414,5 +414,27 @@ TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
   EXPECT_EQ(scene.out.files(), Words{"a.pfm"});
 }
 
+TEST(CommandRender, NumbersOfNodesAndMaterialsHaveTheirNamesInTheHeader) {
+  GltfWriter w;
+  w.root["materials"] = {{{"name", "unused"}}, {{"name", "say \"x\"\n\xc3\xa9"}}};
+  addTriangle(w, {{"material", 1}}, {{"name", "<Blatt>"}});
+  const TemporaryFolder folder;
+  writeImage(folder / "probe.exr", constantProbe({8, 4}, Rgb(1)));
+  ASSERT_EQ(runCommand({"render", w.save(), "--probe", folder / "probe.exr", "--size", "16x16",
+                        "--samples", "1", "--aov", "node,material", "-o", folder / "a.exr"})
+                .status,
+            0);
+  const ImageFile file = readImageFile(folder / "a.exr");
+  const auto manifest = [&](const char* layer) {
+    return json::parse(
+        std::get<std::string>(file.metadata.at(std::string("manifest/") + layer)));
+  };
+  const Image nodes = *findLayer(file, "node");
+  const float node = *std::max_element(nodes.texels.begin(), nodes.texels.end());
+  ASSERT_GE(node, 1);
+  EXPECT_EQ(manifest("node"), json({{std::to_string(int(node)), "<Blatt>"}}));
+  EXPECT_EQ(manifest("material"), json({{"1", "say \"x\"\n\xc3\xa9"}}));
+}
+
 }  // namespace
 }  // namespace chromeball

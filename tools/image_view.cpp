@@ -1,11 +1,12 @@
 // chromeball image view IN OUT.png
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <set>
 
+#include "id_manifest.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "image_commands.h"
+#include "layer_view.h"
 #include "math/error.h"
 #include "math/suggest.h"
 #include "output_file.h"
@@ -18,16 +19,28 @@ struct Arguments {
   float exposure = 0;
 };
 
-// What is far enough to mean "nothing was hit".
-constexpr float kBackground = 1e9f;
+// A damaged file's names may hold anything.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (uint8_t(c) < ' ' || c == 127) c = '?';
+  return text;
+}
 
-// Nearest white, farthest black; the background black too.
-void normaliseDepth(Image& depth) {
-  float nearest = std::numeric_limits<float>::max(), farthest = 0;
-  for (const float d : depth.texels)
-    if (d < kBackground) nearest = std::min(nearest, d), farthest = std::max(farthest, d);
-  const float range = std::max(farthest - nearest, 1e-20f);
-  for (float& d : depth.texels) d = d < kBackground ? 1 - 0.95f * (d - nearest) / range : 0;
+// Which colour stands for what.
+void printLegend(const Image& ids, const std::map<int, std::string>& names) {
+  constexpr size_t kMost = 64;
+  std::set<int> present;
+  for (const float id : ids.texels)
+    if (id >= 1 && id < 1e9f) present.insert(int(id));
+  size_t shown = 0;
+  for (const int id : present) {
+    if (++shown > kMost) break;
+    const auto name = names.find(id);
+    const Color8 c = idColor(id);
+    fmt::print("#{:02x}{:02x}{:02x}  {}  {}\n", c[0], c[1], c[2], id,
+               name == names.end() ? "" : printable(name->second));
+  }
+  if (present.size() > kMost) fmt::print("and {} more\n", present.size() - kMost);
 }
 
 Image colorOf(const std::string& path) {
@@ -45,10 +58,8 @@ Image viewOf(const std::string& path, const std::string& layer) {
     throwInput("{}: has no layer `{}`; {}", path, layer,
                known.empty() ? "it has only its colour" : didYouMean(layer, known));
   }
-  if (layer == "depth") normaliseDepth(*image);
-  if (layer == "normal")
-    for (float& component : image->texels) component = 0.5f * (component + 1);
-  return *std::move(image);
+  if (isOfIds(layer)) printLegend(*image, readManifest(file.metadata, layer));
+  return layerView(layer, *std::move(image));
 }
 
 void run(const Arguments& arguments) {
@@ -73,7 +84,8 @@ void addImageViewCommand(CLI::App& image) {
   command->add_option("--tonemap", arguments->tone, "none, reinhard, aces, neutral or filmic")
       ->capture_default_str();
   command->add_option("--layer", arguments->layer,
-                      "albedo, normal (-1..1 shown as 0..1), depth (near is white), variance, ...");
+                      "albedo, normal (-1..1 as 0..1), depth (near is white), node and material (a "
+                      "colour each, printed with its name), variance, samples, ...");
   command->callback([arguments] { run(*arguments); });
 }
 

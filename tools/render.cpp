@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "composite_job.h"
+#include "id_manifest.h"
 #include "image/file.h"
 #include "image/write.h"
 #include "load_scene.h"
@@ -220,6 +221,7 @@ void render(const RenderOptions& options) {
 
   OutputImage& output = rendered.output;
   output.metadata = describe(job, options, scene, result, seconds, rendered.noise).metadata;
+  output.metadata.merge(idManifests(output, scene));
   if (result.samples == 0) nameAsPartial(job.outputs);
   for (const std::string& path : job.outputs) writeImage(path, output, job.display);
   seconds.write = watch.lap();

@@ -12,7 +12,7 @@ namespace chromeball {
 // What a camera ray met first.
 struct FirstHit {
   bool hit = false;
-  float depth = 0;  // metres along the camera's axis
+  float depth = 0;  // metres along the camera's axis (planar depth, not the ray's length)
   Rgb albedo{0};    // base colour
   vec3 normal{0};   // unit shading normal, world space
   int material = -1, node = -1;
@@ -20,7 +20,8 @@ struct FirstHit {
 
 // The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
 //   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
-//   alpha           share that hit something    material, node  index + 1 at the first sample; else 0
+//   alpha           share that hit something    material, node  index + 1 at the first sample that
+//                                               hit; else 0 (a mean of numbers would mean nothing)
 //   l_obj, l_noobj, difference    radiance with the objects, without, and what they change
 //   reflectance                   of the local scene (these four: of composites only)
 //   variance        squared standard error of the pixel (Film)        samples  their number (Film)

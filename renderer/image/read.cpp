@@ -175,11 +175,13 @@ std::optional<Image> findColorAndAlpha(const ImageFile& file) {
 
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
   const std::string prefix = name + ".";
-  if (auto image = findChannels(file, prefix, {"R", "G", "B"})) return image;
-  if (auto image = findChannels(file, prefix, {"X", "Y", "Z"})) return image;
-  if (auto image = findChannels(file, prefix, {"Z"})) return image;
-  if (auto image = findChannels(file, prefix, {"Y"})) return image;
-  return findChannels(file, name, {""});
+  for (const std::array letters : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
+    if (auto image = findChannels(file, prefix, {letters[0], letters[1], letters[2]})) return image;
+  if (auto image = findChannels(file, name, {""})) return image;
+  const auto belongs = [&](const std::string& channel) { return channel.starts_with(prefix); };
+  const auto first = std::find_if(file.channels.begin(), file.channels.end(), belongs);
+  if (first != file.channels.end()) return extract(file, {size_t(first - file.channels.begin())});
+  return name == "alpha" ? findChannels(file, "A", {""}) : std::nullopt;
 }
 
 std::vector<std::string> layerNames(const ImageFile& file) {

@@ -38,8 +38,9 @@ std::optional<Image> findColor(const ImageFile& file);
 // The same, with alpha as a fourth channel where the file has R, G, B and A.
 std::optional<Image> findColorAndAlpha(const ImageFile& file);
 
-// The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME.Z, NAME.Y
-// or NAME (one channel). nullopt where the file has no such layer.
+// The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME or the first
+// of NAME's channels (one channel); "alpha" is also the colour's A. nullopt where the file has no such
+// layer.
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
 
 // The names findLayer knows.
