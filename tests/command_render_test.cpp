@@ -414,6 +414,125 @@ TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
   EXPECT_EQ(scene.out.files(), Words{"a.pfm"});
 }
 
+// The options that an EXR's header states, as the command line takes them.
+Words optionsIn(const ImageFile& file) {
+  const std::string help = runCommand({"render", "--help"}).out;
+  const auto limit = file.metadata.find("noise-limit");
+  Words options;
+  if (limit != file.metadata.end())
+    options = {"--noise", fmt::format("{}", std::get<float>(limit->second))};
+  for (const auto& [name, value] : file.metadata) {
+    // `noise` and, under a limit, `samples` are what was reached.
+    if (help.find("--" + name + " ") == std::string::npos || name == "noise" ||
+        (name == "samples" && !options.empty() && options[0] == "--noise"))
+      continue;
+    std::string text;
+    if (const auto* number = std::get_if<float>(&value))
+      text = fmt::format("{}", *number);
+    else if (const auto* count = std::get_if<int>(&value))
+      text = fmt::format("{}", *count);
+    else
+      text = std::get<std::string>(value);
+    options.push_back("--" + name);
+    if (text != "true") options.push_back(text);
+  }
+  return options;
+}
+
+TEST(SlowCommandRender, AHeaderSaysHowToMakeThePictureAgain) {
+  const RenderScene scene;
+  const std::string file = scene.folder() + "/scene.toml";
+  std::ofstream(file) << "model = 'model.gltf'\n[probe]\nfile = 'gradient.exr'\nscale = 3.3\n"
+                         "rotation = 20\n[render]\nmax_depth = 2\nsamples = 3\nsize = [10, 8]\n";
+  const std::vector<std::pair<std::string, Words>> jobs = {
+      {scene.model, {"--probe", scene.gradient, "--size", "20x15", "--samples", "4"}},
+      {scene.model,
+       {"--probe",
+        scene.constant,
+        "--probe-mapping",
+        "lat-long",
+        "--probe-rotation",
+        "33.1",
+        "--probe-scale",
+        "0.7",
+        "--size",
+        "12x9",
+        "--samples",
+        "5",
+        "--strategy",
+        "median-cut:8",
+        "--mis",
+        "power",
+        "--max-depth",
+        "3",
+        "--camera",
+        "Left",
+        "--seed",
+        "18446744073709551615",
+        "--clamp",
+        "1.1",
+        "--transparent",
+        "--aov",
+        "depth,node"}},
+      {file, {"--mis", "off", "--seed", "9", "--noise", "30"}},
+      {file, {"--camera", "Left", "--probe-scale", "2"}}};
+  for (const auto& [name, options] : jobs) {
+    Words words = options;
+    words.insert(words.end(), {"-o", scene.out / "a.exr"});
+    scene.renderScene(name, words);
+    const ImageFile first = scene.image("a.exr");
+    EXPECT_EQ(std::get<std::string>(first.metadata.at("scene")), name);
+    Words again = optionsIn(first);
+    again.insert(again.end(), {"-o", scene.out / "b.exr"});
+    scene.renderScene(name, again);
+    const ImageFile second = scene.image("b.exr");
+    EXPECT_EQ(second.channels, first.channels) << name;
+    EXPECT_EQ(second.image.texels, first.image.texels) << name;
+    EXPECT_NE(std::get<std::string>(first.metadata.at("files")).find("model.gltf"),
+              std::string::npos);
+
+    // The command itself, in a shell.
+    std::string command = std::get<std::string>(first.metadata.at("command"));
+    ASSERT_EQ(std::system((command + " --quiet > /dev/null").c_str()), 0) << command;
+    EXPECT_EQ(scene.image("a.exr").image.texels, first.image.texels) << command;
+  }
+}
+
+TEST(CommandRender, AHeaderHasTheCamerasMatrices) {
+  const RenderScene scene;
+  scene.render({"--probe", scene.gradient, "--size", "24x18", "--samples", "1", "--camera", "Left",
+                "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
+  const Metadata metadata = scene.image("a.exr").metadata;
+  // A row vector times the matrix, homogeneous.
+  const auto through = [&](const char* name, const glm::dvec3& point) {
+    const Matrix44& m = std::get<Matrix44>(metadata.at(name));
+    const glm::dvec4 p(point, 1);
+    glm::dvec4 q(0);
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) q[column] += p[row] * m[size_t(4 * row + column)];
+    return glm::dvec3(q) / q.w;
+  };
+  const auto expectNear = [](const glm::dvec3& a, const glm::dvec3& b) {
+    EXPECT_NEAR(glm::distance(a, b), 0, 1e-6) << a.x << " " << a.y << " " << a.z;
+  };
+  // At (-4.5, 0, 0), looking along +X; to the right is +Z. Camera space looks along +Z.
+  expectNear(through("worldToCamera", {-4.5, 0, 0}), {0, 0, 0});
+  expectNear(through("worldToCamera", {-0.5, 0.25, 2}), {2, 0.25, 4});
+  const double half = std::tan(0.4), aspect = 24 / 18.0;
+  const glm::dvec3 seen = through("worldToNDC", {-0.5, 0.25, 2});
+  EXPECT_NEAR(seen.x, 0.5 + 2 / (2 * aspect * half * 4), 1e-6);
+  EXPECT_NEAR(seen.y, 0.5 - 0.25 / (2 * half * 4), 1e-6);
+  EXPECT_LT(through("worldToNDC", {-2, 0, 0}).z, seen.z) << "the third number grows with distance";
+
+  const json job = scene.stats("a.json").at("job");
+  EXPECT_EQ(job.at("cameraPosition"), json({-4.5, 0, 0}));
+  EXPECT_NEAR(job.at("cameraFov").get<double>(), glm::degrees(0.8), 1e-4);
+  EXPECT_EQ(job.at("worldToCamera").size(), 16u);
+  EXPECT_EQ(job.at("probe"), scene.gradient);
+  EXPECT_EQ(job.at("probe-found"), "lat-long");
+  EXPECT_EQ(job.at("mis"), "balance");
+}
+
 TEST(CommandRender, NumbersOfNodesAndMaterialsHaveTheirNamesInTheHeader) {
   GltfWriter w;
   w.root["materials"] = {{{"name", "unused"}}, {{"name", "say \"x\"\n\xc3\xa9"}}};
@@ -426,8 +545,7 @@ TEST(CommandRender, NumbersOfNodesAndMaterialsHaveTheirNamesInTheHeader) {
             0);
   const ImageFile file = readImageFile(folder / "a.exr");
   const auto manifest = [&](const char* layer) {
-    return json::parse(
-        std::get<std::string>(file.metadata.at(std::string("manifest/") + layer)));
+    return json::parse(std::get<std::string>(file.metadata.at(std::string("manifest/") + layer)));
   };
   const Image nodes = *findLayer(file, "node");
   const float node = *std::max_element(nodes.texels.begin(), nodes.texels.end());

@@ -166,7 +166,8 @@ LoadedScene loadScene(RenderJob& job) {
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
   return {std::move(scene),      camera,          std::move(loaded), std::move(probe),
-          job.file.surroundings, std::move(room), std::move(notes),  std::move(files)};
+          job.file.surroundings, std::move(room), origin,            std::move(notes),
+          std::move(files)};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,

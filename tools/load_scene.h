@@ -16,6 +16,7 @@ struct LoadedScene {
   Probe probe;              // black where the scene lights itself
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // where they are a model
+  glm::dvec3 origin;                         // of the scene's coordinates in the world
   std::vector<std::string> modelNotes;       // what the models' files hold that is not rendered
   std::vector<std::string> files;            // all that were read: none may be written
 };

@@ -31,6 +31,8 @@ std::string shellWord(const std::string& argument) {
   return result + "'";
 }
 
+}  // namespace
+
 std::string commandLine() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string command;
@@ -38,8 +40,6 @@ std::string commandLine() {
     command += (command.empty() ? "" : " ") + shellWord(argument);
   return command;
 }
-
-}  // namespace
 
 Machine thisMachine() {
   Machine machine;

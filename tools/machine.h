@@ -12,4 +12,6 @@ struct Machine {
 };
 Machine thisMachine();
 
+std::string commandLine();  // of this process, as a shell would take it
+
 }  // namespace chromeball

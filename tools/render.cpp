@@ -12,7 +12,9 @@
 #include "id_manifest.h"
 #include "image/file.h"
 #include "image/write.h"
+#include "job_description.h"
 #include "load_scene.h"
+#include "machine.h"
 #include "math/error.h"
 #include "progress.h"
 #include "render_job.h"
@@ -43,9 +45,10 @@ struct Report {
   Metadata metadata;
 };
 
-Report describe(const RenderJob& job, const RenderOptions& options, const Scene& scene,
-                const RenderResult& result, const Seconds& seconds,
-                const PictureNoise& noise) {
+Report describe(const RenderJob& job, const RenderOptions& options, const LoadedScene& loaded,
+                const RenderResult& result, const Seconds& seconds, const PictureNoise& noise) {
+  const Scene& scene = loaded.scene;
+  const auto description = describeJob(options, job, loaded);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const uint64_t rays = result.rays.camera + result.rays.shadow + result.rays.bounce;
@@ -54,6 +57,8 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
   Report r;
   r.json = {
       {"version", CHROMEBALL_VERSION},
+      {"command", commandLine()},
+      {"job", description},
       {"scene", options.scene},
       {"strategy", strategy},
       {"samples_per_pixel", result.samples},
@@ -92,20 +97,17 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Scene&
       {"peak_memory_bytes", uint64_t(usage.ru_maxrss) * 1024},
       {"interrupted", result.interrupted},
   };
-  r.metadata = {{"Software", "chromeball " CHROMEBALL_VERSION},
-                {"scene", options.scene},
-                {"strategy", strategy},
-                {"samples", int(result.samples)},
-                {"seed", std::to_string(job.settings.seed)},
-                {"seconds", float(seconds.render)},
-                {"rays", std::to_string(rays)},
-                {"noise", float(noise.noise)},
-                {"noise_median", float(noise.median)},
-                {"noise_p95", float(noise.p95)}};
-  if (job.settings.clamp) {
-    r.metadata["clamp"] = *job.settings.clamp;
+  r.metadata = toMetadata(description);
+  r.metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
+  r.metadata["command"] = commandLine();
+  r.metadata["samples"] = int(result.samples);
+  r.metadata["seconds"] = float(seconds.render);
+  r.metadata["rays"] = std::to_string(rays);
+  r.metadata["noise"] = float(noise.noise);
+  r.metadata["noise_median"] = float(noise.median);
+  r.metadata["noise_p95"] = float(noise.p95);
+  if (job.settings.clamp)
     r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
-  }
   return r;
 }
 
@@ -220,12 +222,12 @@ void render(const RenderOptions& options) {
   seconds.render = watch.lap();
 
   OutputImage& output = rendered.output;
-  output.metadata = describe(job, options, scene, result, seconds, rendered.noise).metadata;
+  output.metadata = describe(job, options, loaded, result, seconds, rendered.noise).metadata;
   output.metadata.merge(idManifests(output, scene));
   if (result.samples == 0) nameAsPartial(job.outputs);
   for (const std::string& path : job.outputs) writeImage(path, output, job.display);
   seconds.write = watch.lap();
-  Report report = describe(job, options, scene, result, seconds, rendered.noise);
+  Report report = describe(job, options, loaded, result, seconds, rendered.noise);
   report.json.update(rendered.details);
   if (!options.stats.empty()) writeStats(options.stats, report.json);
 

@@ -175,6 +175,12 @@ void prepareOutputs(const RenderJob& job, const RenderOptions& options,
 }
 
 void addSceneOptions(CLI::App& command, RenderOptions& o) {
+  command.parse_complete_callback([&command, &o] {
+    for (const CLI::Option* option : command.get_options())
+      if (option->count() > 0)
+        o.given.push_back(
+            {option->get_single_name(), CLI::detail::join(option->results(), ",")});
+  });
   command.add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
   command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm (else the model's own)");
   command.add_option("--probe-mapping", o.mapping,

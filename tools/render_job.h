@@ -12,8 +12,15 @@
 
 namespace chromeball {
 
+// An option as the command line has it: its name without dashes, its arguments with commas between;
+// "true" for a flag.
+struct GivenOption {
+  std::string name, text;
+};
+
 // The options of `chromeball render` as they were given.
 struct RenderOptions {
+  std::vector<GivenOption> given;  // every one that was, in the order of --help
   std::string scene;
   std::vector<std::string> outputs, aovs;
   std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation, variant;

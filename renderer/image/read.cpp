@@ -53,6 +53,9 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
       metadata[name] = attribute.get_float();
     else if (attribute.type() == OIIO::TypeDesc::STRING)
       metadata[name] = attribute.get_string(0);
+    else if (attribute.type() == OIIO::TypeMatrix)
+      std::copy_n(static_cast<const float*>(attribute.data()), 16,
+                  std::get<Matrix44>(metadata[name] = Matrix44{}).begin());
   }
   return metadata;
 }

@@ -2,6 +2,7 @@
 // by its name. All of these throw InputError ("FILE: reason").
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -13,7 +14,9 @@
 
 namespace chromeball {
 
-using Metadata = std::map<std::string, std::variant<std::string, int, float>>;
+// For row vectors, as OpenEXR's: row after row, the translation in the last.
+using Matrix44 = std::array<float, 16>;
+using Metadata = std::map<std::string, std::variant<std::string, int, float, Matrix44>>;
 
 // What the texels of integer files (8 or 16 bits) mean. Float files are linear whatever is asked.
 enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear; alpha never is
@@ -38,9 +41,9 @@ std::optional<Image> findColor(const ImageFile& file);
 // The same, with alpha as a fourth channel where the file has R, G, B and A.
 std::optional<Image> findColorAndAlpha(const ImageFile& file);
 
-// The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME or the first
-// of NAME's channels (one channel); "alpha" is also the colour's A. nullopt where the file has no such
-// layer.
+// The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME or the
+// first of NAME's channels (one channel); "alpha" is also the colour's A. nullopt where the file
+// has no such layer.
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
 
 // The names findLayer knows.

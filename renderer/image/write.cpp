@@ -69,7 +69,14 @@ void writeExr(const fs::path& path, const OutputImage& output) {
   spec.channelnames = names;
   spec.attribute("compression", "zip");
   for (const auto& [name, contents] : output.metadata)
-    std::visit([&, key = name](const auto& number) { spec.attribute(key, number); }, contents);
+    if (const auto* matrix = std::get_if<Matrix44>(&contents))
+      spec.attribute(name, OIIO::TypeMatrix, matrix->data());
+    else if (const auto* text = std::get_if<std::string>(&contents))
+      spec.attribute(name, *text);
+    else if (const auto* number = std::get_if<float>(&contents))
+      spec.attribute(name, *number);
+    else
+      spec.attribute(name, std::get<int>(contents));
   writeThroughLibrary(path, "openexr", spec, all.texels.data());
 }
 
