@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 
+#include "gltf_writer.h"
 #include "image/read.h"
 #include "image/write.h"
 #include "probe/synth.h"
@@ -13,6 +16,7 @@ namespace chromeball {
 namespace {
 
 using nlohmann::json;
+using Words = std::vector<std::string>;
 namespace fs = std::filesystem;
 
 // A triangle above a gradient, 16 x 16 pixels.
@@ -151,6 +155,150 @@ TEST_F(SlowCommandCompare, badInputIsRefused) {
   }
   fs::resize_file(stored, fs::file_size(stored) / 2);
   refused(kSmall, stored.filename().c_str());
+}
+
+// Every option of the command, by the help it prints: either it leaves the renders as they are, or
+// those of another setting are not taken for them.
+TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherComparison) {
+  const std::set<std::string> same = {
+      "help",           "output",    "strategies",        "samples",
+      "times",          "repeats",   "baseline",          "memory",
+      "progress",       "quiet",     "tonemap",           "exposure",
+      "allow-external", "reference", "reference-samples", "reference-strategy"};
+  GltfWriter w;
+  addTriangle(w);
+  w.root["animations"] = {
+      {{"name", "Still"}, {"channels", json::array()}, {"samplers", json::array()}}};
+  w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+  for (const char* name : {"Near", "Far"})
+    w.add("nodes", {{"name", name},
+                    {"camera", 0},
+                    {"translation", {0, 0, name == std::string("Near") ? 3 : 6}}});
+  w.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  w.root["scene"] = 0;
+  w.root["extensions"] = {{"KHR_materials_variants", {{"variants", {{{"name", "Red"}}}}}}};
+  writeImage(folder_ / "other.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.6, 0.3, 0.6}));
+  const std::map<std::string, Words> others = {{"probe", {folder_ / "other.exr"}},
+                                               {"probe-mapping", {"lat-long"}},
+                                               {"probe-rotation", {"30"}},
+                                               {"probe-scale", {"2"}},
+                                               {"size", {"16x12"}},
+                                               {"mis", {"power"}},
+                                               {"max-depth", {"3"}},
+                                               {"camera", {"Far"}},
+                                               {"animation", {"Still"}},
+                                               {"animation-time", {"1"}},
+                                               {"variant", {"Red"}},
+                                               {"seed", {"7"}},
+                                               {"threads", {"1"}}};
+  const std::map<std::string, std::string> usual = {
+      {"probe", folder_ / "probe.exr"}, {"size", "16x16"}, {"threads", "2"}};
+  const std::string model = w.save();
+  const auto words = [&](const std::string& changed, const Words& to) {
+    Words all{"compare", model,       "-o", dir(),       "--quiet", "--strategies",
+              "bsdf",    "--samples", "1",  "--repeats", "3",       "--reference-samples",
+              "8"};
+    for (const auto& [name, value] : usual)
+      if (name != changed) all.insert(all.end(), {"--" + name, value});
+    if (!changed.empty()) all.push_back("--" + changed);
+    all.insert(all.end(), to.begin(), to.end());
+    return all;
+  };
+  ASSERT_EQ(runCommand(words("", {})).status, 0);
+
+  const std::string help = runCommand({"compare", "--help"}).out;
+  const std::regex option("--([a-z-]+)");
+  for (auto at = std::sregex_iterator(help.begin(), help.end(), option);
+       at != std::sregex_iterator(); ++at) {
+    const std::string name = (*at)[1];
+    if (same.contains(name)) continue;
+    const auto other = others.find(name);
+    if (other == others.end()) {
+      ADD_FAILURE() << "--" << name << ": say here what another setting of it is";
+      continue;
+    }
+    const CommandResult result = runCommand(words(name, other->second));
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.error.find("another comparison's"), std::string::npos) << name << result.error;
+  }
+  EXPECT_EQ(runCommand(words("", {})).status, 0) << "and this is still the same";
+
+  // So do the contents of what the files name.
+  w.write("data.bin", std::vector<uint8_t>(36));
+  expectRefused(words("", {}), "contents of model.gltf");
+}
+
+TEST_F(SlowCommandCompare, whatIsStoredStaysOnThePage) {
+  const Words first = {"--strategies",        "bsdf,uniform",
+                       "--samples",           "1,4",
+                       "--repeats",           "3",
+                       "--reference-samples", "64"};
+  ASSERT_EQ(runCommand(command(first)).status, 0);
+  const json before = results();
+  ASSERT_EQ(runCommand(command({"--strategies", "bsdf", "--samples", "2", "--repeats", "3",
+                                "--reference-samples", "64"}))
+                .status,
+            0);
+  const json after = results();
+  ASSERT_EQ(after["strategies"].size(), 2u);
+  EXPECT_EQ(after["strategies"][0]["cells"].size(), 3u);
+  EXPECT_EQ(after["strategies"][1]["cells"], before["strategies"][1]["cells"]);
+  EXPECT_TRUE(after["complete"]);
+}
+
+TEST_F(SlowCommandCompare, budgetsThatDifferInTheSeventhDigitAreTwo) {
+  ASSERT_EQ(runCommand(command({"--strategies", "bsdf", "--times", "0.05,0.0500000001", "--repeats",
+                                "3", "--reference-samples", "8"}))
+                .status,
+            0);
+  EXPECT_EQ(results()["strategies"][0]["cells"].size(), 2u);
+  EXPECT_EQ(renders().size(), 8u + 2 * 3);
+}
+
+TEST_F(SlowCommandCompare, saysInWordsWhoWins) {
+  Words arguments = command(kSmall);
+  std::erase(arguments, "--quiet");
+  const CommandResult result = runCommand(arguments);
+  ASSERT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("At equal samples (4spp): "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("At equal time"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("median-cut:4 is biased"), std::string::npos) << result.out;
+  const std::string page = fileContents(dir() + "/index.html");
+  EXPECT_LT(page.find("At equal samples"), page.find("How fast the error falls"));
+}
+
+TEST_F(SlowCommandCompare, numbersHaveTheDigitsTheirErrorsAllow) {
+  Words arguments = command(kSmall);
+  std::erase(arguments, "--quiet");
+  const std::string table = runCommand(arguments).out;
+  const std::regex number("([0-9.]+)(e[-+0-9]+)? \\+- ([0-9.]+)(e[-+0-9]+)?");
+  int found = 0;
+  for (auto at = std::sregex_iterator(table.begin(), table.end(), number);
+       at != std::sregex_iterator(); ++at, ++found) {
+    const auto places = [](const std::string& text) {
+      const size_t point = text.find('.');
+      return point == std::string::npos ? 0 : int(text.size() - point) - 1;
+    };
+    EXPECT_EQ(places((*at)[1]), places((*at)[3])) << at->str();
+    EXPECT_EQ((*at)[2], (*at)[4]) << at->str();
+    std::string digits = (*at)[3];
+    std::erase(digits, '.');
+    digits.erase(0, digits.find_first_not_of('0'));
+    while (digits.ends_with('0') && digits.size() > 1) digits.pop_back();
+    EXPECT_LE(digits.size(), digits.starts_with('1') ? 2u : 1u) << at->str();
+  }
+  EXPECT_GT(found, 4) << table;
+}
+
+TEST_F(SlowCommandCompare, saysThatItLeavesThePlateOut) {
+  std::ofstream(folder_ / "scene.toml")
+      << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n[composite]\nplate = 'probe.exr'\n"
+         "local_scene = ['0']\n";
+  const CommandResult result =
+      runCommand({"compare", folder_ / "scene.toml", "--size", "8x8", "-o", dir(), "--quiet",
+                  "--strategies", "bsdf", "--samples", "1", "--reference-samples", "8"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("[composite] is left out"), std::string::npos) << result.error;
 }
 
 }  // namespace

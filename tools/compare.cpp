@@ -6,16 +6,16 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "image/file.h"
+#include "job_description.h"
 #include "machine.h"
 #include "math/error.h"
-#include "math/hash.h"
 #include "output_file.h"
 #include "probe_dots.h"
 #include "progress.h"
 #include "report.h"
 #include "study_run.h"
 #include "study_tables.h"
+#include "study_verdict.h"
 
 namespace chromeball {
 namespace {
@@ -49,6 +49,11 @@ std::vector<std::string> resolveStrategies(const std::vector<std::string>& given
   return names;
 }
 
+void sortOut(std::vector<Budget>& budgets) {
+  std::sort(budgets.begin(), budgets.end());
+  budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
+}
+
 std::vector<Budget> planBudgets(const Arguments& a) {
   std::vector<Budget> budgets;
   for (const int samples : a.samples) {
@@ -61,10 +66,7 @@ std::vector<Budget> planBudgets(const Arguments& a) {
     budgets.push_back({true, seconds});
   }
   if (budgets.empty()) budgets = {{false, 1}, {false, 4}, {false, 16}, {false, 64}};
-  std::sort(budgets.begin(), budgets.end(), [](const Budget& x, const Budget& y) {
-    return std::pair(x.timed, x.amount) < std::pair(y.timed, y.amount);
-  });
-  budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
+  sortOut(budgets);
   return budgets;
 }
 
@@ -85,7 +87,8 @@ Study planStudy(const Arguments& a) {
   study.folder = a.folder;
   study.strategies = resolveStrategies(a.strategies);
   study.budgets = planBudgets(a);
-  if (a.repeats < 3) throwInput("--repeats: {} is not 3 or more", a.repeats);
+  if (a.repeats < Study::kFewestRepeats)
+    throwInput("--repeats: {} is not {} or more", a.repeats, Study::kFewestRepeats);
   study.repeats = a.repeats;
   study.baseline = a.baseline.empty() ? study.strategies.front() : resolveStrategy(a.baseline);
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
@@ -94,39 +97,23 @@ Study planStudy(const Arguments& a) {
   if (!a.reference.empty() && a.referenceSamples)
     throwInput("--reference-samples: the reference is a file; give one or the other");
   study.referenceStrategy = resolveStrategy(a.referenceStrategy);
-  study.referenceSamples = planReferenceSamples(a, study.budgets);
+  planReferenceSamples(a, study.budgets);  // refuses what cannot be
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
   if (fs::exists(a.folder) && !fs::is_directory(a.folder))
     throwInput("--output: {} is a file; give a folder", a.folder);
   return study;
 }
 
-// Of the bytes of a file.
-uint64_t fingerprint(const std::string& path) {
-  uint64_t state = 0;
-  const std::vector<uint8_t> bytes = readFile(path);
-  for (size_t i = 0; i < bytes.size(); ++i) state = hash(state ^ bytes[i]);
-  return state;
-}
-
-// What decides a render beside strategy, budget and repeat. (Buffers and textures beside a .gltf
-// are not looked into.)
-std::string identityOf(const RenderOptions& options, const RenderJob& job) {
-  const SceneFile& file = job.file;
-  const RenderSettings& s = job.settings;
-  uint64_t content = fingerprint(options.scene);
-  for (const ModelEntry& model : file.models) content = hash(content, fingerprint(model.file));
-  if (file.probe) content = hash(content, fingerprint(*file.probe));
-  return fmt::format(
-      "content {:016x}, {}x{}, camera {}, probe turned {} scaled {}, mis {}, depth {}, seed {}, "
-      "animation {} at {}, threads {}",
-      content, s.width, s.height,
-      file.camera       ? "of the scene file"
-      : file.cameraName ? file.cameraName->name
-                        : "first",
-      file.probeRotation.value_or(0), file.probeScale.value_or(1), int(s.mis), s.maxDepth, s.seed,
-      options.animation.value_or(""), options.animationTime.value_or(0),
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+// The results show what runs before this one left in the folder as well.
+void showStored(Study& study, const RenderStore& store) {
+  study.shownStrategies = study.strategies;
+  study.shownBudgets = study.budgets;
+  for (const RenderKey& key : store.firstRepeats()) {
+    auto& names = study.shownStrategies;
+    if (std::count(names.begin(), names.end(), key.strategy) == 0) names.push_back(key.strategy);
+    study.shownBudgets.push_back(key.budget);
+  }
+  sortOut(study.shownBudgets);
 }
 
 void checkReference(const StudyRun& run, const Study& study) {
@@ -165,19 +152,25 @@ void compare(const Arguments& a) {
   job.settings.aovs.clear();
   job.settings.noiseLimit.reset();
   study.seed = job.settings.seed;
-  study.identity = identityOf(a.scene, job);
+  study.identity = identityOf(a.scene, job, loaded);
 
   const RenderStore store(study, {job.settings.width, job.settings.height});
+  showStored(study, store);
+  study.referenceSamples = planReferenceSamples(a, study.shownBudgets);
   StudyRun run(study, store, loaded, job.settings);
   checkReference(run, study);
   if (!study.referenceFile.empty())
     loadReference(study, store, job.settings.width, job.settings.height);
   sayNotes(job, loaded, a.scene.quiet);
+  if (job.file.composite)
+    warn(
+        fmt::format("{}: [composite] is left out: strategies are compared on the whole model, "
+                    "without the plate",
+                    a.scene.scene));
 
   const auto results = [&] {
     const RenderSettings& s = job.settings;
-    return studyResults(study, store, loadReference(study, store, s.width, s.height),
-                        run.unbiased());
+    return studyResults(study, store, loadReference(study, store, s.width, s.height));
   };
   ReportScene about{
       fs::path(a.scene.scene).filename().string(), &loaded.probe, a.scene.exposure, {}};
@@ -206,7 +199,9 @@ void compare(const Arguments& a) {
   const StudyResults all = results();
   write(all);
   for (const std::string& warning : all.warnings) warn(warning);
-  if (!a.scene.quiet) fmt::print("{}", resultsTable(study, all));
+  if (a.scene.quiet) return;
+  fmt::print("{}", resultsTable(study, all));
+  for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
 }
 
 }  // namespace

@@ -37,10 +37,11 @@ struct Axis {
     least = std::min(least, number);
     most = std::max(most, number);
   }
-  // Some room at both ends; an axis that shows nothing, or one number, gets a decade or more.
+  // Room for a mark at both ends; an axis that shows nothing, or one number, gets a decade or more.
   void finish() {
+    constexpr double kShare = 0.06;  // of the axis, at each end
     if (most == 0) least = most = 1;
-    const double room = most > 2 * least ? 1.15 : 3.2;
+    const double room = most > 2 * least ? std::pow(most / least, kShare / (1 - 2 * kShare)) : 3.2;
     least /= room;
     most *= room;
   }

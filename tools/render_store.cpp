@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <set>
 
 #include "image/read.h"
 #include "image/write.h"
+#include "job_description.h"
 #include "math/error.h"
 
 namespace chromeball {
@@ -48,8 +50,8 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   const ImageFile file = readImageFile(path(key));
   const Metadata& metadata = file.metadata;
   if (const std::string made = textIn(metadata, "study"); made != study_.identity)
-    throwInput("--output: {} was made for `{}`, and this is `{}`; give another folder", path(key),
-               made, study_.identity);
+    throwInput("--output: {} is another comparison's: {}; give another folder", path(key),
+               differenceOf(made, study_.identity));
   const std::optional<Image> color = findColor(file);
   if (!color || color->width != size_.width || color->height != size_.height)
     throwInput("--output: {} is not the render that it was: delete it", path(key));
@@ -61,21 +63,43 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   render.noise = numberIn(metadata, "noise");
   render.rays = numberIn(metadata, "rays");
   render.invalidSamples = numberIn(metadata, "invalidSamples");
+  render.unbiased = textIn(metadata, "unbiased") == "yes";
   return render;
 }
 
 void RenderStore::save(const RenderKey& key, const StoredRender& render) const {
   const auto text = [](double number) { return fmt::format("{}", number); };
-  writeImage(path(key), OutputImage{{{"", "RGB", render.image}},
-                                    {{"study", study_.identity},
-                                     {"strategy", key.strategy},
-                                     {"seed", std::to_string(seedOf(key, study_.seed))},
-                                     {"samples", text(render.samples)},
-                                     {"seconds", text(render.seconds)},
-                                     {"prepareSeconds", text(render.prepareSeconds)},
-                                     {"noise", text(render.noise)},
-                                     {"rays", text(render.rays)},
-                                     {"invalidSamples", text(render.invalidSamples)}}});
+  writeImage(
+      path(key),
+      OutputImage{{{"", "RGB", render.image}},
+                  {{"study", study_.identity},
+                   {"strategy", key.strategy},
+                   {"unbiased", render.unbiased ? "yes" : "no"},
+                   {key.budget.timed ? "budgetSeconds" : "budgetSamples", text(key.budget.amount)},
+                   {"seed", std::to_string(seedOf(key, study_.seed))},
+                   {"samples", text(render.samples)},
+                   {"seconds", text(render.seconds)},
+                   {"prepareSeconds", text(render.prepareSeconds)},
+                   {"noise", text(render.noise)},
+                   {"rays", text(render.rays)},
+                   {"invalidSamples", text(render.invalidSamples)}}});
+}
+
+std::vector<RenderKey> RenderStore::firstRepeats() const {
+  std::set<std::string> paths;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(fs::path(study_.folder) / "renders", none))
+    if (entry.path().string().ends_with("-1.exr")) paths.insert(entry.path().string());
+  std::vector<RenderKey> keys;
+  for (const std::string& path : paths) {
+    const Metadata metadata = readImageFile(path).metadata;
+    const bool timed = metadata.contains("budgetSeconds");
+    const double amount = numberIn(metadata, timed ? "budgetSeconds" : "budgetSamples");
+    RenderKey key{textIn(metadata, "strategy"), {timed, amount}, 0};
+    if (key.strategy.empty() || key.strategy == kReference || amount <= 0) continue;
+    if (find(key)) keys.push_back(std::move(key));
+  }
+  return keys;
 }
 
 }  // namespace chromeball

@@ -12,6 +12,7 @@
 namespace chromeball {
 
 struct StoredRender {
+  bool unbiased = true;  // whether its strategy is
   Image image;  // RGB
   double samples = 0, seconds = 0, prepareSeconds = 0;
   double noise = 0;  // as the render itself estimates it
@@ -32,6 +33,10 @@ class RenderStore {
   // damaged.
   std::optional<StoredRender> find(const RenderKey& key) const;
   void save(const RenderKey& key, const StoredRender& render) const;
+
+  // The first repeats of all renders in the folder but the reference's, in the order of their
+  // names. Throws as find() does.
+  std::vector<RenderKey> firstRepeats() const;
 
  private:
   const Study& study_;

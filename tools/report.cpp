@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimate_text.h"
 #include "image/tonemap.h"
 #include "light_preview.h"
 #include "log_log_plot.h"
 #include "probe/mapping.h"
 #include "report_pictures.h"
 #include "study_tables.h"
+#include "study_verdict.h"
 
 namespace chromeball {
 
@@ -47,16 +49,17 @@ std::string plot(const StudyResults& results, const char* title, const char* xLa
   return logLogPlot(title, xLabel, "relMSE", {panel}, ticks);
 }
 
-// Three digits, and no powers of ten where people can do without.
-std::string number(double x, int digits = 3) {
-  const double size = std::fabs(x);
-  if (size >= std::pow(10, digits) && size < 1e7) return fmt::format("{:.0f}", x);
-  return fmt::format("{:.{}g}", x, digits);
+std::string plusMinus(const EstimateText& e) {
+  if (e.halfInterval == "0") return e.number;
+  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", e.number, e.halfInterval);
 }
+std::string plusMinus(const Estimate& e) { return plusMinus(estimateText(e)); }
 
-std::string plusMinus(const Estimate& e) {
-  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", number(e.mean),
-                     number(1.96 * e.standardError, 1));
+// Of what means nothing where it may be 0.
+std::string resolved(const Estimate& e) {
+  const EstimateText text = estimateText(e);
+  if (text.isResolved) return plusMinus(text);
+  return fmt::format("<span class=\"soft\">not resolved &plusmn; {}</span>", text.halfInterval);
 }
 
 std::string row(const Cell& cell, const StrategyResult& strategy, double mostEfficient) {
@@ -64,16 +67,16 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
   std::string equal = "none seen";
   if (strategy.unbiased) equal = "unbiased";
   if (const auto& c = strategy.biasEqualsNoise)
-    equal = fmt::format("{} <span class=\"soft\">({} to {})</span>", number(c->samples, 2),
-                        number(c->low, 2), number(c->high, 2));
+    equal = fmt::format("{} <span class=\"soft\">({} to {})</span>", shortNumber(c->samples, 2),
+                        shortNumber(c->low, 2), shortNumber(c->high, 2));
   return fmt::format(
       "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
       "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
       "td><td>{6}</td><td>{7}</td><td>{8}</td>"
       "<td>{9}</td></tr>\n",
-      escaped(cell.strategy), width, plusMinus(cell.efficiency), plusMinus(cell.error.relMse),
+      escaped(cell.strategy), width, resolved(cell.efficiency), resolved(cell.error.relMse),
       plusMinus(cell.seconds), cell.prepareSeconds,
-      plusMinus({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
+      resolved({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
       strategy.variance ? plusMinus(strategy.variance->slope) : "",
       strategy.relMse ? plusMinus(strategy.relMse->slope) : "", equal);
 }
@@ -93,6 +96,8 @@ std::string table(const Study& study, const StudyResults& results) {
 }
 
 std::string pairsTable(const StudyResults& results) {
+  if (results.pairs.empty())
+    return "<p>Fewer than two strategies can be held to one another here.</p>\n";
   std::string html =
       "<table id=\"pairs\"><thead><tr><th>pair</th><th>p</th><th>tiles that differ</th></tr>"
       "</thead><tbody>\n";
@@ -132,6 +137,29 @@ std::string paragraphs(const std::vector<std::string>& texts) {
   return html;
 }
 
+std::string verdictList(const Study& study, const StudyResults& results) {
+  const std::vector<std::string> sentences = verdict(study, results);
+  if (sentences.empty()) return "";
+  std::string html = "<ul id=\"verdict\">\n";
+  for (const std::string& sentence : sentences) {
+    std::string text = escaped(sentence);
+    for (size_t at = 0; (at = text.find("+-", at)) != std::string::npos;)
+      text.replace(at, 2, "&plusmn;");
+    html += "<li>" + text + "</li>\n";
+  }
+  return html + "</ul>\n";
+}
+
+std::string repeatsText(const StudyResults& results) {
+  size_t fewest = SIZE_MAX, most = 0;
+  for (const StrategyResult& strategy : results.strategies)
+    for (const Cell& cell : strategy.cells) {
+      fewest = std::min(fewest, cell.repeatSeconds.size());
+      most = std::max(most, cell.repeatSeconds.size());
+    }
+  return fewest < most ? fmt::format("{} to {}", fewest, most) : fmt::format("{}", most);
+}
+
 std::string referenceText(const Study& study, const StudyResults& results) {
   const std::string origin =
       study.referenceFile.empty()
@@ -159,20 +187,21 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
   const std::string at = budget ? budget->label() : "no common budget";
   std::string page = kReportHtml;
   fill(page, "title",
-       escaped(fmt::format("{}: {} lighting strategies", scene.name, study.strategies.size())));
+       escaped(fmt::format("{}: {} lighting strategies", scene.name, results.strategies.size())));
   fill(page, "subtitle",
        escaped(fmt::format("{} x {} pixels, {} independent renders of each strategy and budget; "
                            "reference: {}.",
                            results.reference.mean.width, results.reference.mean.height,
-                           study.repeats, referenceText(study, results))));
+                           repeatsText(results), referenceText(study, results))));
+  fill(page, "verdict", verdictList(study, results));
   fill(page, "warnings", paragraphs(results.warnings));
   fill(page, "plots", samplesPlot(results) + secondsPlot(results));
   fill(page, "tableNote",
        escaped(fmt::format(
            "At {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), {} being 1: of "
            "two unbiased strategies, one of twice the efficiency needs half the time for the same "
-           "error. After +-: half an interval of 95%. Slopes are of log error against log samples: "
-           "-1 for independent samples.",
+           "error. After +-: half an interval of 95%; not resolved: it holds 0. Slopes are of log "
+           "error against log samples: -1 for independent samples.",
            at, study.baseline)));
   fill(page, "table", table(study, results));
   fill(page, "pairsNote",
@@ -200,7 +229,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
        "of rendering alone. Every render has a seed of its own, and the reference has others than "
        "any of them. Every number is in <code>results.csv</code> and <code>results.json</code>, "
        "every render in <code>renders/</code>.");
-  fill(page, "data", reportPictures(study, store, results).dump());
+  fill(page, "data", reportPictures(store, results).dump());
   fill(page, "script", kReportScript);
   return page;
 }

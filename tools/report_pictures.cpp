@@ -46,9 +46,9 @@ Json radianceUris(const Image& image) {
           {"exponent", pngUri(image.width, image.height, 1, exponents)}};
 }
 
-std::vector<Image> loadImages(const Study& study, const RenderStore& store, const Cell& cell) {
+std::vector<Image> loadImages(const RenderStore& store, const Cell& cell) {
   std::vector<Image> images;
-  for (int repeat = 0; repeat < study.repeats; ++repeat)
+  for (int repeat = 0; repeat < int(cell.repeatSeconds.size()); ++repeat)
     images.push_back(store.find({cell.strategy, cell.budget, repeat}).value().image);
   return images;
 }
@@ -122,12 +122,11 @@ double commonScale(const std::vector<Image>& maps) {
   return roundUp(percentile(std::move(numbers), 0.99));
 }
 
-void addPictures(Json& json, const Study& study, const RenderStore& store,
-                 const StudyResults& results) {
+void addPictures(Json& json, const RenderStore& store, const StudyResults& results) {
   std::vector<Image> errors;
   json["pictures"] = Json::array();
   for (const Cell* cell : equalTimeCells(results)) {
-    const std::vector<Image> repeats = loadImages(study, store, *cell);
+    const std::vector<Image> repeats = loadImages(store, *cell);
     errors.push_back(relativeError(repeats, results.reference.mean));
     Json picture = {{"name", cell->strategy},
                     {"budget", cell->budget.label()},
@@ -143,14 +142,13 @@ void addPictures(Json& json, const Study& study, const RenderStore& store,
         mapUri(errors[i], [&](float number) { return 255 * logLevel(number, most, kDecades); });
 }
 
-void addBias(Json& json, const Study& study, const RenderStore& store,
-             const StudyResults& results) {
+void addBias(Json& json, const RenderStore& store, const StudyResults& results) {
   std::vector<Image> maps;
   json["bias"] = Json::array();
   for (const StrategyResult& strategy : results.strategies) {
     if (strategy.unbiased || strategy.cells.empty()) continue;
     const Cell& cell = strategy.cells.back();
-    maps.push_back(sureBias(loadImages(study, store, cell), results.reference));
+    maps.push_back(sureBias(loadImages(store, cell), results.reference));
     json["bias"].push_back({{"name", strategy.name}, {"budget", cell.budget.label()}});
   }
   const double most = commonScale(maps);
@@ -183,15 +181,15 @@ std::vector<const Cell*> equalTimeCells(const StudyResults& results) {
   return cells;
 }
 
-Json reportPictures(const Study& study, const RenderStore& store, const StudyResults& results) {
+Json reportPictures(const RenderStore& store, const StudyResults& results) {
   const Image& reference = results.reference.mean;
   Json json = {{"width", reference.width},
                {"height", reference.height},
                {"heat", colorTable([](int level) { return heatColor(level / 255.0); })},
                {"signed", colorTable([](int level) { return signedColor((level - 128) / 127.0); })},
                {"reference", radianceUris(reference)}};
-  addPictures(json, study, store, results);
-  addBias(json, study, store, results);
+  addPictures(json, store, results);
+  addBias(json, store, results);
   json["zScale"] = kMostZ;
   json["pairs"] = Json::array();
   for (const PairResult& pair : results.pairs) {

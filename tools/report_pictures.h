@@ -18,8 +18,7 @@ namespace chromeball {
 //  bias: [{name, map, budget}], biasScale: {most},     of the approximating ones: signed, linear;
 //                                                        128 where it may be noise (2 sigma)
 //  pairs: [{a, b, map, width, height}], zScale}        z, one texel a tile
-nlohmann::ordered_json reportPictures(const Study& study, const RenderStore& store,
-                                      const StudyResults& results);
+nlohmann::ordered_json reportPictures(const RenderStore& store, const StudyResults& results);
 
 // For every strategy the cell whose seconds are nearest to those that all can be compared at.
 std::vector<const Cell*> equalTimeCells(const StudyResults& results);

@@ -6,7 +6,9 @@
 
 namespace chromeball {
 
-std::string Budget::label() const { return fmt::format("{:g}{}", amount, timed ? "s" : "spp"); }
+std::string Budget::label() const {
+  return timed ? fmt::format("{}s", amount) : fmt::format("{}spp", int64_t(amount));
+}
 
 uint64_t seedOf(const RenderKey& key, uint64_t studySeed) {
   constexpr uint64_t kTopBit = uint64_t(1) << 63;

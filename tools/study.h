@@ -12,8 +12,9 @@ struct Budget {
   bool timed;
   double amount;
 
-  std::string label() const;  // "64spp", "0.5s"
+  std::string label() const;  // "64spp", "0.5s": exact
   bool operator==(const Budget&) const = default;
+  auto operator<=>(const Budget&) const = default;  // samples, then seconds
 };
 
 // One render. The reference is a strategy of the name kReference, its parts are its repeats.
@@ -30,15 +31,20 @@ uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
   std::string folder;
-  std::vector<std::string> strategies;  // names in full
-  std::vector<Budget> budgets;          // ascending: samples, then seconds
-  int repeats = 4;
-  std::string baseline;  // one of the strategies
+  std::vector<std::string> strategies;  // to be rendered; names in full
+  std::vector<Budget> budgets;          // to be rendered; ascending: samples, then seconds
+  int repeats = 4;                      // of each
+  std::string baseline;                 // one of the strategies
+
+  // What the results show: the above, and what runs before this one left in the folder.
+  std::vector<std::string> shownStrategies;
+  std::vector<Budget> shownBudgets;
 
   std::string referenceFile;  // empty: made on the spot, by
   std::string referenceStrategy;
   int referenceSamples = 0;
   static constexpr int kReferenceParts = 8;  // independent; how they scatter tells the error
+  static constexpr int kFewestRepeats = 3;   // that show how a strategy scatters
 
   uint64_t seed = 0;
   // What all its renders have in common; those of another study cannot be used.

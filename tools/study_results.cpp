@@ -26,16 +26,25 @@ double mean(const std::vector<StoredRender>& renders, double StoredRender::*memb
   return sum / double(renders.size());
 }
 
-// All repeats; empty where one is missing.
-std::vector<StoredRender> loadRepeats(const Study& study, const RenderStore& store,
-                                      const std::string& strategy, const Budget& budget) {
+// All repeats that are stored; empty where they are too few to judge by.
+std::vector<StoredRender> loadRepeats(const RenderStore& store, const std::string& strategy,
+                                      const Budget& budget) {
   std::vector<StoredRender> renders;
-  for (int repeat = 0; repeat < study.repeats; ++repeat) {
-    std::optional<StoredRender> render = store.find({strategy, budget, repeat});
-    if (!render) return {};
+  while (std::optional<StoredRender> render = store.find({strategy, budget, int(renders.size())}))
     renders.push_back(*std::move(render));
-  }
+  if (renders.size() < size_t(Study::kFewestRepeats)) return {};
   return renders;
+}
+
+bool isWhole(const Study& study, const StudyResults& results) {
+  for (const StrategyResult& strategy : results.strategies) {
+    if (std::count(study.strategies.begin(), study.strategies.end(), strategy.name) == 0) continue;
+    for (const Budget& budget : study.budgets) {
+      const Cell* cell = findCell(strategy, budget);
+      if (!cell || int(cell->repeatSeconds.size()) < study.repeats) return false;
+    }
+  }
+  return true;
 }
 
 std::vector<Image> images(std::vector<StoredRender> renders) {
@@ -60,7 +69,8 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
 Estimate efficiency(const Cell& cell, const Cell& baseline) {
   if (&cell == &baseline) return {1, 0};
   std::vector<double> logRatios;
-  for (size_t r = 0; r < cell.repeatSeconds.size(); ++r)
+  const size_t turns = std::min(cell.repeatSeconds.size(), baseline.repeatSeconds.size());
+  for (size_t r = 0; r < turns; ++r)
     logRatios.push_back(std::log(baseline.repeatSeconds[r] / cell.repeatSeconds[r]));
   const Estimate logSpeed = estimateOf(logRatios);
   const Estimate &here = cell.error.relMse, &there = baseline.error.relMse;
@@ -101,9 +111,9 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   std::vector<PairResult> pairs;
   std::vector<std::pair<std::string, std::vector<Image>>> sets;
   for (const StrategyResult& strategy : results.strategies)
-    if (budget && strategy.unbiased &&
-        findCell(strategy, *budget)->error.relMse.mean < kMostNoiseOfPairs)
-      sets.emplace_back(strategy.name, images(loadRepeats(study, store, strategy.name, *budget)));
+    if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr;
+        cell && cell->error.relMse.mean < kMostNoiseOfPairs)
+      sets.emplace_back(strategy.name, images(loadRepeats(store, strategy.name, *budget)));
   for (size_t i = 0; i < sets.size(); ++i)
     for (size_t j = i + 1; j < sets.size(); ++j)
       pairs.push_back(
@@ -172,26 +182,25 @@ Reference loadReference(const Study& study, const RenderStore& store, int width,
   return {*color, variance && variance->channels == 3 ? *variance : Image()};
 }
 
-StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference,
-                          const std::set<std::string>& unbiased) {
+StudyResults studyResults(const Study& study, const RenderStore& store,
+                          const Reference& reference) {
   StudyResults results;
   results.reference = reference;
   results.referenceErrorKnown = !reference.squaredError.empty();
-  for (const std::string& name : study.strategies) {
+  for (const std::string& name : study.shownStrategies) {
     StrategyResult& strategy = results.strategies.emplace_back();
     strategy.name = name;
-    strategy.unbiased = unbiased.contains(name);
-    for (const Budget& budget : study.budgets) {
-      std::vector<StoredRender> renders = loadRepeats(study, store, name, budget);
-      if (renders.empty())
-        results.complete = false;
-      else
-        strategy.cells.push_back(cellOf(name, budget, std::move(renders), reference));
+    for (const Budget& budget : study.shownBudgets) {
+      std::vector<StoredRender> renders = loadRepeats(store, name, budget);
+      if (renders.empty()) continue;
+      strategy.unbiased = renders.front().unbiased;
+      strategy.cells.push_back(cellOf(name, budget, std::move(renders), reference));
     }
     fitConvergence(strategy);
     for (const Cell& cell : strategy.cells)
       results.referenceNoise = std::sqrt(cell.error.reference);
   }
+  results.complete = isWhole(study, results);
   compareWithBaseline(results.strategies, study.baseline);
   results.pairs = comparePairs(study, store, results);
   results.warnings = warningsOf(study, results);
@@ -204,12 +213,23 @@ const Cell* findCell(const StrategyResult& strategy, const Budget& budget) {
   return nullptr;
 }
 
-std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results) {
-  for (auto budget = study.budgets.rbegin(); budget != study.budgets.rend(); ++budget)
-    if (std::all_of(results.strategies.begin(), results.strategies.end(),
-                    [&](const StrategyResult& s) { return findCell(s, *budget); }))
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
+                                          bool (*isWanted)(const Budget&)) {
+  const auto has = [&](const std::string& name, const Budget& budget) {
+    return std::any_of(
+        results.strategies.begin(), results.strategies.end(),
+        [&](const StrategyResult& s) { return s.name == name && findCell(s, budget); });
+  };
+  for (auto budget = study.shownBudgets.rbegin(); budget != study.shownBudgets.rend(); ++budget)
+    if (isWanted(*budget) &&
+        std::all_of(study.strategies.begin(), study.strategies.end(),
+                    [&](const std::string& name) { return has(name, *budget); }))
       return *budget;
   return std::nullopt;
+}
+
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results) {
+  return largestCommonBudget(study, results, [](const Budget&) { return true; });
 }
 
 }  // namespace chromeball

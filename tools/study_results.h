@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,7 @@ struct Cell {
   Budget budget;
   CellError error;
   double samples = 0;                 // mean over the repeats
-  std::vector<double> repeatSeconds;  // of rendering, in order
+  std::vector<double> repeatSeconds;  // of rendering, in order; as many as repeats
   Estimate seconds;                   // their mean
   double prepareSeconds = 0;          // of building the strategy, which all its renders share
   double noise = 0;                   // mean of what the renders themselves report
@@ -55,21 +54,23 @@ struct StudyResults {
   std::vector<StrategyResult> strategies;
   std::vector<PairResult> pairs;      // of strategies that can be compared, on that budget
   std::vector<std::string> warnings;  // what a reader should know before trusting the numbers
-  bool complete = true;               // every cell of the study is here
+  bool complete = true;               // every cell of this run is here
 };
 
 // The reference as it is on file, or as its parts make it. Throws InputError where its file does
 // not fit the picture's size.
 Reference loadReference(const Study& study, const RenderStore& store, int width, int height);
 
-// From those cells whose every repeat is stored. `unbiased` names the strategies that are.
-StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference,
-                          const std::set<std::string>& unbiased);
+// From those cells of which enough repeats are stored.
+StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference);
 
 // The cell of a strategy on a budget; null where it is not there yet.
 const Cell* findCell(const StrategyResult& strategy, const Budget& budget);
 
-// The largest budget on which every strategy has its cell; nullopt where there is none.
+// The largest budget (of those wanted) on which every strategy of this run has its cell; nullopt
+// where there is none. Of those that runs before left behind, some may lack it.
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results);
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
+                                          bool (*isWanted)(const Budget&));
 
 }  // namespace chromeball

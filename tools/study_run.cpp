@@ -36,13 +36,6 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
   }
 }
 
-std::set<std::string> StudyRun::unbiased() const {
-  std::set<std::string> names;
-  for (const std::string& name : study_.strategies)
-    if (strategy(name).unbiased()) names.insert(name);
-  return names;
-}
-
 RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
   RenderSettings settings = settings_;
@@ -82,9 +75,10 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
   Built& built = built_.at(key.strategy);
   built.secondsPerSample = seconds / std::max(1u, result.samples);
   const RayCounts& rays = result.rays;
-  store_.save(key, {result.film.mean(), double(result.samples), seconds, built.prepareSeconds,
-                    result.film.noise().noise, double(rays.camera + rays.shadow + rays.bounce),
-                    double(result.invalid.total())});
+  store_.save(key,
+              {built.strategy->unbiased(), result.film.mean(), double(result.samples), seconds,
+               built.prepareSeconds, result.film.noise().noise,
+               double(rays.camera + rays.shadow + rays.bounce), double(result.invalid.total())});
   ++stored_;
 }
 

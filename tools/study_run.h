@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "integrate/render.h"
 #include "load_scene.h"
@@ -19,8 +18,6 @@ class StudyRun {
   // arguments must outlive the run.
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
-
-  std::set<std::string> unbiased() const;  // of the study's strategies
 
   // Renders and stores what is missing. `progress` is told the share of the seconds that are
   // thought to be needed, `finishedBudget` when all strategies have rendered on one. Returns false

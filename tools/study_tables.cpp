@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimate_text.h"
+
 namespace chromeball {
 namespace {
 
@@ -56,7 +58,7 @@ std::string resultsCsv(const StudyResults& results) {
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       const CellError& error = cell.error;
-      csv += fmt::format("{},{},{},{:g}", strategy.name, strategy.unbiased ? "yes" : "no",
+      csv += fmt::format("{},{},{},{}", strategy.name, strategy.unbiased ? "yes" : "no",
                          cell.budget.label(), cell.samples);
       for (const Estimate& e : {cell.seconds, error.relMse, error.variance, error.squaredBias,
                                 error.bias, cell.efficiency})
@@ -76,7 +78,7 @@ Json resultsJson(const Study& study, const StudyResults& results, const Machine&
                  {"system", machine.system},
                  {"compiler", machine.compiler},
                  {"threads", machine.threads}}},
-               {"study", study.identity},
+               {"study", Json::parse(study.identity)},
                {"complete", results.complete},
                {"warnings", results.warnings},
                {"repeats", study.repeats},
@@ -105,7 +107,7 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
   std::vector<const Cell*> cells;
   const std::optional<Budget> budget = largestCommonBudget(study, results);
   for (const StrategyResult& strategy : results.strategies)
-    if (budget) cells.push_back(findCell(strategy, *budget));
+    if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
   std::stable_sort(cells.begin(), cells.end(), [](const Cell* a, const Cell* b) {
     return a->efficiency.mean > b->efficiency.mean;
   });
@@ -116,13 +118,15 @@ std::string resultsTable(const Study& study, const StudyResults& results) {
   const std::vector<const Cell*> cells = ranking(study, results);
   if (cells.empty()) return "no budget has been rendered by all strategies\n";
   std::string table =
-      fmt::format("{:<26} {:>11} {:>10} {:>11} {:>10} {:>9}   (at {})\n", "strategy", "efficiency",
-                  "seconds", "relMSE", "+-", "bias %", cells.front()->budget.label());
-  for (const Cell* cell : cells)
-    table +=
-        fmt::format("{:<26} {:>11.4g} {:>10.3g} {:>11.3g} {:>10.1g} {:>9.2g}\n", cell->strategy,
-                    cell->efficiency.mean, cell->seconds.mean, cell->error.relMse.mean,
-                    1.96 * cell->error.relMse.standardError, 100 * cell->error.bias.mean);
+      fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
+                  "seconds", "relMSE", "bias %", cells.front()->budget.label());
+  for (const Cell* cell : cells) {
+    const Estimate& bias = cell->error.bias;
+    table += fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}\n", cell->strategy,
+                         resolvedText(cell->efficiency), resolvedText(cell->seconds),
+                         resolvedText(cell->error.relMse),
+                         resolvedText({100 * bias.mean, 100 * bias.standardError}));
+  }
   return table;
 }
 
