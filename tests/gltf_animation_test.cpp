@@ -152,12 +152,16 @@ TEST(GltfAnimation, IsChosenByNameOrIndex) {
   EXPECT_EQ(origin(at(w, 0, "Walk")).x, 2);
   EXPECT_NE(refusalAt(w, "Wolk").find("no animation `Wolk` (--animation); did you mean `Walk`?"),
             std::string::npos);
-  EXPECT_EQ(origin(w.load()).x, 0);
-  ASSERT_EQ(w.warnings.size(), 1u);
-  EXPECT_NE(w.warnings[0].find("shown in its rest pose"), std::string::npos);
+  const Scene rest = w.load();
+  EXPECT_EQ(origin(rest).x, 0);
+  EXPECT_TRUE(w.warnings.empty());
+  ASSERT_EQ(rest.notes.size(), 1u);
+  EXPECT_NE(rest.notes[0].find("rest pose"), std::string::npos);
+  EXPECT_TRUE(rest.notes[0].ends_with("`0`, `Walk`")) << rest.notes[0];
 }
 
-// What an extension animates (KHR_animation_pointer) has no node; the specification makes it optional.
+// What an extension animates (KHR_animation_pointer) has no node; the specification makes it
+// optional.
 TEST(GltfAnimation, ChannelsWithoutANodeAreLeftOut) {
   for (const json& target :
        {json{{"path", "translation"}},

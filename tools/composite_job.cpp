@@ -150,7 +150,7 @@ void sayPlateNotes(const CompositeEntry& entry) {
   std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
   for (const char* linear : {".exr", ".hdr", ".pic", ".pfm"})
     if (extension == linear) return;
-  fmt::print(stderr, "chromeball: {}: decoded from sRGB\n", entry.plate);
+  note(fmt::format("{}: decoded from sRGB", entry.plate));
 }
 
 Rendered renderComposite(CompositeJob& job, const RenderJob& render, const LoadedScene& loaded,

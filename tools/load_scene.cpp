@@ -15,15 +15,16 @@ namespace {
 
 constexpr double kWorthSaying = 1e9;  // bytes
 
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin, std::vector<std::string>& notes) {
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin,
+                 std::vector<std::string>& warnings) {
   Scene scene;
-  notes.clear();
-  const auto note = [&](const std::string& line) { notes.push_back(line); };
+  warnings.clear();
+  const auto add = [&](const std::string& line) { warnings.push_back(line); };
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
     choice.environment = !file.probe;
-    append(scene, loadGltf(model.file, model.placement, note, choice));
+    append(scene, loadGltf(model.file, model.placement, add, choice));
   }
   if (scene.instances.empty())
     throwInput("{}: the model has no triangles to render", file.models.front().file);
@@ -72,10 +73,12 @@ Camera chooseCamera(const RenderJob& job, const Scene& scene) {
   if (job.file.camera) return *job.file.camera;
   if (const auto& wanted = job.file.cameraName) {
     std::vector<std::string_view> names;
-    for (const Camera& camera : scene.cameras) {
-      if (camera.name == wanted->name) return camera;
-      names.push_back(camera.name);
-    }
+    for (const auto name : {&Camera::name, &Camera::node})
+      for (const Camera& camera : scene.cameras) {
+        if (camera.*name == wanted->name) return camera;
+        if (std::count(names.begin(), names.end(), camera.*name) == 0)
+          names.push_back(camera.*name);
+      }
     throwInput("{}: the model has no camera `{}`; {}", wanted->place, wanted->name,
                names.empty() ? "it has none at all" : didYouMean(wanted->name, names));
   }
@@ -146,11 +149,11 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 }  // namespace
 
 LoadedScene loadScene(RenderJob& job) {
-  std::vector<std::string> notes;
-  Scene scene = loadModels(job.file, glm::dvec3(0), notes);
+  std::vector<std::string> modelWarnings;
+  Scene scene = loadModels(job.file, glm::dvec3(0), modelWarnings);
   const glm::dvec3 origin = originFor(scene, job.file.models.front().file);
   if (origin != glm::dvec3(0)) {
-    scene = loadModels(job.file, origin, notes);
+    scene = loadModels(job.file, origin, modelWarnings);
     if (job.file.camera) job.file.camera->position -= vec3(origin);
     if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
   }
@@ -165,9 +168,9 @@ LoadedScene loadScene(RenderJob& job) {
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, job.file.probeRotation.value_or(0), job.file.probeScale.value_or(1));
   loaded.latLong = {};
-  return {std::move(scene),      camera,          std::move(loaded), std::move(probe),
-          job.file.surroundings, std::move(room), origin,            std::move(notes),
-          std::move(files)};
+  return {std::move(scene),         camera,          std::move(loaded),
+          std::move(probe),         job.file.surroundings, std::move(room), origin,
+          std::move(modelWarnings), std::move(files)};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
@@ -179,18 +182,21 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
 }
 
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
-  for (const std::string& note : loaded.modelNotes) warn(note);
+  for (const std::string& warning : job.file.warnings) warn(warning);
+  for (const std::string& warning : loaded.modelWarnings) warn(warning);
+  if (!quiet)
+    for (const std::string& line : loaded.scene.notes) note(line);
   const RenderSettings& s = job.settings;
   if (const double bytes = pictureBytes(s); bytes > kWorthSaying && !quiet)
-    fmt::print(stderr, "chromeball: a picture of {}x{} takes {:.3g} GB of memory\n", s.width,
-               s.height, bytes * 1e-9);
+    note(fmt::format("a picture of {}x{} takes {:.3g} GB of memory", s.width, s.height,
+                     bytes * 1e-9));
   if (!job.file.probe) {
     if (!quiet && loaded.scene.environment)
-      fmt::print(stderr, "chromeball: {}: no probe; lit by the model's own environment\n",
-                 job.file.models[0].file);
+      note(
+          fmt::format("{}: no probe; lit by the model's own environment", job.file.models[0].file));
     else if (!quiet && !loaded.scene.lights.empty())
-      fmt::print(stderr, "chromeball: {}: no probe; its {} lights shine alone\n",
-                 job.file.models[0].file, loaded.scene.lights.size());
+      note(fmt::format("{}: no probe; its {} lights shine alone", job.file.models[0].file,
+                       loaded.scene.lights.size()));
     return;
   }
   const std::string& path = *job.file.probe;
@@ -198,9 +204,11 @@ void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
   for (const std::string& line : warnings(probe, path)) warn(line);
   if (!probe.guessed || quiet) return;
   const std::string_view mapping = mappingName(probe.mapping);
-  fmt::print(stderr, "chromeball: {}: taken for {} {} probe, since {}\n", path,
-             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
+  note(fmt::format("{}: taken for {} {} probe, since {}", path,
+                   mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
 }
+
+void note(const std::string& message) { fmt::print(stderr, "chromeball: {}\n", message); }
 
 void warn(const std::string& message) { fmt::print(stderr, "chromeball: warning: {}\n", message); }
 

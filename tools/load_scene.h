@@ -17,7 +17,7 @@ struct LoadedScene {
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // where they are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world
-  std::vector<std::string> modelNotes;       // what the models' files hold that is not rendered
+  std::vector<std::string> modelWarnings;    // what the models' files hold that is not rendered
   std::vector<std::string> files;            // all that were read: none may be written
 };
 
@@ -30,12 +30,14 @@ LoadedScene loadScene(RenderJob& job);
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded);
 
-// Says on standard error what is left out of the models, what was repaired in the probe and, unless
-// quiet, what was guessed of it.
+// Says on standard error what is wrong with the job's settings, what is left out of the models,
+// what was repaired in the probe (warnings) and, unless quiet, what was guessed or chosen (notes).
 // To be called once nothing can be wrong any more, so that what is wrong stays one line.
 void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet);
 
-// "chromeball: warning: ..." on standard error.
+// On standard error: "chromeball: warning: ...", of what may spoil the picture; it is always said.
+// "chromeball: ...", of what a user may like to know; --quiet silences it.
 void warn(const std::string& message);
+void note(const std::string& message);
 
 }  // namespace chromeball

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "math/error.h"
 #include "math/suggest.h"
+#include "option_slips.h"
 
 namespace {
 
@@ -30,6 +31,20 @@ std::vector<const CLI::App*> namedCommands(const CLI::App& app) {
   return commands;
 }
 
+// "--samples: `many` is not a whole number" for CLI11's "Could not convert: --samples = many".
+std::string describeConversion(const CLI::App& command, const std::string& error) {
+  const std::string_view kBegin = "Could not convert: ", kEquals = " = ";
+  const size_t equals = error.find(kEquals);
+  if (!error.starts_with(kBegin) || equals == std::string::npos) return "";
+  const std::string name = error.substr(kBegin.size(), equals - kBegin.size());
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const std::string type = option ? option->get_type_name() : "";
+  return fmt::format("{}: `{}` is not {}", name, error.substr(equals + kEquals.size()),
+                     type == "INT"    ? "a whole number"
+                     : type == "UINT" ? "a whole number, 0 or more"
+                                      : "a number");
+}
+
 // CLI11's error as one of ours; where a word was not understood, with the nearest that would be.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> commands = namedCommands(app);
@@ -38,6 +53,9 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* named : commands) help += named->get_name() + " ";
   help += "--help`";
   const std::vector<std::string> unknown = app.remaining(true);
+  if (error.get_exit_code() == int(CLI::ExitCodes::ConversionError))
+    if (const std::string message = describeConversion(command, error.what()); !message.empty())
+      return message;
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
   const std::string& word = unknown.front();
@@ -49,12 +67,15 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* subcommand : command.get_subcommands(nullptr))
     if (!isOption) names.push_back(subcommand->get_name());
   const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string option = word.substr(0, word.find('='));
+  const std::string_view ours = isOption ? ourOption(option) : "";
+  if (std::find(known.begin(), known.end(), ours.substr(0, ours.find(' '))) != known.end())
+    return fmt::format("unknown option `{}`; did you mean `{}`?", option, ours);
   return fmt::format("unknown {} `{}`; {}",
                      isOption        ? "option"
                      : known.empty() ? "argument"
                                      : "command",
-                     word,
-                     known.empty() ? help : didYouMean(word.substr(0, word.find('=')), known));
+                     word, known.empty() ? help : didYouMean(option, known));
 }
 
 int run(int argc, char** argv) {

@@ -106,8 +106,7 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Loaded
   r.metadata["noise"] = float(noise.noise);
   r.metadata["noise_median"] = float(noise.median);
   r.metadata["noise_p95"] = float(noise.p95);
-  if (job.settings.clamp)
-    r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
+  if (job.settings.clamp) r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
   return r;
 }
 
@@ -255,7 +254,11 @@ void addRenderCommand(CLI::App& app) {
       ->take_all();
   command->add_option("--samples", o.samples, "Samples a pixel (256)");
   command->add_option("--time", o.time, "Stop after about this many seconds");
-  command->add_option("--noise", o.noise, "Stop at this noise, in percent");
+  command->add_option("--noise", o.noise, "Stop at this noise, in percent")
+      ->transform([](std::string percent) {
+        if (percent.ends_with('%')) percent.pop_back();
+        return percent;
+      });
   command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');

@@ -155,12 +155,31 @@ RenderJob planJob(const RenderOptions& o) {
   return job;
 }
 
+namespace {
+
+void warnOfTonemap(RenderJob& job, const RenderOptions& options) {
+  const auto isPng = [](const std::string& output) {
+    std::string extension = std::filesystem::path(output).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+    return extension == ".png";
+  };
+  if (std::any_of(job.outputs.begin(), job.outputs.end(), isPng)) return;
+  for (const GivenOption& option : options.given)
+    if (option.name == "tonemap" || option.name == "exposure")
+      job.file.warnings.push_back(
+          fmt::format("--{} has no effect: it is for .png, and {} holds radiance as it is",
+                      option.name, job.outputs.front()));
+}
+
+}  // namespace
+
 void planOutputs(RenderJob& job, const RenderOptions& options) {
   job.outputs = options.outputs.empty() ? job.file.outputs : options.outputs;
   if (job.outputs.empty())
     throwInput("{}: nowhere to write the picture; give --output FILE", options.scene);
   for (const std::string& output : job.outputs)
     options.outputs.empty() ? checkSceneOutput(output) : checkWritable(output);
+  warnOfTonemap(job, options);
   if (!options.stats.empty()) checkOutputFile(options.stats, {".json"});
 }
 
@@ -178,8 +197,7 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.parse_complete_callback([&command, &o] {
     for (const CLI::Option* option : command.get_options())
       if (option->count() > 0)
-        o.given.push_back(
-            {option->get_single_name(), CLI::detail::join(option->results(), ",")});
+        o.given.push_back({option->get_single_name(), CLI::detail::join(option->results(), ",")});
   });
   command.add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
   command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm (else the model's own)");
@@ -193,11 +211,14 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
   command.add_option("--max-transmission-depth", o.maxTransmissionDepth,
                      "Bounces in and on bodies of glass, which --max-depth does not count (64)");
-  command.add_option("--camera", o.camera, "Name of one of the model's cameras");
+  command.add_option("--camera", o.camera, "Name of one of the model's cameras, or of its node");
   command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
   command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");
   command.add_option("--variant", o.variant, "Show the models in this variant of their materials");
-  command.add_option("--seed", o.seed, "Another seed, another independent picture (0)");
+  command.add_option("--seed", o.seed, "Another seed, another independent picture (0)")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? "`" + text + "` is not a whole number, 0 or more" : "";
+      });
   command.add_option("--threads", o.threads, "Number of threads (all)");
   command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
   command.add_option("--exposure", o.exposure, "For .png: stops");
@@ -206,7 +227,7 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_flag("--allow-external", o.allowExternal,
                    "Let models name files outside their own folders");
   command.add_flag("--progress", o.progress, "Show progress even where it is no terminal");
-  command.add_flag("--quiet", o.quiet, "Show neither progress nor notes");
+  command.add_flag("--quiet", o.quiet, "Show neither progress nor notes; warnings stay");
 }
 
 }  // namespace chromeball

@@ -101,6 +101,11 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
     lines.push_back(fmt::format("{}: turned by 180 degrees, since its attribute `envmap` says that "
                                 "the centre looks along +Z",
                                 path.string()));
+  if (!probe.guessed && probe.mapping == Mapping::LatLong && probe.fileWidth == probe.fileHeight)
+    lines.push_back(fmt::format(
+        "{}: is square, and read as a lat-long map, which is twice as wide as high; is it "
+        "an angular map or a mirror ball?",
+        path.string()));
   if (probe.repair.total() > 0)
     lines.push_back(fmt::format("{}: repaired {}", path.string(), describe(probe.repair)));
   for (std::string& line : lightWarnings(probe, path)) lines.push_back(std::move(line));

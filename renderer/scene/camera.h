@@ -9,7 +9,7 @@ namespace chromeball {
 
 // Looks along -Z of its frame, +Y up (glTF's convention). Positions in metres.
 struct Camera {
-  std::string name;
+  std::string name, node;  // the model's names for it and for the node that carries it
   vec3 position{0, 0, 0};
   vec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};  // orthonormal
   bool orthographic = false;

@@ -35,7 +35,8 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
     const auto& lens = source.perspective;
     const auto& box = source.orthographic;
     Camera camera;
-    camera.name = source.name.empty() ? tree.names[size_t(i)] : source.name;
+    camera.node = tree.names[size_t(i)];
+    camera.name = source.name.empty() ? camera.node : source.name;
     camera.orthographic = source.type == "orthographic";
     camera.fov = float(lens.yfov);
     camera.halfHeight = float(std::fabs(box.ymag));
@@ -74,10 +75,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   decodeMeshopt(file);
   decodeDraco(file);
   if (choice.variant) applyVariant(file, *choice.variant);
-  if (choice.animation)
-    applyAnimation(file, *choice.animation);
-  else if (!file.model.animations.empty())
-    file.warnOnce("shown in its rest pose; --animation shows it at a time of an animation");
+  if (choice.animation) applyAnimation(file, *choice.animation);
   standMeshesUp(file.model);
   const NodeTree tree = readNodes(file, placement, choice.origin);
   Scene scene = readInstances(file, tree);
@@ -88,6 +86,11 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scene.nodeNames = tree.names;
   scene.nodeParents = tree.parents;
   scene.files = file.files();
+  if (!choice.animation && !file.model.animations.empty())
+    scene.notes.push_back(
+        fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS shows "
+                    "another: {}",
+                    path, animationNames(file)));
   return scene;
 }
 

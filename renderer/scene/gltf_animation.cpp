@@ -132,6 +132,16 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
 
 }  // namespace
 
+std::string animationNames(const GltfFile& file) {
+  constexpr size_t kMost = 6;
+  const auto& animations = file.model.animations;
+  std::string text;
+  for (size_t i = 0; i < std::min(kMost, animations.size()); ++i)
+    text += fmt::format("{}`{}`", i ? ", " : "", oneLine(nameOf(animations, i)));
+  if (animations.size() > kMost) text += fmt::format(" and {} more", animations.size() - kMost);
+  return text;
+}
+
 void applyAnimation(GltfFile& file, const AnimationTime& when) {
   const size_t index = findAnimation(file, when);
   const Animation& animation = file.model.animations[index];

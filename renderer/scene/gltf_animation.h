@@ -11,4 +11,7 @@ namespace chromeball {
 // channels are not well-formed.
 void applyAnimation(GltfFile& file, const AnimationTime& when);
 
+// "`Walk`, `Run` and 3 more": how to ask for the file's animations.
+std::string animationNames(const GltfFile& file);
+
 }  // namespace chromeball

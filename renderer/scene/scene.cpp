@@ -85,6 +85,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.nodeParents, other.nodeParents);
   moveToEnd(scene.nodeNames, other.nodeNames);
   moveToEnd(scene.files, other.files);
+  moveToEnd(scene.notes, other.notes);
 }
 
 }  // namespace chromeball

@@ -56,6 +56,7 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::optional<Image> environment;  // the model's own light probe: lat-long, fit to render with
   std::vector<std::string> nodeNames;
+  std::vector<std::string> notes;  // "FILE: ...": what a viewer may like to know
   std::vector<int> nodeParents;  // by node, -1 for none; or empty, where no node has one
   std::vector<std::string> files;  // that it comes from: models, their buffers and images
 

@@ -88,6 +88,10 @@ void readCamera(const Section& camera, SceneFile& scene) {
                                    "degrees between 0 and 180",
                                    [](double degrees) { return degrees > 0 && degrees < 180; })))
                              : Camera().fov;
+  if (fovEntry && fov < glm::radians(kPi))
+    scene.warnings.push_back(fmt::format(
+        "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
+        fovEntry.place(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
   try {
     scene.camera = Camera::lookAt(from, to, up, fov);
   } catch (const InputError& error) {

@@ -80,6 +80,8 @@ struct SceneFile {
 
   std::vector<std::string> outputs;
   std::vector<NamedSetting> aovs;
+
+  std::vector<std::string> warnings;  // "FILE:LINE: ...": what is allowed but seems a slip
 };
 
 // Throws InputError "FILE:LINE: ..." for what is not TOML, an unknown key (with the nearest known

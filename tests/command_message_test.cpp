@@ -1,0 +1,139 @@
+// What the command says: slips of the hand and of other renderers' users, warnings, notes.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "image/write.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+class SlowCommandMessage : public testing::Test {
+ protected:
+  SlowCommandMessage() {
+    addTriangle(w_);
+    w_.add(
+        "cameras",
+        {{"type", "perspective"}, {"name", "Lens"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+    w_.add("nodes", {{"name", "Tripod"}, {"camera", 0}, {"translation", {0, 0, 3}}});
+    w_.root["scenes"] = {{{"nodes", {0, 1}}}};
+    w_.root["scene"] = 0;
+    writeImage(folder_ / "probe.exr", constantProbe({8, 4}, Rgb(1)));
+  }
+
+  CommandResult render(const Words& more, const std::string& output = "a.exr") {
+    Words words{"render",    w_.save(), "--probe", folder_ / "probe.exr", "--size", "4x4",
+                "--samples", "2",       "-o",      folder_ / output};
+    words.insert(words.end(), more.begin(), more.end());
+    return runCommand(words);
+  }
+
+  GltfWriter w_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(SlowCommandMessage, OptionsOfOtherRenderersAreKnown) {
+  for (const auto& [theirs, ours] :
+       std::vector<std::pair<std::string, std::string>>{{"--spp", "--samples"},
+                                                        {"--output-file", "--output"},
+                                                        {"--width", "--size"},
+                                                        {"--height", "--size"},
+                                                        {"--resolution", "--size"},
+                                                        {"--envmap", "--probe"},
+                                                        {"--hdri", "--probe"},
+                                                        {"-s", "--samples"},
+                                                        {"--bounces", "--max-depth"},
+                                                        {"--spp=16", "--samples"},
+                                                        {"--sampels", "--samples"},
+                                                        {"-t", "--threads"}}) {
+    const CommandResult result = runCommand({"render", w_.save(), theirs, "16"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.error.find("did you mean `" + ours), std::string::npos) << result.error;
+  }
+}
+
+TEST_F(SlowCommandMessage, NumbersThatAreNoneAreNamed) {
+  EXPECT_EQ(render({"--noise", "30%"}).status, 0);
+  const auto refused = [&](const Words& words, const char* reason) {
+    Words all{"render", w_.save()};
+    all.insert(all.end(), words.begin(), words.end());
+    expectRefused(all, reason);
+  };
+  refused({"--noise", "much"}, "--noise: `much` is not a number");
+  refused({"--samples", "many"}, "--samples: `many` is not a whole number");
+  refused({"--samples", "1.5"}, "--samples: `1.5` is not a whole number");
+  refused({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
+}
+
+TEST_F(SlowCommandMessage, SettingsWithoutEffectAreWarnedOf) {
+  for (const char* output : {"a.exr", "a.hdr", "a.pfm"}) {
+    const std::string said = render({"--tonemap", "aces", "--exposure", "1"}, output).error;
+    for (const char* option : {"--tonemap", "--exposure"})
+      EXPECT_NE(said.find(std::string("warning: ") + option + " has no effect"), std::string::npos);
+  }
+  EXPECT_EQ(render({"--tonemap", "aces", "--exposure", "1"}, "a.png").error.find("no effect"),
+            std::string::npos);
+  EXPECT_EQ(render({}).error.find("warning"), std::string::npos);
+}
+
+TEST_F(SlowCommandMessage, ASquareProbeReadAsLatLongIsWarnedOf) {
+  const auto said = [&](ImageSize size, const char* mapping) {
+    writeImage(folder_ / "probe.exr", constantProbe(size, Rgb(1)));
+    return render({"--probe-mapping", mapping}).error;
+  };
+  EXPECT_NE(said({8, 8}, "lat-long").find("warning: " + (folder_ / "probe.exr") + ": is square"),
+            std::string::npos);
+  EXPECT_EQ(said({8, 8}, "angular").find("is square"), std::string::npos);
+  EXPECT_EQ(said({8, 4}, "lat-long"), "");
+}
+
+TEST_F(SlowCommandMessage, AngleThatLooksLikeRadiansIsWarnedOf) {
+  const auto said = [&](const char* fov) {
+    w_.save();
+    const std::string scene = (w_.folder() / "scene.toml").string();
+    std::ofstream(scene)
+        << "model = 'model.gltf'\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, "
+           "0]\nfov = "
+        << fov << "\n[probe]\nfile = '" << folder_ / "probe.exr"
+        << "'\n";
+    return runCommand({"render", scene, "--size", "4x4", "--samples", "1", "--quiet", "-o",
+                       folder_ / "a.exr"})
+        .error;
+  };
+  EXPECT_NE(said("0.6").find("scene.toml:5: `fov` is in degrees"), std::string::npos)
+      << said("0.6");
+  EXPECT_NE(said("0.6").find("34.4 degrees"), std::string::npos) << said("0.6");
+  EXPECT_EQ(said("4"), "");
+}
+
+TEST_F(SlowCommandMessage, QuietSilencesNotesAndKeepsWarnings) {
+  w_.root["animations"] = {
+      {{"name", "Wave"}, {"channels", json::array()}, {"samplers", json::array()}}};
+  w_.root["extensionsUsed"] = {"KHR_unheard_of"};
+  const CommandResult loud = render({}), quiet = render({"--quiet"});
+  EXPECT_NE(loud.error.find("chromeball: " + (w_.folder() / "model.gltf").string() +
+                            ": shown in its rest pose"),
+            std::string::npos)
+      << loud.error;
+  EXPECT_NE(loud.error.find("`Wave`"), std::string::npos) << "it names the animations";
+  EXPECT_NE(loud.error.find("taken for a lat-long probe"), std::string::npos) << loud.error;
+  EXPECT_EQ(quiet.out, "");
+  ASSERT_EQ(std::count(quiet.error.begin(), quiet.error.end(), '\n'), 1) << quiet.error;
+  EXPECT_TRUE(quiet.error.starts_with("chromeball: warning: ")) << quiet.error;
+  EXPECT_NE(quiet.error.find("KHR_unheard_of"), std::string::npos);
+}
+
+TEST_F(SlowCommandMessage, CamerasGoByTheirNodesNamesToo) {
+  EXPECT_EQ(render({"--camera", "Lens"}).status, 0);
+  EXPECT_EQ(render({"--camera", "Tripod"}).status, 0);
+  const CommandResult none = render({"--camera", "Tripot"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.error.find("did you mean `Tripod`?"), std::string::npos) << none.error;
+}
+
+}  // namespace
+}  // namespace chromeball
