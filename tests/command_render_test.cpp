@@ -342,8 +342,9 @@ TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
   const RenderScene scene;
   const CommandResult result = runCommand(
       {"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples", "10000000",
-       "--progress", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json", "--aov", "albedo"},
-      "%");  // in the first pass over the picture
+       "--time", "60", "--progress", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json",
+       "--aov", "albedo"},
+      "  2%");  // after a second
   EXPECT_EQ(result.status, 130);
   EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the picture so far is saved\n"));
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
@@ -352,6 +353,31 @@ TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
   for (float texel : image.image.texels) ASSERT_TRUE(std::isfinite(texel));
   const Image color = *findColor(image);
   EXPECT_GT(*std::max_element(color.texels.begin(), color.texels.end()), 0);
+}
+
+TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
+  const RenderScene scene;
+  struct Setting {
+    const char *option, *key, *most, *tooMany;
+  };
+  for (const Setting& s :
+       {Setting{"--samples", "samples", "", "2000000001"},
+        Setting{"--max-depth", "max_depth", "1000000", "2147483647"},
+        Setting{"--max-transmission-depth", "max_transmission_depth", "1000000", "1000001"}}) {
+    const Words words{"--probe", scene.constant, "--size", "4x3", "-o", scene.out / "a.exr"};
+    const auto run = [&](const std::string& value, bool inFile) {
+      const std::string file = scene.folder() + "/scene.toml";
+      std::ofstream(file) << fmt::format("model = \"model.gltf\"\n[render]\n{} = {}\n", s.key, value);
+      Words all{"render", inFile ? file : scene.model};
+      all.insert(all.end(), words.begin(), words.end());
+      if (!inFile) all.insert(all.end(), {s.option, value});
+      return runCommand(all);
+    };
+    for (const bool inFile : {false, true}) {
+      EXPECT_EQ(run(s.tooMany, inFile).status, 2) << s.key << inFile;
+      if (*s.most) EXPECT_EQ(run(s.most, inFile).status, 0) << s.key << inFile;
+    }
+  }
 }
 
 TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
@@ -389,9 +415,9 @@ TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
   refusedOption({"--camera", "Frnt"}, "`Front`");
   refusedOption({"--size", "12by9"}, "WIDTHxHEIGHT");
   refusedOption({"--size", "0x9"}, "WIDTHxHEIGHT");
-  refusedOption({"--samples", "0"}, "1 or more");
+  refusedOption({"--samples", "0"}, "from 1 to 2000000000");
   refusedOption({"--samples", "many"}, "many");
-  refusedOption({"--max-depth", "-1"}, "0 or more");
+  refusedOption({"--max-depth", "-1"}, "from 0 to 1000000");
   refusedOption({"--time", "nan"}, "above 0");
   refusedOption({"--noise", "0"}, "above 0");
   refusedOption({"--probe-scale", "nan"}, "0 or more");

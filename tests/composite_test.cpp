@@ -103,6 +103,47 @@ TEST(Composite, IsThePlateWhereObjectsChangeNothing) {
   }
 }
 
+// A local wall that hides its back from the camera stands before an object: the object is seen in
+// both ways of rendering, and the wall in neither.
+TEST(Composite, SeesObjectsThroughHiddenBacks) {
+  Worlds w;
+  w.camera = Camera::lookAt({0, 1, 4}, {0, 1, 0}, {0, 1, 0}, 0.5f);
+  addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+  addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {3, 0, 2}, {-6, 0, 0}, {0, 3, 0});
+  w.isLocalSoFar();
+  addSphere(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {0, 1, 0}, 0.5f, 24);
+  w.areObjectsFromHere();
+  const Probe probe(sunnyProbe());
+  const Image plate = noisyPlate(16, 16);
+  std::vector<Image> alphas;
+  for (const Passes passes : {Passes::One, Passes::Two})
+    alphas.push_back(ingredient(
+        composite(w, probe, "importance", smallRender(16, 16, 16, 3), plate, passes).film,
+        Aov::Alpha));
+  EXPECT_EQ(*alphas[0].at(8, 8), 1);
+  EXPECT_EQ(alphas[0].texels, alphas[1].texels);
+}
+
+// Every sample of a lamp is beyond floats: a defect of its own kind, in one pass and in two.
+TEST(Composite, InvalidSamplesAreCountedByCause) {
+  Worlds w;
+  w.camera = topCamera(6, 40);
+  addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+  w.isLocalSoFar();
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = Rgb(INFINITY);
+  addSphere(w.scene, addMaterial(w.scene, lamp), {0, 1, 0}, 0.5f, 16);
+  w.areObjectsFromHere();
+  for (const Passes passes : {Passes::One, Passes::Two}) {
+    const CompositeRender r = composite(w, Probe(sunnyProbe()), "bsdf", smallRender(16, 16, 4, 0),
+                                        noisyPlate(16, 16), passes);
+    EXPECT_GT(r.result.invalid.of(Defect::Infinite), 0u);
+    EXPECT_EQ(r.result.invalid.of(Defect::Nan), 0u);
+    for (const DifferentialPixel& pixel : r.film.pixels)
+      EXPECT_TRUE(std::isfinite(pixel.objects.x + pixel.difference.x));
+  }
+}
+
 // A wall higher than the object keeps its light and its shadow on one side; there they show.
 TEST(Composite, ChangesNothingBehindAWall) {
   Worlds w;
@@ -239,6 +280,39 @@ TEST(Composite, StatesItsError) {
   }
   for (const auto& repeats : pixels) spread += Moments::of(repeats).variance;
   EXPECT_NEAR(stated / spread, 1, 0.25);
+}
+
+// What is said of the noise is of the picture that is written: by the ratio, and of two passes.
+TEST(SlowComposite, NoiseIsOfThePictureThatIsWritten) {
+  Worlds w = stillLife();
+  w.scene.materials[3].roughness = 1;
+  constexpr int kSize = 24, kRepeats = 16;
+  Image plate = noisyPlate(kSize, kSize);
+  for (float& x : plate.texels) x = 0.02f + 0.1f * x;  // far from the model's light: a ratio of its own
+  struct Way {
+    Passes passes;
+    CompositeMode mode;
+  };
+  for (const Way way : {Way{Passes::One, CompositeMode::Difference},
+                        Way{Passes::One, CompositeMode::Ratio},
+                        Way{Passes::Two, CompositeMode::Difference}}) {
+    std::vector<std::vector<double>> pixels(size_t(kSize) * kSize);
+    double stated = 0, spread = 0;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      const CompositeRender r =
+          composite(w, Probe(sunnyProbe()), "importance",
+                    smallRender(kSize, kSize, 32, 5, 170 + uint64_t(repeat)), plate, way.passes);
+      const Composite c = compose(r.film, r.mean, plate, way.mode);
+      const PixelErrors errors = compositeErrors(r.film, c, r.errors);
+      for (size_t i = 0; i < pixels.size(); ++i) {
+        pixels[i].push_back(luminance(
+            glm::dvec3(c.color.rgb(int(i) % kSize, int(i) / kSize))));
+        stated += errors.halves[i].w / kRepeats;
+      }
+    }
+    for (const auto& repeats : pixels) spread += Moments::of(repeats).variance;
+    EXPECT_NEAR(stated / spread, 1, 0.25) << int(way.passes) << int(way.mode);
+  }
 }
 
 // A photograph of the local scene, with objects put in, is the picture of the whole scene.

@@ -115,17 +115,31 @@ TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
 TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
   for (int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder out;
-    const Words all = words(out / "a.exr", {"--samples", "100000000", "--progress", "--stats",
-                                            out / "a.json", "--aov", "samples"});
-    const CommandResult result = runCommand(all, "%", signal);
+    const Words all = words(out / "a.exr", {"--samples", "100000000", "--time", "60", "--progress",
+                                            "--stats", out / "a.json", "--aov", "samples"});
+    const CommandResult result = runCommand(all, "  2%", signal);  // after a second
     EXPECT_EQ(result.status, 130) << result.error;
     EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));
     const auto stats = nlohmann::json::parse(fileContents(out / "a.json"));
     EXPECT_EQ(stats["interrupted"], true);
     // The header tells whole passes, the layer what each pixel has.
     const Image samples = *findLayer(readImageFile(out / "a.exr"), "samples");
-    EXPECT_GT(*std::max_element(samples.texels.begin(), samples.texels.end()), 0);
+    EXPECT_GE(*std::min_element(samples.texels.begin(), samples.texels.end()),
+              stats["samples_per_pixel"]);
+    EXPECT_GT(stats["samples_per_pixel"], 0);
   }
+}
+
+// A picture without some of its pixels never takes the place of a whole one.
+TEST_F(SlowStarved, AnInterruptInTheFirstPassLeavesTheOldFile) {
+  const TemporaryFolder out;
+  std::ofstream(out / "a.exr") << "old";
+  const CommandResult result = runCommand(
+      words(out / "a.exr", {"--samples", "100000000", "--size", "4000x3000", "--progress"}), "%");
+  EXPECT_EQ(result.status, 130) << result.error;
+  EXPECT_EQ(fileContents(out / "a.exr"), "old");
+  EXPECT_EQ(out.files(), (Words{"a.exr", "a.partial.exr"}));
+  EXPECT_NE(result.error.find("a.partial.exr"), std::string::npos) << result.error;
 }
 
 TEST_F(SlowStarved, AKillDuringTheRenderLeavesTheOldFile) {

@@ -156,6 +156,12 @@ void nameAsPartial(std::vector<std::string>& outputs) {
   }
 }
 
+std::string inWords(const PictureNoise& n) {
+  if (!std::isfinite(n.noise)) return "unknown";
+  return fmt::format("{:.2f}% (median of the pixels {:.2f}%, 95% of them below {:.2f}%)",
+                     100 * n.noise, 100 * n.median, 100 * n.p95);
+}
+
 void writeStats(const std::string& path, const nlohmann::json& json) {
   const std::string text = json.dump(2) + "\n";
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
@@ -236,11 +242,9 @@ void render(const RenderOptions& options) {
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; what there is: {}",
                                   fmt::join(job.outputs, ", ")));
   if (result.interrupted) throw Interrupted("interrupted; the picture so far is saved");
-  const double noise = rendered.noise.noise;
   if (!options.quiet)
     fmt::print("{} samples a pixel in {:.2f} s, noise {}: {}\n", result.samples, seconds.render,
-               std::isfinite(noise) ? fmt::format("{:.2f}%", 100 * noise) : "unknown",
-               fmt::join(job.outputs, ", "));
+               inWords(rendered.noise), fmt::join(job.outputs, ", "));
 }
 
 }  // namespace
