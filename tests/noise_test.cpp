@@ -88,7 +88,7 @@ std::vector<Seed> renderSeeds(const Case& c, RenderSettings settings) {
     settings.seed = uint64_t(seed);
     const RenderResult r = renderScene(c.named.scene, camera, probe, c.strategy, settings);
     const PixelErrors errors = r.film.errors();
-    const Noise noise = estimateNoise(r.film.luminances(), errors);
+    const Noise noise = estimateNoise(errors);
     seeds.push_back({r.film.mean(), varianceImage(errors), noise.noise, noise.upper, r.samples});
   }
   return seeds;
@@ -170,7 +170,10 @@ TEST(SlowNoise, IsTheNoiseThereIsWhereLightIsRare) {
     SCOPED_TRACE(std::string(c.named.name) + ", " + c.strategy);
     const std::vector<Seed> seeds = renderSeeds(c, smallRender(kLarge, kLarge, 64, 6));
     EXPECT_NEAR(honesty(seeds), 1, 0.12);
-    if (&c == &cases.back()) continue;  // where a whole window is black nothing can be known
+    if (&c == &cases.back()) {  // where a whole window is black nothing can be known
+      EXPECT_GT(coverage(seeds), 0.55);
+      continue;
+    }
     EXPECT_NEAR(coverage(seeds), 0.95, 0.025);
     EXPECT_GT(coverage(seeds, 3), 0.965);
   }
@@ -274,7 +277,7 @@ TEST(Noise, ToleratesPixelsWithoutAValidSample) {
   EXPECT_TRUE(std::isnan(variance.rgb(0, 0).x));
   EXPECT_NEAR(variance.rgb(1, 0).x, 0.01, 1e-5);
   const NoiseQuantiles quantiles =
-      noiseQuantiles(film.luminances(), squaredStandardErrors(film.errors()));
+      noiseQuantiles(film.errors(), squaredStandardErrors(film.errors()));
   EXPECT_NEAR(quantiles.median, 0.1, 1e-3);
   EXPECT_NEAR(quantiles.p95, 0.1, 1e-3);
 }

@@ -84,14 +84,6 @@ Layer layerOf(Aov aov, const CompositeJob& job, const CompositeRender& render,
   }
 }
 
-std::vector<double> luminancesOf(const Image& image) {
-  std::vector<double> luminances;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      luminances.push_back(luminance(glm::dvec3(image.rgb(x, y))));
-  return luminances;
-}
-
 double meanAlpha(const DifferentialFilm& film) {
   double covered = 0, count = 0;
   for (const DifferentialPixel& pixel : film.pixels) covered += pixel.covered, count += pixel.count;
@@ -171,8 +163,7 @@ Rendered renderComposite(CompositeJob& job, const RenderJob& render, const Loade
       stop);
   const Composite composite = compose(rendered.film, rendered.mean, job.plate, job.mode);
 
-  const PictureNoise noise(luminancesOf(composite.color),
-                           compositeErrors(rendered.film, composite, rendered.errors));
+  const PictureNoise noise(compositeErrors(rendered.film, composite, rendered.errors));
   OutputImage output;
   output.layers.push_back({"", "RGB", composite.color});
   for (Aov aov : job.layers) output.layers.push_back(layerOf(aov, job, rendered, noise.variance));

@@ -9,10 +9,10 @@ struct PictureNoise {
   double noise, median, p95;  // fractions (film/noise.h)
   Image variance;             // of each pixel, RGB
 
-  PictureNoise(const std::vector<double>& luminances, const PixelErrors& errors) {
+  explicit PictureNoise(const PixelErrors& errors) {
     const std::vector<glm::dvec4> squared = squaredStandardErrors(errors);
-    const NoiseQuantiles quantiles = noiseQuantiles(luminances, squared);
-    noise = estimateNoise(luminances, errors).noise;
+    const NoiseQuantiles quantiles = noiseQuantiles(errors, squared);
+    noise = estimateNoise(errors).noise;
     median = quantiles.median, p95 = quantiles.p95;
     variance = varianceImage(squared, errors.width, errors.height);
   }

@@ -142,7 +142,7 @@ Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Acce
                      const LightingStrategy& lighting, const Progress& progress) {
   RenderResult result =
       render(loaded.scene, accel, loaded.camera, lighting, job.settings, progress, interrupted);
-  const PictureNoise noise(result.film.luminances(), result.film.errors());
+  const PictureNoise noise(result.film.errors());
   OutputImage output = assemble(result, job.settings, noise.variance);
   return {std::move(result), std::move(output), noise};
 }

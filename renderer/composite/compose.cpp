@@ -72,6 +72,7 @@ PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& compo
                             PixelErrors errors) {
   for (size_t i = 0; i < film.pixels.size(); ++i) {
     const int x = int(i % size_t(film.width)), y = int(i / size_t(film.width));
+    errors.luminances[i] = luminance(dvec3(composite.color.rgb(x, y)));
     const float alpha = float(alphaOf(film.pixels[i]));
     const Rgb gain = alpha + (1 - alpha) * composite.gain.rgb(x, y);
     const glm::dvec4 squared(gain * gain, luminance(gain) * luminance(gain));

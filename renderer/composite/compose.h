@@ -25,7 +25,7 @@ struct Composite {
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode);
 
-// The errors of the composite's pixels, from those of the difference formula's; for the ratio to
+// The composite's luminances and errors, from those of the difference formula's; for the ratio to
 // first order, L_noobj taken as known.
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors);

@@ -33,20 +33,15 @@ Image Film::sampleCounts() const {
   return image;
 }
 
-std::vector<double> Film::luminances() const {
-  std::vector<double> luminances;
-  luminances.reserve(pixels_.size());
-  for (const Pixel& p : pixels_) luminances.push_back(luminance(p.mean()));
-  return luminances;
-}
-
 PixelErrors Film::errors() const {
   const glm::dvec4 unknown(std::numeric_limits<double>::quiet_NaN());
-  PixelErrors errors{width_, height_, {}, {}};
+  PixelErrors errors{width_, height_, {}, {}, {}};
+  errors.luminances.reserve(pixels_.size());
   errors.halves.assign(pixels_.size(), unknown);
   errors.scatter.assign(pixels_.size(), unknown);
   for (size_t i = 0; i < pixels_.size(); ++i) {
     const Pixel& p = pixels_[i];
+    errors.luminances.push_back(luminance(p.mean()));
     if (p.counts[0] == 0 || p.counts[1] == 0) continue;
     const double n0 = p.counts[0], n1 = p.counts[1], n = n0 + n1;
     const glm::dvec3 sum = p.sums[0] + p.sums[1];

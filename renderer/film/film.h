@@ -48,9 +48,8 @@ class Film {
   Image sampleCounts() const;  // one channel
   static size_t bytesPerPixel() { return sizeof(Pixel); }
 
-  std::vector<double> luminances() const;  // of the means
   PixelErrors errors() const;
-  Noise noise() const { return estimateNoise(luminances(), errors()); }
+  Noise noise() const { return estimateNoise(errors()); }
 
  private:
   struct Pixel {

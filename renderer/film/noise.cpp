@@ -27,25 +27,56 @@ double meanOf(const std::vector<double>& values) {
 // What a pixel's error is compared with: its luminance, and at least a hundredth of the picture's.
 // Where the pixel's own samples leave its luminance open, as a firefly does, that of the window:
 // else the error of rare light would be divided by the luminance of those few pixels that met it.
-double referenceLuminance(const std::vector<double>& luminances, const PixelErrors& errors, int x,
-                          int y, double mean) {
+double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) {
   constexpr double kKnown = 0.25;  // relative error of a luminance that counts as known
   const size_t i = size_t(y) * size_t(errors.width) + size_t(x);
-  double reference = luminances[i];
+  double reference = errors.luminances[i];
   if (errors.halves[i].w > kKnown * kKnown * reference * reference) {
     double sum = 0, count = 0;
-    forWindow(errors.width, errors.height, x, y, [&](size_t j) { sum += luminances[j], ++count; });
+    forWindow(errors.width, errors.height, x, y,
+              [&](size_t j) { sum += errors.luminances[j], ++count; });
     reference = std::min(reference, sum / count);
   }
   return std::max(reference, 0.01 * mean);
 }
 
-// Which part of a window's mean scatter a pixel takes at least: none where its pixels scatter
-// alike, all where a few of them hold most of the scatter. `concentration` is 1 where all scatter
-// alike, and the number of pixels where one does it all.
+// Which part of a window's mean a pixel takes at least: nothing where its pixels scatter alike, all
+// where a few of them hold most of the scatter. `concentration` is 1 where all scatter alike, and
+// the number of pixels where one does it all.
 double shareOfMean(double concentration) {
   constexpr double kEven = 4, kRare = 8;  // an edge between noise and none gives 2
   return std::clamp((concentration - kEven) / (kRare - kEven), 0.0, 1.0);
+}
+
+// Of a pixel of which something is known. `logScatter`: binary logarithms of the luminances' scatter.
+glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>& logScatter, int x,
+                                int y) {
+  const size_t i = size_t(y) * size_t(e.width) + size_t(x);
+  glm::dvec4 ratio(0), weight(0), halves(0);
+  double scatter = 0, scatterSquared = 0, count = 0;
+  forWindow(e.width, e.height, x, y, [&](size_t j) {
+    if (std::isnan(e.halves[j].w)) return;
+    ++count;
+    halves += e.halves[j];
+    scatter += e.scatter[j].w;
+    scatterSquared += e.scatter[j].w * e.scatter[j].w;
+    const double apart = logScatter[j] - logScatter[i], alike = 1 / (1 + apart * apart);
+    if (!(alike > 0)) return;  // one of the two does not scatter
+    for (int c = 0; c < 4; ++c)
+      if (e.scatter[j][c] > 0) {
+        ratio[c] += alike * e.halves[j][c] / e.scatter[j][c];
+        weight[c] += alike;
+      }
+  });
+  const bool isOpen = e.scatter[i].w > 0 || e.luminances[i] == 0;
+  const double least =
+      isOpen && scatter > 0 ? shareOfMean(count * scatterSquared / (scatter * scatter)) : 0;
+  glm::dvec4 squared;
+  for (int c = 0; c < 4; ++c) {
+    const double own = e.scatter[i][c] * (weight[c] > 0 ? ratio[c] / weight[c] : 1);
+    squared[c] = std::max(own, least * halves[c] / count);
+  }
+  return squared;
 }
 
 }  // namespace
@@ -65,28 +96,7 @@ std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& e) {
   for (int y = 0; y < e.height; ++y)
     for (int x = 0; x < e.width; ++x) {
       const size_t i = size_t(y) * size_t(e.width) + size_t(x);
-      if (std::isnan(e.halves[i].w)) continue;
-      glm::dvec4 ratio(0), weight(0), sum(0);
-      double sumOfSquares = 0, count = 0;
-      forWindow(e.width, e.height, x, y, [&](size_t j) {
-        if (std::isnan(e.halves[j].w)) return;
-        sum += e.scatter[j];
-        sumOfSquares += e.scatter[j].w * e.scatter[j].w;
-        ++count;
-        const double apart = logScatter[j] - logScatter[i];
-        const double alike = 1 / (1 + apart * apart);
-        if (!(alike > 0)) return;
-        for (int c = 0; c < 4; ++c)
-          if (e.scatter[j][c] > 0) {
-            ratio[c] += alike * e.halves[j][c] / e.scatter[j][c];
-            weight[c] += alike;
-          }
-      });
-      const double least = shareOfMean(sum.w > 0 ? count * sumOfSquares / (sum.w * sum.w) : 0);
-      for (int c = 0; c < 4; ++c) {
-        const double own = e.scatter[i][c] * (weight[c] > 0 ? ratio[c] / weight[c] : 1);
-        squared[i][c] = std::max(own, least * sum[c] / count);
-      }
+      if (!std::isnan(e.halves[i].w)) squared[i] = squaredStandardError(e, logScatter, x, y);
     }
   return squared;
 }
@@ -99,15 +109,15 @@ Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int
   return image;
 }
 
-Noise estimateNoise(const std::vector<double>& luminances, const PixelErrors& errors) {
-  const double mean = meanOf(luminances);
+Noise estimateNoise(const PixelErrors& errors) {
+  const double mean = meanOf(errors.luminances);
   if (!(mean > 0)) return {kNan, kNan};
   double sum = 0, sumOfSquares = 0, count = 0;
   for (int y = 0; y < errors.height; ++y)
     for (int x = 0; x < errors.width; ++x) {
       const double squared = errors.halves[size_t(y) * size_t(errors.width) + size_t(x)].w;
       if (std::isnan(squared)) continue;
-      const double reference = referenceLuminance(luminances, errors, x, y, mean);
+      const double reference = referenceLuminance(errors, x, y, mean);
       const double relative = squared / reference / reference;
       sum += relative;
       sumOfSquares += relative * relative;
@@ -119,13 +129,13 @@ Noise estimateNoise(const std::vector<double>& luminances, const PixelErrors& er
   return {std::sqrt(average), std::sqrt(average + 1.96 * std::sqrt(variance / count))};
 }
 
-NoiseQuantiles noiseQuantiles(const std::vector<double>& luminances,
+NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
                               const std::vector<glm::dvec4>& squaredErrors) {
-  const double floor = 0.01 * meanOf(luminances);
+  const double floor = 0.01 * meanOf(errors.luminances);
   std::vector<double> relative;
-  for (size_t i = 0; i < luminances.size(); ++i)
+  for (size_t i = 0; i < squaredErrors.size(); ++i)
     if (!std::isnan(squaredErrors[i].w))
-      relative.push_back(std::sqrt(squaredErrors[i].w) / std::max(luminances[i], floor));
+      relative.push_back(std::sqrt(squaredErrors[i].w) / std::max(errors.luminances[i], floor));
   if (relative.empty() || !(floor > 0)) return {kNan, kNan};
   const auto quantile = [&](double share) {
     const auto at = relative.begin() + std::ptrdiff_t(share * double(relative.size() - 1));

@@ -8,23 +8,25 @@
 
 namespace chromeball {
 
-// Two estimates of each pixel's squared standard error: red, green, blue, luminance. In reading
-// order; NaN where nothing is known (fewer than one sample in each half).
+// The pixels' luminances, and two estimates of their squared standard errors: red, green, blue,
+// luminance. In reading order; NaN where nothing is known (fewer than one sample in each half).
 struct PixelErrors {
   int width = 0, height = 0;
+  std::vector<double> luminances;
   // From the difference of the pixel's two independent halves: unbiased, one degree of freedom.
   std::vector<glm::dvec4> halves;
   // From the scatter of the samples, as if these were independent: precise, but too large, since
   // they are quasi-random.
   std::vector<glm::dvec4> scatter;
 
-  // Of the sum or difference of two independent pictures.
+  // The errors become those of the sum or difference of two independent pictures.
   void add(const PixelErrors& other);
 };
 
 // One estimate of the two: a pixel's scatter, times the ratio of halves to scatter over those of
 // the 7 x 7 pixels around it that scatter alike. Where few of these pixels have met most of the
-// light (fireflies, caustics), the others will meet it too: each takes at least their mean.
+// light (fireflies, caustics), the others will meet it too: each takes at least their mean. (Not so
+// a pixel whose samples are all alike and not black, as where a composite is the plate.)
 std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& errors);
 
 // Red, green and blue of such estimates as an image; NaN and infinities stay.
@@ -40,13 +42,12 @@ struct Noise {
   double noise;  // root of the mean square; its square is unbiased (from `halves`)
   double upper;  // end of the 95% interval of `noise`
 };
-// `luminances`: of the pixels.
-Noise estimateNoise(const std::vector<double>& luminances, const PixelErrors& errors);
+Noise estimateNoise(const PixelErrors& errors);
 
 struct NoiseQuantiles {
   double median, p95;  // over the pixels
 };
-NoiseQuantiles noiseQuantiles(const std::vector<double>& luminances,
+NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
                               const std::vector<glm::dvec4>& squaredErrors);
 
 }  // namespace chromeball

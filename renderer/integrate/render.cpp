@@ -64,7 +64,7 @@ class Schedule {
 
   // Noise falls as samples^-rate: 1/2 for independent samples, up to 1 for quasi-random ones.
   double untilNoise(uint32_t done, const Film& film) {
-    const Noise noise = estimateNoise(film.luminances(), film.errors());
+    const Noise noise = film.noise();
     if (std::isnan(noise.noise)) return done < kMostInTheDark ? INFINITY : 0;
     const double excess = noise.upper / *settings_.noiseLimit;
     if (excess <= 1) return 0;
