@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "gltf_writer.h"
+#include "image/png.h"
 #include "math/hash.h"
 #include "probe/synth.h"
 #include "test_scene.h"
@@ -49,6 +51,82 @@ TEST(MipChain, AveragesInLinearLight) {
     const TexelGrid even{2, 1, {{c, c, c, c}, {c, c, c, c}}, {}};
     const std::array<uint8_t, 4> same{c, c, c, c};
     EXPECT_EQ(makeSmaller(even, true)[0].texels8[0], same);
+  }
+}
+
+// White that is there beside black that is not: what is there is white, half of it.
+const TexelGrid kHoles{
+    2, 2, {{255, 255, 255, 255}, {0, 0, 0, 0}, {0, 0, 0, 0}, {255, 255, 255, 255}}, {}};
+
+TEST(MipChain, TransparentTexelsDoNotTint) {
+  const std::array<uint8_t, 4> white{255, 255, 255, 128}, grey{128, 128, 128, 128};
+  EXPECT_EQ(makeSmaller(kHoles, false, true)[0].texels8[0], white);
+  EXPECT_EQ(makeSmaller(kHoles, false)[0].texels8[0], grey);
+  // By how much is there, level after level; where nothing is, the plain mean is as good.
+  TexelGrid odd{3, 1, {}, {vec4(1, 0, 0, 0.75f), vec4(0, 1, 0, 0.25f), vec4(0, 0, 1, 0)}};
+  const vec4 mean = makeSmaller(odd, false, true)[0].texelsFloat[0];
+  EXPECT_NEAR(glm::distance(mean, vec4(0.75f, 0.25f, 0, 1 / 3.0f)), 0, 1e-6);
+  for (vec4& texel : odd.texelsFloat) texel.w = 0;
+  const vec4 nothing = makeSmaller(odd, false, true)[0].texelsFloat[0];
+  EXPECT_NEAR(glm::distance(nothing, vec4(vec3(1 / 3.0f), 0)), 0, 1e-6);
+  // What is opaque everywhere is filtered as ever, to the last bit.
+  TexelGrid opaque{4, 2, {}, {}};
+  for (int i = 0; i < 8; ++i)
+    opaque.texels8.push_back({uint8_t(hash(uint64_t(i))), uint8_t(i * 30), 7, 255});
+  EXPECT_EQ(makeSmaller(opaque, true, true)[0].texels8, makeSmaller(opaque, true)[0].texels8);
+}
+
+TEST(MipChain, LookupsWeighByAlphaWhereTheTextureSaysSo) {
+  Texture texture{&kHoles};
+  texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(kHoles, false, true));
+  EXPECT_NEAR(texture.lookup({0.5f, 0.5f}).x, 0.5f, 1e-6);
+  texture.weightedByAlpha = true;
+  for (const float texels : {1.0f, 1.7f, 3.0f, 64.0f})
+    for (const vec2 uv : {vec2(0.5f), vec2(0.3f, 0.6f), vec2(0.9f, 0.1f)}) {
+      const vec4 seen = texture.lookup(uv, texels);
+      EXPECT_NEAR(seen.x, 1, 1e-5) << texels;
+      EXPECT_GT(seen.w, 0);
+    }
+  EXPECT_EQ(texture.lookup({0.25f, 0.75f}), vec4(0));  // in the middle of nothing
+}
+
+// A chequered veil seen from afar, in a file: half of it is white, half shows the black behind. The
+// same picture as an opaque texture, whose alpha does not count, is grey; sRGB leaves 0 and 1.
+TEST(MipChain, AVeilOfHolesIsHalfWhiteAtAnyNumberOfSamples) {
+  constexpr int kSide = 64;
+  std::vector<uint8_t> texels;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) texels.insert(texels.end(), 4, (x + y) % 2 ? 255 : 0);
+  for (const char* mode : {"BLEND", "MASK", "OPAQUE"}) {
+    GltfWriter w;
+    w.write("a.png", encodePng(kSide, kSide, 4, texels));
+    w.root["images"] = {{{"uri", "a.png"}}};
+    w.root["textures"] = {{{"source", 0}}};
+    for (const char* alphaMode : {mode, "OPAQUE", "BLEND"})  // others share the image
+      w.add("materials", {{"alphaMode", alphaMode},
+                          {"doubleSided", true},
+                          {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}},
+                          {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    const auto square = [&](int material, float x) {
+      const int positions = w.vec3s({x - 1, -1, 0, x + 1, -1, 0, x + 1, 1, 0, x - 1, 1, 0});
+      const int uvs = w.vec2s({0, 0, 8, 0, 8, 8, 0, 8});
+      w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
+                                       {"indices", w.indices({0, 1, 2, 0, 2, 3})},
+                                       {"material", material}})}});
+    };
+    square(0, 0), square(1, 10), square(2, 20);
+    const Scene scene = w.load();
+    Camera camera;
+    camera.orthographic = true;
+    camera.halfHeight = 0.9f;
+    camera.position = {0, 0, 5};
+    for (const int samples : {4, 64, 512}) {
+      const float mean = meanColor(renderScene(scene, camera, Probe(Image(2, 1, 3)), "bsdf",
+                                               smallRender(24, 24, samples, 0))
+                                       .film.mean())
+                             .x;
+      EXPECT_NEAR(mean, 0.5f, samples == 4 ? 0.03f : 0.01f) << mode << " " << samples;
+    }
   }
 }
 

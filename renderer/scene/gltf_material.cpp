@@ -43,8 +43,9 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   for (int i = 0; i < 4; ++i)
     m.baseColor[i] =
         number(file_, pbr.baseColorFactor[size_t(i)], 0, 1, where + ".baseColorFactor");
+  const TexelUse use{.srgb = true, .weightedByAlpha = source.alphaMode != "OPAQUE"};
   m.baseColorTexture = slot(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                            pbr.baseColorTexture.extensions, true, where + ".baseColorTexture");
+                            pbr.baseColorTexture.extensions, use, where + ".baseColorTexture");
   m.doubleSided = source.doubleSided;
   m.alphaCutoff = number(file_, source.alphaCutoff, 0, 1e6, where + ".alphaCutoff");
   if (source.alphaMode == "MASK")
@@ -62,10 +63,10 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   m.roughness = number(file_, pbr.roughnessFactor, 0, 1, where + ".roughnessFactor");
   m.metallicRoughnessTexture =
       slot(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
-           pbr.metallicRoughnessTexture.extensions, false, where + ".metallicRoughnessTexture");
+           pbr.metallicRoughnessTexture.extensions, {}, where + ".metallicRoughnessTexture");
   m.normalScale = number(file_, source.normalTexture.scale, -1e6, 1e6, where + ".normalTexture");
   m.normalTexture = slot(source.normalTexture.index, source.normalTexture.texCoord,
-                         source.normalTexture.extensions, false, where + ".normalTexture");
+                         source.normalTexture.extensions, {}, where + ".normalTexture");
 
   float strength = 1;
   if (const Value* e = findExtension(source.extensions, "KHR_materials_emissive_strength"))
@@ -75,7 +76,8 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
         strength * number(file_, source.emissiveFactor[size_t(i)], 0, 1, where + ".emissiveFactor");
   if (!isBlack(m.emission))
     m.emissiveTexture = slot(source.emissiveTexture.index, source.emissiveTexture.texCoord,
-                             source.emissiveTexture.extensions, true, where + ".emissiveTexture");
+                             source.emissiveTexture.extensions, {.srgb = true},
+                             where + ".emissiveTexture");
 
   if (const Value* e = findExtension(source.extensions, "KHR_materials_ior")) {
     m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
@@ -104,14 +106,14 @@ TextureSlot MaterialReader::slot(const Value& textureInfo, bool srgb, const std:
   if (const Value& nested = textureInfo.Get("extensions"); nested.IsObject())
     for (const std::string& key : nested.Keys()) extensions[key] = nested.Get(key);
   return slot(textureInfo.Get("index").GetNumberAsInt(), set.IsInt() ? set.GetNumberAsInt() : 0,
-              extensions, srgb, where);
+              extensions, {.srgb = srgb}, where);
 }
 
 TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::ExtensionMap& extensions,
-                                 bool srgb, const std::string& where) {
+                                 TexelUse use, const std::string& where) {
   TextureSlot s;
   if (index == -1) return s;
-  s.texture = texture(index, srgb, where);
+  s.texture = texture(index, use, where);
   s.uvSet = uvSet;
   if (const Value* e = findExtension(extensions, "KHR_texture_transform")) {
     const std::string at = where + ".KHR_texture_transform";
@@ -129,7 +131,7 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
   return s;
 }
 
-int MaterialReader::texture(int index, bool srgb, const std::string& where) {
+int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
   int image = source.source;
   if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
@@ -144,7 +146,8 @@ int MaterialReader::texture(int index, bool srgb, const std::string& where) {
     return -1;
   }
   Texture t;
-  t.srgb = srgb;
+  t.srgb = use.srgb;
+  t.weightedByAlpha = use.weightedByAlpha;
   if (source.sampler != -1) {
     const tinygltf::Sampler& sampler =
         file_.at(file_.model.samplers, source.sampler, "samplers", where);
@@ -153,7 +156,7 @@ int MaterialReader::texture(int index, bool srgb, const std::string& where) {
     if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) t.filter = Filter::Nearest;
   }
   file_.at(file_.images, image, "images", where);
-  const TextureKey key{image, t.wrapS, t.wrapT, t.filter, srgb};
+  const TextureKey key{image, t.wrapS, t.wrapT, t.filter, t.srgb, t.weightedByAlpha};
   if (const auto found = textureOf_.find(key); found != textureOf_.end()) return found->second;
   t.grid = grid(image);
   textures_.push_back(t);
@@ -174,8 +177,8 @@ TexelGrid* MaterialReader::grid(int image) {
 // samplers alone share them.
 void MaterialReader::moveInto(Scene& scene) {
   using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
-  std::map<std::pair<const TexelGrid*, bool>, Chain> chains;
-  for (const Texture& t : textures_) chains[{t.grid, t.srgb}];
+  std::map<std::tuple<const TexelGrid*, bool, bool>, Chain> chains;
+  for (const Texture& t : textures_) chains[{t.grid, t.srgb, t.weightedByAlpha}];
   struct Source {
     size_t grid;
     Bytes storage;
@@ -196,10 +199,12 @@ void MaterialReader::moveInto(Scene& scene) {
     grid = {decoded.width, decoded.height, std::move(decoded.texels8),
             std::move(decoded.texelsFloat)};
     for (bool srgb : {false, true})
-      if (const auto wanted = chains.find({&grid, srgb}); wanted != chains.end())
-        wanted->second = std::make_shared<const std::vector<TexelGrid>>(makeSmaller(grid, srgb));
+      for (bool weighted : {false, true})
+        if (const auto wanted = chains.find({&grid, srgb, weighted}); wanted != chains.end())
+          wanted->second =
+              std::make_shared<const std::vector<TexelGrid>>(makeSmaller(grid, srgb, weighted));
   });
-  for (Texture& t : textures_) t.smaller = chains[{t.grid, t.srgb}];
+  for (Texture& t : textures_) t.smaller = chains[{t.grid, t.srgb, t.weightedByAlpha}];
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

@@ -25,13 +25,16 @@ class MaterialReader {
   void moveInto(Scene& scene);
 
  private:
-  using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool>;
+  using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool, bool>;
+  struct TexelUse {
+    bool srgb = false, weightedByAlpha = false;  // as of Texture
+  };
 
   Material convert(const tinygltf::Material& source, const std::string& where);
-  TextureSlot slot(int texture, int uvSet, const tinygltf::ExtensionMap& extensions, bool srgb,
+  TextureSlot slot(int texture, int uvSet, const tinygltf::ExtensionMap& extensions, TexelUse use,
                    const std::string& where);
   TextureSlot slot(const tinygltf::Value& textureInfo, bool srgb, const std::string& where);
-  int texture(int index, bool srgb, const std::string& where);
+  int texture(int index, TexelUse use, const std::string& where);
   TexelGrid* grid(int image);
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
   // Nothing where the extensions change nothing.

@@ -1,5 +1,7 @@
 #include "scene/mip_chain.h"
 
+#include <algorithm>
+
 namespace chromeball {
 namespace {
 
@@ -76,8 +78,15 @@ TexelGrid halvedEvenly(const TexelGrid& grid, bool srgb) {
   return half;
 }
 
-TexelGrid halved(const TexelGrid& grid, bool srgb) {
-  if (!grid.texels8.empty() && grid.width % 2 == 0 && grid.height % 2 == 0)
+bool isOpaque(const TexelGrid& grid) {
+  return std::all_of(grid.texels8.begin(), grid.texels8.end(),
+                     [](const auto& texel) { return texel[3] == 255; }) &&
+         std::all_of(grid.texelsFloat.begin(), grid.texelsFloat.end(),
+                     [](const vec4& texel) { return texel.w == 1; });
+}
+
+TexelGrid halved(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
+  if (!weightedByAlpha && !grid.texels8.empty() && grid.width % 2 == 0 && grid.height % 2 == 0)
     return halvedEvenly(grid, srgb);
   TexelGrid half{std::max(grid.width / 2, 1), std::max(grid.height / 2, 1), {}, {}};
   const std::vector<Cover> columns = covers(grid.width, half.width);
@@ -88,10 +97,15 @@ TexelGrid halved(const TexelGrid& grid, bool srgb) {
   for (const Cover& row : rows)
     for (const Cover& column : columns) {
       vec4 mean(0);
+      Rgb weighted(0);  // by alpha
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i)
-          if (const float w = row.weight[size_t(j)] * column.weight[size_t(i)]; w > 0)
-            mean += w * linearTexel(grid, srgb, column.first + i, row.first + j);
+          if (const float w = row.weight[size_t(j)] * column.weight[size_t(i)]; w > 0) {
+            const vec4 texel = linearTexel(grid, srgb, column.first + i, row.first + j);
+            mean += w * texel;
+            weighted += w * texel.w * Rgb(texel);
+          }
+      if (weightedByAlpha && mean.w > 0) mean = vec4(weighted / mean.w, mean.w);
       if (is8) {
         half.texels8.push_back(
             {code8(mean.x, srgb), code8(mean.y, srgb), code8(mean.z, srgb), code8(mean.w, false)});
@@ -106,10 +120,11 @@ TexelGrid halved(const TexelGrid& grid, bool srgb) {
 
 }  // namespace
 
-std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb) {
+std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
+  weightedByAlpha = weightedByAlpha && !isOpaque(grid);
   std::vector<TexelGrid> levels;
   for (const TexelGrid* last = &grid; last->width > 1 || last->height > 1; last = &levels.back())
-    levels.push_back(halved(*last, srgb));
+    levels.push_back(halved(*last, srgb, weightedByAlpha));
   return levels;
 }
 

@@ -10,7 +10,8 @@ namespace chromeball {
 
 // The grid at half its size, at a quarter, and so on down to one texel. Each texel is the mean, in
 // linear light, of those it covers; it is stored as the grid stores its own (`srgb`: encoded).
-// Empty for a grid of one texel.
-std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb);
+// Colours weigh in proportion to their alpha where `weightedByAlpha` says so and any has some. Empty
+// for a grid of one texel.
+std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb, bool weightedByAlpha = false);
 
 }  // namespace chromeball

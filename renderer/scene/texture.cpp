@@ -81,39 +81,66 @@ float reduce(float x, Wrap wrap) {
 
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
 
+// Calls mean(fetch) for the mean of texels that a lookup is; weighted by alpha, that of
+// (alpha colour, alpha), from which the colour is had by division.
+template <class Mean>
+[[gnu::always_inline]] static inline vec4 weighted(const Texture& t, const Mean& mean) {
+  const bool srgb = t.srgb;
+  const auto plain = [srgb](const TexelGrid& g, int x, int y) { return fetch(g, srgb, x, y); };
+  if (!t.weightedByAlpha) return mean(plain);
+  const vec4 sum = mean([srgb](const TexelGrid& g, int x, int y) {
+    const vec4 texel = fetch(g, srgb, x, y);
+    return vec4(texel.w * Rgb(texel), texel.w);
+  });
+  if (!(sum.w > 0)) return mean(plain);  // a mask may show what has no alpha
+  return vec4(Rgb(sum) / sum.w, sum.w);
+}
+
 vec4 Texture::lookup(vec2 uv) const {
-  const TexelGrid& g = *grid;
-  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch(g, srgb, 0, 0);
-  if (filter == Filter::Linear) return bilinear(g, uv);
-  const int x = int(reduce(uv.x, wrapS) * float(g.width));
-  const int y = int(reduce(uv.y, wrapT) * float(g.height));
-  return fetch(g, srgb, wrapIndex(x, g.width, wrapS), wrapIndex(y, g.height, wrapT));
+  return weighted(*this, [&](const auto& fetch) { return nearestOrBilinear(uv, fetch); });
 }
 
 vec4 Texture::lookup(vec2 uv, float texels) const {
   if (!(texels > 1) || !smaller || smaller->empty()) return lookup(uv);
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return lookup(uv);
+  return weighted(*this, [&](const auto& fetch) { return trilinear(uv, texels, fetch); });
+}
+
+template <class Fetch>
+vec4 Texture::nearestOrBilinear(vec2 uv, const Fetch& fetch) const {
+  const TexelGrid& g = *grid;
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch(g, 0, 0);
+  if (filter == Filter::Linear) return bilinear(g, uv, fetch);
+  const int x = int(reduce(uv.x, wrapS) * float(g.width));
+  const int y = int(reduce(uv.y, wrapT) * float(g.height));
+  return fetch(g, wrapIndex(x, g.width, wrapS), wrapIndex(y, g.height, wrapT));
+}
+
+template <class Fetch>
+vec4 Texture::trilinear(vec2 uv, float texels, const Fetch& fetch) const {
   // Half the binary logarithm, linear between powers of two.
   int exponent = 0;
   const float mantissa = 2 * std::frexp(texels, &exponent) - 1;
   const float level = 0.5f * (float(exponent - 1) + mantissa);
   const size_t last = smaller->size();
-  if (!(level < float(last))) return bilinear(smaller->back(), uv);
+  if (!(level < float(last))) return bilinear(smaller->back(), uv, fetch);
   const size_t below = size_t(level);
-  const vec4 finer = below == 0 ? lookup(uv) : bilinear((*smaller)[below - 1], uv);
-  return glm::mix(finer, bilinear((*smaller)[below], uv), level - float(below));
+  const vec4 finer = below == 0 ? nearestOrBilinear(uv, fetch)
+                                : bilinear((*smaller)[below - 1], uv, fetch);
+  return glm::mix(finer, bilinear((*smaller)[below], uv, fetch), level - float(below));
 }
 
 // `uv` is finite.
-vec4 Texture::bilinear(const TexelGrid& g, vec2 uv) const {
+template <class Fetch>
+vec4 Texture::bilinear(const TexelGrid& g, vec2 uv, const Fetch& fetch) const {
   const float x = reduce(uv.x, wrapS) * float(g.width);
   const float y = reduce(uv.y, wrapT) * float(g.height);
   const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
   const float tx = x - 0.5f - fx, ty = y - 0.5f - fy;
   const int x0 = wrapIndex(int(fx), g.width, wrapS), x1 = wrapIndex(int(fx) + 1, g.width, wrapS);
   const int y0 = wrapIndex(int(fy), g.height, wrapT), y1 = wrapIndex(int(fy) + 1, g.height, wrapT);
-  const vec4 top = glm::mix(fetch(g, srgb, x0, y0), fetch(g, srgb, x1, y0), tx);
-  const vec4 bottom = glm::mix(fetch(g, srgb, x0, y1), fetch(g, srgb, x1, y1), tx);
+  const vec4 top = glm::mix(fetch(g, x0, y0), fetch(g, x1, y0), tx);
+  const vec4 bottom = glm::mix(fetch(g, x0, y1), fetch(g, x1, y1), tx);
   return glm::mix(top, bottom, ty);
 }
 

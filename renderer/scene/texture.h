@@ -28,6 +28,9 @@ struct Texture {
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter filter = Filter::Linear;
   bool srgb = false;
+  // Means of texels weigh colour by alpha, so that what is transparent does not tint what is not.
+  // For base colours that blend or are masked; elsewhere alpha says nothing of the colour.
+  bool weightedByAlpha = false;
   std::shared_ptr<const std::vector<TexelGrid>> smaller;  // mip_chain.h; null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
@@ -38,7 +41,12 @@ struct Texture {
   vec4 lookup(vec2 uv, float texels) const;
 
  private:
-  vec4 bilinear(const TexelGrid& from, vec2 uv) const;
+  template <class Fetch>
+  vec4 nearestOrBilinear(vec2 uv, const Fetch& fetch) const;
+  template <class Fetch>
+  vec4 bilinear(const TexelGrid& from, vec2 uv, const Fetch& fetch) const;
+  template <class Fetch>
+  vec4 trilinear(vec2 uv, float texels, const Fetch& fetch) const;
 };
 
 // Linear RGBA of one texel.
