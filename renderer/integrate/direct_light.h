@@ -97,7 +97,8 @@ Rgb transmittanceTo(const Rays& rays, uint32_t /*instance*/, const Ray& ray) {
 template <class Rays>
 Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
                  const Media& media, const PixelSampler& sampler, RayCounts& counts) {
-  const Emitters::Point emitter = path.emitters->sample(sampler.get2(dimension::kEmitter));
+  const Emitters::Point emitter = path.emitters->sample(
+      sampler.getFine1(dimension::kEmitter), sampler.get1(dimension::kEmitter + 1));
   const vec3 to = emitter.position - surface.position;
   const float distance = glm::length(to);
   if (!(distance > surface.rayOffset)) return Rgb(0);
@@ -109,7 +110,10 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const Instance& instance = path.scene.instances[emitter.instance];
   const Surface source =
       surfaceAt(path.scene, instance, emitter.triangle, emitter.barycentric, -wi);
-  const Rgb radiance = emittedRadiance(path.scene, instance, source, -wi);
+  // A ray that the BSDF chose meets the lamp with probability alpha.
+  const Rgb radiance =
+      emittedRadiance(path.scene, instance, source, -wi) *
+      surfaceAlpha(path.scene, instance, emitter.triangle, emitter.barycentric);
   const float cosine = glm::dot(source.geometricNormal, -wi);
   if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
 

@@ -7,17 +7,39 @@
 namespace chromeball {
 namespace {
 
-// Mean luminance a material emits, over its texture's texels; positive wherever it emits at all.
-double meanEmission(const Scene& scene, const Material& material) {
-  if (material.unlit || isBlack(material.emission)) return 0;
-  if (!material.emissiveTexture) return luminance(material.emission);
-  const Texture& texture = scene.textures[material.emissiveTexture.texture];
+// Mean over the texels of the slot's texture.
+template <class Value>
+double meanOfTexels(const Scene& scene, const TextureSlot& slot, const Value& value) {
+  const Texture& texture = scene.textures[slot.texture];
   const TexelGrid& grid = *texture.grid;
   double sum = 0;
   for (int y = 0; y < grid.height; ++y)
-    for (int x = 0; x < grid.width; ++x)
-      sum += luminance(material.emission * Rgb(linearTexel(grid, texture.srgb, x, y)));
+    for (int x = 0; x < grid.width; ++x) sum += value(linearTexel(grid, texture.srgb, x, y));
   return sum / (double(grid.width) * grid.height);
+}
+
+// Mean share of the material that is there. Not less than kLeast where any may be: filters and
+// vertex colours reach where no texel does.
+double meanAlpha(const Scene& scene, const Material& m) {
+  constexpr double kLeast = 0.01;
+  if (m.alphaMode == AlphaMode::Opaque) return 1;
+  if (m.alphaMode == AlphaMode::Blend && m.baseColor.w == 0) return 0;
+  const auto shown = [&](const vec4& texel) {
+    const float alpha = m.baseColor.w * texel.w;
+    return m.alphaMode == AlphaMode::Mask ? (alpha >= m.alphaCutoff ? 1.0f : 0.0f) : alpha;
+  };
+  const double mean = m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, shown)
+                                         : double(shown(vec4(1)));
+  return std::max(mean, kLeast);
+}
+
+// Mean luminance a material emits; positive wherever it emits at all.
+double meanEmission(const Scene& scene, const Material& m) {
+  if (m.unlit || isBlack(m.emission)) return 0;
+  const auto emitted = [&](const vec4& texel) { return luminance(m.emission * Rgb(texel)); };
+  const double mean = m.emissiveTexture ? meanOfTexels(scene, m.emissiveTexture, emitted)
+                                        : double(luminance(m.emission));
+  return mean * meanAlpha(scene, m);
 }
 
 }  // namespace
@@ -56,10 +78,9 @@ Emitters::Emitters(std::vector<EmissiveTriangle> triangles, const std::vector<do
   for (double radiance : radiances) areaDensity_.push_back(float(radiance / total));
 }
 
-Emitters::Point Emitters::sample(vec2 u) const {
-  double choice = u.x;
+Emitters::Point Emitters::sample(double choice, float v) const {
   const EmissiveTriangle& t = triangles_[choice_.sample(0, choice)];
-  const vec2 b = squareToTriangle({float(choice), u.y});
+  const vec2 b = squareToTriangle({float(choice), v});
   return {t.instance, t.triangle, b, (1 - b.x - b.y) * t.p0 + b.x * t.p1 + b.y * t.p2};
 }
 

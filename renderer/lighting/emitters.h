@@ -8,9 +8,9 @@
 
 namespace chromeball {
 
-// Every triangle whose material emits, chosen by power (mean emitted luminance x area) and sampled
-// uniformly over its area. The density over area is then the same for all points of a material:
-// its mean luminance / total.
+// Every triangle whose material emits, chosen by power (mean emitted luminance x mean alpha x area)
+// and sampled uniformly over its area. The density over area is then the same for all points of a
+// material: its mean luminance x alpha / total.
 class Emitters {
  public:
   // Null where nothing emits: such a scene has no table and no branch for one.
@@ -21,7 +21,8 @@ class Emitters {
     vec2 barycentric;
     vec3 position;
   };
-  Point sample(vec2 u) const;
+  // `choice` in [0, 1) is fine enough to reach the weakest of a million triangles (getFine1()).
+  Point sample(double choice, float v) const;
 
   // Density over solid angle of sampling a point of `material` seen from `distance` metres under
   // the cosine `cosine` (> 0) at the emitter.

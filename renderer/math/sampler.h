@@ -57,6 +57,12 @@ class PixelSampler {
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: plain random numbers
   }
   float get1(int d) const { return toUnit(bits(d)); }
+  // To 53 bits, the lower ones plain random numbers: for choices among more than 2^24.
+  double getFine1(int d) const {
+    constexpr uint64_t kPurpose = 0x66696e65;  // apart from other uses of the key
+    const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
+    return (double(bits(d)) + double(low) * 0x1p-21) * 0x1p-32;
+  }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
   // A key, to be hashed, for decisions outside the path's own dimensions (stochastic alpha).
