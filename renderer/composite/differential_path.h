@@ -70,8 +70,9 @@ struct DifferentialSample {
 // Whether the path passes the surface at `hit` as if it were not there: a back that is hidden.
 inline bool isUnseen(const Scene& scene, const PathState& state, const Hit& hit) {
   const Instance& instance = scene.instances[hit.instance];
-  return state.pdf == 0 && scene.materials[size_t(instance.material)].hidesBack() &&
-         !surfaceAt(scene, instance, hit.triangle, hit.barycentric, -state.ray.direction).frontFace;
+  return scene.materials[size_t(instance.material)].hidesBack() &&
+         isHiddenFrom(state, surfaceAt(scene, instance, hit.triangle, hit.barycentric,
+                                       -state.ray.direction));
 }
 
 // Takes the camera's path past hidden backs, to before the first surface that it sees.

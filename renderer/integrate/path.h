@@ -56,6 +56,23 @@ inline bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
          (bounce.pdf == 0 || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
+// Whether the path passes a surface as if it were not there: the camera and mirrors a hidden back.
+inline bool isHiddenFrom(const PathState& state, const Surface& surface) {
+  return state.pdf == 0 && !surface.frontFace && surface.material->hidesBack();
+}
+
+// Whether the path goes on to what lies behind a front. To what the front sends out, a surface that
+// is there on one side only adds the light that meets its back; the path follows one of the two for
+// both. Light samples pass the front as well, so that they still compete with the ray.
+inline bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
+                          const PixelSampler& sampler) {
+  if (state.pdf == 0 || !surface.frontFace || !surface.material->backLetsLightThrough())
+    return false;
+  constexpr uint64_t kPurpose = 0x6f6e6577;  // apart from other uses of the key
+  state.throughput *= 2;
+  return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
+}
+
 // What the path finds where its ray meets nothing.
 template <class Rays>
 Rgb escapedRadiance(const PathScene<Rays>& path, const PathState& state) {
@@ -182,7 +199,7 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
   const Surface surface = surfaceAt(path.scene, instance, hit->triangle, hit->barycentric,
                                     -state.ray.direction, crossSection);
   if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
-  if (state.pdf == 0 && !surface.frontFace && surface.material->hidesBack()) [[unlikely]] {
+  if (isHiddenFrom(state, surface) || choosesBehind(state, surface, *hit, sampler)) [[unlikely]] {
     state.ray.origin = surface.rayOrigin(state.ray.direction);
     return true;
   }

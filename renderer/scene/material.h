@@ -13,6 +13,10 @@ class Projection;
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
+// What single-sided surfaces are not there for: the camera and mirrors behind them, as back-face
+// culling has it (glTF 2.0, 3.9.6); the light that comes from behind as well; or nothing.
+enum class SingleSided : uint8_t { Camera, Light, Off };
+
 struct Material {
   std::string name;
   vec4 baseColor{1};                  // linear RGB and alpha; times texture, times vertex colour
@@ -25,11 +29,15 @@ struct Material {
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
+  SingleSided singleSided = SingleSided::Camera;  // where not doubleSided
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
 
-  // Whether the camera and mirrors do not see it from behind (back-face culling, glTF 2.0, 3.9.6).
-  // It is there for all other light, which would leak in otherwise.
-  bool hidesBack() const { return !doubleSided && !(extended && extended->transmission > 0); }
+  // Whether the camera and mirrors do not see it from behind; and whether light from there passes.
+  bool hidesBack() const {
+    return !doubleSided && singleSided != SingleSided::Off &&
+           !(extended && extended->transmission > 0);
+  }
+  bool backLetsLightThrough() const { return hidesBack() && singleSided == SingleSided::Light; }
 
   // Whether it is the boundary of a body that light passes (KHR_materials_volume).
   bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }

@@ -124,6 +124,16 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   return s;
 }
 
+bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
+                  const vec3& direction) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  const Triangle& t = mesh.triangles[triangle];
+  const vec3 p0 = instance.point(mesh.positions[t.x]);
+  const vec3 edge1 = instance.point(mesh.positions[t.y]) - p0;
+  const vec3 edge2 = instance.point(mesh.positions[t.z]) - p0;
+  return handednessOf(instance) * glm::dot(glm::cross(edge1, edge2), direction) > 0;
+}
+
 std::optional<TangentFrame> tangentFrameAt(const Surface& s, const Instance& instance) {
   if (s.mesh->tangents.empty()) return std::nullopt;
   const float handedness = handednessOf(instance);

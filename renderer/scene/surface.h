@@ -28,6 +28,10 @@ struct Surface {
   }
 };
 
+// Whether a ray along `direction` meets the back of a triangle: surfaceAt() says the same.
+bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
+                  const vec3& direction);
+
 // `wo`: unit, towards the viewer. `crossSection`: of the beam around the ray, in square metres; 0
 // for a ray that sees a point.
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,

@@ -52,6 +52,11 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
   const Hit hit = hitOf(arguments);
   const Instance& instance = scene.instances[hit.instance];
+  if (scene.materials[instance.material].backLetsLightThrough() &&
+      !isFromBehind(scene, instance, hit.triangle, query.direction)) {
+    arguments->valid[0] = 0;
+    return;
+  }
   const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
   Rgb passed(1 - alpha);
   if (alpha > 0 && passesStraight(scene.materials[instance.material])) {
@@ -155,7 +160,8 @@ void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
     ++uses[instance.mesh];
     const Material& material = scene.materials[instance.material];
     const bool alpha = material.alphaMode != AlphaMode::Opaque;
-    if (!isShown(i) || !(alpha || passesStraight(material))) continue;
+    if (!isShown(i) || !(alpha || passesStraight(material) || material.backLetsLightThrough()))
+      continue;
     needsFilter_[instance.mesh] = hasFilter_ = true;
     hasAlpha_ = hasAlpha_ || alpha;
   }

@@ -41,7 +41,8 @@ class Accel {
   Packet intersect(std::span<const Ray> rays, std::span<const uint32_t> keys) const;
 
   // The share of light that passes along the ray up to tMax: 0, 1, or the product over the blended
-  // surfaces (1 - alpha) and the smooth thin walls (scene/thin_wall.h) between.
+  // surfaces (1 - alpha) and the smooth thin walls (scene/thin_wall.h) between. Where light
+  // passes the back of a surface (material.h), a ray towards the light passes its front.
   Rgb transmittance(const Ray& ray) const;
 
  private:
