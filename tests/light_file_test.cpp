@@ -9,6 +9,7 @@
 #include "math/error.h"
 #include "probe/icosphere.h"
 #include "run_command.h"
+#include "scene/gltf.h"
 
 namespace chromeball {
 namespace {
@@ -72,11 +73,35 @@ TEST(LightFile, GltfNodesPointFromTheLightToTheScene) {
     const json& light = gltf["extensions"]["KHR_lights_punctual"]["lights"][index];
     EXPECT_EQ(light["type"], "directional");
     for (int c = 0; c < 3; ++c) {
-      const double color = light["color"][c], irradiance = rig.lights[i].irradiance[c];
+      const double color = light["color"][c], irradiance = 683 * rig.lights[i].irradiance[c];
       EXPECT_LE(color, 1);
       EXPECT_NEAR(color * light["intensity"].get<double>(), irradiance, 1e-6 * irradiance);
     }
   }
+}
+
+// What is written is read again, in either units; in the others it is off by 683 lm/W.
+TEST(LightFile, GltfComesBackAsItWas) {
+  const TemporaryFolder folder;
+  LightRig rig = exampleRig();
+  for (const LightUnits written : {LightUnits::Photometric, LightUnits::Radiometric})
+    for (const LightUnits read : {LightUnits::Photometric, LightUnits::Radiometric}) {
+      rig.units = written;
+      writeLights(folder / "a.gltf", rig);
+      GltfChoice choice;
+      choice.lightUnits = read;
+      const Scene scene = loadGltf(folder / "a.gltf", {}, nullptr, choice);
+      const float factor = lumensPerWatt(written) / lumensPerWatt(read);
+      size_t i = 0;
+      for (const DirectionalLight& light : rig.lights) {
+        if (isBlack(light.irradiance)) continue;
+        ASSERT_LT(i, scene.lights.size());
+        const PunctualLight& back = scene.lights[i++];
+        EXPECT_LT(glm::distance(back.direction, -light.direction), 1e-5f);
+        EXPECT_NEAR(glm::distance(back.intensity, factor * light.irradiance), 0,
+                    1e-5f * factor * maxComponent(light.irradiance));
+      }
+    }
 }
 
 TEST(LightFile, GltfHasNoEmptyLists) {

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "composite/compose.h"
+#include "composite/render_composite.h"
 #include "gltf_writer.h"
+#include "image/read.h"
+#include "image/write.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -149,6 +153,40 @@ TEST(Punctual, ChosenLampsAreUnbiased) {
   EXPECT_LT(std::sqrt(m.variance), 0.05 * expected);
 }
 
+// In a composite lamps shine with the objects and without them: on the ground as the closed form
+// says, whatever stands there, and on the objects too.
+TEST(Punctual, ShineOnBothWorldsOfAComposite) {
+  Scene scene = plane();
+  scene.lights.push_back(lampAt({1, 2, 0}, Rgb(8)));
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.9f))), {-1, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
+  const ObjectMask isObject{false, true};
+  const Probe black(Image(2, 1, 3));
+  const Accel accel(scene);
+  constexpr int kSize = 33;
+  const RenderSettings settings = smallRender(kSize, kSize, 16, 1);
+  const auto lighting = makeStrategy("importance", black, settings.mis, "test");
+  const std::atomic<bool> stop = false;
+  for (const Passes passes : {Passes::One, Passes::Two}) {
+    const CompositeRender r =
+        renderComposite(scene, accel, isObject, above(), *lighting, Image(kSize, kSize, 3),
+                        settings, passes, true, [](double) {}, stop);
+    const Image with = ingredient(r.film, Aov::WithObjects);
+    const Image without = ingredient(r.film, Aov::WithoutObjects);
+    const Image whole = picture(scene, 64, 1, kSize);
+    int shadowed = 0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double px = 8 * (x + 0.5) / kSize - 4, pz = 8 * (y + 0.5) / kSize - 4;
+        const double d = std::sqrt((px - 1) * (px - 1) + 4 + pz * pz);
+        const double expected = 0.5 / kPiD * 8 * 2 / (d * d * d);
+        EXPECT_NEAR(without.rgb(x, y).x / expected, 1, 0.03) << px << " " << pz;
+        shadowed += with.rgb(x, y).x < 0.1 * expected;
+      }
+    EXPECT_GT(shadowed, 5);
+    EXPECT_NEAR(meanColor(with).x / meanColor(whole).x, 1, 0.02);
+  }
+}
+
 TEST(GltfLights, StandWhereTheirNodesAre) {
   GltfWriter w;
   addTriangle(w);
@@ -171,13 +209,16 @@ TEST(GltfLights, StandWhereTheirNodesAre) {
   EXPECT_EQ(lights[0].kind, Kind::Spot);
   EXPECT_EQ(lights[0].position, vec3(1, 2, 3));
   EXPECT_NEAR(glm::distance(lights[0].direction, vec3(0, 1, 0)), 0, 1e-6);
-  EXPECT_EQ(lights[0].intensity, Rgb(3, 1.5f, 0));
+  EXPECT_NEAR(glm::distance(683.0f * lights[0].intensity, Rgb(3, 1.5f, 0)), 0, 1e-5);
   EXPECT_EQ(lights[0].range, 7);
   EXPECT_NEAR(lights[0].cosInner, std::cos(0.1), 1e-6);
   EXPECT_NEAR(lights[0].cosOuter, std::cos(0.2), 1e-6);
   EXPECT_EQ(lights[1].kind, Kind::Directional);
-  EXPECT_EQ(lights[1].intensity, Rgb(1));
+  EXPECT_NEAR(683 * lights[1].intensity.x, 1, 1e-6);
   EXPECT_TRUE(w.warnings.empty());
+  GltfChoice radiometric;
+  radiometric.lightUnits = LightUnits::Radiometric;
+  EXPECT_EQ(loadGltf(w.save(), {}, nullptr, radiometric).lights[0].intensity, Rgb(3, 1.5f, 0));
 }
 
 TEST(GltfLights, AreRefusedWhereTheyAreNotWellFormed) {
@@ -202,6 +243,85 @@ TEST(GltfLights, AreRefusedWhereTheyAreNotWellFormed) {
   EXPECT_TRUE(holds(
       refusal({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}}),
       "innerConeAngle"));
+}
+
+// A triangle before the camera, lit by a directional light of 683 lx.
+std::string litTriangle(GltfWriter& w) {
+  addTriangle(w);
+  w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"intensity", 683}}};
+  w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  return w.save();
+}
+
+TEST(GltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
+  GltfWriter w;
+  const std::string model = litTriangle(w);
+  const TemporaryFolder folder;
+  const auto mean = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"render", model, "-o", folder / "a.pfm", "--size", "8x8",
+                                    "--samples", "2", "--probe", folder / "black.pfm"};
+    all.insert(all.end(), options.begin(), options.end());
+    const CommandResult r = runCommand(all);
+    EXPECT_EQ(r.status, 0) << r.error;
+    return meanColor(readImage(folder / "a.pfm")).x;
+  };
+  writeImage(folder / "black.pfm", Image(2, 1, 3));
+  const float whole = mean({});
+  EXPECT_GT(whole, 0);
+  EXPECT_NEAR(mean({"--lights", "0.25"}) / whole, 0.25, 1e-5);
+  EXPECT_EQ(mean({"--lights", "off"}), 0);
+  EXPECT_EQ(mean({"--lights", "0"}), 0);
+  EXPECT_NEAR(mean({"--light-units", "radiometric"}) / whole, 683, 0.01);
+  EXPECT_NEAR(mean({"--light-units", "photometric"}) / whole, 1, 1e-6);
+  const auto refused = [&](const std::vector<std::string>& options, const std::string& reason) {
+    std::vector<std::string> all = {"render", model, "-o", folder / "a.pfm"};
+    all.insert(all.end(), options.begin(), options.end());
+    expectRefused(all, reason);
+  };
+  refused({"--lights", "-1"}, "--lights: -1 is neither `off` nor a factor, 0 or above");
+  refused({"--lights", "on"}, "--lights");
+  refused({"--light-units", "lux"}, "--light-units: `lux` is not known");
+}
+
+TEST(GltfLights, ClippedPicturesAreSaidToBe) {
+  GltfWriter w;
+  const std::string model = litTriangle(w);
+  const TemporaryFolder folder;
+  writeImage(folder / "white.pfm", constantProbe({4, 2}, Rgb(40)));
+  const std::vector<std::string> command = {"render", model, "--probe", folder / "white.pfm",
+                                            "--size", "8x8", "--samples", "2"};
+  const auto errorOf = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = command;
+    all.insert(all.end(), options.begin(), options.end());
+    return runCommand(all).error;
+  };
+  const std::string clipped = errorOf({"-o", folder / "a.png"});
+  EXPECT_NE(clipped.find("are clipped; --exposure -6 shows them, --lights FACTOR"),
+            std::string::npos)
+      << clipped;
+  EXPECT_EQ(errorOf({"-o", folder / "a.png", "--exposure", "-6"}).find("clipped"),
+            std::string::npos);
+  EXPECT_EQ(errorOf({"-o", folder / "a.exr"}).find("clipped"), std::string::npos);
+}
+
+// Glass bends the light of lamps away from what stands behind: that is said once, and only of them.
+TEST(GltfLights, ThatGlassStopsAreSaidToBe) {
+  for (const bool volume : {false, true}) {
+    GltfWriter w;
+    addTriangle(w, {{"material", 0}});
+    json extensions = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
+    if (volume) extensions["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    w.add("materials", {{"extensions", extensions}});
+    w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const TemporaryFolder folder;
+    const CommandResult r =
+        runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "8x8", "--samples", "2"});
+    EXPECT_EQ(r.status, 0) << r.error;
+    EXPECT_EQ(r.error.find("do not shine through bodies of glass") != std::string::npos, volume)
+        << r.error;
+  }
 }
 
 TEST(GltfLights, LightASceneWithoutAProbe) {

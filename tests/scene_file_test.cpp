@@ -67,6 +67,22 @@ TEST_F(SceneFileTest, ModelAloneLeavesAllElseOpen) {
   EXPECT_TRUE(scene.outputs.empty() && scene.aovs.empty());
 }
 
+TEST_F(SceneFileTest, LightsDepthsAndSides) {
+  const SceneFile scene = readWithModel(
+      "[lighting]\nlights = 0.25\nlight_units = 'radiometric'\n"
+      "[render]\nmax_transmission_depth = 12\nsingle_sided = 'light'");
+  EXPECT_EQ(scene.modelLights, 0.25f);
+  EXPECT_EQ(scene.lightUnits->name, "radiometric");
+  EXPECT_EQ(scene.maxTransmissionDepth, 12);
+  EXPECT_EQ(scene.singleSided->name, "light");
+  EXPECT_EQ(scene.singleSided->place, scenePath() + ":7");
+  EXPECT_EQ(readWithModel("[lighting]\nlights = 'off'").modelLights, 0.0f);
+  expectError("[lighting]\nlights = 'on'", 3, {"`lights` must be \"off\" or a factor"});
+  expectError("[lighting]\nlights = -1", 3, {"`lights` must be \"off\" or a factor"});
+  expectError("[render]\nmax_transmision_depth = 2", 3, {"max_transmission_depth"});
+  expectError("light = 3", 2, {"`light` must be a table"});
+}
+
 // What fuzzing found: an assertion of the TOML library ended the process.
 TEST_F(SceneFileTest, HeadersThatAreNoKeysAreErrors) {
   for (const char* header : {"[[&odel]]", "[[ &]]", "[&]", "[a.&]"})

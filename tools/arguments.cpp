@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "image/limits.h"
+#include "math/error.h"
+#include "math/suggest.h"
 
 namespace chromeball {
 namespace {
@@ -37,6 +39,13 @@ ImageSize parseSize(std::string_view text, std::string_view option) {
   }
   throwInput("{}: `{}` should be WIDTHxHEIGHT, each 1 to {}, as in 1024x512", option, text,
              kLargest);
+}
+
+LightUnits parseLightUnits(const NamedSetting& setting) {
+  if (setting.name == "photometric") return LightUnits::Photometric;
+  if (setting.name == "radiometric") return LightUnits::Radiometric;
+  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+             didYouMean(setting.name, {"photometric", "radiometric"}));
 }
 
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view option) {

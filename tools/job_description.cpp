@@ -37,6 +37,12 @@ const char* nameOf(Mis mis) {
   return mis == Mis::Off ? "off" : mis == Mis::Balance ? "balance" : "power";
 }
 
+const char* nameOf(SingleSided singleSided) {
+  return singleSided == SingleSided::Camera  ? "camera"
+         : singleSided == SingleSided::Light ? "light"
+                                             : "off";
+}
+
 std::vector<std::string> filesOf(const RenderJob& job) {
   const SceneFile& file = job.file;
   std::vector<std::string> files;
@@ -116,6 +122,10 @@ Json describeJob(const RenderOptions& options, const RenderJob& job, const Loade
   d["strategy"] = resolveStrategy(job.strategy.name);
   d["mis"] = nameOf(s.mis);
   d["max-depth"] = s.maxDepth;
+  d["max-transmission-depth"] = s.maxTransmissionDepth;
+  d["single-sided"] = nameOf(job.singleSided);
+  d["lights"] = file.modelLights.value_or(1);
+  d["light-units"] = file.lightUnits ? file.lightUnits->name : "photometric";
   d["seed"] = s.seed;
   if (s.clamp) d["clamp"] = *s.clamp;
   for (const auto& [name, text] : options.given)

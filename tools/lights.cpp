@@ -14,7 +14,7 @@ namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string probe, mapping = "auto", output, preview, maxError;
+  std::string probe, mapping = "auto", output, preview, maxError, units = "photometric";
   LightOptions options;
 };
 
@@ -32,6 +32,7 @@ void run(Arguments arguments) {
   if (!arguments.maxError.empty())
     options.maxError = parsePercent(arguments.maxError, "--max-error");
   checkLightOptions(options);
+  const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
   checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
   checkDistinct({arguments.output, arguments.preview}, {arguments.probe});
@@ -41,6 +42,7 @@ void run(Arguments arguments) {
     fmt::print(stderr, "chromeball: {}\n", warning);
   auto [rig, meanError] = makeLights(probe.latLong, options);
   rig.probe = arguments.probe;
+  rig.units = units;
   writeLights(arguments.output, rig);
   if (!arguments.preview.empty())
     writeImage(arguments.preview, lightPreview(probe.latLong, rig.lights));
@@ -66,6 +68,9 @@ void addLightsCommand(CLI::App& app) {
       ->add_option("-o,--output", arguments->output,
                    "the lights to write: .json, .gltf (KHR_lights_punctual) or .csv")
       ->required();
+  command->add_option("--light-units", arguments->units,
+                      "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them), or "
+                      "radiometric (1 lux)");
   command->add_option("--preview", arguments->preview,
                       "draw the lights into the probe, and write this image");
   command->add_option("--max-error", arguments->maxError,

@@ -28,6 +28,9 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin,
   }
   if (scene.instances.empty())
     throwInput("{}: the model has no triangles to render", file.models.front().file);
+  const float factor = file.modelLights.value_or(1);
+  if (factor == 0) scene.lights.clear();
+  for (PunctualLight& light : scene.lights) light.intensity *= factor;
   return scene;
 }
 
@@ -98,6 +101,12 @@ Camera withLens(const RenderJob& job, Camera camera) {
   return camera;
 }
 
+bool hasBodies(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
+    return scene.materials[size_t(i.material)].isBody();
+  });
+}
+
 // The size asked for; else the default height, as wide as the model's camera would have it.
 void chooseSize(RenderJob& job, const Scene& scene) {
   RenderSettings& settings = job.settings;
@@ -159,6 +168,8 @@ LoadedScene loadScene(RenderJob& job) {
   }
   chooseSize(job, scene);
   const Camera camera = withLens(job, chooseCamera(job, scene));
+  for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, origin);
+  for (Material& material : scene.materials) material.singleSided = job.singleSided;
   std::vector<std::string> files = scene.files;
   if (job.file.probe) files.push_back(*job.file.probe);
   if (job.file.composite) files.push_back(job.file.composite->plate);
@@ -186,6 +197,9 @@ void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
   for (const std::string& warning : loaded.modelWarnings) warn(warning);
   if (!quiet)
     for (const std::string& line : loaded.scene.notes) note(line);
+  if (const Scene& scene = loaded.scene; !scene.lights.empty() && hasBodies(scene))
+    warn("lights without extent do not shine through bodies of glass, which bend their light away: "
+         "what stands behind is in full shadow; a lamp that is a surface reaches it");
   const RenderSettings& s = job.settings;
   if (const double bytes = pictureBytes(s); bytes > kWorthSaying && !quiet)
     note(fmt::format("a picture of {}x{} takes {:.3g} GB of memory", s.width, s.height,

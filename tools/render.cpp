@@ -16,6 +16,7 @@
 #include "load_scene.h"
 #include "machine.h"
 #include "math/error.h"
+#include "picture_hints.h"
 #include "progress.h"
 #include "render_job.h"
 
@@ -238,6 +239,11 @@ void render(const RenderOptions& options) {
 
   sayWhatIsMissing(result, job.settings);
   for (const std::string& note : rendered.notes) warn(note);
+  if (!composite) {
+    if (const auto why = whyBlack(loaded, accel, result)) warn(*why);
+    if (const auto hint = whyWhite(job, loaded, result); hint && !options.quiet)
+      note(*hint);
+  }
   if (result.interrupted && result.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; what there is: {}",
                                   fmt::join(job.outputs, ", ")));

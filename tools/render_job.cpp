@@ -42,6 +42,21 @@ Mis parseMis(const NamedSetting& setting) {
              didYouMean(setting.name, {"off", "balance", "power"}));
 }
 
+SingleSided parseSingleSided(const NamedSetting& setting) {
+  if (setting.name == "camera") return SingleSided::Camera;
+  if (setting.name == "light") return SingleSided::Light;
+  if (setting.name == "off") return SingleSided::Off;
+  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+             didYouMean(setting.name, {"camera", "light", "off"}));
+}
+
+float parseModelLights(const std::string& text) {
+  if (text == "off") return 0;
+  const double factor = parseNumbers(text, 1, "--lights").front();
+  if (!(factor >= 0)) throwInput("--lights: {} is neither `off` nor a factor, 0 or above", text);
+  return float(factor);
+}
+
 template <class T>
 void require(bool valid, const char* option, T given, std::string_view expected) {
   if (!valid) throwInput("{}: {} is not {}", option, given, expected);
@@ -110,6 +125,13 @@ RenderJob planJob(const RenderOptions& o) {
     file.noiseLimit.reset();
     if (o.noise) file.noiseLimit = *o.noise / 100;
   }
+  if (o.lights) file.modelLights = parseModelLights(*o.lights);
+  overlay(file.lightUnits, o.lightUnits, "--light-units");
+  if (file.lightUnits)
+    for (ModelEntry& model : file.models)
+      model.choice.lightUnits = parseLightUnits(*file.lightUnits);
+  overlay(file.singleSided, o.singleSided, "--single-sided");
+  if (file.singleSided) job.singleSided = parseSingleSided(*file.singleSided);
   if (o.maxDepth) file.maxDepth = int(*o.maxDepth);
   if (o.maxTransmissionDepth) file.maxTransmissionDepth = int(*o.maxTransmissionDepth);
   overlay(file.seed, o.seed);
@@ -211,6 +233,15 @@ void addSceneOptions(CLI::App& command, RenderOptions& o) {
   command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
   command.add_option("--max-transmission-depth", o.maxTransmissionDepth,
                      "Bounces in and on bodies of glass, which --max-depth does not count (64)");
+  command.add_option("--single-sided", o.singleSided,
+                     "What single-sided surfaces hide from behind: themselves from the camera and "
+                     "mirrors (camera), from all light too (light), or nothing (off)");
+  command.add_option("--lights", o.lights,
+                     "The models' own lights: off, or a factor on them (1); not on lamps that are "
+                     "surfaces");
+  command.add_option("--light-units", o.lightUnits,
+                     "Of the models' lights: photometric (683 lm/W, as Blender's), or radiometric "
+                     "(1 cd is 1 W/sr)");
   command.add_option("--camera", o.camera, "Name of one of the model's cameras, or of its node");
   command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
   command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");

@@ -24,6 +24,7 @@ struct RenderOptions {
   std::string scene;
   std::vector<std::string> outputs, aovs;
   std::optional<std::string> probe, mapping, strategy, mis, camera, size, animation, variant;
+  std::optional<std::string> singleSided, lights, lightUnits;
   std::optional<float> rotation, scale, clamp;
   std::optional<int64_t> samples, maxDepth, maxTransmissionDepth;
   std::optional<double> time, noise, animationTime, memory;
@@ -40,6 +41,7 @@ struct RenderJob {
   SceneFile file;           // models, camera, probe
   RenderSettings settings;  // but for the size, which the camera may decide
   std::optional<SceneFile::Size> size;
+  SingleSided singleSided = SingleSided::Camera;
   std::optional<double> memory;  // the most the picture may take, in bytes
   NamedSetting strategy;
   std::vector<std::string> outputs;

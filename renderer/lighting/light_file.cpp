@@ -56,7 +56,7 @@ std::string formatGltf(const LightRig& rig) {
     lights.push_back({{"type", "directional"},
                       {"name", name},
                       {"color", toJson(color)},
-                      {"intensity", intensity},
+                      {"intensity", intensity * lumensPerWatt(rig.units)},
                       {"extras", {{"angle", light.angle}}}});
     nodes.push_back({{"name", name},
                      {"rotation", rotationFromZ(normalize(dvec3(light.direction)))},

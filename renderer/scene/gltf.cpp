@@ -81,7 +81,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
-  scene.lights = readLights(file, tree);
+  scene.lights = readLights(file, tree, choice.lightUnits);
   if (choice.environment) scene.environment = readEnvironment(file);
   scene.nodeNames = tree.names;
   scene.nodeParents = tree.parents;

@@ -34,6 +34,7 @@ struct GltfChoice {
   std::optional<AnimationTime> animation;  // else the rest pose
   std::optional<VariantChoice> variant;    // else the materials that the primitives name
   ExternalFiles external = ExternalFiles::Refuse;
+  LightUnits lightUnits = LightUnits::Photometric;  // of KHR_lights_punctual
   bool environment = true;  // whether the file's own light probe is wanted
   glm::dvec3 origin{0};     // of the scene in the world: subtracted while numbers are still doubles
 };

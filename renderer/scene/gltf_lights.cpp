@@ -30,7 +30,8 @@ Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
   return c;
 }
 
-PunctualLight readLight(const GltfFile& file, const Value& source, const std::string& where) {
+PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits units,
+                        const std::string& where) {
   const std::string type =
       source.Get("type").IsString() ? source.Get("type").Get<std::string>() : "";
   PunctualLight light;
@@ -40,7 +41,8 @@ PunctualLight readLight(const GltfFile& file, const Value& source, const std::st
   if (light.kind == Kind::Point && type != "point")
     file.fail("{}.type: \"{}\" is not directional, point or spot", where, type);
   light.intensity =
-      color(file, source, where) * float(number(file, source, "intensity", 1, 0, 1e30, where));
+      color(file, source, where) *
+      (float(number(file, source, "intensity", 1, 0, 1e30, where)) / lumensPerWatt(units));
   if (source.Get("range").IsNumber())
     light.range = float(number(file, source, "range", 0, 1e-20, 1e30, where));
   if (light.kind != Kind::Spot) return light;
@@ -54,7 +56,7 @@ PunctualLight readLight(const GltfFile& file, const Value& source, const std::st
 
 }  // namespace
 
-std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree) {
+std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, LightUnits units) {
   std::vector<PunctualLight> lights;
   for (int index : tree.inScene) {
     const auto& extensions = file.model.nodes[size_t(index)].extensions;
@@ -66,7 +68,7 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree) {
         root == file.model.extensions.end() ? found->second : root->second.Get("lights");
     if (id < 0 || !sources.IsArray() || size_t(id) >= sources.ArrayLen())
       file.fail("nodes[{}].{}: lights[{}] does not exist", index, kExtension, id);
-    PunctualLight light = readLight(file, sources.Get(id), fmt::format("lights[{}]", id));
+    PunctualLight light = readLight(file, sources.Get(id), units, fmt::format("lights[{}]", id));
 
     const glm::dmat4& toWorld = tree.toWorld[size_t(index)];
     light.position = vec3(toWorld[3]);

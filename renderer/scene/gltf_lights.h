@@ -8,6 +8,6 @@
 namespace chromeball {
 
 // The lights of the tree's nodes, in world space. Throws InputError where one is not well-formed.
-std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree);
+std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, LightUnits units);
 
 }  // namespace chromeball

@@ -3,6 +3,7 @@
 #include <climits>
 
 #include "scene/scene_file_composite.h"
+#include "scene/scene_file_light.h"
 #include "scene/toml_section.h"
 
 namespace chromeball {
@@ -112,6 +113,17 @@ void readProbe(const Section& probe, SceneFile& scene) {
         float(e.number("a finite number, 0 or above", [](double x) { return x >= 0; }));
 }
 
+void readLighting(const Section& lighting, SceneFile& scene) {
+  if (const Entry e = lighting["strategy"]) scene.strategy = e.name();
+  if (const Entry e = lighting["mis"]) scene.mis = e.name();
+  if (const Entry e = lighting["light_units"]) scene.lightUnits = e.name();
+  const Entry lights = lighting["lights"];
+  if (!lights) return;
+  const bool off = lights.node->is_string() && lights.text() == "off";
+  const auto isFactor = [](double x) { return x >= 0; };
+  scene.modelLights = off ? 0 : float(lights.number("\"off\" or a factor, 0 or above", isFactor));
+}
+
 void readRender(const Section& render, SceneFile& scene) {
   if (const Entry e = render["size"]) {
     if (!e.isArrayOf(2)) e.mustBe("[width, height]");
@@ -121,6 +133,7 @@ void readRender(const Section& render, SceneFile& scene) {
   if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMostDepth));
   if (const Entry e = render["max_transmission_depth"])
     scene.maxTransmissionDepth = int(e.integer(0, kMostDepth));
+  if (const Entry e = render["single_sided"]) scene.singleSided = e.name();
   if (const Entry e = render["seed"]) scene.seed = uint64_t(e.integer(0, INT64_MAX));
   if (const Entry e = render["time"]) scene.timeLimit = e.positive();
   if (const Entry e = render["noise"]) scene.noiseLimit = e.positive() / 100;
@@ -131,7 +144,8 @@ void readRender(const Section& render, SceneFile& scene) {
 SceneFile readSceneFile(const std::string& path) {
   const toml::table table = parseToml(path);
   const Section root(path, "", table,
-                     {"model", "camera", "probe", "lighting", "render", "output", "composite", "surroundings"});
+                     {"model", "camera", "probe", "lighting", "light", "render", "output",
+                      "composite", "surroundings"});
 
   SceneFile scene;
   forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
@@ -140,11 +154,10 @@ SceneFile readSceneFile(const std::string& path) {
                                      "aperture", "focus"}),
              scene);
   readProbe(root.section("probe", {"file", "mapping", "rotation", "scale"}), scene);
-  const Section lighting = root.section("lighting", {"strategy", "mis"});
-  if (const Entry e = lighting["strategy"]) scene.strategy = e.name();
-  if (const Entry e = lighting["mis"]) scene.mis = e.name();
+  readLighting(root.section("lighting", {"strategy", "mis", "lights", "light_units"}), scene);
+  forEach(root["light"], [&](const Entry& e) { scene.lamps.push_back(readLamp(e)); });
   readRender(root.section("render", {"size", "samples", "max_depth", "max_transmission_depth",
-                                     "seed", "time", "noise"}),
+                                     "single_sided", "seed", "time", "noise"}),
              scene);
   if (root["composite"]) scene.composite = readComposite(root);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root);

@@ -8,6 +8,7 @@
 
 #include "scene/camera.h"
 #include "scene/gltf.h"
+#include "scene/lamp.h"
 #include "scene/scene.h"
 #include "scene/surroundings.h"
 
@@ -64,6 +65,9 @@ struct SceneFile {
 
   std::optional<NamedSetting> strategy;  // NAME or NAME:COUNT
   std::optional<NamedSetting> mis;
+  std::optional<float> modelLights;        // factor on the models' punctual lights; 0: off
+  std::optional<NamedSetting> lightUnits;  // of the models: "photometric" or "radiometric"
+  std::vector<Lamp> lamps;                 // [[light]]
 
   struct Size {
     int width, height;  // 1..65536
@@ -71,6 +75,7 @@ struct SceneFile {
   std::optional<Size> size;
   std::optional<uint32_t> samples;  // 1..kMostSamples, per pixel
   std::optional<int> maxDepth, maxTransmissionDepth;  // 0..kMostDepth
+  std::optional<NamedSetting> singleSided;  // "camera", "light" or "off"
   std::optional<uint64_t> seed;
   std::optional<double> timeLimit;   // seconds, > 0
   std::optional<double> noiseLimit;  // fraction, > 0 (the file states percent)

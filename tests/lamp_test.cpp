@@ -1,0 +1,170 @@
+// Lamps that a scene file adds.
+#include "scene/lamp.h"
+
+#include <gtest/gtest.h>
+
+#include "lighting/punctual.h"
+#include "math/error.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "scene/scene_file.h"
+#include "small_model.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+SceneFile read(const TemporaryFolder& folder, const std::string& toml) {
+  writeSmallModel(folder / "model.gltf");
+  std::ofstream(folder / "a.toml") << "model = 'model.gltf'\n" << toml;
+  return readSceneFile(folder / "a.toml");
+}
+Lamp lampOf(const std::string& keys) {
+  const TemporaryFolder folder;
+  return read(folder, "[[light]]\n" + keys).lamps.at(0);
+}
+
+// The middle of a grey floor of 20 m x 20 m under the lamp, seen from above; the lamp is above it.
+Rgb floorUnder(const Lamp& lamp, const std::string& strategy = "importance",
+               Mis mis = Mis::Balance) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
+  addLamp(scene, lamp, glm::dvec3(0));
+  Camera camera = topCamera(0.5f, 10);
+  camera.orthographic = true;
+  camera.halfHeight = 0.02f;
+  RenderSettings settings = smallRender(4, 4, 2048, 1);
+  settings.mis = mis;
+  return meanColor(
+      renderScene(scene, camera, Probe(Image(2, 1, 3)), strategy, settings).film.mean());
+}
+
+// L = albedo / pi x I / h^2.
+TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
+  const Rgb point = floorUnder(lampOf("type = 'point'\nposition = [0, 2, 0]\nintensity = [8, 4, 2]"));
+  EXPECT_NEAR(point.x, 0.5 / kPiD * 8 / 4, 1e-3);
+  EXPECT_NEAR(point.z, 0.5 / kPiD * 2 / 4, 1e-3);
+  const Lamp spot = lampOf(
+      "type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, -3, 0]\nintensity = 8\n"
+      "inner_angle = 20\nouter_angle = 30\nrange = 4");
+  EXPECT_NEAR(spot.punctual->cosOuter, std::cos(kPiD / 6), 1e-6);
+  EXPECT_NEAR(spot.punctual->cosInner, std::cos(kPiD / 9), 1e-6);
+  EXPECT_NEAR(floorUnder(spot).x, 0.5 / kPiD * 8 / 4 * (1 - 1.0 / 16), 1e-3);
+  const Lamp away = lampOf(
+      "type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, 1, 0]\nintensity = 8");
+  EXPECT_EQ(floorUnder(away).x, 0);
+}
+
+// The light that a lamp of 10 W sends in all directions, summed up over the sphere, is 10 W.
+TEST(Lamps, PowerIsTheIntegralOfTheIntensity) {
+  for (const char* text :
+       {"type = 'point'\nposition = [0, 0, 0]\npower = 10",
+        "type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\npower = 10",
+        "type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\npower = 10\n"
+        "inner_angle = 40\nouter_angle = 60",
+        "type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\npower = 10\n"
+        "inner_angle = 90\nouter_angle = 90"}) {
+    const Lamp lamp = lampOf(text);
+    constexpr int kSteps = 200000;
+    double power = 0;
+    for (int i = 0; i < kSteps; ++i) {  // rings of equal solid angle about +Y
+      const float z = 1 - 2 * (float(i) + 0.5f) / kSteps;
+      const vec3 at(std::sqrt(1 - z * z), z, 0);
+      power += shine(*lamp.punctual, at).irradiance.x * 4 * kPiD / kSteps;
+    }
+    EXPECT_NEAR(power, 10, 0.02) << text;
+  }
+}
+
+// A disc of radius r on the axis, h away: E = pi L r^2 / (r^2 + h^2).
+TEST(Lamps, DiscsLightAsTheirClosedFormSays) {
+  for (const float radius : {0.5f, 2.0f}) {
+    const Lamp lamp = lampOf(fmt::format(
+        "type = 'disc'\nposition = [0, 1, 0]\ndirection = [0, -1, 0]\nradius = {}\nradiance = 3",
+        radius));
+    const double r2 = double(radius) * radius, expected = 0.5 * 3 * r2 / (r2 + 1);
+    for (const Mis mis : {Mis::Off, Mis::Balance, Mis::Power})
+      EXPECT_NEAR(floorUnder(lamp, "importance", mis).x / expected, 1, 0.02) << radius;
+    const Lamp back = lampOf(fmt::format(
+        "type = 'disc'\nposition = [0, 1, 0]\ndirection = [0, 1, 0]\nradius = {}\nradiance = 3",
+        radius));
+    EXPECT_EQ(floorUnder(back).x, 0);
+  }
+}
+
+TEST(Lamps, DiscsHaveTheirExactAreaAndPower) {
+  const Lamp lamp = lampOf(
+      "type = 'disc'\nname = 'window'\nposition = [5, 6, 7]\ndirection = [1, 2, -2]\n"
+      "radius = 0.25\npower = [10, 5, 0]");
+  Scene scene;
+  scene.nodeNames = {"floor"};
+  scene.nodeParents = {-1};
+  addLamp(scene, lamp, {4, 4, 4});
+  EXPECT_EQ(scene.nodeNames, (std::vector<std::string>{"floor", "window"}));
+  EXPECT_EQ(scene.nodeParents.size(), 2u);
+  EXPECT_EQ(scene.instances[0].node, 1);
+  const Mesh& mesh = scene.meshes[0];
+  glm::dvec3 area(0);
+  for (const Triangle& t : mesh.triangles)
+    area += 0.5 * glm::cross(glm::dvec3(mesh.positions[t.y]) - glm::dvec3(mesh.positions[t.x]),
+                             glm::dvec3(mesh.positions[t.z]) - glm::dvec3(mesh.positions[t.x]));
+  EXPECT_NEAR(glm::length(area) / (kPiD / 16), 1, 1e-5);
+  EXPECT_NEAR(glm::distance(glm::normalize(area), glm::dvec3(1, 2, -2) / 3.0), 0, 1e-5);
+  EXPECT_NEAR(glm::distance(mesh.positions[0], vec3(1, 2, 3)), 0, 1e-6);
+  const Rgb radiance = scene.materials[0].emission;
+  EXPECT_NEAR(radiance.x * kPiD * kPiD / 16, 10, 1e-4);
+  EXPECT_NEAR(radiance.y / radiance.x, 0.5, 1e-6);
+  EXPECT_FALSE(scene.materials[0].doubleSided);
+}
+
+TEST(Lamps, WhatIsWrongIsSaidWithItsLine) {
+  const auto refusal = [](const std::string& keys) {
+    try {
+      lampOf(keys);
+    } catch (const InputError& e) {
+      const std::string message = e.what();
+      return message.substr(message.find("a.toml"));
+    }
+    return std::string();
+  };
+  const std::string point = "type = 'point'\nposition = [0, 2, 0]\n";
+  const std::string disc = "type = 'disc'\nposition = [0, 2, 0]\nradius = 1\n";
+  EXPECT_EQ(refusal(point + "intensity = 1"), "");
+  EXPECT_EQ(refusal("position = [0, 2, 0]"),
+            "a.toml:2: [light] has no `type`: \"point\", \"spot\" or \"disc\"");
+  EXPECT_EQ(refusal("type = 'disk'"),
+            "a.toml:3: `type` disk is not known; did you mean `disc`?");
+  EXPECT_EQ(refusal(point + "intensty = 1"),
+            "a.toml:5: unknown key `intensty` in [light]; did you mean `intensity`?");
+  EXPECT_EQ(refusal(point + "intensity = 1\nradius = 1"),
+            "a.toml:6: a point light has no `radius`; it has intensity, power, range");
+  EXPECT_EQ(refusal(point), "a.toml:2: [light] has neither `intensity` nor `power`");
+  EXPECT_EQ(refusal(point + "intensity = 1\npower = 1"),
+            "a.toml:6: [light] has `intensity`; it cannot have `power` too");
+  EXPECT_EQ(refusal(point + "intensity = [1, -1, 0]"),
+            "a.toml:5: `intensity` must be 0 or above, not an array of 3");
+  EXPECT_EQ(refusal("type = 'point'\nintensity = 1"), "a.toml:2: [light] has no `position`");
+  EXPECT_EQ(refusal(disc + "radiance = 1"),
+            "a.toml:2: [light] has no `direction`, where it shines");
+  EXPECT_EQ(refusal(disc + "radiance = 1\ndirection = [0, 0, 0]"),
+            "a.toml:7: `direction` must be other than 0, 0, 0, not an array of 3");
+  EXPECT_EQ(refusal("type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\nintensity = 1\n"
+                    "outer_angle = 20\ninner_angle = 30"),
+            "a.toml:8: `inner_angle` must be degrees from 0 to 20, between axis and edge, not 30");
+}
+
+TEST(Lamps, LightASceneWithoutAProbe) {
+  for (const char* lamp :
+       {"type = 'point'\nintensity = 5", "type = 'disc'\ndirection = [0, 0, -1]\nradius = 1\npower = 50"}) {
+    const TemporaryFolder folder;
+    read(folder, fmt::format("[[light]]\nposition = [0.3, 0.3, 2]\n{}\n[render]\n"
+                             "single_sided = 'off'\n", lamp));
+    const CommandResult r = runCommand({"render", folder / "a.toml", "-o", folder / "a.pfm",
+                                        "--size", "8x8", "--samples", "16"});
+    EXPECT_EQ(r.status, 0) << r.error;
+    EXPECT_EQ(r.error.find("black"), std::string::npos) << r.error;
+  }
+}
+
+}  // namespace
+}  // namespace chromeball
