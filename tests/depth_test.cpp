@@ -125,16 +125,16 @@ TEST(Depth, LargestLimitsDoNotOverflow) {
 // A composite's paths have the same limits, alone and in both worlds.
 TEST(Depth, AVaseInAPhotographIsWhiteToo) {
   Scene scene = vase(0);
-  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
   const ObjectMask isObject{true, true, false};
   const Probe probe = whiteProbe();
   const Accel accel(scene);
   const RenderSettings settings = smallRender(8, 8, 64, 8);
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
-  Camera narrow = Camera::lookAt({0, 0.2f, 4}, {0, 0.2f, 0}, {0, 1, 0}, 0.5f);
+  const Camera rim = Camera::lookAt({0, 0.9f, 4}, {0, 0.9f, 0}, {0, 1, 0}, 0.07f);
   for (const Passes passes : {Passes::One, Passes::Two}) {
-    const CompositeRender r = renderComposite(scene, accel, isObject, narrow, *lighting,
+    const CompositeRender r = renderComposite(scene, accel, isObject, rim, *lighting,
                                               Image(8, 8, 3), settings, passes, false,
                                               [](double) {}, stop);
     glm::dvec3 objects(0);
