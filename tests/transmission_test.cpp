@@ -102,24 +102,26 @@ TEST(Transmission, aSlabAbsorbsByBeersLaw) {
     }
 }
 
-// Bodies within bodies, to the depth that is promised: at each boundary the light is bent and
-// reflected by the indices of the two bodies that meet there, and absorbed by the innermost one.
+// Bodies within bodies: at each boundary the light is bent and reflected by the indices of the two
+// that meet there, and absorbed by the innermost one. A fifth is not there.
 TEST(Transmission, upToFourBodiesLieWithinEachOther) {
-  const float iors[] = {1.5f, 1.2f, 2.0f, 1.33f};
-  const float attenuations[] = {0.5f, 1.5f, 0.2f, 3};
+  const float iors[] = {1.5f, 1.2f, 2.0f, 1.33f, 2.4f};
+  const float attenuations[] = {0.5f, 1.5f, 0.2f, 3, 9};
   for (const double sine : {0.0, 0.6})
-    for (const int bodies : {2, 3, 4}) {
+    for (const int bodies : {2, 3, 4, 5}) {
       Scene scene;
       std::vector<Layer> down, up;
+      const int innermost = std::min(bodies, 4) - 1;
       for (int i = 0; i < bodies; ++i) {
         Material m = glass(0, false);
         m.ior = iors[i];
         m.extended->attenuation = Rgb(attenuations[i]);
         addSlab(scene, m, 1 - 0.1f * float(i), 0.1f * float(i));
-        const double thickness = i + 1 < bodies ? 0.1 : 1 - 0.2 * i;
+        if (i > innermost) continue;
+        const double thickness = i < innermost ? 0.1 : 1 - 0.2 * i;
         const double slant = std::sqrt(1 - sine * sine / (iors[i] * iors[i]));
         down.push_back({iors[i], std::exp(-attenuations[i] * thickness / slant)});
-        if (i + 1 < bodies) up.insert(up.begin(), down.back());
+        if (i < innermost) up.insert(up.begin(), down.back());
       }
       down.insert(down.end(), up.begin(), up.end());
       down.push_back({1, 1});

@@ -27,12 +27,15 @@ RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) 
   const Material& m = *s.material;
   Rgb own = indexByChannel(m);
   if (const int c = onlyChannel(throughput); c >= 0) own = Rgb(own[c]);
+  const bool isFull = count_ == int(bodies_.size());
   if (s.frontFace) {
+    if (isFull) return {Rgb(1), m.ior};  // one too many: it is not there
     const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
     return {own / outer, m.ior};
   }
   const int place = find(&m);
-  if (place >= 0 && place < count_ - 1) return {Rgb(1), m.ior};  // within another: nothing changes
+  // Within another, or never entered for lack of a place: nothing changes.
+  if (place >= 0 ? place < count_ - 1 : isFull) return {Rgb(1), m.ior};
   const float outer = place > 0 ? bodies_[size_t(place - 1)]->ior : 1;
   return {outer / own, m.ior};
 }
