@@ -231,6 +231,30 @@ TEST(SlowComposite, OnePassAgreesWithTwo) {
   }
 }
 
+// A lamp that is put in shows in a floor too smooth for lights in the probe's place.
+TEST(Composite, LampsShineOnNearMirrorsWhateverTheStrategy) {
+  Worlds w;
+  Material metal;
+  metal.roughness = 0.3f;
+  addQuad(w.scene, addMaterial(w.scene, metal), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+  w.isLocalSoFar();
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = {4, 3, 2};
+  addQuad(w.scene, addMaterial(w.scene, lamp), {-1, 2, -2}, {2, 0, 0}, {0, 0.7f, -0.7f});
+  w.areObjectsFromHere();
+  const Probe dim(constantProbe({16, 8}, Rgb(1e-5f)));
+  const auto difference = [&](const char* strategy, Mis mis) {
+    RenderSettings settings = smallRender(24, 16, 64, 3);
+    settings.mis = mis;
+    const CompositeRender r = composite(w, dim, strategy, settings, noisyPlate(24, 16));
+    return luminance(meanColor(ingredient(r.film, Aov::Difference)));
+  };
+  const float expected = difference("importance", Mis::Balance);
+  EXPECT_GT(expected, 0.01f);
+  for (const Mis mis : {Mis::Off, Mis::Balance})
+    EXPECT_NEAR(difference("median-cut:16", mis) / expected, 1, 0.02) << int(mis);
+}
+
 // Light that objects focus (caustics) is noise of L_obj alone, which nothing can cancel: matte
 // ones.
 TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
@@ -336,7 +360,8 @@ TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
   local.instances.resize(2);
   const Accel localAccel(local), wholeAccel(w.scene);
   const auto quiet = [](double) {};
-  const Film photograph = render(local, localAccel, w.camera, *lighting, settings, quiet, stop).film;
+  const Film photograph =
+      render(local, localAccel, w.camera, *lighting, settings, quiet, stop).film;
   settings.seed = 8;
   const Film truth = render(w.scene, wholeAccel, w.camera, *lighting, settings, quiet, stop).film;
   const CompositeRender r =
