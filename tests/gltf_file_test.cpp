@@ -188,5 +188,16 @@ TEST(GltfFile, RefusesToBlowUp) {
   EXPECT_NE(w.refusal().find("far more than the file holds"), std::string::npos);
 }
 
+// No refusal without a reason: whatever member is missing or of another type is named.
+TEST(GltfFile, SkinsWithoutJointsAreRefusedByName) {
+  for (const json& joints : {json(), json("x"), json(3), json({1, "x"}), json::object()}) {
+    GltfWriter w;
+    addTriangle(w);
+    w.add("skins", json::object());
+    if (!joints.is_null()) w.root["skins"][0]["joints"] = joints;
+    EXPECT_EQ(w.refusal(), "skins[0].joints is missing or not a list of node indices") << joints;
+  }
+}
+
 }  // namespace
 }  // namespace chromeball

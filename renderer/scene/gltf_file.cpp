@@ -114,6 +114,23 @@ int fillGaps(json& root) {
   return none;
 }
 
+// tinygltf refuses these without a reason.
+void checkSkins(const json& root) {
+  const auto skins = root.find("skins");
+  if (skins == root.end() || !skins->is_array()) return;
+  for (size_t i = 0; i < skins->size(); ++i) {
+    const json& skin = (*skins)[i];
+    if (!skin.is_object()) continue;
+    const auto joints = skin.find("joints");
+    const bool areNodes = joints != skin.end() && joints->is_array() &&
+                          std::all_of(joints->begin(), joints->end(),
+                                      [](const json& joint) { return joint.is_number_integer(); });
+    if (!areNodes)
+      throw std::runtime_error(
+          fmt::format("skins[{}].joints is missing or not a list of node indices", i));
+  }
+}
+
 }  // namespace
 
 std::string oneLine(std::string text) {
@@ -178,6 +195,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
 }
 
 void GltfFile::readModel(json& root) {
+  checkSkins(root);
   const int noView = fillGaps(root);
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("has more than 4 GiB of JSON");
