@@ -1,5 +1,5 @@
-// Every image reader (the first bytes choose which), the layers of an EXR, and what makes a probe
-// of the colour.
+// Every image reader (the first bytes choose which) by the way of a model's textures and by that of
+// pictures, the layers of an EXR, and what makes a probe of the colour.
 #include "fuzz.h"
 #include "image/decode.h"
 #include "image/read.h"
