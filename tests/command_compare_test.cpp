@@ -185,6 +185,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
                                                {"size", {"16x12"}},
                                                {"mis", {"power"}},
                                                {"max-depth", {"3"}},
+                                               {"max-transmission-depth", {"3"}},
                                                {"camera", {"Far"}},
                                                {"animation", {"Still"}},
                                                {"animation-time", {"1"}},
@@ -225,7 +226,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
 
   // So do the contents of what the files name.
   w.write("data.bin", std::vector<uint8_t>(36));
-  expectRefused(words("", {}), "contents of model.gltf");
+  expectRefused(words("", {}), "contents of data.bin");
 }
 
 TEST_F(SlowCommandCompare, whatIsStoredStaysOnThePage) {

@@ -43,17 +43,6 @@ const char* nameOf(SingleSided singleSided) {
                                              : "off";
 }
 
-std::vector<std::string> filesOf(const RenderJob& job) {
-  const SceneFile& file = job.file;
-  std::vector<std::string> files;
-  for (const ModelEntry& model : file.models) files.push_back(model.file);
-  if (file.probe) files.push_back(*file.probe);
-  if (file.composite) files.push_back(file.composite->plate);
-  if (file.surroundings && file.surroundings->shape == Surroundings::Shape::Model)
-    files.push_back(file.surroundings->model);
-  return files;
-}
-
 // Row vectors: the numbers of a row are the image of a unit vector, those of the last row that of
 // the origin.
 Json rows(const glm::dmat4& matrix) {
@@ -131,8 +120,8 @@ Json describeJob(const RenderOptions& options, const RenderJob& job, const Loade
   for (const auto& [name, text] : options.given)
     if (!d.contains(name) && !isAmong(kNotOfThePicture, name) && !isAmong(kOfTheStudy, name))
       d[name] = text;
-  d["files"] = filesOf(job);
-  if (file.noiseLimit) d["noise-limit"] = *file.noiseLimit;
+  d["files"] = loaded.files;
+  if (file.noiseLimit) d["noise-limit"] = 100 * *file.noiseLimit;
   if (file.timeLimit) d["time-limit"] = *file.timeLimit;
   describeCamera(s, loaded, d);
   return d;
@@ -162,12 +151,9 @@ std::string identityOf(const RenderOptions& options, const RenderJob& job,
   identity["threads"] =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   identity["contents of scene"] = fingerprint(options.scene);
-  for (const std::string& file : filesOf(job)) {
+  for (const std::string& file : loaded.files) {
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
-    uint64_t contents = hash(identity.value(row, uint64_t(0)), fingerprint(file));
-    for (const std::string& named : filesNamedBy(file))
-      contents = hash(contents, fingerprint(named));
-    identity[row] = contents;
+    identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
   }
   return identity.dump();
 }

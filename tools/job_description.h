@@ -14,7 +14,7 @@ namespace chromeball {
 // Every setting that decides the pixels, as command line, scene file and defaults resolved it,
 // under the name of the option that sets it: given to `render SCENE` as they stand here, they make
 // the picture again. What is no option follows:
-//   files                     all that were read: models, probe, plate, surroundings
+//   files                     all that were read: models, their buffers and images, probe, plate
 //   probe-found               the mapping that `probe-mapping` came to
 //   noise-limit, time-limit   where they ended the samples (percent, seconds)
 //   cameraPosition (metres), cameraFov (vertical, degrees; 0: orthographic), lensRadius, focus
