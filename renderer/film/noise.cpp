@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kReach = 3;  // windows are 7 x 7 pixels
+constexpr double kKnown = 0.25;  // relative error of a luminance that counts as known
 
 // Calls visit(j) for the pixels of the window around (x, y), itself included.
 template <class Visit>
@@ -28,7 +29,6 @@ double meanOf(const std::vector<double>& values) {
 // Where the pixel's own samples leave its luminance open, as a firefly does, that of the window:
 // else the error of rare light would be divided by the luminance of those few pixels that met it.
 double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) {
-  constexpr double kKnown = 0.25;  // relative error of a luminance that counts as known
   const size_t i = size_t(y) * size_t(errors.width) + size_t(x);
   double reference = errors.luminances[i];
   if (errors.halves[i].w > kKnown * kKnown * reference * reference) {
@@ -40,26 +40,34 @@ double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) 
   return std::max(reference, 0.01 * mean);
 }
 
-// Which part of a window's mean a pixel takes at least: nothing where its pixels scatter alike, all
-// where a few of them hold most of the scatter. `concentration` is 1 where all scatter alike, and
-// the number of pixels where one does it all.
+// Which part of the mean of a window's rare light a pixel takes at least: nothing where its pixels
+// scatter alike, all where a few of them hold most of the scatter. `concentration` is 1 where all
+// scatter alike, and the number of pixels where one does it all.
 double shareOfMean(double concentration) {
   constexpr double kEven = 4, kRare = 8;  // an edge between noise and none gives 2
   return std::clamp((concentration - kEven) / (kRare - kEven), 0.0, 1.0);
+}
+
+// Whether most of what the pixel shows comes from a few of its samples. (Of an edge between bright
+// and dark all samples tell.)
+bool hasMetRareLight(const PixelErrors& e, size_t j) {
+  return e.scatter[j].w > kKnown * kKnown * e.luminances[j] * e.luminances[j];
 }
 
 // Of a pixel of which something is known. `logScatter`: binary logarithms of the luminances' scatter.
 glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>& logScatter, int x,
                                 int y) {
   const size_t i = size_t(y) * size_t(e.width) + size_t(x);
-  glm::dvec4 ratio(0), weight(0), halves(0);
-  double scatter = 0, scatterSquared = 0, count = 0;
+  glm::dvec4 ratio(0), weight(0), rareHalves(0);
+  double rareScatter = 0, rareSquared = 0, count = 0;
   forWindow(e.width, e.height, x, y, [&](size_t j) {
     if (std::isnan(e.halves[j].w)) return;
     ++count;
-    halves += e.halves[j];
-    scatter += e.scatter[j].w;
-    scatterSquared += e.scatter[j].w * e.scatter[j].w;
+    if (hasMetRareLight(e, j)) {
+      rareHalves += e.halves[j];
+      rareScatter += e.scatter[j].w;
+      rareSquared += e.scatter[j].w * e.scatter[j].w;
+    }
     const double apart = logScatter[j] - logScatter[i], alike = 1 / (1 + apart * apart);
     if (!(alike > 0)) return;  // one of the two does not scatter
     for (int c = 0; c < 4; ++c)
@@ -68,13 +76,13 @@ glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>&
         weight[c] += alike;
       }
   });
-  const bool isOpen = e.scatter[i].w > 0 || e.luminances[i] == 0;
-  const double least =
-      isOpen && scatter > 0 ? shareOfMean(count * scatterSquared / (scatter * scatter)) : 0;
+  double least = 0;
+  if (e.scatter[i].w > 0 && rareScatter > 0)
+    least = shareOfMean(count * rareSquared / (rareScatter * rareScatter));
   glm::dvec4 squared;
   for (int c = 0; c < 4; ++c) {
     const double own = e.scatter[i][c] * (weight[c] > 0 ? ratio[c] / weight[c] : 1);
-    squared[c] = std::max(own, least * halves[c] / count);
+    squared[c] = std::max(own, least * rareHalves[c] / count);
   }
   return squared;
 }

@@ -25,8 +25,8 @@ struct PixelErrors {
 
 // One estimate of the two: a pixel's scatter, times the ratio of halves to scatter over those of
 // the 7 x 7 pixels around it that scatter alike. Where few of these pixels have met most of the
-// light (fireflies, caustics), the others will meet it too: each takes at least their mean. (Not so
-// a pixel whose samples are all alike and not black, as where a composite is the plate.)
+// light (fireflies, caustics), the others will meet it too: each takes at least their mean. A pixel
+// whose samples are all alike keeps 0: a composite where it is the plate, a black background.
 std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& errors);
 
 // Red, green and blue of such estimates as an image; NaN and infinities stay.
