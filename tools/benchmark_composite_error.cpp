@@ -151,13 +151,13 @@ void compositeNoise(benchmark::State& state, float leastRoughness) {
   const ObjectMask isObject = objectsOf(scene);
   const Probe probe(truth.probe);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
-  const auto passes = [&](Passes passes) {
+  const auto renderIn = [&](Passes passes) {
     return renderComposite(scene, Accel(scene), isObject, scene.cameras.front(), *lighting,
                            truth.plate, settingsOf(kCompositeSamples, 3), passes, false, kQuiet,
                            kGoOn);
   };
   for (auto _ : state) {
-    const CompositeRender one = passes(Passes::One), two = passes(Passes::Two);
+    const CompositeRender one = renderIn(Passes::One), two = renderIn(Passes::Two);
     const auto oneErrors = squaredStandardErrors(one.errors);
     const auto twoErrors = squaredStandardErrors(two.errors);
     glm::dvec2 all(0), changed(0);  // sums of squared standard errors
