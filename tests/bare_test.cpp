@@ -191,7 +191,7 @@ std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
           {{"bufferView", model.view(jpeg)}, {"mimeType", "image/jpeg"}}};
 }
 
-TEST(Bare, TexturesOfModels) {
+TEST(SlowBare, TexturesOfModels) {
   const Bytes damaged = inserted(seed("a.jpg"), 2, profileSegment());
   Bytes bomb = damaged;
   const size_t frame = frameOf(bomb);
@@ -219,7 +219,7 @@ TEST(Bare, TexturesOfModels) {
 }
 
 // Every kind of frame, at any place among the segments, before memory is taken for it.
-TEST(Bare, JpegFramesAreJudgedBeforeTheyAreOpened) {
+TEST(SlowBare, JpegFramesAreJudgedBeforeTheyAreOpened) {
   const TemporaryFolder folder;
   const Bytes jpeg = seed("a.jpg");
   const size_t frame = frameOf(jpeg);

@@ -46,7 +46,7 @@ TEST(Ggx, visibleNormalsHaveTheirDensity) {
     }
 }
 
-TEST(Bsdf, samplesItsPdfOverTheGrid) {
+TEST(SlowBsdf, samplesItsPdfOverTheGrid) {
   const int tests = int(std::size(kRoughnesses) * std::size(kMetals) * std::size(kAngles));
   for (float roughness : kRoughnesses)
     for (float metallic : kMetals)
@@ -84,7 +84,7 @@ Albedo albedo(const Bsdf& bsdf, int samples) {
   return {mean, std::sqrt(std::max(0.0, sumOfSquares / samples - mean * mean) / samples)};
 }
 
-TEST(Bsdf, whiteFurnaceLosesNothing) {
+TEST(SlowBsdf, whiteFurnaceLosesNothing) {
   for (float roughness : {0.0f, 0.005f, 0.02f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 0.93f, 1.0f})
     for (float metallic : kMetals)
       for (float angle : {0.0f, 20.0f, 45.0f, 70.0f, 80.0f, 86.0f, 89.0f}) {

@@ -57,7 +57,7 @@ TEST(DeltaLights, aMattePlaneHasTheIrradianceOfTheLights) {
   expectNear(meanColor(r.film.mean()), irradiance * dvec3(albedo) / kPiD, 1e-5);
 }
 
-TEST(DeltaLights, fittedLightsGiveTheExactIrradianceWithinTheErrorOfTheFit) {
+TEST(SlowDeltaLights, fittedLightsGiveTheExactIrradianceWithinTheErrorOfTheFit) {
   const Image map = studioProbe({64, 32});
   const vec3 up[] = {{0, 1, 0}};
   const dvec3 exact = exactIrradiance(map, up).front();

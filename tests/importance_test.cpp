@@ -78,7 +78,7 @@ TEST(Probe, refusesScalesThatLeaveTheRangeOfFloat) {
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);
 }
 
-TEST(Importance, samplesItsDensityOnEveryProbe) {
+TEST(SlowImportance, samplesItsDensityOnEveryProbe) {
   const std::vector<HardProbe> all = hardProbes();
   for (bool compensated : {false, true})
     for (const HardProbe& c : all) {

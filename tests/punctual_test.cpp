@@ -254,7 +254,7 @@ std::string litTriangle(GltfWriter& w) {
   return w.save();
 }
 
-TEST(GltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
+TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
   GltfWriter w;
   const std::string model = litTriangle(w);
   const TemporaryFolder folder;

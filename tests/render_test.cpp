@@ -102,7 +102,7 @@ TEST(Render, theSunOf46700) {
 }
 
 // Inside a closed sphere that emits 1 and reflects half, depth d sees 1 + 1/2 + ... + 1/2^d.
-TEST(Render, closedEmittingSphereCountsEveryBounce) {
+TEST(SlowRender, closedEmittingSphereCountsEveryBounce) {
   Scene scene;
   Material material = lambert(Rgb(0.5f));
   material.emission = Rgb(1);

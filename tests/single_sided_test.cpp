@@ -142,7 +142,7 @@ std::string roomFile(GltfWriter& w) {
   return w.save();
 }
 
-TEST(SingleSided, ABlackRoomIsSaidToBeOne) {
+TEST(SlowSingleSided, ABlackRoomIsSaidToBeOne) {
   GltfWriter w;
   const TemporaryFolder folder;
   std::ofstream(folder / "a.toml") << "model = '" << roomFile(w) << "'\n"

@@ -23,7 +23,7 @@ dvec3 irradiance(const Image& image, const dvec3& normal) {
   return sum;
 }
 
-TEST(Sky, SunsIrradianceIsTheSameAtEveryResolution) {
+TEST(SlowSky, SunsIrradianceIsTheSameAtEveryResolution) {
   const dvec3 given(3, 2, 1);
   for (const double elevation : {0.0, 30.0, 89.9, 90.0}) {
     ClearSky sky;
