@@ -44,7 +44,7 @@ TEST(SlowCommand, WrongWordsAreRefusedWithTheNearest) {
   expectRefused({"probe", "synth", "sun-sky", "a.exr", "--turbidity", "much"}, "--turbidity");
 }
 
-TEST(CommandProbe, SynthInfoAgree) {
+TEST(SlowCommandProbe, SynthInfoAgree) {
   const TemporaryFolder folder;
   const std::string path = folder / "sun.exr";
   run({"probe", "synth", "one-hot", path, "--size", "64x32", "--texel", "5,20", "--radiance",
@@ -77,7 +77,7 @@ TEST(CommandProbe, InfoReportsInvalidTexels) {
   EXPECT_EQ(info["invalid_texels"]["first"], json({2, 1}));
 }
 
-TEST(CommandProbe, EveryKindAndFormat) {
+TEST(SlowCommandProbe, EveryKindAndFormat) {
   const TemporaryFolder folder;
   for (const auto& [kind, extension] : {std::pair{"constant", ".pfm"},
                                         {"one-hot", ".EXR"},

@@ -174,7 +174,7 @@ TEST(GltfEnvironment, BadOnesAreRefused) {
 }
 
 // It lights the scene where no probe is given, as the probe would that it holds.
-TEST(GltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
+TEST(SlowGltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
   GltfWriter w;
   addEnvironment(w, [](const vec3&) { return Rgb(1); });
   const TemporaryFolder folder;

@@ -119,7 +119,7 @@ Seen lookThrough(const Scene& scene, const vec2& centre, const Rgb& color) {
 }
 
 // Columns: transmission, with holes, with a texture; rows: smooth, rough, partly metal.
-TEST(GltfPixels, TransmissionTest) {
+TEST(SlowGltfPixels, TransmissionTest) {
   auto scene = sampleModel("TransmissionTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   Material& cloth = materialNamed(*scene, "Cloth Backdrop");
@@ -143,7 +143,7 @@ TEST(GltfPixels, TransmissionTest) {
 
 // The middle column shows the highlights of both others: the base, less what the coating takes, and
 // the coating alone. Each tile by itself, since its neighbours shade it.
-TEST(GltfPixels, ClearCoatTest) {
+TEST(SlowGltfPixels, ClearCoatTest) {
   auto scene = sampleModel("ClearCoatTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Probe probe(studioProbe({128, 64}));

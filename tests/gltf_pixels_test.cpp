@@ -60,7 +60,7 @@ vec3 centreOf(const Scene& scene, const Instance& instance) {
 }
 
 // A wrong answer shows a red cross, a right one a green check.
-TEST(GltfPixels, ChecksAndNoCrosses) {
+TEST(SlowGltfPixels, ChecksAndNoCrosses) {
   for (const char* name : {"TextureSettingsTest", "NegativeScaleTest", "AlphaBlendModeTest"}) {
     const auto scene = sampleModel(name);
     if (!scene) GTEST_SKIP() << "no sample models";
@@ -86,7 +86,7 @@ TEST(GltfPixels, VertexColorTest) {
 }
 
 // In each row of spheres, factors and three encodings of textures mean the same material.
-TEST(GltfPixels, TextureEncodingTest) {
+TEST(SlowGltfPixels, TextureEncodingTest) {
   const auto scene = sampleModel("TextureEncodingTest");
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 160, 256);

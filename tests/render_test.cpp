@@ -63,7 +63,7 @@ TEST(Render, lambertUnderConstantAndGradientProbes) {
     }
 }
 
-TEST(Render, lambertUnderOneTexel) {
+TEST(SlowRender, lambertUnderOneTexel) {
   Image image = constantProbe({64, 32}, Rgb(0));
   image.setRgb(20, 9, Rgb(100));
   image.setRgb(50, 0, Rgb(30));  // at the pole
