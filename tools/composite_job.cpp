@@ -163,11 +163,11 @@ Rendered renderComposite(CompositeJob& job, const RenderJob& render, const Loade
       stop);
   const Composite composite = compose(rendered.film, rendered.mean, job.plate, job.mode);
 
-  const PictureNoise noise(compositeErrors(rendered.film, composite, rendered.errors));
+  PictureNoise noise(compositeErrors(rendered.film, composite, std::move(rendered.errors)));
   OutputImage output;
   output.layers.push_back({"", "RGB", composite.color});
   for (Aov aov : job.layers) output.layers.push_back(layerOf(aov, job, rendered, noise.variance));
-  Rendered out{std::move(rendered.result), std::move(output), noise, std::move(details),
+  Rendered out{std::move(rendered.result), std::move(output), std::move(noise), std::move(details),
                std::move(notes)};
   out.details["composite"] = {{"objects", meanAlpha(rendered.film)},
                               {"darker_than_black", composite.darkerThanBlack}};

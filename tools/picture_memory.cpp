@@ -15,8 +15,10 @@ double pictureBytes(const RenderSettings& settings) {
     sums += channels * sizeof(double);
     texels += channels * sizeof(float);
   }
-  // Estimating the noise takes three fields; later the layers stand beside the file's texels.
-  const double most = std::max(3.0 * sizeof(glm::dvec4), 2 * texels);
+  // Estimating the noise takes three fields of errors, two of luminances and the variance; later the
+  // layers stand beside the file's texels.
+  constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
+  const double most = std::max(kNoise, 2 * texels);
   return double(settings.width) * settings.height * (double(Film::bytesPerPixel()) + sums + most);
 }
 

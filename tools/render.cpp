@@ -143,9 +143,9 @@ Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Acce
                      const LightingStrategy& lighting, const Progress& progress) {
   RenderResult result =
       render(loaded.scene, accel, loaded.camera, lighting, job.settings, progress, interrupted);
-  const PictureNoise noise(result.film.errors());
+  PictureNoise noise(result.film.errors());
   OutputImage output = assemble(result, job.settings, noise.variance);
-  return {std::move(result), std::move(output), noise};
+  return {std::move(result), std::move(output), std::move(noise)};
 }
 
 // A picture that lacks pixels does not replace one that may have them all.
