@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray meets: no leaks, instances as good as baked meshes, alpha resolved.
 #include "trace/accel.h"
 

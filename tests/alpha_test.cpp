@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alpha of pictures: associated (premultiplied) in memory and in EXR, straight in PNG.
 #include <gtest/gtest.h>
 
+#include "base/file.h"
 #include "gltf_writer.h"
-#include "image/decode.h"
-#include "image/file.h"
-#include "image/read.h"
+#include "image/io/decode.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "image/tonemap.h"
-#include "image/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -87,9 +88,10 @@ TEST(Alpha, TransparentRendersHaveTheCoverageOfEachPixel) {
   model.add("nodes", {{"camera", 0}, {"translation", {0, 0, 2}}});
   const TemporaryFolder out;
   writeImage(out / "probe.exr", constantProbe({8, 4}, Rgb(2)));
-  const CommandResult result = runCommand(
-      {"render", model.save(), "--probe", out / "probe.exr", "--transparent", "--size", "8x8",
-       "--samples", "1024", "--quiet", "-o", out / "a.exr", "-o", out / "a.png", "-o", out / "a.pfm"});
+  const CommandResult result =
+      runCommand({"render", model.save(), "--probe", out / "probe.exr", "--transparent", "--size",
+                  "8x8", "--samples", "1024", "--quiet", "-o", out / "a.exr", "-o", out / "a.png",
+                  "-o", out / "a.pfm"});
   ASSERT_EQ(result.status, 0) << result.error;
   const ImageFile exr = readImageFile(out / "a.exr");
   const Image color = *findColorAndAlpha(exr), flat = readImage(out / "a.pfm");

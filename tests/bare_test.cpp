@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // Metadata of images: no library sees it, in whatever way a file comes in.
-#include "image/bare.h"
+#include "image/io/strip_metadata.h"
 
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/decode.h"
-#include "image/read.h"
+#include "image/io/decode.h"
+#include "image/io/read.h"
 #include "run_command.h"
 #include "shared_data.h"
 
@@ -22,7 +23,8 @@ const CommandLimits kSmall{.memory = size_t(1) << 30};
 #endif
 
 Bytes seed(const std::string& name) {
-  const std::string text = fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/" + name);
+  const std::string text =
+      fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/" + name);
   EXPECT_FALSE(text.empty()) << name;
   return {text.begin(), text.end()};
 }
@@ -47,8 +49,8 @@ Bytes inserted(const Bytes& file, size_t at, const Bytes& more) {
   return out;
 }
 
-// An ICC profile whose only tag, a description, lies two gigabytes behind its end; its end, reckoned
-// in 32 bits, lies inside.
+// An ICC profile whose only tag, a description, lies two gigabytes behind its end; its end,
+// reckoned in 32 bits, lies inside.
 Bytes profile() {
   Bytes icc(128);
   const auto put = [&](size_t at, const Bytes& bytes) {
@@ -57,15 +59,17 @@ Bytes profile() {
   put(0, bigEndian(144, 4));
   put(12, text("mntrRGB XYZ "));
   put(36, text("acsp"));
-  return joined({icc, bigEndian(1, 4), text("desc"), bigEndian(0x80000000, 4),
-                 bigEndian(0x80000010, 4)});
+  return joined(
+      {icc, bigEndian(1, 4), text("desc"), bigEndian(0x80000000, 4), bigEndian(0x80000010, 4)});
 }
 
 Bytes segment(uint8_t marker, const Bytes& data) {
   return joined({{0xff, marker}, bigEndian(data.size() + 2, 2), data});
 }
 
-Bytes profileSegment() { return segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, profile()})); }
+Bytes profileSegment() {
+  return segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, profile()}));
+}
 
 Bytes chunk(const std::string& type, const Bytes& data) {
   return joined({bigEndian(data.size(), 4), text(type), data, {1, 2, 3, 4}});
@@ -99,8 +103,8 @@ Bytes withTag(Bytes tiff, uint16_t tag, uint16_t type, const Bytes& data) {
   const auto part = [&](size_t from, size_t to) {
     return Bytes(tiff.begin() + std::ptrdiff_t(from), tiff.begin() + std::ptrdiff_t(to));
   };
-  const Bytes moved = joined({little(uint32_t(count + 1), 2), part(first, at), entry,
-                              part(at, first + 12 * count + 4)});
+  const Bytes moved = joined(
+      {little(uint32_t(count + 1), 2), part(first, at), entry, part(at, first + 12 * count + 4)});
   const Bytes offset = little(uint32_t(tiff.size() + data.size()), 4);
   std::copy(offset.begin(), offset.end(), tiff.begin() + 4);
   return joined({tiff, data, moved});
@@ -121,7 +125,8 @@ TEST(Bare, JpegKeepsWhatItsColourNeeds) {
   for (uint8_t marker = 0xe1; marker <= 0xef; ++marker)
     if (marker != 0xee) laden = inserted(laden, first, segment(marker, text("Exif and others")));
   laden = inserted(laden, first, segment(0xfe, text("comment")));
-  laden = inserted(laden, first, joined({{0, 7, 0xff}, profileSegment()}));  // after bytes of no segment
+  laden = inserted(laden, first,
+                   joined({{0, 7, 0xff}, profileSegment()}));  // after bytes of no segment
   EXPECT_EQ(bareJpeg(laden, "a").file, coloured);
   EXPECT_EQ(bareJpeg(coloured, "a").file, coloured);
 }
@@ -177,7 +182,8 @@ TEST(Bare, ADamagedProfileChangesNothing) {
 
 // Models whose texture is `jpeg`: beside it, in a data URI and in a buffer view.
 std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   model.write("a.jpg", jpeg);
   std::string uri = "data:image/jpeg;base64,";
   Bytes padded = jpeg;
@@ -206,8 +212,18 @@ TEST(SlowBare, TexturesOfModels) {
       addTriangle(model, {{"material", 0}});
       const std::string probe =
           saved((model.folder() / "p.pfm").string(), joined({text("PF\n1 1\n-1\n"), Bytes(12)}));
-      const Words words = {"render", model.save(), "--probe", probe, "--probe-mapping", "lat-long",
-                           "--size", "8x8", "--samples", "1", "--quiet", "-o",
+      const Words words = {"render",
+                           model.save(),
+                           "--probe",
+                           probe,
+                           "--probe-mapping",
+                           "lat-long",
+                           "--size",
+                           "8x8",
+                           "--samples",
+                           "1",
+                           "--quiet",
+                           "-o",
                            (model.folder() / "out.pfm").string()};
       if (isBomb) {
         expectRefused(words, "64764 x 64764 texels cannot be held by", kSmall);
@@ -275,7 +291,8 @@ TEST(Bare, FilesThatWereFound) {
   if (!folder) GTEST_SKIP() << "../shared/data/hostile is not there";
   const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();
   const TemporaryFolder out;
-  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot be held by 522 bytes", kSmall);
+  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot be held by 522 bytes",
+                kSmall);
   const std::string damaged = (*folder / "corrupt-icc-4551.jpg").string();
   const CommandResult result = runCommand({"image", "view", damaged, out / "a.png"});
   EXPECT_TRUE(result.status == 0 || result.status == 2) << result.status << result.error;

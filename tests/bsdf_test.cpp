@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The BSDF: its sampler, its energy, its reciprocity.
 #include <gtest/gtest.h>
 
+#include "math/sobol.h"
 #include "shading/bsdf.h"
 #include "shading/ggx.h"
-#include "math/sobol.h"
 #include "sphere_test.h"
 
 namespace chromeball {

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/camera.h"
 
 #include <gtest/gtest.h>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "scene/framing.h"
 #include "test_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors of repeated images, on images whose noise and bias are known.
 #include "measure/cell_error.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emission under a clear coat (KHR_materials_clearcoat): emission x (1 - clearcoat x Fresnel).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // chromeball compare.
 #include <gtest/gtest.h>
 
@@ -6,8 +7,8 @@
 #include <set>
 
 #include "gltf_writer.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_model.h"

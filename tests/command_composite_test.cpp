@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // `chromeball render` of a scene file with [composite].
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "base/hash.h"
 #include "composite/plate.h"
 #include "gltf_writer.h"
-#include "image/write.h"
-#include "math/hash.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // chromeball image error and view.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "run_command.h"
 #include "shared_data.h"
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // chromeball lights, lights-error and probe irradiance.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"

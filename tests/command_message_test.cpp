@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the command says: slips of the hand and of other renderers' users, warnings, notes.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/write.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // chromeball render, from the command line to the files it writes.
 #include <gtest/gtest.h>
 
@@ -6,8 +7,8 @@
 #include <set>
 
 #include "gltf_writer.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -215,8 +216,8 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
 
 TEST(CommandRender, OneSampleHasNoNoiseToTell) {
   const RenderScene s;
-  const CommandResult result = s.render({"--probe", s.constant, "--size", "16x16", "--samples", "1",
-                                         "-o", s.out / "a.exr"});
+  const CommandResult result =
+      s.render({"--probe", s.constant, "--size", "16x16", "--samples", "1", "-o", s.out / "a.exr"});
   EXPECT_NE(result.out.find("noise unknown"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("nan"), std::string::npos) << result.out;
 }
@@ -340,11 +341,11 @@ TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
 
 TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
   const RenderScene scene;
-  const CommandResult result = runCommand(
-      {"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples", "10000000",
-       "--time", "60", "--progress", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json",
-       "--aov", "albedo"},
-      "  2%");  // after a second
+  const CommandResult result =
+      runCommand({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples",
+                  "10000000", "--time", "60", "--progress", "-o", scene.out / "a.exr", "--stats",
+                  scene.out / "a.json", "--aov", "albedo"},
+                 "  2%");  // after a second
   EXPECT_EQ(result.status, 130);
   EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the picture so far is saved\n"));
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
@@ -367,7 +368,8 @@ TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
     const Words words{"--probe", scene.constant, "--size", "4x3", "-o", scene.out / "a.exr"};
     const auto run = [&](const std::string& value, bool inFile) {
       const std::string file = scene.folder() + "/scene.toml";
-      std::ofstream(file) << fmt::format("model = \"model.gltf\"\n[render]\n{} = {}\n", s.key, value);
+      std::ofstream(file) << fmt::format("model = \"model.gltf\"\n[render]\n{} = {}\n", s.key,
+                                         value);
       Words all{"render", inFile ? file : scene.model};
       all.insert(all.end(), words.begin(), words.end());
       if (!inFile) all.insert(all.end(), {s.option, value});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Differential rendering: what the objects change, and to the last bit nothing else.
 #include "composite/compose.h"
 
@@ -321,9 +322,9 @@ TEST(SlowComposite, NoiseIsOfThePictureThatIsWritten) {
     Passes passes;
     CompositeMode mode;
   };
-  for (const Way way : {Way{Passes::One, CompositeMode::Difference},
-                        Way{Passes::One, CompositeMode::Ratio},
-                        Way{Passes::Two, CompositeMode::Difference}}) {
+  for (const Way way :
+       {Way{Passes::One, CompositeMode::Difference}, Way{Passes::One, CompositeMode::Ratio},
+        Way{Passes::Two, CompositeMode::Difference}}) {
     std::vector<std::vector<double>> pixels(size_t(kSize) * kSize);
     std::vector<double> squared(pixels.size(), 0.0);
     double stated = 0, spread = 0;  // sums of standard errors
@@ -334,8 +335,7 @@ TEST(SlowComposite, NoiseIsOfThePictureThatIsWritten) {
       const Composite c = compose(r.film, r.mean, plate, way.mode);
       const PixelErrors errors = compositeErrors(r.film, c, r.errors);
       for (size_t i = 0; i < pixels.size(); ++i) {
-        pixels[i].push_back(luminance(
-            glm::dvec3(c.color.rgb(int(i) % kSize, int(i) / kSize))));
+        pixels[i].push_back(luminance(glm::dvec3(c.color.rgb(int(i) % kSize, int(i) / kSize))));
         squared[i] += errors.halves[i].w / kRepeats;
       }
     }

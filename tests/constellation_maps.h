@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps to place lights in, for the tests of constellations.
 #pragma once
 
@@ -5,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lighting/constellations.h"
-#include "math/hash.h"
+#include "base/hash.h"
+#include "lighting/constellation/constellations.h"
 #include "probe/load.h"
 #include "shared_data.h"
 

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each way of placing lights promises for itself.
 #include <gtest/gtest.h>
 
 #include "constellation_maps.h"
-#include "lighting/kollig_keller.h"
-#include "lighting/lightgen.h"
-#include "lighting/median_cut.h"
-#include "lighting/spherical_kmeans.h"
+#include "lighting/constellation/kollig_keller.h"
+#include "lighting/constellation/lightgen.h"
+#include "lighting/constellation/median_cut.h"
+#include "lighting/constellation/spherical_kmeans.h"
 #include "probe/irradiance.h"
 #include "probe/mapping.h"
 #include "probe/synth.h"

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds for constellations of every method: energy kept to the last light.
-#include "lighting/constellations.h"
+#include "lighting/constellation/constellations.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "constellation_maps.h"
-#include "lighting/texel_table.h"
-#include "math/error.h"
+#include "lighting/constellation/texel_table.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 

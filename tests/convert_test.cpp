@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion between mappings, and repair.
 #include "probe/convert.h"
 

@@ -1,11 +1,12 @@
-#include "image/decode.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/decode.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "shared_data.h"
 
 namespace chromeball {

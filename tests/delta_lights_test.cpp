@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rendering with directional lights in the probe's place: all of the light, and each of it once.
 #include "lighting/delta_lights.h"
 
@@ -5,9 +6,9 @@
 
 #include <optional>
 
-#include "lighting/constellations.h"
-#include "lighting/irradiance_fit.h"
-#include "math/error.h"
+#include "base/error.h"
+#include "lighting/constellation/constellations.h"
+#include "lighting/fit/irradiance_fit.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"

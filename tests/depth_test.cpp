@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits of depth: what they count, and what they take.
 #include <gtest/gtest.h>
 
@@ -134,9 +135,9 @@ TEST(Depth, AVaseInAPhotographIsWhiteToo) {
   const std::atomic<bool> stop = false;
   const Camera rim = Camera::lookAt({0, 0.9f, 4}, {0, 0.9f, 0}, {0, 1, 0}, 0.07f);
   for (const Passes passes : {Passes::One, Passes::Two}) {
-    const CompositeRender r = renderComposite(scene, accel, isObject, rim, *lighting,
-                                              Image(8, 8, 3), settings, passes, false,
-                                              [](double) {}, stop);
+    const CompositeRender r = renderComposite(
+        scene, accel, isObject, rim, *lighting, Image(8, 8, 3), settings, passes, false,
+        [](double) {}, stop);
     glm::dvec3 objects(0);
     double covered = 0;
     for (int y = 0; y < 8; ++y)
@@ -166,9 +167,9 @@ TEST(Depth, TheCommandSaysWhatIsCut) {
   w.add("nodes", {{"camera", 0}});
   const TemporaryFolder folder;
   const auto render = [&](const char* depth) {
-    const CommandResult r = runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size",
-                                        "16x16", "--samples", "64", "--max-depth", depth,
-                                        "--stats", folder / "a.json"});
+    const CommandResult r =
+        runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "16x16", "--samples",
+                    "64", "--max-depth", depth, "--stats", folder / "a.json"});
     EXPECT_EQ(r.status, 0) << r.error;
     return r.error;
   };

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, the rows of geometry.
 #include <cstdlib>
 #include <functional>
 
 #include "envelope.h"
 #include "gltf_writer.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "run_command.h"
 
 namespace chromeball {

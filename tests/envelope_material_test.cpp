@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, the rows of materials, light and depth.
 #include "envelope.h"
 

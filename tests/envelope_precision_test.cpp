@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, the error analysis: what is shipped, against long double. Each test prints the
 // errors that the table states, and holds them to its bounds.
 #include <cmath>

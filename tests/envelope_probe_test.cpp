@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, the probe's rows.
 #include <unistd.h>
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "envelope.h"
 #include "math/cdf.h"
-#include "math/error.h"
 #include "probe/info.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
@@ -84,9 +85,9 @@ TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
           << strategy << ' ' << sun;
     }
   const Probe dim(scaled(oneHotProbe({32, 16}, 11, 4, Rgb(1)), -80));
-  EXPECT_NEAR(validMean(litPlane(dim, "importance", 256)) /
-                  (0.5 * irradianceOverPi(dim, {0, 1, 0}, 1500)),
-              1, 5e-3);
+  EXPECT_NEAR(
+      validMean(litPlane(dim, "importance", 256)) / (0.5 * irradianceOverPi(dim, {0, 1, 0}, 1500)),
+      1, 5e-3);
 }
 
 // What is said of a probe, and its exact irradiance.
@@ -171,8 +172,7 @@ TEST(SlowEnvelopeProbe, AOneTexelSunIn16384x8192) {
   Image image = constantProbe({width, height}, Rgb(1));
   image.setRgb(x, y, Rgb(1e9f));
   const Probe probe(image);
-  const double sun =
-      1e9 * texelSolidAngle(y, width, height) * std::cos(kPiD * (y + 0.5) / height);
+  const double sun = 1e9 * texelSolidAngle(y, width, height) * std::cos(kPiD * (y + 0.5) / height);
   EXPECT_NEAR(validMean(litPlane(probe, "importance", 64)) / (0.5 * (1 + sun / kPiD)), 1, 1e-3);
 
   Scene ceiling;

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, the rows of how much: triangles in a model, samples in a pixel.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "envelope.h"
 #include "gltf_writer.h"
-#include "image/write.h"
+#include "image/io/write.h"
 #include "run_command.h"
 
 namespace chromeball {
@@ -24,9 +25,10 @@ std::string sheet(GltfWriter& w, double triangles) {
       const uint32_t i = y * side + x;
       indices.insert(indices.end(), {i, i + side, i + 1, i + 1, i + side, i + side + 1});
     }
-  w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", w.vec3s(positions)}}},
-                                   {"indices", w.accessor(w.view(indices), kUInt, "SCALAR",
-                                                          indices.size())}})}});
+  w.add("nodes",
+        {{"mesh",
+          w.mesh({{"attributes", {{"POSITION", w.vec3s(positions)}}},
+                  {"indices", w.accessor(w.view(indices), kUInt, "SCALAR", indices.size())}})}});
   return w.save();
 }
 
@@ -46,10 +48,11 @@ TEST(SlowEnvelopeSize, MemoryAndTimeOfATriangle) {
     return nlohmann::json::parse(fileContents(out / "s.json"));
   };
   const auto few = renderSheet(2), many = renderSheet(triangles);
-  const double bytes = (many["peak_memory_bytes"].get<double>() -
-                        few["peak_memory_bytes"].get<double>()) / triangles;
-  std::printf("%.3g triangles: %.0f bytes each; load %.2f us, build %.2f us each\n", triangles, bytes,
-              1e6 * many["seconds"]["load"].get<double>() / triangles,
+  const double bytes =
+      (many["peak_memory_bytes"].get<double>() - few["peak_memory_bytes"].get<double>()) /
+      triangles;
+  std::printf("%.3g triangles: %.0f bytes each; load %.2f us, build %.2f us each\n", triangles,
+              bytes, 1e6 * many["seconds"]["load"].get<double>() / triangles,
               1e6 * many["seconds"]["build"].get<double>() / triangles);
   EXPECT_GT(bytes, 20);
   EXPECT_LT(bytes, 400);
@@ -60,8 +63,8 @@ TEST(SlowEnvelopeSize, MemoryAndTimeOfATriangle) {
 TEST(SlowEnvelopeSize, TheErrorOfAMillionSamples) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   const auto squaredError = [&](int samples) {
-    const RenderResult r = renderScene(plane(lambert(Rgb(0.5f))), topCamera(3, 40), probe, "uniform",
-                                       smallRender(2, 2, samples, 1));
+    const RenderResult r = renderScene(plane(lambert(Rgb(0.5f))), topCamera(3, 40), probe,
+                                       "uniform", smallRender(2, 2, samples, 1));
     double sum = 0;
     const Image mean = r.film.mean();
     for (float x : mean.texels) sum += std::pow(double(x) - 0.5, 2);

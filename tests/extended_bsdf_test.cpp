@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // BSDFs of extended materials: their samplers, their energy, where they are reciprocal.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colours of numbers, and PNG in memory.
 #include "measure/false_color.h"
 
@@ -5,8 +6,8 @@
 
 #include <cmath>
 
-#include "image/png.h"
-#include "image/read.h"
+#include "image/io/png.h"
+#include "image/io/read.h"
 #include "run_command.h"
 
 namespace chromeball {

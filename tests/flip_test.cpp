@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // FLIP against numbers worked out apart: by brute force, two-dimensional convolutions and no shared
 // code, from the formulas of the paper.
 #include "measure/flip.h"
 
 #include <gtest/gtest.h>
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A floor in surroundings at a finite distance, and what the tests of those share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The view of a scene that brings no camera: grounds do not count, rooms are seen from inside.
 #include "scene/framing.h"
 

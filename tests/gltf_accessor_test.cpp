@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading numbers out of glTF buffers, and refusing to read beside them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Animations at a time: each interpolation against its closed form, and what is refused.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geometry that files keep compressed or instanced: it must be the geometry that was put in, and
 // damaged data must be refused.
 #include <gtest/gtest.h>

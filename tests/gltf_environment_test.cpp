@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment that a glTF file brings along.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/png.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/png.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/probe.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample models of material extensions, normal maps and UV sets: what their authors say a right
 // picture shows, in pixels.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opening glTF files: containers, versions, extensions, URIs.
 #include <gtest/gtest.h>
 
@@ -78,8 +79,7 @@ TEST(GltfFile, VersionsAndExtensions) {
       json::array({"KHR_xmp_json_ld", "KHR_materials_unlit", "EXT_lights_ies"});
   w.load();
   ASSERT_EQ(w.warnings.size(), 1u);
-  EXPECT_TRUE(
-      w.warnings[0].ends_with(": ignored extensions: EXT_lights_ies, KHR_xmp_json_ld"));
+  EXPECT_TRUE(w.warnings[0].ends_with(": ignored extensions: EXT_lights_ies, KHR_xmp_json_ld"));
   w.root["extensionsRequired"] = json::array({"KHR_texture_basisu"});
   EXPECT_EQ(w.refusal(),
             "requires the extension KHR_texture_basisu, which is not supported; turn its KTX2 "

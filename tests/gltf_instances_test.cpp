@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which primitives of a glTF file become one mesh with several instances.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF materials, textures and the images behind them.
 #include <gtest/gtest.h>
 

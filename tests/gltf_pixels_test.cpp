@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample models that carry their own right answer, rendered: where they say what a right
 // picture shows, ours must.
 #include <gtest/gtest.h>

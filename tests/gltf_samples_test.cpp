@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real and hostile glTF files, where they are present beside the project.
 #include <gtest/gtest.h>
 
@@ -5,8 +6,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "math/error.h"
-#include "scene/gltf.h"
+#include "base/error.h"
+#include "scene/gltf/gltf.h"
 #include "scene/mesh_attributes.h"
 #include "shared_data.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The structure of glTF files: primitives, nodes, instances, cameras, poses.
 #include <gtest/gtest.h>
 

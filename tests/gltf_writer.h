@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes small glTF files for tests, each into a folder of its own that goes with the writer.
 #pragma once
 
@@ -10,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "math/error.h"
-#include "scene/gltf.h"
+#include "base/error.h"
+#include "scene/gltf/gltf.h"
 
 namespace chromeball {
 

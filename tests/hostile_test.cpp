@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that should not be: collections of malformed models and damaged images, and size bombs.
 #include <gtest/gtest.h>
 
@@ -7,8 +8,8 @@
 #include <set>
 
 #include "gltf_writer.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -181,7 +182,8 @@ TEST(Hostile, SizeBombsAreRefusedByTheirHeaders) {
   expectRefused({"probe", "info", write("a.jpg", jpeg)}, "65500 x 65500", kGibibyte);
   std::string truncated = jpeg;
   truncated.replace(jpeg.find("\xff\xdc"), 4, std::string("\4\0\4\0", 4));
-  expectRefused({"probe", "info", write("a.jpg", truncated)}, "1024 x 1024 texels cannot be held by");
+  expectRefused({"probe", "info", write("a.jpg", truncated)},
+                "1024 x 1024 texels cannot be held by");
 
   GltfWriter model;
   model.write("bomb.jpg", {jpeg.begin(), jpeg.end()});
@@ -206,8 +208,8 @@ std::string exr(const std::vector<std::array<std::string, 3>>& attributes,
   return file + '\0';
 }
 
-// What fuzzing found: 367 bytes for which OpenEXR took 1.8 GB before it looked whether the text that
-// is said to be so long is there. Its buffers of rows come as early.
+// What fuzzing found: 367 bytes for which OpenEXR took 1.8 GB before it looked whether the text
+// that is said to be so long is there. Its buffers of rows come as early.
 TEST(Hostile, ExrHeadersAreNotBelieved) {
   const TemporaryFolder folder;
   const auto words = [](std::initializer_list<int32_t> numbers) {
@@ -219,8 +221,10 @@ TEST(Hostile, ExrHeadersAreNotBelieved) {
   };
   const std::string channel = std::string("R\0", 2) + words({1, 0, 1, 1}) + '\0';
   const std::array<std::string, 3> channels = {"channels", "chlist", channel};
-  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0x6e000013), "more bytes than the file");
-  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0xffffffff), "more bytes than the file");
+  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0x6e000013),
+                   "more bytes than the file");
+  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0xffffffff),
+                   "more bytes than the file");
   expectRefusedFor(exr({channels, {"dataWindow", "box2i", words({0, 0, (1 << 27) - 1, 0})}}),
                    "134217728 texels in a row");
   expectRefusedFor(exr({channels, {"dataWindow", "box2i", words({INT32_MIN, 0, INT32_MAX, 0})}}),
@@ -231,7 +235,8 @@ TEST(Hostile, ExrHeadersAreNotBelieved) {
   const std::array<std::string, 3> endless = {"channels", "chlist", channel.substr(0, 18)};
   expectRefusedFor(exr({endless, {"owner", "string", "I"}}), "a list of 18 bytes");
   expectRefusedFor(exr({channels, {"lineOrder", "lineOrder", "too long"}}), "lineOrder of 8 bytes");
-  expectRefusedFor(exr({channels, {"views", "stringvector", words({1 << 30})}}), "a list of 4 bytes");
+  expectRefusedFor(exr({channels, {"views", "stringvector", words({1 << 30})}}),
+                   "a list of 4 bytes");
   expectRefusedFor(exr({{std::string(300, 'n'), "string", ""}}), "does not end");
 }
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "measure/image_error.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading, writing and showing images.
 #include "image/image.h"
 
@@ -5,12 +6,12 @@
 
 #include <limits>
 
-#include "image/pfm.h"
-#include "image/radiance_hdr.h"
-#include "image/read.h"
+#include "base/error.h"
+#include "image/io/pfm.h"
+#include "image/io/radiance_hdr.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "image/tonemap.h"
-#include "image/write.h"
-#include "math/error.h"
 #include "run_command.h"
 #include "shared_data.h"
 

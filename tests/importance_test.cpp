@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The probe's radiance function, and the sampler that must follow it.
 #include <gtest/gtest.h>
 

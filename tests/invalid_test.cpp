@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that are no radiance, and those the user had clamped: what is left out is accounted for.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fit of directional lights to a probe's irradiance, and the parts it is made of.
-#include "lighting/irradiance_fit.h"
+#include "lighting/fit/irradiance_fit.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,12 +9,12 @@
 #include <array>
 #include <cmath>
 
-#include "lighting/cosine_pattern.h"
-#include "lighting/light_descent.h"
-#include "lighting/light_error.h"
-#include "lighting/nonnegative.h"
-#include "lighting/radiance_points.h"
-#include "probe/icosphere.h"
+#include "lighting/fit/cosine_pattern.h"
+#include "lighting/fit/light_descent.h"
+#include "lighting/fit/light_error.h"
+#include "lighting/fit/nonnegative.h"
+#include "lighting/fit/radiance_points.h"
+#include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/sky.h"

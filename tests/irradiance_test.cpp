@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact irradiance against closed forms, a sum in double and published references; spherical
 // harmonics against both.
 #include "probe/irradiance.h"
@@ -7,8 +8,8 @@
 
 #include <random>
 
-#include "image/read.h"
-#include "probe/icosphere.h"
+#include "image/io/read.h"
+#include "math/icosphere.h"
 #include "probe/load.h"
 #include "probe/sky.h"
 #include "probe/spherical_harmonics.h"

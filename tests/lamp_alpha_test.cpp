@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lamps that are not all there: what of them light samples find is what the BSDF's rays find.
 #include <gtest/gtest.h>
 
@@ -82,8 +83,8 @@ TEST(LampAlpha, TexturesCount) {
   half.meshes[1].positions = {{-1, 1, -1}, {0, 1, -1}, {0, 1, 1}, {-1, 1, 1}};
   for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend}) {
     Scene scene = floorUnder(lampOfAlpha(mode, 1));
-    scene.grids.push_back(std::make_unique<TexelGrid>(
-        TexelGrid{2, 1, {{0, 0, 0, 255}, {0, 0, 0, 0}}, {}}));
+    scene.grids.push_back(
+        std::make_unique<TexelGrid>(TexelGrid{2, 1, {{0, 0, 0, 255}, {0, 0, 0, 0}}, {}}));
     Texture texture{scene.grids[0].get()};
     texture.filter = Filter::Nearest;
     texture.wrapS = texture.wrapT = Wrap::ClampToEdge;
@@ -116,9 +117,9 @@ TEST(LampAlpha, CompositesCountIt) {
     const auto lighting = makeStrategy("importance", blackProbe(), settings.mis, "test");
     const std::atomic<bool> stop = false;
     const Camera camera = Camera::lookAt({0, 0.5f, 1.2f}, {0, 0, 0}, {0, 1, 0}, 0.2f);
-    const CompositeRender r =
-        renderComposite(scene, accel, isObject, camera, *lighting, Image(8, 8, 3), settings,
-                        Passes::One, false, [](double) {}, stop);
+    const CompositeRender r = renderComposite(
+        scene, accel, isObject, camera, *lighting, Image(8, 8, 3), settings, Passes::One, false,
+        [](double) {}, stop);
     return meanColor(ingredient(r.film, Aov::Difference)).y;
   };
   const float whole = change(lampOfAlpha(AlphaMode::Opaque, 1));

@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lamps that a scene file adds.
 #include "scene/lamp.h"
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
+#include "job/scene_file.h"
 #include "lighting/punctual.h"
-#include "math/error.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "scene/scene_file.h"
 #include "small_model.h"
 #include "test_scene.h"
 
@@ -41,7 +42,8 @@ Rgb floorUnder(const Lamp& lamp, const std::string& strategy = "importance",
 
 // L = albedo / pi x I / h^2.
 TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
-  const Rgb point = floorUnder(lampOf("type = 'point'\nposition = [0, 2, 0]\nintensity = [8, 4, 2]"));
+  const Rgb point =
+      floorUnder(lampOf("type = 'point'\nposition = [0, 2, 0]\nintensity = [8, 4, 2]"));
   EXPECT_NEAR(point.x, 0.5 / kPiD * 8 / 4, 1e-3);
   EXPECT_NEAR(point.z, 0.5 / kPiD * 2 / 4, 1e-3);
   const Lamp spot = lampOf(
@@ -50,8 +52,8 @@ TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
   EXPECT_NEAR(spot.punctual->cosOuter, std::cos(kPiD / 6), 1e-6);
   EXPECT_NEAR(spot.punctual->cosInner, std::cos(kPiD / 9), 1e-6);
   EXPECT_NEAR(floorUnder(spot).x, 0.5 / kPiD * 8 / 4 * (1 - 1.0 / 16), 1e-3);
-  const Lamp away = lampOf(
-      "type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, 1, 0]\nintensity = 8");
+  const Lamp away =
+      lampOf("type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, 1, 0]\nintensity = 8");
   EXPECT_EQ(floorUnder(away).x, 0);
 }
 
@@ -132,8 +134,7 @@ TEST(Lamps, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(refusal(point + "intensity = 1"), "");
   EXPECT_EQ(refusal("position = [0, 2, 0]"),
             "a.toml:2: [light] has no `type`: \"point\", \"spot\" or \"disc\"");
-  EXPECT_EQ(refusal("type = 'disk'"),
-            "a.toml:3: `type` disk is not known; did you mean `disc`?");
+  EXPECT_EQ(refusal("type = 'disk'"), "a.toml:3: `type` disk is not known; did you mean `disc`?");
   EXPECT_EQ(refusal(point + "intensty = 1"),
             "a.toml:5: unknown key `intensty` in [light]; did you mean `intensity`?");
   EXPECT_EQ(refusal(point + "intensity = 1\nradius = 1"),
@@ -154,13 +155,14 @@ TEST(Lamps, WhatIsWrongIsSaidWithItsLine) {
 }
 
 TEST(Lamps, LightASceneWithoutAProbe) {
-  for (const char* lamp :
-       {"type = 'point'\nintensity = 5", "type = 'disc'\ndirection = [0, 0, -1]\nradius = 1\npower = 50"}) {
+  for (const char* lamp : {"type = 'point'\nintensity = 5",
+                           "type = 'disc'\ndirection = [0, 0, -1]\nradius = 1\npower = 50"}) {
     const TemporaryFolder folder;
     read(folder, fmt::format("[[light]]\nposition = [0.3, 0.3, 2]\n{}\n[render]\n"
-                             "single_sided = 'off'\n", lamp));
-    const CommandResult r = runCommand({"render", folder / "a.toml", "-o", folder / "a.pfm",
-                                        "--size", "8x8", "--samples", "16"});
+                             "single_sided = 'off'\n",
+                             lamp));
+    const CommandResult r = runCommand(
+        {"render", folder / "a.toml", "-o", folder / "a.pfm", "--size", "8x8", "--samples", "16"});
     EXPECT_EQ(r.status, 0) << r.error;
     EXPECT_EQ(r.error.find("black"), std::string::npos) << r.error;
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directional lights as files, and Madsen and Laursen's measure of them.
 #include "lighting/light_file.h"
 
@@ -5,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lighting/light_error.h"
-#include "math/error.h"
-#include "probe/icosphere.h"
+#include "base/error.h"
+#include "lighting/fit/light_error.h"
+#include "math/icosphere.h"
 #include "run_command.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 
 namespace chromeball {
 namespace {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The omnidirectional mappings, each way.
 #include "probe/mapping.h"
 
 #include <gtest/gtest.h>
 
-#include "math/error.h"
-#include "probe/guess.h"
+#include "base/error.h"
+#include "probe/detect_mapping.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warps, trigonometry and tabulated distributions.
 #include <gtest/gtest.h>
 

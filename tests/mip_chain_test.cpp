@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // Filtered textures: means that are means, and pictures that neither alias nor blur.
 #include "scene/mip_chain.h"
 
 #include <gtest/gtest.h>
 
+#include "base/hash.h"
 #include "gltf_writer.h"
-#include "image/png.h"
-#include "math/hash.h"
+#include "image/io/png.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 
@@ -110,9 +111,10 @@ TEST(MipChain, AVeilOfHolesIsHalfWhiteAtAnyNumberOfSamples) {
     const auto square = [&](int material, float x) {
       const int positions = w.vec3s({x - 1, -1, 0, x + 1, -1, 0, x + 1, 1, 0, x - 1, 1, 0});
       const int uvs = w.vec2s({0, 0, 8, 0, 8, 8, 0, 8});
-      w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
-                                       {"indices", w.indices({0, 1, 2, 0, 2, 3})},
-                                       {"material", material}})}});
+      w.add("nodes",
+            {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
+                              {"indices", w.indices({0, 1, 2, 0, 2, 3})},
+                              {"material", material}})}});
     };
     square(0, 0), square(1, 10), square(2, 20);
     const Scene scene = w.load();

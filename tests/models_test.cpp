@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real models under real probes: every sample of every picture is valid.
 #include <gtest/gtest.h>
 
 #include <deque>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "probe/load.h"
 #include "scene/framing.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "shared_data.h"
 #include "test_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lobes too narrow for lights in the probe's place: of the probe they see the probe itself, and
 // lamps of the scene light them as under any other strategy.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `noise` and the variance layer claim each pixel's standard error: held to the spread over
 // independent seeds.
 #include <gtest/gtest.h>
@@ -62,12 +63,12 @@ Case darkRoom() {
   Case c{{"a room with a small window", {}, sunny()}, "importance"};
   Scene& s = c.named.scene;
   const int wall = addMaterial(s, lambert(Rgb(0.7f)));
-  addQuad(s, wall, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});    // floor
-  addQuad(s, wall, {-5, 4, -5}, {10, 0, 0}, {0, 0, 10});    // ceiling
-  addQuad(s, wall, {-5, 0, -5}, {10, 0, 0}, {0, 4, 0});     // back
-  addQuad(s, wall, {5, 0, 5}, {-10, 0, 0}, {0, 4, 0});      // front
-  addQuad(s, wall, {-5, 0, 5}, {0, 0, -10}, {0, 4, 0});     // left
-  addQuad(s, wall, {5, 0, -5}, {0, 0, 10}, {0, 1.5f, 0});   // right, below the window,
+  addQuad(s, wall, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});      // floor
+  addQuad(s, wall, {-5, 4, -5}, {10, 0, 0}, {0, 0, 10});      // ceiling
+  addQuad(s, wall, {-5, 0, -5}, {10, 0, 0}, {0, 4, 0});       // back
+  addQuad(s, wall, {5, 0, 5}, {-10, 0, 0}, {0, 4, 0});        // front
+  addQuad(s, wall, {-5, 0, 5}, {0, 0, -10}, {0, 4, 0});       // left
+  addQuad(s, wall, {5, 0, -5}, {0, 0, 10}, {0, 1.5f, 0});     // right, below the window,
   addQuad(s, wall, {5, 2.5f, -5}, {0, 0, 10}, {0, 1.5f, 0});  // above it,
   addQuad(s, wall, {5, 1.5f, -5}, {0, 0, 4.5f}, {0, 1, 0});   // and beside
   addQuad(s, wall, {5, 1.5f, 0.5f}, {0, 0, 4.5f}, {0, 1, 0});
@@ -191,7 +192,8 @@ TEST(SlowNoise, IsWideOnMetalsUnderRealProbes) {
 // What is said at a stop is true, and it takes few samples more than needed.
 TEST(SlowNoise, IsTrueWhereItStopsTheRender) {
   constexpr double kLimit = 0.05;
-  for (const Case& c : {caseOf(0, "importance"), caseOf(1, "importance"), caseOf(2, "importance")}) {
+  for (const Case& c :
+       {caseOf(0, "importance"), caseOf(1, "importance"), caseOf(2, "importance")}) {
     SCOPED_TRACE(c.named.name);
     RenderSettings settings = smallRender(kSize, kSize, 1u << 13, 6);
     settings.noiseLimit = kLimit;

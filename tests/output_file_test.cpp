@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // No command overwrites what it reads, or one of its results by another.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/write.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -116,8 +117,8 @@ TEST_F(SlowOutputFiles, OtherCommandsKeepWhatTheyRead) {
   expectKept(with(errors, {"--csv", in("new.csv"), "--plot", in("new.svg")}), "the other output");
   fs::create_directory(in("report"));
   fs::create_symlink(probe, in("report/index.html"));
-  expectKept({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8", "--samples", "1", "-o",
-              in("report")},
+  expectKept({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8", "--samples", "1",
+              "-o", in("report")},
              kInput);
 }
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // Probes from files, and what can be said of them.
 #include <gtest/gtest.h>
 
-#include "image/write.h"
-#include "math/error.h"
+#include "base/error.h"
+#include "image/io/write.h"
+#include "math/icosphere.h"
 #include "probe/convert.h"
-#include "probe/icosphere.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/probe.h"
@@ -59,8 +60,8 @@ void writeEnvironment(const std::string& path, const Image& image, const char* f
   writeImage(path, OutputImage{{{"", "RGB", image}}, {{"textureformat", format}}});
 }
 
-// The same place as a cube and as a lat-long map, both by OpenEXR's convention. A linear function of
-// direction tells where everything is.
+// The same place as a cube and as a lat-long map, both by OpenEXR's convention. A linear function
+// of direction tells where everything is.
 TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
   const TemporaryFolder folder;
   const dvec3 slope(0.3, 0.2, -0.4);
@@ -80,8 +81,8 @@ TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
     EXPECT_EQ(loaded.turned, isStated) << name;
     EXPECT_EQ(warnings(loaded, name).size(), isStated ? 1u : 0u) << name;
     const Probe probe(loaded.latLong);
-    for (const vec3& d : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1),
-                          vec3(0.6f, 0.64f, 0.48f)})
+    for (const vec3& d :
+         {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0.6f, 0.64f, 0.48f)})
       EXPECT_NEAR(probe.radiance(d).x, 1 + glm::dot(slope, dvec3(d)), 0.02) << name;
   }
   // The attribute is followed where the mapping is given, too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `product` samples what it says, and leaves a Lambertian surface little noise.
 #include "lighting/product.h"
 

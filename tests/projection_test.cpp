@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture thrown from a camera lands where the camera sees it, and nowhere else.
 #include "scene/projection.h"
 
 #include <gtest/gtest.h>
 
-#include "math/hash.h"
+#include "base/hash.h"
 
 namespace chromeball {
 namespace {

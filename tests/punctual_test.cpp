@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights without extent: the closed forms of their falloff, and what they make of a plane.
 #include "lighting/punctual.h"
 
@@ -6,8 +7,8 @@
 #include "composite/compose.h"
 #include "composite/render_composite.h"
 #include "gltf_writer.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -167,9 +168,9 @@ TEST(Punctual, ShineOnBothWorldsOfAComposite) {
   const auto lighting = makeStrategy("importance", black, settings.mis, "test");
   const std::atomic<bool> stop = false;
   for (const Passes passes : {Passes::One, Passes::Two}) {
-    const CompositeRender r =
-        renderComposite(scene, accel, isObject, above(), *lighting, Image(kSize, kSize, 3),
-                        settings, passes, true, [](double) {}, stop);
+    const CompositeRender r = renderComposite(
+        scene, accel, isObject, above(), *lighting, Image(kSize, kSize, 3), settings, passes, true,
+        [](double) {}, stop);
     const Image with = ingredient(r.film, Aov::WithObjects);
     const Image without = ingredient(r.film, Aov::WithoutObjects);
     const Image whole = picture(scene, 64, 1, kSize);
@@ -259,8 +260,9 @@ TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
   const std::string model = litTriangle(w);
   const TemporaryFolder folder;
   const auto mean = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> all = {"render", model, "-o", folder / "a.pfm", "--size", "8x8",
-                                    "--samples", "2", "--probe", folder / "black.pfm"};
+    std::vector<std::string> all = {
+        "render", model,       "-o", folder / "a.pfm", "--size",
+        "8x8",    "--samples", "2",  "--probe",        folder / "black.pfm"};
     all.insert(all.end(), options.begin(), options.end());
     const CommandResult r = runCommand(all);
     EXPECT_EQ(r.status, 0) << r.error;
@@ -289,7 +291,7 @@ TEST(GltfLights, ClippedPicturesAreSaidToBe) {
   const std::string model = litTriangle(w);
   const TemporaryFolder folder;
   writeImage(folder / "white.pfm", constantProbe({4, 2}, Rgb(40)));
-  const std::vector<std::string> command = {"render", model, "--probe", folder / "white.pfm",
+  const std::vector<std::string> command = {"render", model, "--probe",   folder / "white.pfm",
                                             "--size", "8x8", "--samples", "2"};
   const auto errorOf = [&](const std::vector<std::string>& options) {
     std::vector<std::string> all = command;

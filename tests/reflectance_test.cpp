@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The local scene's reflectance, found from a picture of it whose reflectance is known.
 #include "composite/reflectance.h"
 

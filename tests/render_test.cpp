@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures whose exact answer is known, and what must not change them.
 #include "integrate/render.h"
 
@@ -171,8 +172,8 @@ TEST(Render, pixelsGetExactlyTheSamplesAskedFor) {
   const Scene scene = plane(lambert(Rgb(0.7f)));
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   for (const uint32_t samples : {1u, 2u, 3u, 7u, 64u, 100u, 255u, 8192u, 8195u, 20000u}) {
-    const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "uniform",
-                                       smallRender(2, 1, samples, 1));
+    const RenderResult r =
+        renderScene(scene, topCamera(4, 50), probe, "uniform", smallRender(2, 1, samples, 1));
     EXPECT_EQ(r.samples, samples);
     EXPECT_EQ(r.film.sampleCounts().texels, std::vector<float>(2, float(samples)));
     EXPECT_EQ(r.rays.camera, 2 * samples);
@@ -198,8 +199,7 @@ TEST(Render, alphaLetsItsShareOfLightThrough) {
   black.alphaMode = AlphaMode::Blend;
   black.baseColor.w = 0.25f;
   addQuad(scene, addMaterial(scene, black), {-500, 1, 500}, {1000, 0, 0}, {0, 0, -1000});
-  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-500, 0, 500}, {1000, 0, 0},
-          {0, 0, -1000});
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-500, 0, 500}, {1000, 0, 0}, {0, 0, -1000});
   for (const char* strategy : kUnbiased) {
     const Moments m =
         pictures(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 64, 1), 8);

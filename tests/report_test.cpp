@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of `chromeball compare` in a browser, where one is installed.
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "image/write.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_model.h"

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surroundings that are a model of the room.
 #include "trace/room.h"
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "floor_in_surroundings.h"
-#include "math/error.h"
 
 namespace chromeball {
 namespace {

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Khronos's sample models, where they are present.
 #pragma once
 
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "shared_data.h"
 #include "test_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stratification of the Sobol table, and what its numbers may depend on.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-#include "scene/scene_file.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "job/scene_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "paths.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real probes and models that live beside the project, where they are present.
 #pragma once
 

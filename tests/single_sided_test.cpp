@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single-sided surfaces: who sees them from behind, and which light they stop.
 #include <gtest/gtest.h>
 
@@ -108,8 +109,7 @@ TEST(SingleSided, MirroredInstancesKnowTheirFronts) {
           {0, 0, -2});
   scene.instances[0].toWorld = Transform{glm::mat3(1), {0, 1, 0}};
   scene.instances.push_back(scene.instances[0]);  // and upside down
-  scene.instances[1].toWorld =
-      Transform{glm::mat3(1, 0, 0, 0, -1, 0, 0, 0, 1), {10, 1, 0}};
+  scene.instances[1].toWorld = Transform{glm::mat3(1, 0, 0, 0, -1, 0, 0, 0, 1), {10, 1, 0}};
   const Accel accel(scene);
   // Towards a light below, a ray meets the front of the first.
   EXPECT_EQ(accel.transmittance({{0.1f, 2, 0}, {0, -1, 0}}), Rgb(1));
@@ -151,9 +151,9 @@ TEST(SlowSingleSided, ABlackRoomIsSaidToBeOne) {
                                       << std::string("\0\0\x80?\0\0\x80?\0\0\x80?", 12)
                                       << std::string("\0\0\x80?\0\0\x80?\0\0\x80?", 12);
   const auto render = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"render", folder / "a.toml", "--probe",
-                                          folder / "probe.pfm", "-o", folder / "a.pfm", "--size",
-                                          "96x96", "--samples", "4"};
+    std::vector<std::string> arguments = {
+        "render",         folder / "a.toml", "--probe", folder / "probe.pfm", "-o",
+        folder / "a.pfm", "--size",          "96x96",   "--samples",          "4"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const CommandResult r = runCommand(arguments);
     EXPECT_EQ(r.status, 0) << r.error;

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // Probes made of formulas.
 #include "probe/sky.h"
 
 #include <gtest/gtest.h>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Three scenes with their probes that together hold most of what paths meet.
 #pragma once
 

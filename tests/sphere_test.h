@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does a sampler of directions really have the density it claims? Chi-square over the sphere.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "math/hash.h"
+#include "base/hash.h"
 #include "math/warp.h"
 #include "measure/statistics.h"
 

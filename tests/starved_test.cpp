@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs that are stopped, or lack what they need: one line, the right status, and no half of a file.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "gltf_writer.h"
-#include "image/file.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One direction in each region: the density claimed, and the light that the probe has.
 #include "lighting/strata.h"
 

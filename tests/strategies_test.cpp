@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every unbiased strategy, with every kind of multiple importance sampling, gives the same picture:
 // Welch's t-test over independent seeds on each part of it, Sidak-corrected.
 #include <gtest/gtest.h>

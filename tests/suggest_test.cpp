@@ -1,4 +1,5 @@
-#include "math/suggest.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "base/suggest.h"
 
 #include <gtest/gtest.h>
 

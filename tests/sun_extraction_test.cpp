@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Suns found in probes, and the energy of what is taken out.
 #include <gtest/gtest.h>
 
-#include "probe/icosphere.h"
+#include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/sky.h"

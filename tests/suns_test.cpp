@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strategy `suns`: its densities, its light, and the shadows of its discs.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surroundings at a finite distance.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small probes on which a sampler of directions is easily wrong.
 #pragma once
 

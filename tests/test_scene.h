@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small scenes made in code, and a render of one without files.
 #pragma once
 
@@ -68,7 +69,8 @@ inline RenderResult renderScene(const Scene& scene, const Camera& camera, const 
   const Accel accel(scene);
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
-  return render(scene, accel, camera, *lighting, settings, [](double) {}, stop);
+  return render(
+      scene, accel, camera, *lighting, settings, [](double) {}, stop);
 }
 
 inline RenderSettings smallRender(int width, int height, uint32_t samples, int maxDepth,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light through bodies and sheets of glass, as pictures.
 #include <gtest/gtest.h>
 

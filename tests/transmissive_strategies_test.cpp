@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every strategy on every kind of surface that lets light through: what comes from behind counts as
 // much as what comes from before it.
 #include <gtest/gtest.h>
 
-#include "lighting/constellations.h"
+#include "base/error.h"
+#include "lighting/constellation/constellations.h"
 #include "lighting/delta_lights.h"
-#include "math/error.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "test_scene.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what the build needs and this machine lacks (Debian and Ubuntu, as root or with sudo),
 # then builds everything into build/, or one target (--target NAME). Other arguments go to the
 # configure step (-DNAME=VALUE).

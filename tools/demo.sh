@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds and renders the demo scene. Arguments go to `chromeball render` (--samples 32: a quick look).
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds and runs the tests; --quick leaves out the suites that take more than seconds. Other
 # arguments go to GoogleTest (--gtest_filter=PATTERN). The last line is "N passed, N failed".
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The formulas of differential rendering (HDRI book, 9.7.1).
 #pragma once
 

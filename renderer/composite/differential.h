@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integrator of a composite: what the objects look like, and what they change of the plate.
 #pragma once
 

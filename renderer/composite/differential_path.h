@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radiance with the synthetic objects and without them, along paths that are one until an object
 // matters: differential rendering (HDRI book, 9.7.1) in one pass.
 #pragma once
@@ -109,10 +110,11 @@ inline DifferentialSample differentialRadiance(const DifferentialScene& scene,
   RayCounts& counts = memory.rays;
   const auto& [whole, local, isObject, looksBehind] = scene;
   const WatchedRays rays(whole.rays, local.rays);
-  const PathScene<WatchedRays> shared{
-      whole.scene,     rays,           whole.lighting, whole.emitters,   whole.mis, whole.maxDepth,
-      whole.hideProbe, whole.punctual, whole.mirrorAlpha,
-      whole.maxTransmissionDepth};
+  const PathScene<WatchedRays> shared{whole.scene,       rays,
+                                      whole.lighting,    whole.emitters,
+                                      whole.mis,         whole.maxDepth,
+                                      whole.hideProbe,   whole.punctual,
+                                      whole.mirrorAlpha, whole.maxTransmissionDepth};
 
   DifferentialSample sample;
   PathState state = camera.path();

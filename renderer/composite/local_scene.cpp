@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "composite/local_scene.h"
 
 #include <algorithm>
 
-#include "math/error.h"
-#include "math/suggest.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace chromeball {
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which parts of a model stand for real things.
 #pragma once
 
 #include <vector>
 
+#include "base/named_setting.h"
 #include "composite/differential_path.h"
-#include "scene/scene_file.h"
 
 namespace chromeball {
 

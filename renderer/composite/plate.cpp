@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "composite/plate.h"
 
 #include <cmath>
 
-#include "image/read.h"
-#include "math/error.h"
+#include "base/error.h"
+#include "image/io/read.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The photograph that objects are put into.
 #pragma once
 

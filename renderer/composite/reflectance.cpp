@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "composite/reflectance.h"
 
 #include <map>
@@ -5,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-constexpr Rgb kFirstGuess(0.25f);  // typical of real surfaces
+constexpr Rgb kFirstGuess(0.25f);       // typical of real surfaces
 constexpr uint32_t kSightSamples = 16;  // a pixel, to find what the camera sees
 constexpr uint32_t kMostSamples = 1024;
 
@@ -55,8 +56,8 @@ class RepaintedIntegrator : public Integrator {
     if (!hit) return Rgb(0);
     const Instance& instance = path_.scene.instances[hit->instance];
     state.length += hit->distance;
-    const Surface surface = surfaceAt(path_.scene, instance, hit->triangle, hit->barycentric,
-                                      -state.ray.direction);
+    const Surface surface =
+        surfaceAt(path_.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
     Rgb found(0);
     if (surface.material->emits()) found += foundEmission(path_, state, surface, instance);
     MaterialPoint material = materialAt(path_.scene, surface);
@@ -107,8 +108,7 @@ Sight look(const ReflectanceProblem& problem, const Accel& local, const RenderSe
   quick.seed = settings.seed;
   const CameraRays camera(problem.camera, float(settings.width) / float(settings.height));
   render(
-      SightIntegrator(local, camera, sight), local, problem.camera, quick, [](double) {},
-      stop);
+      SightIntegrator(local, camera, sight), local, problem.camera, quick, [](double) {}, stop);
   return sight;
 }
 
@@ -209,9 +209,8 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   const std::unique_ptr<Emitters> emitters = Emitters::make(problem.scene);
   const LocalRays rays{local, problem.isObject};
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(problem.scene);
-  PathScene<LocalRays> path{problem.scene,  rays,         problem.lighting,
-                            emitters.get(), settings.mis, settings.maxDepth,
-                            true,           punctual.get()};
+  PathScene<LocalRays> path{problem.scene,     rays, problem.lighting, emitters.get(), settings.mis,
+                            settings.maxDepth, true, punctual.get()};
   path.maxTransmissionDepth = settings.maxTransmissionDepth;
   path.measuresCut = false;
   prepareBsdfs(problem.scene);

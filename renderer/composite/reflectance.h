@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the local scene reflects, found from the plate (HDRI book, 9.7).
 #pragma once
 

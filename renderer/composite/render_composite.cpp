@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "composite/render_composite.h"
 
 namespace chromeball {
@@ -14,8 +15,8 @@ class OneWorld : public Integrator {
   Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
     memory.sampler.startVertex(0);
     PathState start = camera.path();
-    const auto hit = passUnseen(scene_.whole.scene, scene_.whole.rays, start, camera.hit,
-                                memory.sampler);
+    const auto hit =
+        passUnseen(scene_.whole.scene, scene_.whole.rays, start, camera.hit, memory.sampler);
     const bool objectFirst = hit && scene_.isObject[hit->instance];
     DifferentialPixel& pixel = film_.at(camera.x, camera.y);
     if (withObjects_) {
@@ -29,8 +30,9 @@ class OneWorld : public Integrator {
     }
     if (objectFirst && !scene_.looksBehind) return Rgb(0);
     start = camera.path();
-    const Rgb found = trace(scene_.local, start,
-                            closestHit(scene_.local.rays, start.ray, memory.sampler), memory, first);
+    const Rgb found =
+        trace(scene_.local, start, closestHit(scene_.local.rays, start.ray, memory.sampler), memory,
+              first);
     if (const auto defect = defectOf(found, false)) return {found, defect};
     (objectFirst ? pixel.behind : pixel.local) += glm::dvec3(found);
     if (objectFirst) return Rgb(0);
@@ -70,8 +72,8 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
   const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
   constexpr bool kHideProbe = true;  // the plate is the background
-  DifferentialScene worlds{{scene, accel, lighting, emitters.get(), settings.mis,
-                            settings.maxDepth, kHideProbe, punctual.get()},
+  DifferentialScene worlds{{scene, accel, lighting, emitters.get(), settings.mis, settings.maxDepth,
+                            kHideProbe, punctual.get()},
                            {scene, localRays, lighting, emitters.get(), settings.mis,
                             settings.maxDepth, kHideProbe, punctual.get()},
                            isObject,

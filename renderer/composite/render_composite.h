@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders what a composite is made of.
 #pragma once
 
@@ -14,7 +15,7 @@ enum class Passes {
 struct CompositeRender {
   RenderResult result;  // of the one pass, or of the one with objects
   DifferentialFilm film;
-  Image mean;  // the composite by the difference formula
+  Image mean;          // the composite by the difference formula
   PixelErrors errors;  // of the mean
 };
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "film/aov.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "math/error.h"
-#include "math/suggest.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace chromeball {
 namespace {
@@ -14,14 +15,19 @@ constexpr float kNoDepth = 1e10f;
 }  // namespace
 
 const std::vector<AovInfo>& allAovs() {
-  static const std::vector<AovInfo> infos{
-      {Aov::Albedo, "albedo", "RGB"},     {Aov::Normal, "normal", "XYZ"},
-      {Aov::Depth, "depth", "Z"},         {Aov::Alpha, "alpha", "A"},
-      {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
-      {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
-      {Aov::WithObjects, "l_obj", "RGB"}, {Aov::WithoutObjects, "l_noobj", "RGB"},
-      {Aov::Difference, "difference", "RGB"}, {Aov::Reflectance, "reflectance", "RGB"},
-      {Aov::Invalid, "invalid", "RGB"}};
+  static const std::vector<AovInfo> infos{{Aov::Albedo, "albedo", "RGB"},
+                                          {Aov::Normal, "normal", "XYZ"},
+                                          {Aov::Depth, "depth", "Z"},
+                                          {Aov::Alpha, "alpha", "A"},
+                                          {Aov::Variance, "variance", "RGB"},
+                                          {Aov::Samples, "samples", ""},
+                                          {Aov::Material, "material", ""},
+                                          {Aov::Node, "node", ""},
+                                          {Aov::WithObjects, "l_obj", "RGB"},
+                                          {Aov::WithoutObjects, "l_noobj", "RGB"},
+                                          {Aov::Difference, "difference", "RGB"},
+                                          {Aov::Reflectance, "reflectance", "RGB"},
+                                          {Aov::Invalid, "invalid", "RGB"}};
   return infos;
 }
 
@@ -60,13 +66,26 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
   for (Sum& sum : sums_) {
     double* to = &sum.sums[at * sum.channels];
     switch (sum.aov) {
-      case Aov::Albedo: addRgb(to, first.albedo); break;
-      case Aov::Normal: addRgb(to, first.normal); break;
-      case Aov::Depth: *to += first.depth; break;
-      case Aov::Material: if (isFirst) *to = first.material + 1; break;
-      case Aov::Node: if (isFirst) *to = first.node + 1; break;
-      case Aov::Alpha: *to += 1; break;
-      default: break;  // known otherwise
+      case Aov::Albedo:
+        addRgb(to, first.albedo);
+        break;
+      case Aov::Normal:
+        addRgb(to, first.normal);
+        break;
+      case Aov::Depth:
+        *to += first.depth;
+        break;
+      case Aov::Material:
+        if (isFirst) *to = first.material + 1;
+        break;
+      case Aov::Node:
+        if (isFirst) *to = first.node + 1;
+        break;
+      case Aov::Alpha:
+        *to += 1;
+        break;
+      default:
+        break;  // known otherwise
     }
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arbitrary output variables: what else there is to know of a pixel.
 #pragma once
 
@@ -27,8 +28,19 @@ struct FirstHit {
 //   variance        squared standard error of the pixel (Film)        samples  their number (Film)
 //   invalid         number of samples left out: R those with a NaN, G infinite, B negative ones
 enum class Aov {
-  Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node,
-  WithObjects, WithoutObjects, Difference, Reflectance, Invalid
+  Albedo,
+  Normal,
+  Depth,
+  Alpha,
+  Variance,
+  Samples,
+  Material,
+  Node,
+  WithObjects,
+  WithoutObjects,
+  Difference,
+  Reflectance,
+  Invalid
 };
 
 struct AovInfo {
@@ -38,9 +50,7 @@ struct AovInfo {
 };
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);
-inline bool isOfComposite(Aov aov) {
-  return aov >= Aov::WithObjects && aov <= Aov::Reflectance;
-}
+inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects && aov <= Aov::Reflectance; }
 // `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& place);
 

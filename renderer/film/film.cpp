@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "film/film.h"
 
 #include <algorithm>
@@ -8,9 +9,7 @@ namespace chromeball {
 Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(size_t(width) * size_t(height)) {}
 
-glm::dvec3 Film::Pixel::mean() const {
-  return (sums[0] + sums[1]) / double(std::max(count(), 1u));
-}
+glm::dvec3 Film::Pixel::mean() const { return (sums[0] + sums[1]) / double(std::max(count(), 1u)); }
 
 void Film::add(int x, int y, int half, const SampleSums& samples) {
   Pixel& p = pixels_[size_t(y) * size_t(width_) + size_t(x)];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the render has found so far: per pixel the mean, and how far it may be off.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that are no radiance. They are counted by cause and pixel, and left out of every mean.
 #pragma once
 

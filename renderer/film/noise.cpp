@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "film/noise.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace chromeball {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kReach = 3;  // windows are 7 x 7 pixels
+constexpr int kReach = 3;        // windows are 7 x 7 pixels
 constexpr double kKnown = 0.25;  // relative error of a luminance that counts as known
 
 // Calls visit(j) for the pixels of the window around (x, y), itself included.
@@ -54,7 +55,8 @@ bool hasMetRareLight(const PixelErrors& e, size_t j) {
   return e.scatter[j].w > kKnown * kKnown * e.luminances[j] * e.luminances[j];
 }
 
-// Of a pixel of which something is known. `logScatter`: binary logarithms of the luminances' scatter.
+// Of a pixel of which something is known. `logScatter`: binary logarithms of the luminances'
+// scatter.
 glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>& logScatter, int x,
                                 int y) {
   const size_t i = size_t(y) * size_t(e.width) + size_t(x);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the pixels of a picture may be off, estimated from their samples.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A float image: row 0 on top, texel (x, y) covers [x, x+1) x [y, y+1).
 #pragma once
 

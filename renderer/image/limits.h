@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // How large an image may be. Files are refused by their headers, before anything is allocated.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 

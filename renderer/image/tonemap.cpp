@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "image/tonemap.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "math/error.h"
-#include "math/suggest.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From linear radiance to what a screen shows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A limit to what a sample may show, where the user asks for one: an error with a name and a size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much light the limits of depth keep from a picture.
 #pragma once
 
@@ -27,9 +28,7 @@ struct DepthCut {
   }
 
   // Share of all light, found or not.
-  double share(double cut) const {
-    return cut > 0 ? cut / (found + byDepth + byTransmission) : 0;
-  }
+  double share(double cut) const { return cut > 0 ? cut / (found + byDepth + byTransmission) : 0; }
 };
 
 }  // namespace chromeball

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light that comes to one vertex of a path straight from its sources, and how it is weighted
 // against what the BSDF's own samples find.
 #pragma once
@@ -97,8 +98,8 @@ Rgb transmittanceTo(const Rays& rays, uint32_t /*instance*/, const Ray& ray) {
 template <class Rays>
 Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Surface& surface,
                  const Media& media, const PixelSampler& sampler, RayCounts& counts) {
-  const Emitters::Point emitter = path.emitters->sample(
-      sampler.getFine1(dimension::kEmitter), sampler.get1(dimension::kEmitter + 1));
+  const Emitters::Point emitter = path.emitters->sample(sampler.getFine1(dimension::kEmitter),
+                                                        sampler.get1(dimension::kEmitter + 1));
   const vec3 to = emitter.position - surface.position;
   const float distance = glm::length(to);
   if (!(distance > surface.rayOffset)) return Rgb(0);
@@ -111,9 +112,8 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
   const Surface source =
       surfaceAt(path.scene, instance, emitter.triangle, emitter.barycentric, -wi);
   // A ray that the BSDF chose meets the lamp with probability alpha.
-  const Rgb radiance =
-      emittedRadiance(path.scene, instance, source, -wi) *
-      surfaceAlpha(path.scene, instance, emitter.triangle, emitter.barycentric);
+  const Rgb radiance = emittedRadiance(path.scene, instance, source, -wi) *
+                       surfaceAlpha(path.scene, instance, emitter.triangle, emitter.barycentric);
   const float cosine = glm::dot(source.geometricNormal, -wi);
   if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
 

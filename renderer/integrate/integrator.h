@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a render estimates: light that comes along rays from the camera.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of glass that a path is inside of.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radiance along one path: path tracing with next-event estimation and multiple importance
 // sampling.
 #pragma once
@@ -39,11 +40,11 @@ struct PathState {
   Lobes lobes = Lobes::Narrow;  // that chose the direction; the camera sees as mirrors do
   int depth = 0;                // of the vertex to come
   int straight = 0;             // vertices so far where the ray just went on; they are no bounces
-  int transmissions = 0;        // bounces in and on bodies of glass, which have a limit of their own
-  bool isMeasured = false;      // measureCut() has taken the path into account
-  Media media;                  // that the ray is in
-  float length = 0;             // metres from the camera
-  Beam beam{};                  // around the camera's ray, where textures are filtered
+  int transmissions = 0;    // bounces in and on bodies of glass, which have a limit of their own
+  bool isMeasured = false;  // measureCut() has taken the path into account
+  Media media;              // that the ray is in
+  float length = 0;         // metres from the camera
+  Beam beam{};              // around the camera's ray, where textures are filtered
 
   // Those that PathScene::maxDepth limits.
   int bounces() const { return depth - straight - transmissions; }
@@ -52,8 +53,8 @@ struct PathState {
 // Whether a bounce is one of light on its way through a body: all but what a rough surface throws
 // back from outside.
 inline bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
-  return surface.material->isBody() &&
-         (bounce.pdf == 0 || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
+  return surface.material->isBody() && (bounce.pdf == 0 || !surface.frontFace ||
+                                        glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
 // Whether the path passes a surface as if it were not there: the camera and mirrors a hidden back.
@@ -204,8 +205,8 @@ bool pathVertex(const PathScene<Rays>& path, PathState& state, const std::option
     return true;
   }
   if (surface.material->emits()) radiance += foundEmission(path, state, surface, instance);
-  const bool ends = surface.material->unlit ||
-                    (state.bounces() == path.maxDepth && !surface.material->isBody());
+  const bool ends =
+      surface.material->unlit || (state.bounces() == path.maxDepth && !surface.material->isBody());
   if (ends && !(first && state.depth == 0))
     return passThrough(path.scene, state, instance, surface);
 
@@ -242,8 +243,7 @@ template <class Rays>
   limited.measuresCut = false;
   PathScene<Rays> farther = limited;
   farther.maxDepth = std::min(path.maxDepth, INT_MAX - kFarther) + kFarther;
-  farther.maxTransmissionDepth =
-      std::min(path.maxTransmissionDepth, INT_MAX - kFarther) + kFarther;
+  farther.maxTransmissionDepth = std::min(path.maxTransmissionDepth, INT_MAX - kFarther) + kFarther;
   RayCounts uncounted;
   const auto follow = [&](const PathScene<Rays>& scene) {
     return luminance(followPath(scene, state, hit, sampler, samples, uncounted, nullptr));

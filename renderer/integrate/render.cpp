@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrate/render.h"
 
 #include <tbb/blocked_range.h>
@@ -19,8 +20,8 @@ constexpr int kTile = 16;
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
 // Deeper vertices carry too little for stratification to show; they take plain random numbers.
 constexpr int kTabulatedVertices = 6;
-constexpr uint32_t kFirstPass = 4;         // samples a pixel
-constexpr uint32_t kLeastForNoise = 16;    // samples a pixel before an estimate of noise is believed
+constexpr uint32_t kFirstPass = 4;       // samples a pixel
+constexpr uint32_t kLeastForNoise = 16;  // samples a pixel before an estimate of noise is believed
 constexpr uint32_t kMostInTheDark = 4096;  // samples a pixel without any light: there is none
 
 double now() {
@@ -99,8 +100,8 @@ class Renderer {
         settings_(settings),
         result_(result),
         table_(std::bit_ceil(std::min(shareOf(0, settings.samples), kLargestTable)),
-               dimension::kVertex +
-                   dimension::kPerVertex * (std::min(settings.maxDepth, kTabulatedVertices - 1) + 1),
+               dimension::kVertex + dimension::kPerVertex *
+                                        (std::min(settings.maxDepth, kTabulatedVertices - 1) + 1),
                settings.seed),
         workers_([this] {
           return Worker{{PixelSampler(table_, settings_.seed), {}, {}, Clamp(settings_.clamp)}, {}};

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one render loop: every pixel's samples, in blocks, on all threads.
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <optional>
 
+#include "base/progress.h"
 #include "film/aov.h"
 #include "film/film.h"
 #include "integrate/integrator.h"
@@ -18,7 +19,8 @@ struct RenderSettings {
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film.h)
   int maxDepth = 8;
-  int maxTransmissionDepth = kUsualTransmissionDepth;  // bounces in bodies of glass, beside maxDepth
+  int maxTransmissionDepth =
+      kUsualTransmissionDepth;  // bounces in bodies of glass, beside maxDepth
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
   bool hideProbe = false;      // from the camera only: for compositing
@@ -35,9 +37,6 @@ struct RenderResult {
   uint32_t samples = 0;  // that every pixel has; 0 where a render was stopped before its first pass
   bool interrupted = false;
 };
-
-// Told now and then which share of the work is done, in [0, 1]; NaN where that is not known.
-using Progress = std::function<void(double)>;
 
 // Renders until the samples, the time or the noise is reached, or `stop` is set. Passes over the
 // whole picture begin with a few samples and double, so that a picture of the whole is there soon.

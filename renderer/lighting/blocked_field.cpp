@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lighting/blocked_field.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The luminance field cut into blocks of cells, each to be sampled on its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `bsdf`: no light samples; the BSDF finds the probe.
 #pragma once
 

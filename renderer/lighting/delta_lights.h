@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directional lights in the probe's place: constellations and fitted lights.
 #pragma once
 
-#include "lighting/directional_light.h"
+#include "lighting/constellation/directional_light.h"
 #include "lighting/strategy.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lighting/emitters.h"
 
 #include <numeric>
@@ -28,8 +29,8 @@ double meanAlpha(const Scene& scene, const Material& m) {
     const float alpha = m.baseColor.w * texel.w;
     return m.alphaMode == AlphaMode::Mask ? (alpha >= m.alphaCutoff ? 1.0f : 0.0f) : alpha;
   };
-  const double mean = m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, shown)
-                                         : double(shown(vec4(1)));
+  const double mean =
+      m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, shown) : double(shown(vec4(1)));
   return std::max(mean, kLeast);
 }
 

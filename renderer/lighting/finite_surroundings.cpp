@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lighting/finite_surroundings.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any strategy, with the probe on a surface at a finite distance.
 #pragma once
 

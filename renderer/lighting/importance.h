@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `importance`: directions in proportion to the probe's luminance (Pharr and Humphreys; HDRI book,
 // 9.6.3), exactly as bright as the bilinear radiance function has it.
 #pragma once

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lighting/light_file.h"
 
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "image/file.h"
-#include "math/error.h"
+#include "base/error.h"
+#include "base/file.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directional lights as files, for other programs.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "lighting/directional_light.h"
+#include "lighting/constellation/directional_light.h"
 #include "scene/light.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The probe's luminance as a density over its map, continuous as the radiance is.
 #pragma once
 

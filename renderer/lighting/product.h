@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `product`: directions in proportion to luminance times cosine, so that for a Lambertian surface
 // little but visibility is left to chance.
 #pragma once

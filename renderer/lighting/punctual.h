@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lights without extent of a scene: delta lights beside the probe.
 #pragma once
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lighting/strata.h"
 
 #include <algorithm>
 
-#include "math/hash.h"
+#include "base/hash.h"
 
 namespace chromeball {
 namespace {

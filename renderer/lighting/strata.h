@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // `kollig-keller-strata` without bias: one random direction in each region of the probe.
 #pragma once
 
-#include "lighting/kollig_keller.h"
+#include "lighting/constellation/kollig_keller.h"
 #include "lighting/luminance_field.h"
 #include "lighting/strategy.h"
 #include "math/cdf.h"

@@ -1,19 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table from names to strategies.
 #include <charconv>
 #include <functional>
 
+#include "base/error.h"
+#include "base/suggest.h"
 #include "lighting/bsdf_only.h"
-#include "lighting/constellations.h"
+#include "lighting/constellation/constellations.h"
 #include "lighting/delta_lights.h"
+#include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"
-#include "lighting/irradiance_fit.h"
 #include "lighting/product.h"
 #include "lighting/strata.h"
 #include "lighting/strategy.h"
 #include "lighting/suns.h"
 #include "lighting/uniform.h"
-#include "math/error.h"
-#include "math/suggest.h"
 
 namespace chromeball {
 namespace {

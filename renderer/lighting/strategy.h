@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The seam on which everything the user compares hangs: one way of turning a probe into light.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `suns`: concentrated sources sampled as discs of their own, the rest of the probe by importance
 // (HDRI book, 9.6.1).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `uniform`: directions uniform over the hemisphere of the normal, density 1 / 2 pi.
 #pragma once
 

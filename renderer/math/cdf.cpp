@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "math/cdf.h"
 
 #include <cassert>
@@ -5,9 +6,7 @@
 namespace chromeball {
 
 CdfRows::CdfRows(int rows, int columns)
-    : columns_(columns),
-      cdf_(size_t(rows) * (columns + 1)),
-      guide_(size_t(rows) * (kGuide + 1)) {}
+    : columns_(columns), cdf_(size_t(rows) * (columns + 1)), guide_(size_t(rows) * (kGuide + 1)) {}
 
 double CdfRows::setRow(int row, std::span<const double> weights) {
   assert(int(weights.size()) == columns_);

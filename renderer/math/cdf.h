@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sampling an index in proportion to tabulated weights.
 #pragma once
 
@@ -36,8 +37,8 @@ class CdfRows {
  private:
   static constexpr int kGuide = 256;
   int columns_;
-  std::vector<double> cdf_;        // rows x (columns + 1), each from 0 to 1
-  std::vector<int32_t> guide_;     // rows x (kGuide + 1): the column that holds k / kGuide
+  std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
+  std::vector<int32_t> guide_;  // rows x (kGuide + 1): the column that holds k / kGuide
 };
 
 }  // namespace chromeball

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The random numbers of one path. They depend on (pixel, sample, dimension, seed) only.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "math/hash.h"
+#include "base/hash.h"
 #include "math/sobol.h"
 #include "math/vec.h"
 
@@ -13,14 +14,14 @@ namespace chromeball {
 // Which dimensions a path uses for what. Blocks of eight keep every vertex's decisions in the same
 // two 4D groups of the table, however many numbers its material and light really take.
 namespace dimension {
-inline constexpr int kPixel = 0;    // 2: position in the pixel
-inline constexpr int kLens = 2;     // 2
-inline constexpr int kVertex = 4;   // first block
-inline constexpr int kLight = 0;    // 2: direction towards the probe
-inline constexpr int kBsdf = 2;     // 2: direction of the next ray
-inline constexpr int kLobe = 4;     // 1: which lobe
-inline constexpr int kRoulette = 5; // 1
-inline constexpr int kEmitter = 6;  // 2: which triangle and where on it
+inline constexpr int kPixel = 0;     // 2: position in the pixel
+inline constexpr int kLens = 2;      // 2
+inline constexpr int kVertex = 4;    // first block
+inline constexpr int kLight = 0;     // 2: direction towards the probe
+inline constexpr int kBsdf = 2;      // 2: direction of the next ray
+inline constexpr int kLobe = 4;      // 1: which lobe
+inline constexpr int kRoulette = 5;  // 1
+inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
 inline constexpr int kPerVertex = 8;
 }  // namespace dimension
 
@@ -47,9 +48,7 @@ class PixelSampler {
     base_ = 0;
   }
   // Dimensions asked for from here on are the vertex's.
-  void startVertex(int depth) {
-    base_ = dimension::kVertex + depth * dimension::kPerVertex;
-  }
+  void startVertex(int depth) { base_ = dimension::kVertex + depth * dimension::kPerVertex; }
 
   uint32_t bits(int d) const {
     d += base_;

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "math/sobol.h"
 
 #include <array>
 #include <cassert>
 
-#include "math/hash.h"
+#include "base/hash.h"
 
 namespace chromeball {
 namespace {
@@ -41,9 +42,9 @@ DirectionNumbers vanDerCorput() {
 }  // namespace
 
 uint32_t sobol(uint32_t index, int dimension) {
-  static const std::array<DirectionNumbers, 4> numbers{
-      vanDerCorput(), directionNumbers(1, 0, {1}), directionNumbers(2, 1, {1, 3}),
-      directionNumbers(3, 1, {1, 3, 1})};
+  static const std::array<DirectionNumbers, 4> numbers{vanDerCorput(), directionNumbers(1, 0, {1}),
+                                                       directionNumbers(2, 1, {1, 3}),
+                                                       directionNumbers(3, 1, {1, 3, 1})};
   uint32_t fraction = 0;
   for (int bit = 0; index; ++bit, index >>= 1)
     if (index & 1) fraction ^= numbers[dimension][bit];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owen-scrambled Sobol points, tabulated once for a render.
 #pragma once
 
@@ -25,7 +26,9 @@ class SobolTable {
 
   uint32_t size() const { return size_; }
   int dimensions() const { return dimensions_; }
-  const uint32_t* point(uint32_t index) const { return &fractions_[std::size_t(index) * dimensions_]; }
+  const uint32_t* point(uint32_t index) const {
+    return &fractions_[std::size_t(index) * dimensions_];
+  }
 
  private:
   uint32_t size_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Angles in turns (1 = 360 degrees), by polynomials. The C library's versions cost more than a
 // tenth of a render; these stay below 5e-8 turns (a texel of a 16k probe is 6e-5) and keep NaN.
 #pragma once
@@ -27,13 +28,13 @@ inline float atan2Turns(float y, float x) {
   const float q = high > 0 ? low / high : high;
   const float s = q * q;
   float turns =
-      q * (0.159154924f +
-           s * (-0.0530492275f +
-                s * (0.0317784067f +
-                     s * (-0.0222869285f +
-                          s * (0.0157067872f +
-                               s * (-0.00936304601f +
-                                    s * (0.00378478708f + s * -0.000725713434f)))))));
+      q *
+      (0.159154924f +
+       s * (-0.0530492275f +
+            s * (0.0317784067f +
+                 s * (-0.0222869285f +
+                      s * (0.0157067872f +
+                           s * (-0.00936304601f + s * (0.00378478708f + s * -0.000725713434f)))))));
   if (ay > ax) turns = 0.25f - turns;
   if (std::signbit(x)) turns = 0.5f - turns;
   return std::copysign(turns, y);

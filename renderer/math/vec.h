@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors, colours and the constants everything shares. Linear Rec. 709 throughout.
 //
 // std::max and std::min, not fmax and fmin: without -ffast-math those are calls.
@@ -21,9 +22,7 @@ inline constexpr float kInvPi = 1 / kPi;
 inline constexpr double kPiD = 3.14159265358979323846;
 
 inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-inline double luminance(const glm::dvec3& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
+inline double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 inline float maxComponent(const Rgb& c) { return std::max(c.x, std::max(c.y, c.z)); }
 inline bool isBlack(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool isFinite(const Rgb& c) {

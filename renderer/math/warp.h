@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warps from the unit square to directions and triangles, each beside its pdf and its inverse.
 // z is the pole of every hemisphere. Densities are over solid angle.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "measure/agreement.h"
 
 #include <boost/math/distributions/normal.hpp>

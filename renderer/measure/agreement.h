@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Do two unbiased ways of rendering give the same picture?
 #pragma once
 

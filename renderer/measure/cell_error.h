@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far repeated renders of one picture are from the truth: what is noise, what is bias, and how
 // surely that is known.
 #pragma once

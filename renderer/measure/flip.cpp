@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "measure/flip.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 namespace {

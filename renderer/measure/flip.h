@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How different two pictures look to someone who flips between them (Andersson et al. 2020, "FLIP:
 // A Difference Evaluator for Alternating Images"; for HDR, Andersson et al. 2021).
 #pragma once

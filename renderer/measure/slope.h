@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast an error falls: a straight line through logarithms.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "measure/statistics.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -45,8 +46,8 @@ ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double
   if (std::isinf(result.statistic) || std::isnan(result.statistic))
     result.pValue = 0;
   else if (result.degreesOfFreedom > 0)
-    result.pValue = cdf(complement(boost::math::chi_squared(result.degreesOfFreedom),
-                                   result.statistic));
+    result.pValue =
+        cdf(complement(boost::math::chi_squared(result.degreesOfFreedom), result.statistic));
   return result;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hypothesis tests: is this the distribution, is this the same number?
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Filling an image from a function of direction.
 #pragma once
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/convert.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "probe/bake.h"
 #include "probe/probe.h"
 

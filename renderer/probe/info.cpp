@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/info.h"
 
 #include <algorithm>
@@ -44,8 +45,7 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
   counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
   for (const size_t brightest : counts) {
     if (brightest > count) continue;
-    std::nth_element(order.begin(), order.begin() + (brightest - 1), order.end(),
-                     isBrighter);
+    std::nth_element(order.begin(), order.begin() + (brightest - 1), order.end(), isBrighter);
     double sum = 0;
     for (size_t i = 0; i < brightest; ++i) sum += flux[order[i]];
     shares.push_back({brightest, total > 0 ? sum / total : 0});

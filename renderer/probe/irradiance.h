@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Irradiance that a probe puts on surfaces of any orientation.
 #pragma once
 
@@ -17,8 +18,8 @@ namespace chromeball {
 // of the largest E. Uses all cores; the same bits for any number of them.
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals);
 
-// The same from nine spherical harmonics: fast, 1 to 10% off on real probes (spherical_harmonics.h),
-// and negative some 120 degrees away from suns.
+// The same from nine spherical harmonics: fast, 1 to 10% off on real probes
+// (spherical_harmonics.h), and negative some 120 degrees away from suns.
 std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> normals);
 
 // The directions of the texel centres of a lat-long map, row by row: the normals of a map of

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/load.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "image/read.h"
+#include "image/io/read.h"
 #include "probe/convert.h"
-#include "probe/guess.h"
+#include "probe/detect_mapping.h"
 
 namespace chromeball {
 namespace {
@@ -98,9 +99,10 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
                     path.string(), mappingName(probe.mapping), probe.fileWidth, probe.fileHeight,
                     probe.reason));
   if (probe.turned)
-    lines.push_back(fmt::format("{}: turned by 180 degrees, since its attribute `envmap` says that "
-                                "the centre looks along +Z",
-                                path.string()));
+    lines.push_back(
+        fmt::format("{}: turned by 180 degrees, since its attribute `envmap` says that "
+                    "the centre looks along +Z",
+                    path.string()));
   if (!probe.guessed && probe.mapping == Mapping::LatLong && probe.fileWidth == probe.fileHeight)
     lines.push_back(fmt::format(
         "{}: is square, and read as a lat-long map, which is twice as wide as high; is it "
@@ -119,14 +121,16 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
   constexpr float kGreatestHalf = 65504;
   if (probe.maximum == 0) return {fmt::format("{}: is black: it lights nothing", path.string())};
   if (probe.isScreenImage)
-    return {fmt::format("{}: holds integers, so light brighter than 1 was cut off when it was made; "
-                        "an .exr or .hdr keeps it",
-                        path.string())};
+    return {
+        fmt::format("{}: holds integers, so light brighter than 1 was cut off when it was made; "
+                    "an .exr or .hdr keeps it",
+                    path.string())};
   const bool atLimit = probe.maximum == 1 || probe.maximum == kGreatestHalf;
   if (atLimit && probe.shareAtMaximum >= kLeastPlateau && probe.shareAtMaximum <= kMostPlateau)
-    return {fmt::format("{}: {:.2g}% of its texels have the greatest value, {}: what was brighter "
-                        "was cut off",
-                        path.string(), 100 * probe.shareAtMaximum, probe.maximum)};
+    return {
+        fmt::format("{}: {:.2g}% of its texels have the greatest value, {}: what was brighter "
+                    "was cut off",
+                    path.string(), 100 * probe.shareAtMaximum, probe.maximum)};
   return {};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A probe's file as a lat-long map that is fit to render with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/mapping.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "math/error.h"
-#include "math/suggest.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace chromeball {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The omnidirectional mappings: direction to image and back. This is the only copy of each.
 #pragma once
 

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/probe.h"
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 

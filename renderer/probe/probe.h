@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light probe: one radiance function of direction, used by everything that looks at the probe.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Invalid texels: counted, located, and replaced, so that nothing behind this point meets one.
 #pragma once
 

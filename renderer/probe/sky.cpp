@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "probe/sky.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "math/error.h"
+#include "base/error.h"
 #include "probe/bake.h"
 #include "probe/solid_angle.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clear sky with its sun. Preetham, Shirley and Smits, "A Practical Analytic Model for
 // Daylight", SIGGRAPH 1999.
 #pragma once

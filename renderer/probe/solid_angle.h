@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solid angles of texels, in steradians.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spherical harmonics to order 2: nine coefficients a channel.
 #pragma once
 
@@ -23,10 +24,10 @@ ShCoefficients projectSh(const Image& latLong);
 
 // The irradiance of the function these are the coefficients of, on a surface with unit `normal`:
 // sum of A_l L_lm Y_lm(normal) with A_0 = pi, A_1 = 2 pi / 3, A_2 = pi / 4 (Ramamoorthi and
-// Hanrahan 2001, eq. 8). Bands above 2 hold less than 1% of the irradiance's energy (its square) over
-// all normals, which is not an error of 1%: of 21 maps of real places the mean absolute error is 1
-// to 10% of the mean irradiance, the largest 4 to 30%, and next to suns and lamps the sum can be
-// negative.
+// Hanrahan 2001, eq. 8). Bands above 2 hold less than 1% of the irradiance's energy (its square)
+// over all normals, which is not an error of 1%: of 21 maps of real places the mean absolute error
+// is 1 to 10% of the mean irradiance, the largest 4 to 30%, and next to suns and lamps the sum can
+// be negative.
 dvec3 shIrradiance(const ShCoefficients& radiance, const dvec3& normal);
 
 }  // namespace chromeball

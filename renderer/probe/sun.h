@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sun: a distant disc of even radiance.
 #pragma once
 

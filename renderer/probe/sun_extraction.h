@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Concentrated sources, taken out of a probe as discs of even radiance.
 #pragma once
 

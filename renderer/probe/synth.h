@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Probes made of formulas, for tests and for lighting without a photograph. All are lat-long.
 #pragma once
 

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/camera.h"
 
-#include "math/error.h"
+#include "base/error.h"
 #include "math/warp.h"
 
 namespace chromeball {

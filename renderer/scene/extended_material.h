@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the glTF material extensions add to metallic-roughness. A plain material has none of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parameters of a material's extensions at a point: factors x textures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A view of a scene that brings no camera of its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A view of a room from inside, for a scene that shows its back to whoever stands outside.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/lamp.h"
 
 #include "math/frame.h"
@@ -18,8 +19,9 @@ Mesh polygonOf(const DiscLamp& disc, const vec3& centre) {
   mesh.positions.push_back(centre);
   for (uint32_t i = 0; i < kDiscSides; ++i) {
     const double angle = turn * i;
-    mesh.positions.push_back(centre + frame.toWorld(vec3(float(circumradius * std::cos(angle)),
-                                                         float(circumradius * std::sin(angle)), 0)));
+    mesh.positions.push_back(centre +
+                             frame.toWorld(vec3(float(circumradius * std::cos(angle)),
+                                                float(circumradius * std::sin(angle)), 0)));
     mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kDiscSides});
   }
   return mesh;
@@ -51,8 +53,10 @@ void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
   }
   scene.materials.push_back(shining(*lamp.disc, lamp.name));
   scene.meshes.push_back(polygonOf(*lamp.disc, moved(lamp.disc->position, origin)));
-  scene.instances.push_back({int(scene.meshes.size()) - 1, int(scene.materials.size()) - 1,
-                             int(scene.nodeNames.size()), {}});
+  scene.instances.push_back({int(scene.meshes.size()) - 1,
+                             int(scene.materials.size()) - 1,
+                             int(scene.nodeNames.size()),
+                             {}});
   if (!scene.nodeParents.empty()) scene.nodeParents.resize(scene.nodeNames.size() + 1, -1);
   scene.nodeNames.push_back(lamp.name);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lamps that a scene file adds to its models.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights that are no part of a model's surfaces, and the units that files state them in.
 #pragma once
 

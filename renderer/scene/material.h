@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF 2.0 metallic-roughness material, as the file states it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Work on a mesh's vertex arrays: mending what files leave out or state badly.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tangents for meshes that come without. Like MikkTSpace, a vertex's tangent is the mean of dP/du
 // over its triangles, each projected onto the plane of the vertex normal, made unit and weighted by
 // the triangle's angle there; and triangles of opposite handedness do not mix. Unlike MikkTSpace,

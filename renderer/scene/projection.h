@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture thrown from a camera onto the surfaces that it sees.
 #pragma once
 

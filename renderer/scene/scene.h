@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene as the tracer wants it: meshes, where they stand, what they are made of.
 #pragma once
 
@@ -57,7 +58,7 @@ struct Scene {
   std::optional<Image> environment;  // the model's own light probe: lat-long, fit to render with
   std::vector<std::string> nodeNames;
   std::vector<std::string> notes;  // "FILE: ...": what a viewer may like to know
-  std::vector<int> nodeParents;  // by node, -1 for none; or empty, where no node has one
+  std::vector<int> nodeParents;    // by node, -1 for none; or empty, where no node has one
   std::vector<std::string> files;  // that it comes from: models, their buffers and images
 
   size_t triangleCount() const;  // instanced triangles count once per instance

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray finds where it hits: geometry, normals, and the material's parameters at that point.
 #pragma once
 

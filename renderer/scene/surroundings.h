@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surroundings at a finite distance: the surface that a probe is mapped onto (HDRI book, 9.2.3).
 #pragma once
 

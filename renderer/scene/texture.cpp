@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/texture.h"
 
 namespace chromeball {
@@ -125,8 +126,8 @@ vec4 Texture::trilinear(vec2 uv, float texels, const Fetch& fetch) const {
   const size_t last = smaller->size();
   if (!(level < float(last))) return bilinear(smaller->back(), uv, fetch);
   const size_t below = size_t(level);
-  const vec4 finer = below == 0 ? nearestOrBilinear(uv, fetch)
-                                : bilinear((*smaller)[below - 1], uv, fetch);
+  const vec4 finer =
+      below == 0 ? nearestOrBilinear(uv, fetch) : bilinear((*smaller)[below - 1], uv, fetch);
   return glm::mix(finer, bilinear((*smaller)[below], uv, fetch), level - float(below));
 }
 

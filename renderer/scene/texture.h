@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A 2D texture: texels as the file stored them (8 bits stay 8 bits), decoded when looked up.
 #pragma once
 

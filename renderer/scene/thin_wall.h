@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smooth sheets without thickness (KHR_materials_transmission): light passes them in a straight
 // line, so that shadow rays need not stop there.
 #pragma once

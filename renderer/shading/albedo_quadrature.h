@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the tables of albedo have in common: where their nodes are, and the integral at a node.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "math/hash.h"
+#include "base/hash.h"
 #include "math/sobol.h"
 #include "shading/energy_table.h"
 #include "shading/ggx.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much light brushed metal reflects in one bounce: EnergyTable's sister for anisotropic GGX.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Metallic-roughness with grooves (KHR_materials_anisotropy).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a surface scatters light: eval, sample and pdf over the lobes its material really has.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The smooth boundary between two dielectrics. `eta`: the index of refraction on the far side over
 // the one on the near side, where the light is seen from.
 #pragma once

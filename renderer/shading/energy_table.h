@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much light a rough specular surface reflects in one bounce: what energy compensation needs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shading/extended_bsdf.h"
 
 #include "scene/thin_wall.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The BSDF of a material with extensions: layers and lobes beside metallic-roughness.
 #pragma once
 

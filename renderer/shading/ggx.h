@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GGX microfacet distribution (Walter et al. 2007) in the frame of the normal, +z.
 #pragma once
 

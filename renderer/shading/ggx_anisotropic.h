@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GGX stretched along the tangent, +x: as ggx.h, with a width for each of x and y.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shading/glass.h"
 
 #include "math/warp.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The boundary of a transmissive body: what is not reflected is refracted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shading/glass_table.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much light a rough boundary between dielectrics scatters in one bounce: what Glass's energy
 // compensation needs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shading normals that keep out of trouble with the geometry.
 #pragma once
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shading/sheen.h"
 
 #include <tbb/parallel_for.h>
 
-#include "math/hash.h"
+#include "base/hash.h"
 #include "math/sobol.h"
 #include "math/warp.h"
 

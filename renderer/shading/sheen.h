@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sheen of cloth (KHR_materials_sheen): fibres that stand up from the surface.
 #pragma once
 

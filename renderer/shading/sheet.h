@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sheet without thickness lets through: KHR_materials_transmission without a volume.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shading/thin_film.h"
 
 #include "shading/dielectric.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Interference in a thin film on a surface (KHR_materials_iridescence).
 #pragma once
 

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "trace/accel.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 
-#include "math/error.h"
-#include "math/hash.h"
+#include "base/error.h"
+#include "base/hash.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
 #include "trace/edge.h"

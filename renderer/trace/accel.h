@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which surface a ray meets first, and whether one stands in its way.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays that meet a triangle so close to its edge that rounding decides which side of it they pass.
 #pragma once
 

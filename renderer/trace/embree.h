@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one place that knows which Embree this is: 3.13 or 4.
 #pragma once
 

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "trace/room.h"
 
-#include "math/error.h"
+#include "base/error.h"
 #include "scene/surface.h"
 
 namespace chromeball {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the fuzz targets share: the readers take files, the fuzzer gives bytes.
 #pragma once
 
@@ -10,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "math/error.h"
+#include "base/error.h"
 
 namespace chromeball {
 
@@ -37,8 +38,8 @@ inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string
   return path;
 }
 
-// Whatever is wrong with the input must come out as an InputError of one line; anything else that is
-// thrown ends the fuzzer.
+// Whatever is wrong with the input must come out as an InputError of one line; anything else that
+// is thrown ends the fuzzer.
 template <class Read>
 int readOrRefuse(const Read& read) {
   try {

@@ -1,4 +1,5 @@
-#include "scene/gltf.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/gltf.h"
 
 #include "fuzz.h"
 #include "scene/surface.h"

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every image reader (the first bytes choose which) by the way of a model's textures and by that of
 // pictures, the layers of an EXR, and what makes a probe of the colour.
 #include "fuzz.h"
-#include "image/decode.h"
-#include "image/read.h"
+#include "image/io/decode.h"
+#include "image/io/read.h"
 #include "probe/load.h"
 #include "probe/probe.h"
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `compare` and `image` read of renders: the layers, colour and metadata of an EXR of any
 // compression, in rows or tiles.
 #include <algorithm>
 #include <vector>
 
 #include "fuzz.h"
-#include "image/read.h"
+#include "image/io/read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;

@@ -1,4 +1,5 @@
-#include "scene/scene_file.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "job/scene_file.h"
 
 #include "fuzz.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The demo's light probe: a lake among hills at dusk, all of it painted.
 #pragma once
 

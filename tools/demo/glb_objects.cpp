@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "glb_objects.h"
 
 #include <filesystem>
 #include <numeric>
 #include <set>
 
-#include "image/write.h"
+#include "image/io/write.h"
 
 namespace chromeball::demo {
 namespace {

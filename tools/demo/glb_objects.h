@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named surfaces with simple materials, as a .glb.
 #pragma once
 

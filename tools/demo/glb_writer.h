@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes binary glTF 2.0: a JSON chunk and one buffer.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "image/file.h"
+#include "base/file.h"
 
 namespace chromeball::demo {
 

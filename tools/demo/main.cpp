@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // make_demo still-life|lambertian|conductors|glass OUT.glb
 // make_demo terrace|terrace-photograph|terrace-whole OUT.glb
 // make_demo dusk|noon OUT.exr
 #include <iostream>
 
+#include "base/error.h"
 #include "dusk.h"
-#include "image/write.h"
-#include "math/error.h"
+#include "image/io/write.h"
 #include "still_life.h"
 #include "terrace.h"
 

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smooth noise for what the demo paints: wood and clouds.
 #pragma once
 
-#include "math/hash.h"
+#include "base/hash.h"
 #include "math/vec.h"
 
 namespace chromeball {

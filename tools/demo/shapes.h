@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surfaces that the demo's still life is made of.
 #pragma once
 

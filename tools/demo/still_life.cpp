@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "still_life.h"
 
 #include "glb_objects.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The demo's model: six objects on a round table.
 #pragma once
 

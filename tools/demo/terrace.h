@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The composite's demo: a terrace with a wall, two pillars and a vase, and what is put there.
 #pragma once
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ways a run can end before its time. The command turns each into one line and an exit status.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace chromeball {
+
+// The user's input is wrong: arguments, scene, model, probe (exit status 2). The message reads
+// "FILE[:LINE]: what is wrong, and what would be right".
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Something failed while running, a full disk say (exit status 1).
+struct RunError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The user stopped the run, and what was to be saved is saved (exit status 130).
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+template <class... Args>
+[[noreturn]] void throwInput(fmt::format_string<Args...> format, Args&&... args) {
+  throw InputError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <class... Args>
+[[noreturn]] void throwRun(fmt::format_string<Args...> format, Args&&... args) {
+  throw RunError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace chromeball

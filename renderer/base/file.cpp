@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+namespace fs = std::filesystem;
+
+void checkReadable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throwInput("{}: no such file", path.string());
+  if (!fs::is_regular_file(status)) throwInput("{}: not a regular file", path.string());
+  if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", path.string(), std::strerror(errno));
+}
+
+std::vector<uint8_t> readFile(const fs::path& path) {
+  checkReadable(path);
+  std::vector<uint8_t> bytes(fs::file_size(path));
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
+    throwInput("{}: cannot be read to its end", path.string());
+  return bytes;
+}
+
+void checkReplaceable(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!fs::is_directory(folder))
+    throwInput("{}: there is no folder {}", path.string(), folder.string());
+  if (fs::is_directory(path)) throwRun("{}: cannot be written: is a folder", path.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    throwRun("{}: nothing can be written into {}: {}", path.string(), folder.string(),
+             std::strerror(errno));
+}
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
+  // The process number keeps two runs that write the same target apart.
+  temporary_.replace_filename(
+      fmt::format(".{}.{}.part", target_.filename().string(), static_cast<long>(getpid())));
+}
+
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) throwRun("{}: cannot be written: {}", target_.string(), error.message());
+  temporary_.clear();
+}
+
+void writeFile(const fs::path& path, std::span<const uint8_t> bytes) {
+  AtomicFile file(path);
+  std::ofstream out(file.temporary(), std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  out.close();
+  if (!out) throwRun("{}: cannot be written: {}", path.string(), std::strerror(errno));
+  file.commit();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/exr_header.h"
+
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "image/limits.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Bytes = std::vector<char>;
+
+// How long the content of each type is.
+const std::map<std::string, size_t> kLengths = {
+    {"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},
+    {"float", 4},       {"int", 4},      {"keycode", 28},
+    {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+    {"m44d", 128},      {"m44f", 64},    {"rational", 8},
+    {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
+    {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
+    {"v3f", 12},        {"v3i", 12},     {"deepImageState", 1}};
+
+// Each channel is a name that ends with 0, and 16 bytes; an empty name ends the list. 0 where the
+// list does not end with its attribute.
+int64_t channelsIn(const Bytes& list) {
+  int64_t channels = 0;
+  size_t at = 0;
+  for (; at < list.size() && list[at] != 0; ++channels)
+    at += strnlen(list.data() + at, list.size() - at) + 1 + 16;
+  return at + 1 == list.size() ? channels : 0;
+}
+
+// Texts, each behind its length.
+bool isTexts(const Bytes& list) {
+  size_t at = 0;
+  while (list.size() - at >= sizeof(uint32_t)) {
+    uint32_t length;
+    std::memcpy(&length, list.data() + at, sizeof(length));
+    at += sizeof(length);
+    if (length > list.size() - at) return false;
+    at += length;
+  }
+  return at == list.size();
+}
+
+// What the library reads of an attribute depends on the type, not on the length that the file
+// states. Only where both agree does the walk below see the attributes that the library will see.
+bool hasLengthOfType(const std::string& type, const Bytes& content) {
+  if (const auto found = kLengths.find(type); found != kLengths.end())
+    return content.size() == found->second;
+  if (type == "chlist") return channelsIn(content) > 0;
+  if (type == "stringvector") return isTexts(content);
+  if (type == "floatvector") return content.size() % sizeof(float) == 0;
+  return true;
+}
+
+// OpenEXR allocates what an attribute says is its length, and buffers for whole rows of blocks, as
+// soon as it opens a file: gigabytes for a file of 400 bytes.
+class ExrHeaders {
+ public:
+  explicit ExrHeaders(const fs::path& path)
+      : path_(path), in_(path, std::ios::binary), left_(int64_t(fs::file_size(path))) {}
+
+  void check() {
+    constexpr uint32_t kMultiPart = 0x1000;
+    number<uint32_t>();  // magic
+    const bool multiPart = number<uint32_t>() & kMultiPart;
+    do checkPart();
+    while (multiPart && in_.peek() != 0 && left_ > 0);
+  }
+
+ private:
+  void checkPart() {
+    int64_t width = 1, height = 1, channels = 1;
+    for (std::string name = word(); !name.empty(); name = word()) {
+      const std::string type = word();
+      const Bytes content = bytes(number<int32_t>());
+      if (!hasLengthOfType(type, content))
+        throwInput("{}: cannot be read: its header holds a {} of {} bytes", path_.string(),
+                   kLengths.contains(type) ? type : "list", content.size());
+      if (type == "box2i" && name == "dataWindow") {
+        int32_t box[4];  // the first and the last column and row
+        std::memcpy(box, content.data(), sizeof(box));
+        width = int64_t(box[2]) - box[0] + 1;
+        height = int64_t(box[3]) - box[1] + 1;
+      } else if (type == "tiledesc") {
+        uint32_t tile[2];
+        std::memcpy(tile, content.data(), sizeof(tile));
+        checkSide(tile[0]);
+        checkSide(tile[1]);
+        checkImageSize(path_, tile[0], tile[1], channels);
+      } else if (type == "chlist") {
+        channels = channelsIn(content);
+      }
+    }
+    checkImageSize(path_, width, height, channels);
+    checkSide(width);
+  }
+
+  void checkSide(int64_t side) const {
+    constexpr int64_t kMaxSide = 1 << 17;  // a row of blocks is at most 256 texels high
+    if (side > kMaxSide)
+      throwInput("{}: {} texels in a row are more than {}", path_.string(), side, kMaxSide);
+  }
+
+  Bytes bytes(int64_t count) {
+    if (count < 0 || count > left_)
+      throwInput("{}: cannot be read: its header names more bytes than the file has",
+                 path_.string());
+    left_ -= count;
+    Bytes content(count);
+    if (!in_.read(content.data(), count))
+      throwInput("{}: cannot be read to its end", path_.string());
+    return content;
+  }
+
+  template <class Number>
+  Number number() {
+    Number n;
+    std::memcpy(&n, bytes(sizeof(n)).data(), sizeof(n));
+    return n;
+  }
+
+  std::string word() {
+    constexpr size_t kMaxLength = 255;
+    std::string text;
+    for (char c = bytes(1)[0]; c != 0; c = bytes(1)[0]) {
+      text += c;
+      if (text.size() > kMaxLength)
+        throwInput("{}: cannot be read: a name in its header does not end", path_.string());
+    }
+    return text;
+  }
+
+  fs::path path_;
+  std::ifstream in_;
+  int64_t left_;
+};
+
+}  // namespace
+
+void checkExrHeaders(const fs::path& path) { ExrHeaders(path).check(); }
+
+}  // namespace chromeball

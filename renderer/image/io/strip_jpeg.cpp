@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// JPEG (ITU-T T.81, annex B): markers, most with a segment of a stated length behind them, up to
+// the first start of scan.
+#include <algorithm>
+
+#include "image/io/strip_metadata.h"
+#include "image/limits.h"
+
+namespace chromeball {
+namespace {
+
+enum Marker : uint8_t {
+  kTem = 0x01,
+  kSof0 = 0xc0,
+  kDht = 0xc4,
+  kJpg = 0xc8,
+  kDac = 0xcc,
+  kSof15 = 0xcf,
+  kRst0 = 0xd0,
+  kSoi = 0xd8,
+  kEoi = 0xd9,
+  kSos = 0xda,
+  kApp0 = 0xe0,   // JFIF
+  kApp14 = 0xee,  // Adobe: whether colour is YCbCr, RGB, CMYK or YCCK
+  kApp15 = 0xef,
+  kCom = 0xfe
+};
+
+bool isFrame(uint8_t marker) {
+  return marker >= kSof0 && marker <= kSof15 && marker != kDht && marker != kJpg && marker != kDac;
+}
+
+bool isMetadata(uint8_t marker) {
+  return marker == kCom || (marker > kApp0 && marker <= kApp15 && marker != kApp14);
+}
+
+bool standsAlone(uint8_t marker) { return marker == kTem || (marker >= kRst0 && marker <= kSoi); }
+
+int bigEndian16(const uint8_t* bytes) { return bytes[0] << 8 | bytes[1]; }
+
+// The next marker's byte, past anything between segments, as libjpeg finds it; `at` is then behind
+// it. 0 at the end.
+uint8_t nextMarker(std::span<const uint8_t> file, size_t& at) {
+  for (; at + 1 < file.size(); ++at)
+    if (file[at] == 0xff && file[at + 1] != 0xff && file[at + 1] != 0) {
+      at += 2;
+      return file[at - 1];
+    }
+  return 0;
+}
+
+// `at` is behind a marker.
+size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
+  if (standsAlone(marker) || marker == kEoi) return at;
+  if (file.size() - at < 2) return file.size();
+  return std::min(at + size_t(std::max(bigEndian16(&file[at]), 2)), file.size());
+}
+
+// `at` is where the first scan begins. In coded data, 0xff is followed by 0 or a restart marker.
+void checkScans(std::span<const uint8_t> file, size_t at, const std::string& name) {
+  int count = 0;
+  for (uint8_t marker; (marker = nextMarker(file, at)) && marker != kEoi;) {
+    if (marker == kSos && ++count > kMostJpegScans)
+      throwInput("{}: more than {} scans: hostile", name, kMostJpegScans);
+    at = endOfSegment(file, at, marker);
+  }
+}
+
+void readFrame(std::span<const uint8_t> segment, size_t fileBytes, const std::string& name,
+               BareJpeg& jpeg) {
+  if (segment.size() < 8) return;  // length, precision, height, width, components
+  jpeg.height = bigEndian16(&segment[3]);
+  jpeg.width = bigEndian16(&segment[5]);
+  jpeg.components = segment[7];
+  if (uint64_t(jpeg.width) * uint64_t(jpeg.height) > fileBytes * kMostTexelsPerJpegByte)
+    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
+               jpeg.width, jpeg.height, fileBytes);
+}
+
+}  // namespace
+
+BareJpeg bareJpeg(std::span<const uint8_t> file, const std::string& name) {
+  BareJpeg jpeg;
+  jpeg.file.reserve(file.size());
+  const auto keep = [&](size_t begin, size_t end) {
+    jpeg.file.insert(jpeg.file.end(), file.begin() + std::ptrdiff_t(begin),
+                     file.begin() + std::ptrdiff_t(end));
+  };
+  size_t at = 0;
+  while (const uint8_t marker = nextMarker(file, at)) {
+    const size_t begin = at - 2;
+    if (marker == kSos || marker == kEoi) {
+      checkScans(file, begin, name);
+      keep(begin, file.size());
+      break;
+    }
+    at = endOfSegment(file, at, marker);
+    if (isFrame(marker))
+      readFrame(file.subspan(begin + 2, at - begin - 2), file.size(), name, jpeg);
+    if (!isMetadata(marker)) keep(begin, at);
+  }
+  if (jpeg.components == 0) throwInput("{}: damaged image: no frame header", name);
+  return jpeg;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_description.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "base/hash.h"
+#include "job/file_hash.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Options that leave the picture's radiance as it is. `time` and `noise` have rows of other names,
+// since a header has the noise that was reached.
+constexpr std::array kNotOfThePicture = {"help",  "output",  "stats",   "progress",
+                                         "quiet", "threads", "memory",  "samples",
+                                         "time",  "noise",   "tonemap", "exposure"};
+// Options of `compare` that choose what is compared; each render says its own.
+constexpr std::array kOfTheStudy = {"strategies",        "times",    "repeats",
+                                    "reference",         "baseline", "reference-samples",
+                                    "reference-strategy"};
+// Rows of a description that are the same picture's under other names, or that a study varies.
+constexpr std::array kNotOfTheIdentity = {"scene",    "probe",       "files",
+                                          "strategy", "noise-limit", "time-limit"};
+
+template <size_t N>
+bool isAmong(const std::array<const char*, N>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+const char* nameOf(Mis mis) {
+  return mis == Mis::Off ? "off" : mis == Mis::Balance ? "balance" : "power";
+}
+
+const char* nameOf(SingleSided singleSided) {
+  return singleSided == SingleSided::Camera  ? "camera"
+         : singleSided == SingleSided::Light ? "light"
+                                             : "off";
+}
+
+// Row vectors: the numbers of a row are the image of a unit vector, those of the last row that of
+// the origin.
+Json rows(const glm::dmat4& matrix) {
+  Json numbers = Json::array();
+  for (int column = 0; column < 4; ++column)  // of glm's, which is for column vectors
+    for (int row = 0; row < 4; ++row) numbers.push_back(float(matrix[column][row]));
+  return numbers;
+}
+
+glm::dmat4 worldToCamera(const Camera& camera, const glm::dvec3& position) {
+  const glm::dmat4 toWorld(glm::dvec4(camera.right, 0), glm::dvec4(camera.up, 0),
+                           glm::dvec4(-camera.back, 0), glm::dvec4(position, 1));
+  return glm::inverse(toWorld);
+}
+
+// The point (x, y, z) of camera space is seen at u = 1/2 + x / (2 a h z), v = 1/2 - y / (2 h z)
+// with h half the picture's height at distance 1 and a its aspect ratio; the third number grows
+// with z.
+glm::dmat4 cameraToNdc(const Camera& camera, double aspect) {
+  const double h = camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
+  glm::dmat4 m(0);
+  m[0][0] = 0.5 / (aspect * h);
+  m[1][1] = -0.5 / h;
+  if (camera.orthographic) {
+    m[2][2] = 1;
+    m[3] = glm::dvec4(0.5, 0.5, 0, 1);
+  } else {
+    m[2] = glm::dvec4(0.5, 0.5, 1, 1);
+    m[3][2] = -1e-3;  // depth 1 - 0.001 / z
+  }
+  return m;
+}
+
+void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, Json& d) {
+  const Camera& camera = loaded.camera;
+  const glm::dvec3 position = glm::dvec3(camera.position) + loaded.origin;
+  const glm::dmat4 toCamera = worldToCamera(camera, position);
+  d["cameraPosition"] = {position.x, position.y, position.z};
+  d["cameraFov"] = camera.orthographic ? 0 : glm::degrees(camera.fov);
+  if (camera.lensRadius > 0) {
+    d["lensRadius"] = camera.lensRadius;
+    d["focus"] = camera.focus;
+  }
+  d["worldToCamera"] = rows(toCamera);
+  d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
+}
+
+void describeProbe(const RenderJob& job, const LoadedScene& loaded, Json& d) {
+  const SceneFile& file = job.file;
+  d["probe"] = *file.probe;
+  d["probe-mapping"] = file.probeMapping ? file.probeMapping->name : "auto";
+  d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
+}
+
+}  // namespace
+
+Json describeJob(const RenderOptions& options, const RenderJob& job, const LoadedScene& loaded) {
+  const SceneFile& file = job.file;
+  const RenderSettings& s = job.settings;
+  Json d = {{"scene", options.scene}};
+  if (file.probe) describeProbe(job, loaded, d);
+  d["probe-rotation"] = file.probeRotation.value_or(0);
+  d["probe-scale"] = file.probeScale.value_or(1);
+  d["size"] = fmt::format("{}x{}", s.width, s.height);
+  if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
+  d["strategy"] = resolveStrategy(job.strategy.name);
+  d["mis"] = nameOf(s.mis);
+  d["max-depth"] = s.maxDepth;
+  d["max-transmission-depth"] = s.maxTransmissionDepth;
+  d["single-sided"] = nameOf(job.singleSided);
+  d["lights"] = file.modelLights.value_or(1);
+  d["light-units"] = file.lightUnits ? file.lightUnits->name : "photometric";
+  d["seed"] = s.seed;
+  if (s.clamp) d["clamp"] = *s.clamp;
+  for (const auto& [name, text] : options.given)
+    if (!d.contains(name) && !isAmong(kNotOfThePicture, name) && !isAmong(kOfTheStudy, name))
+      d[name] = text;
+  d["files"] = loaded.files;
+  if (file.noiseLimit) d["noise-limit"] = 100 * *file.noiseLimit;
+  if (file.timeLimit) d["time-limit"] = *file.timeLimit;
+  describeCamera(s, loaded, d);
+  return d;
+}
+
+Metadata toMetadata(const Json& description) {
+  Metadata metadata;
+  for (const auto& [name, value] : description.items()) {
+    if (value.is_string())
+      metadata[name] = value.get<std::string>();
+    else if (value.is_number_float())
+      metadata[name] = value.get<float>();
+    else if (value.is_number() && value <= INT32_MAX && name != "seed")  // a seed has 64 bits
+      metadata[name] = value.get<int>();
+    else if (value.is_array() && value.size() == std::tuple_size_v<Matrix44>)
+      metadata[name] = value.get<Matrix44>();
+    else
+      metadata[name] = value.dump();
+  }
+  return metadata;
+}
+
+std::string identityOf(const RenderOptions& options, const RenderJob& job,
+                       const LoadedScene& loaded) {
+  Json identity = describeJob(options, job, loaded);
+  for (const char* name : kNotOfTheIdentity) identity.erase(name);
+  identity["threads"] =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  identity["contents of scene"] = fingerprint(options.scene);
+  for (const std::string& file : loaded.files) {
+    const std::string row = "contents of " + std::filesystem::path(file).filename().string();
+    identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
+  }
+  return identity.dump();
+}
+
+std::string differenceOf(const std::string& stored, const std::string& own) {
+  const Json was = Json::parse(stored, nullptr, false), is = Json::parse(own);
+  if (!was.is_object()) return "it was made by another version";
+  Json names = was;
+  names.update(is);
+  for (const auto& [name, ignored] : names.items()) {
+    if (was.value(name, Json()) == is.value(name, Json())) continue;
+    if (name.starts_with("contents of")) return fmt::format("the {} changed", name);
+    const auto text = [&](const Json& identity) {
+      if (!identity.contains(name)) return std::string("not given");
+      const Json& value = identity.at(name);
+      return value.is_string() ? value.get<std::string>() : value.dump();
+    };
+    return fmt::format("`{}` was {} and is {}", name, text(was), text(is));
+  }
+  return "it is the same";
+}
+
+}  // namespace chromeball

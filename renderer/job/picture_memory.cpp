@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/picture_memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace chromeball {
+
+double pictureBytes(const RenderSettings& settings) {
+  double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
+  for (Aov aov : settings.aovs) {
+    const double channels = std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
+    sums += channels * sizeof(double);
+    texels += channels * sizeof(float);
+  }
+  // Estimating the noise takes three fields of errors, two of luminances and the variance; later
+  // the layers stand beside the file's texels.
+  constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
+  const double most = std::max(kNoise, 2 * texels);
+  return double(settings.width) * settings.height * (double(Film::bytesPerPixel()) + sums + most);
+}
+
+double memoryBudget() {
+  double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    memory = std::min(memory, double(limit.rlim_cur));
+  return 0.8 * memory;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights infinitely far away: what a constellation, a fit or an extracted sun consists of.
+#pragma once
+
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+struct DirectionalLight {
+  vec3 direction;   // unit, from the scene to the light
+  Rgb irradiance;   // on a surface that faces it, W/m^2
+  float angle = 0;  // angular diameter, degrees; 0: a delta light
+};
+
+using Constellation = std::vector<DirectionalLight>;
+
+}  // namespace chromeball

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/constellation/kollig_keller.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+#include "lighting/constellation/spherical_kmeans.h"
+#include "probe/mapping.h"
+#include "probe/solid_angle.h"
+
+namespace chromeball {
+namespace {
+
+// Of the objective, while lights are being added: a thousandth is far less than a light is worth.
+constexpr double kTolerance = 1e-3;
+
+SphericalKMeans cluster(const TexelTable& table, int count) {
+  SphericalKMeans kMeans(table);
+  count = std::min(count, kMeans.litCells());
+  for (int i = 0; i < count; ++i) {
+    kMeans.addCentreAtWorst();
+    kMeans.converge(kTolerance);
+  }
+  kMeans.converge(0);
+  return kMeans;
+}
+
+// Uniform over the texel's solid angle.
+dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
+  const double top = std::cos(kPiD * y / latLong.height);
+  const double bottom = std::cos(kPiD * (y + 1) / latLong.height);
+  const double cosTheta = top + random.y * (bottom - top);
+  return *uvToDirection(Mapping::LatLong,
+                        {(x + random.x) / latLong.width, std::acos(cosTheta) / kPiD});
+}
+
+template <class Visit>
+void forEachTexel(const Image& latLong, const Partition& partition, Visit visit) {
+  if (partition.regions == 0) return;
+  for (int y = 0; y < latLong.height; ++y) {
+    const double solidAngle = texelSolidAngle(y, latLong.width, latLong.height);
+    for (int x = 0; x < latLong.width; ++x)
+      visit(x, y, partition.label[size_t(y) * latLong.width + x],
+            dvec3(latLong.rgb(x, y)) * solidAngle);
+  }
+}
+
+}  // namespace
+
+Constellation kolligKeller(const TexelTable& table, int count) {
+  return cluster(table, count).lights();
+}
+
+Partition kolligKellerRegions(const Image& latLong, int count) {
+  const TexelTable table(latLong, kCoarseCells);
+  const SphericalKMeans kMeans = cluster(table, count);
+  Partition partition{kMeans.centres(), {}};
+  if (partition.regions == 0) return partition;
+  const std::vector<int> cellLabels = kMeans.labels();
+  partition.label.reserve(size_t(latLong.width) * latLong.height);
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      partition.label.push_back(uint16_t(cellLabels[table.cellOfTexel(x, y)]));
+  return partition;
+}
+
+Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed) {
+  const Partition partition = kolligKellerRegions(latLong, count);
+  std::vector<dvec3> power(partition.regions, dvec3(0));
+  std::vector<double> weight(partition.regions), running(partition.regions);
+  forEachTexel(latLong, partition, [&](int, int, int region, const dvec3& texelPower) {
+    power[region] += texelPower;
+    weight[region] += luminance(texelPower);
+  });
+
+  // The texel in which the running sum passes a random share of the region's weight.
+  Constellation lights(partition.regions);
+  forEachTexel(latLong, partition, [&](int x, int y, int region, const dvec3& texelPower) {
+    const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };
+    const double target = random(0) * weight[region], before = running[region];
+    running[region] += luminance(texelPower);
+    if (before <= target && running[region] > target)
+      lights[region] =
+          makeLight(pointInTexel(latLong, x, y, {random(1), random(2)}), power[region]);
+  });
+  return lights;
+}
+
+}  // namespace chromeball

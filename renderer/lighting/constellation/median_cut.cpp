@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/constellation/median_cut.h"
+
+namespace chromeball {
+namespace {
+
+// The line in (low, high) nearest to half of `whole`, where weightBelow(line) is the energy on the
+// near side. high - low >= 2.
+template <class WeightBelow>
+int halfway(int low, int high, double whole, WeightBelow weightBelow) {
+  const double half = 0.5 * whole;
+  int before = low + 1, after = high - 1;  // the last known below half, and a line after it
+  while (after - before > 1) {
+    const int middle = (before + after) / 2;
+    (weightBelow(middle) <= half ? before : after) = middle;
+  }
+  return half - weightBelow(before) <= weightBelow(after) - half ? before : after;
+}
+
+bool isWide(const TexelTable& texels, const Region& r) {
+  if (r.x1 - r.x0 < 2 || r.y1 - r.y0 < 2) return r.x1 - r.x0 >= 2;
+  const dvec2 first = texels.uv(r.x0, r.y0), last = texels.uv(r.x1, r.y1);
+  const double cosLatitude = std::sin(kPiD * 0.5 * (first.y + last.y));
+  return 2 * (last.x - first.x) * cosLatitude > last.y - first.y;
+}
+
+std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
+  const double whole = table.moment(r).w;
+  if (isWide(table.texels(), r))
+    return cutAtColumn(r, halfway(r.x0, r.x1, whole, [&](int x) {
+                         return table.moment({r.x0, r.y0, x, r.y1}).w;
+                       }));
+  return cutAtRow(r, halfway(r.y0, r.y1, whole, [&](int y) {
+                    return table.moment({r.x0, r.y0, r.x1, y}).w;
+                  }));
+}
+
+}  // namespace
+
+std::vector<Region> medianCutRegions(const RegionTable& table, int count) {
+  return subdivide(
+      table, count, [&](const Region& r) { return table.moment(r).w; },
+      [&](const Region& r) { return cut(table, r); });
+}
+
+Constellation medianCut(const RegionTable& table, int count) {
+  return table.lights(medianCutRegions(table, count));
+}
+
+}  // namespace chromeball

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/constellation/variance_cut.h"
+
+#include <limits>
+
+namespace chromeball {
+namespace {
+
+double variance(const dvec4& moment) {
+  const dvec3 m(moment);
+  return moment.w > 0 ? std::fmax(moment.w - glm::dot(m, m) / moment.w, 0.0) : 0;
+}
+
+std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
+  const dvec4 whole = table.moment(r);
+  std::pair<Region, Region> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto attempt = [&](const std::pair<Region, Region>& parts) {
+    const dvec4 first = table.moment(parts.first);
+    const double left = variance(first) + variance(whole - first);
+    if (left < least) least = left, best = parts;
+  };
+  for (int x = r.x0 + 1; x < r.x1; ++x) attempt(cutAtColumn(r, x));
+  for (int y = r.y0 + 1; y < r.y1; ++y) attempt(cutAtRow(r, y));
+  return best;
+}
+
+}  // namespace
+
+std::vector<Region> varianceCutRegions(const RegionTable& table, int count) {
+  return subdivide(
+      table, count, [&](const Region& r) { return variance(table.moment(r)); },
+      [&](const Region& r) { return cut(table, r); });
+}
+
+Constellation varianceCut(const RegionTable& table, int count) {
+  return table.lights(varianceCutRegions(table, count));
+}
+
+}  // namespace chromeball

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a directional light paints on a sphere, compared with what another paints there.
+#pragma once
+
+#include <cmath>
+
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// A light of unit irradiance from direction d puts max(0, n . d) on a surface with normal n. The
+// integrals of products of two such patterns over all normals have closed forms (the arc-cosine
+// kernel of degree one, Cho and Saul 2009), so that no set of normals need be chosen. With
+// t the angle between a and b, and s and u tangents there (s . a = 0, u . b = 0):
+//   integral of max(0, n.a) max(0, n.b) dn                   = 2/3 (sin t + (pi - t) cos t)
+//   its derivative along u, of b                             = 2/3 (pi - t) a.u
+//   its derivative along s, of a, and u, of b (n within both hemispheres: of n.s n.u dn)
+//                                        = 2/3 ((pi - t) s.u + (s.b)(u.a) / sin t)
+struct CosinePair {
+  double cosine, sine, supplement;  // of t; pi - t
+
+  CosinePair(const dvec3& a, const dvec3& b)
+      : cosine(dot(a, b)), sine(length(cross(a, b))), supplement(std::atan2(sine, -cosine)) {}
+
+  double product() const { return 2.0 / 3 * (sine + supplement * cosine); }
+  double slope(double au) const { return 2.0 / 3 * supplement * au; }
+  double slopeProduct(double su, double sb, double ua) const {
+    const double bend = sine > 1e-12 ? sb * ua / sine : 0;
+    return 2.0 / 3 * (supplement * su + bend);
+  }
+};
+
+// Unit radiance from everywhere puts pi on every surface. Its product with a light's pattern, and
+// with itself.
+inline constexpr double kAmbientTimesLight = kPiD * kPiD;
+inline constexpr double kAmbientTimesAmbient = 4 * kPiD * kPiD * kPiD;
+
+}  // namespace chromeball

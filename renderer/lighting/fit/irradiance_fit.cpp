@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/fit/irradiance_fit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "lighting/fit/cosine_pattern.h"
+#include "lighting/fit/light_descent.h"
+#include "lighting/fit/light_error.h"
+#include "lighting/fit/radiance_points.h"
+#include "math/icosphere.h"
+#include "probe/irradiance.h"
+#include "probe/solid_angle.h"
+
+namespace chromeball {
+namespace {
+
+// Rows of the probe's merged points. Twice as many cost four times as much, and take a thirtieth
+// off the error of 64 lights and a seventh off that of 128 (Galileo's tomb). Few rows do to tell a
+// promising arrangement from a poor one.
+constexpr int kPointRows = 64, kRoughPointRows = 16;
+
+// Few lights get stuck in a poor arrangement more easily than many: the one for five in Galileo's
+// tomb is a fifth better than where the best for four leads. Up to kFewLights the best arrangements
+// of each number are all carried on, each with several places for the next light.
+constexpr int kFewLights = 16;
+constexpr int kArrangements = 16, kPlaces = 6;
+constexpr int kStepsToTry = 10, kStepsToRest = 90;
+constexpr double kSame = 1e-8;  // arrangements whose misfits differ by less, relatively, are one
+
+constexpr double kApart = 0.9;        // cosine of the least angle between places that are tried
+constexpr double kNegligible = 1e-6;  // of the probe's product with a light, relative to its mean
+
+// Where lights may be added, and what a light there has in common with the probe.
+class Places {
+ public:
+  explicit Places(const RadiancePoints& probe) {
+    for (const vec3& normal : icosphereNormals(3)) directions_.push_back(normalize(dvec3(normal)));
+    products_.resize(directions_.size());
+    tbb::parallel_for(size_t(0), directions_.size(),
+                      [&](size_t i) { products_[i] = probe.productWith(directions_[i]).product; });
+  }
+
+  // At most `count` places where one more light would help most, the best first; none where none
+  // helps, and then no further light can help but by replacing others.
+  std::vector<dvec3> best(const FittedLights& lights, int count) const {
+    std::vector<double> gains(directions_.size());
+    tbb::parallel_for(size_t(0), directions_.size(), [&](size_t i) {
+      const dvec3 wanting = max(residualProduct(i, lights), dvec3(0));
+      gains[i] = dot(wanting, wanting);
+    });
+    std::vector<dvec3> places;
+    while (int(places.size()) < count) {
+      const auto peak = std::max_element(gains.begin(), gains.end());
+      if (*peak <= kNegligible * kNegligible) break;
+      places.push_back(directions_[peak - gains.begin()]);
+      for (size_t i = 0; i < gains.size(); ++i)
+        if (dot(directions_[i], places.back()) > kApart) gains[i] = 0;
+    }
+    return places;
+  }
+
+ private:
+  // Of a light at place i with what the lights leave of the probe.
+  dvec3 residualProduct(size_t i, const FittedLights& lights) const {
+    dvec3 product = products_[i] - kAmbientTimesLight * lights.ambient;
+    for (size_t j = 0; j < lights.directions.size(); ++j)
+      product -= CosinePair(directions_[i], lights.directions[j]).product() * lights.irradiances[j];
+    return product;
+  }
+
+  std::vector<dvec3> directions_, products_;
+};
+
+void removeBlack(FittedLights& lights) {
+  for (size_t i = lights.directions.size(); i-- > 0;)
+    if (lights.irradiances[i] == dvec3(0)) {
+      lights.directions.erase(lights.directions.begin() + i);
+      lights.irradiances.erase(lights.irradiances.begin() + i);
+    }
+}
+
+// One light after another, the best arrangements side by side.
+class Search {
+ public:
+  Search(const Image& latLong, double scale, bool ambient)
+      : probe_(latLong, kPointRows, scale),
+        rough_(latLong, kRoughPointRows, scale),
+        places_(probe_),
+        ambient_(ambient) {
+    FittedLights none;
+    solveColors(none, probe_, ambient);
+    best_ = {none};
+  }
+
+  const std::vector<FittedLights>& best() const { return best_; }
+
+  // Gives each arrangement one more light, and keeps the best. Where no place promises anything,
+  // all stay as they are.
+  void grow() {
+    const bool few = int(best_.front().directions.size()) < kFewLights;
+    if (!few) best_.resize(1);
+    std::vector<FittedLights> tried;
+    for (const FittedLights& lights : best_)
+      for (const dvec3& place : places_.best(lights, few ? kPlaces : 1)) {
+        tried.push_back(lights);
+        tried.back().directions.push_back(place);
+        tried.back().irradiances.emplace_back(0);
+      }
+    if (tried.empty()) return;
+    if (few) {
+      descendAll(tried, rough_, kStepsToTry);
+      keepBest(tried);
+      descendAll(tried, rough_, kStepsToRest);
+    }
+    descendAll(tried, probe_, kStepsToTry);
+    keepBest(tried);
+    for (FittedLights& lights : tried) removeBlack(lights);
+    best_ = std::move(tried);
+  }
+
+ private:
+  void descendAll(std::vector<FittedLights>& all, const RadiancePoints& probe, int steps) const {
+    tbb::parallel_for(size_t(0), all.size(),
+                      [&](size_t i) { descend(all[i], probe, ambient_, steps); });
+  }
+
+  static void keepBest(std::vector<FittedLights>& all) {
+    std::sort(all.begin(), all.end(),
+              [](const FittedLights& a, const FittedLights& b) { return a.misfit < b.misfit; });
+    const auto same = [](const FittedLights& a, const FittedLights& b) {
+      return b.misfit - a.misfit <= kSame * std::fabs(a.misfit);
+    };
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
+    if (int(all.size()) > kArrangements) all.resize(kArrangements);
+  }
+
+  RadiancePoints probe_, rough_;
+  Places places_;
+  bool ambient_;
+  std::vector<FittedLights> best_;
+};
+
+// The probe as what fits are measured by.
+class Measure {
+ public:
+  explicit Measure(const Image& latLong)
+      : normals_(icosphereNormals(5)), irradiance_(exactIrradiance(latLong, normals_)) {}
+
+  // `lights` were fitted to the probe divided by `level`.
+  IrradianceFit operator()(const FittedLights& lights, double level) const {
+    IrradianceFit fit;
+    for (size_t i = 0; i < lights.directions.size(); ++i)
+      fit.lights.push_back({vec3(lights.directions[i]), Rgb(lights.irradiances[i] * level)});
+    fit.ambient = Rgb(lights.ambient * level);
+    const LightError error =
+        lightError(irradianceOf(fit.lights, fit.ambient, normals_), irradiance_);
+    fit.meanError = error.mean;
+    fit.maxError = error.max;
+    return fit;
+  }
+
+ private:
+  std::vector<vec3> normals_;
+  std::vector<dvec3> irradiance_;
+};
+
+}  // namespace
+
+IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
+  const int limit = options.maxErrorPercent ? options.maxCount : options.count;
+  if (limit < 0) throwInput("a fit of {} lights: the number must not be negative", limit);
+  const dvec3 mean = meanRadiance(latLong);
+  // Of a black probe every scale is as good.
+  const double level = mean == dvec3(0) ? 1 : (mean.x + mean.y + mean.z) / 3;
+  const Measure measure(latLong);
+  Search search(latLong, 1 / level, options.ambient);
+  IrradianceFit best = measure(search.best().front(), level);
+  int count = 0;
+  while (count < limit &&
+         !(options.maxErrorPercent && best.meanError <= *options.maxErrorPercent)) {
+    ++count;
+    search.grow();
+    for (const FittedLights& lights : search.best()) {
+      IrradianceFit fit = measure(lights, level);
+      if (fit.meanError < best.meanError) best = std::move(fit);
+    }
+  }
+  best.lights.resize(count, {vec3(0, 1, 0), Rgb(0)});
+  return best;
+}
+
+}  // namespace chromeball

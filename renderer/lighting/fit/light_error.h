@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well directional lights stand in for a probe: Madsen and Laursen 2007, section 5.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lighting/constellation/directional_light.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// Irradiance, W/m^2, on surfaces with these unit normals: that of the lights, as if their angles
+// were 0, and that of the radiance `ambient` from everywhere.
+std::vector<dvec3> irradianceOf(const Constellation& lights, const Rgb& ambient,
+                                std::span<const vec3> normals);
+
+// Percent of the probe's mean irradiance (over normals and RGB).
+struct LightError {
+  double mean, max;
+};
+
+// Mean and maximum over the normals of |E_lights - E_probe|, a channel at a time, averaged over
+// RGB. Both lists hold one irradiance a normal. Of a black probe, the percentage is 0 where the
+// lights are black too, and otherwise infinite.
+LightError lightError(std::span<const dvec3> lights, std::span<const dvec3> probe);
+
+}  // namespace chromeball

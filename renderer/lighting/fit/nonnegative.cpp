@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/fit/nonnegative.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace chromeball {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Relative to A's diagonal: what keeps two lights at one place from a singular matrix.
+constexpr double kRidge = 1e-13;
+constexpr double kTolerance = 1e-11;  // of the largest |b|
+
+// The minimum over the unknowns `free`, the others being zero.
+VectorXd solveFree(const MatrixXd& A, const VectorXd& b, const std::vector<Index>& free) {
+  MatrixXd block = A(free, free);
+  block.diagonal() *= 1 + kRidge;
+  return block.llt().solve(b(free));
+}
+
+}  // namespace
+
+std::vector<double> solveNonnegative(std::span<const double> A, std::span<const double> b,
+                                     std::span<const double> guess) {
+  const Index n = Index(b.size());
+  // Symmetric: rows or columns first is the same.
+  const MatrixXd matrix = Eigen::Map<const MatrixXd>(A.data(), n, n);
+  const VectorXd right = Eigen::Map<const VectorXd>(b.data(), n);
+  VectorXd x = Eigen::Map<const VectorXd>(guess.data(), n);
+  std::vector<Index> free;
+  for (Index i = 0; i < n; ++i)
+    if (x[i] > 0) free.push_back(i);
+
+  const double tolerance = n > 0 ? kTolerance * right.cwiseAbs().maxCoeff() : 0;
+  // Each round frees one unknown; rounding could make it cycle, near the end, for ever.
+  for (Index round = 0; round <= 3 * n; ++round) {
+    while (!free.empty()) {
+      const VectorXd target = solveFree(matrix, right, free);
+      // As far as the first unknown that would turn negative, which is then held at zero.
+      double step = 1;
+      Index blocked = -1;
+      for (size_t k = 0; k < free.size(); ++k) {
+        const double from = x[free[k]];
+        if (target[k] > 0 || from / (from - target[k]) >= step) continue;
+        step = from / (from - target[k]);
+        blocked = free[k];
+      }
+      for (size_t k = 0; k < free.size(); ++k)
+        x[free[k]] = std::max(0.0, x[free[k]] + step * (target[k] - x[free[k]]));
+      if (blocked < 0) break;
+      x[blocked] = 0;
+      std::erase(free, blocked);
+    }
+    VectorXd slope = right - matrix * x;
+    for (Index i : free) slope[i] = 0;
+    Index steepest = 0;
+    if (n == 0 || slope.maxCoeff(&steepest) <= tolerance) break;
+    free.insert(std::upper_bound(free.begin(), free.end(), steepest), steepest);
+  }
+  return {x.begin(), x.end()};
+}
+
+}  // namespace chromeball

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/animation.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/suggest.h"
+#include "scene/gltf/accessor.h"
+
+namespace chromeball {
+namespace {
+
+using tinygltf::Animation;
+
+std::string nameOf(const std::vector<Animation>& animations, size_t i) {
+  return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
+}
+
+// The one named, by its name or, where it has none, its index; the first where none is named.
+size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
+  const auto& animations = file.model.animations;
+  if (animations.empty()) file.fail("has no animation ({} asks for one)", when.place);
+  if (when.name.empty()) return 0;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < animations.size(); ++i) {
+    names.push_back(nameOf(animations, i));
+    if (names.back() == when.name) return i;
+  }
+  file.fail("has no animation `{}` ({}); {}", when.name, when.place,
+            didYouMean(when.name, {names.begin(), names.end()}));
+}
+
+enum class Interpolation { Step, Linear, CubicSpline };
+
+// One sampler: numbers over time. `values` holds `width` numbers for each key; for a cubic spline
+// three times as many, those of the in-tangent, of the value and of the out-tangent.
+struct Track {
+  Interpolation interpolation = Interpolation::Linear;
+  std::vector<float> times;
+  std::vector<double> values;
+  size_t width = 0;
+
+  const double* key(size_t i, size_t part) const {
+    if (interpolation != Interpolation::CubicSpline) return &values[i * width];
+    return &values[(3 * i + part) * width];
+  }
+  const double* inTangent(size_t i) const { return key(i, 0); }
+  const double* value(size_t i) const { return key(i, 1); }
+  const double* outTangent(size_t i) const { return key(i, 2); }
+};
+
+template <int N>
+std::vector<double> readNumbers(GltfFile& file, int accessor, const std::string& where) {
+  std::vector<double> numbers;
+  for (const auto& v : readVectors<N>(file, accessor, where))
+    for (int k = 0; k < N; ++k) {
+      if (!std::isfinite(v[k])) file.fail("{}: holds a number that is not finite", where);
+      numbers.push_back(v[k]);
+    }
+  return numbers;
+}
+
+// `components`: of the animated property; 1 for morph weights, of which a key holds several.
+Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int components,
+                const std::string& where) {
+  Track track;
+  if (sampler.interpolation == "STEP")
+    track.interpolation = Interpolation::Step;
+  else if (sampler.interpolation == "CUBICSPLINE")
+    track.interpolation = Interpolation::CubicSpline;
+  else if (sampler.interpolation != "LINEAR")
+    file.fail("{}.interpolation: \"{}\" is not STEP, LINEAR or CUBICSPLINE", where,
+              sampler.interpolation);
+  for (double time : readNumbers<1>(file, sampler.input, where + ".input"))
+    track.times.push_back(float(time));
+  if (!std::is_sorted(track.times.begin(), track.times.end()))
+    file.fail("{}.input: the keys are not in the order of time", where);
+
+  const std::string at = where + ".output";
+  track.values = components == 1   ? readNumbers<1>(file, sampler.output, at)
+                 : components == 3 ? readNumbers<3>(file, sampler.output, at)
+                                   : readNumbers<4>(file, sampler.output, at);
+  const size_t perKey = track.interpolation == Interpolation::CubicSpline ? 3 : 1;
+  track.width = track.values.size() / (perKey * track.times.size());
+  if (track.width * perKey * track.times.size() != track.values.size() ||
+      (components > 1 ? track.width != size_t(components) : track.width == 0))
+    file.fail("{}: {} numbers do not serve {} keys", at, track.values.size(), track.times.size());
+  return track;
+}
+
+glm::dquat quaternion(const double* q) { return {q[3], q[0], q[1], q[2]}; }
+
+// The shorter way around at constant speed, or the cubic's value made unit (appendix C).
+std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_t i, double share,
+                                 const std::vector<double>& interpolated,
+                                 const std::string& where) {
+  glm::dquat q = quaternion(interpolated.data());
+  if (track.interpolation == Interpolation::Linear && share > 0)
+    q = glm::slerp(glm::normalize(quaternion(track.value(i))),
+                   glm::normalize(quaternion(track.value(i + 1))), share);
+  const double length = glm::length(q);
+  if (!(length > 0) || !std::isfinite(length))
+    file.fail("{}.output: is a quaternion of length 0", where);
+  q /= length;
+  return {q.x, q.y, q.z, q.w};
+}
+
+std::vector<double> valueAt(const GltfFile& file, const Track& track, double seconds,
+                            bool isRotation, const std::string& where) {
+  const auto& times = track.times;
+  const auto after = std::upper_bound(times.begin(), times.end(), seconds,
+                                      [](double t, float key) { return t < key; });
+  const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
+  double share = 0;  // of the way from key i to the next
+  if (after != times.begin() && after != times.end())
+    share = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
+
+  std::vector<double> result(track.value(i), track.value(i) + track.width);
+  if (share > 0 && track.interpolation == Interpolation::Linear)
+    for (size_t k = 0; k < track.width; ++k)
+      result[k] += share * (track.value(i + 1)[k] - track.value(i)[k]);
+  if (share > 0 && track.interpolation == Interpolation::CubicSpline) {
+    const double t = share, t2 = t * t, t3 = t2 * t;
+    const double duration = double(times[i + 1]) - times[i];
+    for (size_t k = 0; k < track.width; ++k)  // Hermite; tangents are per second
+      result[k] = (2 * t3 - 3 * t2 + 1) * track.value(i)[k] +
+                  (t3 - 2 * t2 + t) * duration * track.outTangent(i)[k] +
+                  (3 * t2 - 2 * t3) * track.value(i + 1)[k] +
+                  (t3 - t2) * duration * track.inTangent(i + 1)[k];
+  }
+  return isRotation ? unitRotation(file, track, i, share, result, where) : result;
+}
+
+}  // namespace
+
+std::string animationNames(const GltfFile& file) {
+  constexpr size_t kMost = 6;
+  const auto& animations = file.model.animations;
+  std::string text;
+  for (size_t i = 0; i < std::min(kMost, animations.size()); ++i)
+    text += fmt::format("{}`{}`", i ? ", " : "", oneLine(nameOf(animations, i)));
+  if (animations.size() > kMost) text += fmt::format(" and {} more", animations.size() - kMost);
+  return text;
+}
+
+void applyAnimation(GltfFile& file, const AnimationTime& when) {
+  const size_t index = findAnimation(file, when);
+  const Animation& animation = file.model.animations[index];
+  for (size_t c = 0; c < animation.channels.size(); ++c) {
+    const tinygltf::AnimationChannel& channel = animation.channels[c];
+    const std::string where = fmt::format("animations[{}].channels[{}]", index, c);
+    const std::string& path = channel.target_path;
+    const bool isWeights = path == "weights", isRotation = path == "rotation";
+    if (channel.target_node == -1 ||
+        !(isWeights || isRotation || path == "translation" || path == "scale")) {
+      file.warnOnce("animation of what is no node's transform or morph weights is ignored");
+      continue;
+    }
+    file.at(file.model.nodes, channel.target_node, "nodes", where + ".target");
+    tinygltf::Node& node = file.model.nodes[size_t(channel.target_node)];
+    if (!node.matrix.empty() && !isWeights)
+      file.fail("{}: moves nodes[{}], which has a matrix", where, channel.target_node);
+
+    const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", where);
+    const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);
+    const Track track = readTrack(file, sampler, isWeights ? 1 : isRotation ? 4 : 3, at);
+    std::vector<double>& target = isWeights         ? node.weights
+                                  : isRotation      ? node.rotation
+                                  : path == "scale" ? node.scale
+                                                    : node.translation;
+    target = valueAt(file, track, when.seconds, isRotation, at);
+  }
+}
+
+}  // namespace chromeball

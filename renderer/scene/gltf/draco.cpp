@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/draco.h"
+
+#include <draco/compression/decode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
+
+#include <cstring>
+#include <new>
+
+namespace chromeball {
+namespace {
+
+using tinygltf::Value;
+
+constexpr const char* kExtension = "KHR_draco_mesh_compression";
+
+// A byte of the file that asks for more than this many triangles lies: so many no coder packs.
+constexpr uint64_t kMaxTrianglesPerByte = 64;
+constexpr uint64_t kBytesPerTriangle = 64;  // of working memory, at least
+
+draco::DecoderBuffer bufferOf(std::span<const uint8_t> bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return buffer;
+}
+
+// The number of triangles that the mesh claims, before the library allocates for them (Draco
+// bitstream specification 2.2, sections "Header" and "Connectivity decoder").
+uint32_t claimedTriangles(const GltfFile& file, std::span<const uint8_t> bytes,
+                          const std::string& where) {
+  draco::DecoderBuffer buffer = bufferOf(bytes);
+  draco::DracoHeader header;
+  if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok())
+    file.fail("{}: is not Draco data", where);
+  if (header.version_major != 2 || header.version_minor != 2 ||
+      header.encoder_type != draco::TRIANGULAR_MESH)
+    file.fail("{}: is not a mesh of Draco's bitstream 2.2, which the extension asks for", where);
+  buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
+
+  bool read = true;
+  if (header.flags & METADATA_FLAG_MASK) {
+    draco::GeometryMetadata ignored;
+    read = draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &ignored);
+  }
+  if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
+    uint8_t traversal = 0;
+    uint32_t vertices = 0;
+    read = read && buffer.Decode(&traversal) && draco::DecodeVarint(&vertices, &buffer);
+  }
+  uint32_t triangles = 0;
+  if (!read || !draco::DecodeVarint(&triangles, &buffer))
+    file.fail("{}: is cut short in its header", where);
+  return triangles;
+}
+
+std::unique_ptr<draco::Mesh> decodeMesh(const GltfFile& file, std::span<const uint8_t> bytes,
+                                        const std::string& where) {
+  draco::DecoderBuffer buffer = bufferOf(bytes);
+  try {
+    auto mesh = draco::Decoder().DecodeMeshFromBuffer(&buffer);
+    if (mesh.ok() && mesh.value()->num_faces() > 0) return std::move(mesh).value();
+    file.fail("{}: damaged data: {}", where,
+              mesh.ok() ? "no triangles" : mesh.status().error_msg());
+  } catch (const std::bad_alloc&) {
+    file.fail("{}: damaged data: asks for more memory than there is", where);
+  }
+}
+
+template <class T>
+bool copyAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute, int components,
+                   Bytes& bytes) {
+  bytes.resize(size_t(mesh.num_points()) * size_t(components) * sizeof(T));
+  std::vector<T> element(static_cast<size_t>(components));
+  for (uint32_t i = 0; i < mesh.num_points(); ++i) {
+    const auto index = attribute.mapped_index(draco::PointIndex(i));
+    if (index.value() >= attribute.size() ||
+        !attribute.ConvertValue<T>(index, int8_t(components), element.data()))
+      return false;
+    std::memcpy(&bytes[i * element.size() * sizeof(T)], element.data(), element.size() * sizeof(T));
+  }
+  return true;
+}
+
+// The attribute's elements one behind the other, as the accessor types them.
+Bytes attributeBytes(const GltfFile& file, const draco::Mesh& mesh,
+                     const draco::PointAttribute& attribute, const tinygltf::Accessor& accessor,
+                     const std::string& where) {
+  const int components = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
+  if (components < 1 || components > 4)
+    file.fail("{}: its accessor has a type that no vertex attribute has", where);
+  const auto copy = [&] {
+    switch (accessor.componentType) {
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return copyAttribute<int8_t>;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return copyAttribute<uint8_t>;
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return copyAttribute<int16_t>;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return copyAttribute<uint16_t>;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return copyAttribute<uint32_t>;
+      default:
+        return copyAttribute<float>;
+    }
+  }();
+  Bytes bytes;
+  if (!copy(mesh, attribute, components, bytes))
+    file.fail("{}: damaged data: values that its accessor's type does not hold", where);
+  return bytes;
+}
+
+// Three 32-bit indices for each triangle.
+Bytes indexBytes(const draco::Mesh& mesh) {
+  std::vector<uint32_t> indices;
+  indices.reserve(size_t(mesh.num_faces()) * 3);
+  for (uint32_t i = 0; i < mesh.num_faces(); ++i)
+    for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(i)))
+      indices.push_back(corner.value());
+  Bytes bytes(indices.size() * sizeof(uint32_t));
+  std::memcpy(bytes.data(), indices.data(), bytes.size());
+  return bytes;
+}
+
+class DracoReader {
+ public:
+  explicit DracoReader(GltfFile& file) : file_(file) {}
+
+  void decode(tinygltf::Primitive& primitive, const Value& extension, const std::string& where) {
+    if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
+      file_.fail("{}: only triangles can be read, not strips", where);
+    const Value& attributes = extension.Get("attributes");
+    if (!extension.Get("bufferView").IsInt() || !attributes.IsObject())
+      file_.fail("{}: has no bufferView or no attributes", where);
+    tinygltf::Accessor& indices = accessor(primitive.indices, where + ".indices");
+    const draco::Mesh& mesh =
+        meshOf(extension.Get("bufferView").GetNumberAsInt(), indices.count, where);
+    if (indices.bufferView < 0) {
+      indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+      setData(indices, size_t(mesh.num_faces()) * 3, indexBytes(mesh));
+    }
+    for (const std::string& name : attributes.Keys()) {
+      const auto user = primitive.attributes.find(name);
+      if (user == primitive.attributes.end()) continue;
+      const std::string at = where + ".attributes." + name;
+      tinygltf::Accessor& target = accessor(user->second, at);
+      if (target.bufferView >= 0) continue;  // several primitives may use the same one
+      const Value& id = attributes.Get(name);
+      const draco::PointAttribute* attribute =
+          id.IsInt() && id.GetNumberAsInt() >= 0
+              ? mesh.GetAttributeByUniqueId(uint32_t(id.GetNumberAsInt()))
+              : nullptr;
+      if (!attribute) file_.fail("{}: the compressed mesh has no such attribute", at);
+      file_.spend(uint64_t(mesh.num_points()) * 16);
+      setData(target, mesh.num_points(), attributeBytes(file_, mesh, *attribute, target, at));
+    }
+  }
+
+ private:
+  tinygltf::Accessor& accessor(int index, const std::string& where) {
+    file_.at(file_.model.accessors, index, "accessors", where);
+    return file_.model.accessors[size_t(index)];
+  }
+
+  void setData(tinygltf::Accessor& target, size_t count, Bytes bytes) {
+    target.bufferView = file_.addView(std::move(bytes));
+    target.byteOffset = 0;
+    target.count = count;
+  }
+
+  // The decoded mesh of a buffer view, which is to have no more than `indexCount` indices.
+  const draco::Mesh& meshOf(int bufferView, size_t indexCount, const std::string& where) {
+    std::unique_ptr<draco::Mesh>& mesh = meshes_[bufferView];
+    if (mesh) return *mesh;
+    const std::span<const uint8_t> bytes = file_.view(bufferView, where);
+    const uint64_t triangles = claimedTriangles(file_, bytes, where);
+    if (3 * triangles > indexCount || triangles > kMaxTrianglesPerByte * bytes.size())
+      file_.fail("{}: claims {} triangles where the accessor has {} indices, in {} bytes", where,
+                 triangles, indexCount, bytes.size());
+    file_.spend(triangles * kBytesPerTriangle);
+    mesh = decodeMesh(file_, bytes, where);
+    return *mesh;
+  }
+
+  GltfFile& file_;
+  std::map<int, std::unique_ptr<draco::Mesh>> meshes_;  // by buffer view
+};
+
+// Whether the vertices are in the compressed data alone.
+bool dependsOnExtension(const GltfFile& file, const tinygltf::Primitive& primitive) {
+  const auto positions = primitive.attributes.find("POSITION");
+  return positions != primitive.attributes.end() && positions->second >= 0 &&
+         size_t(positions->second) < file.model.accessors.size() &&
+         file.model.accessors[size_t(positions->second)].bufferView < 0;
+}
+
+}  // namespace
+
+void decodeDraco(GltfFile& file) {
+  DracoReader reader(file);
+  for (size_t m = 0; m < file.model.meshes.size(); ++m) {
+    auto& primitives = file.model.meshes[m].primitives;
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      const auto found = primitives[p].extensions.find(kExtension);
+      if (found == primitives[p].extensions.end() || !dependsOnExtension(file, primitives[p]))
+        continue;
+      reader.decode(primitives[p], found->second,
+                    fmt::format("meshes[{}].primitives[{}].{}", m, p, kExtension));
+    }
+  }
+}
+
+}  // namespace chromeball

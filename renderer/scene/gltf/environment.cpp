@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/environment.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+#include "image/io/decode.h"
+#include "probe/convert.h"
+#include "probe/repair.h"
+#include "probe/solid_angle.h"
+#include "scene/gltf/value.h"
+#include "scene/texture.h"
+
+namespace chromeball {
+namespace {
+
+using tinygltf::Value;
+
+constexpr const char* kExtension = "EXT_lights_image_based";
+constexpr int kFaces = 6, kMaxFace = 2048;
+
+// The light that the shown scene names; null where it names none.
+const Value* findLight(const GltfFile& file, std::string& where) {
+  if (file.model.scenes.empty()) return nullptr;
+  const int scene = std::max(file.model.defaultScene, 0);
+  const Value* use =
+      findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions, kExtension);
+  if (!use) return nullptr;
+  const Value& light = use->Get("light");
+  const Value* root = findExtension(file.model.extensions, kExtension);
+  const int index = light.IsInt() ? light.GetNumberAsInt() : -1;
+  where = fmt::format("{}.lights[{}]", kExtension, index);
+  if (index < 0 || !root || !root->Get("lights").IsArray() ||
+      size_t(index) >= root->Get("lights").ArrayLen())
+    file.fail("scenes[{}]: {} does not exist", scene, where);
+  return &root->Get("lights").Get(index);
+}
+
+std::array<int, kFaces> facesOf(const GltfFile& file, const Value& light,
+                                const std::string& where) {
+  const Value& levels = light.Get("specularImages");
+  const Value& level = levels.IsArray() && levels.ArrayLen() > 0 ? levels.Get(0) : levels;
+  if (!level.IsArray() || level.ArrayLen() != size_t(kFaces))
+    file.fail("{}.specularImages: does not begin with the six faces of a cube", where);
+  std::array<int, kFaces> faces{};
+  for (int i = 0; i < kFaces; ++i) {
+    const Value& image = level.Get(i);
+    faces[size_t(i)] = image.IsInt() ? image.GetNumberAsInt() : -1;
+    file.at(file.images, faces[size_t(i)], "images", where + ".specularImages");
+  }
+  return faces;
+}
+
+// RGB is sRGB-encoded, and divided by alpha: RGBD, where the file has alpha.
+Rgb radianceAt(const TexelGrid& grid, int x, int y) {
+  const vec4 texel = linearTexel(grid, true, x, y);
+  return Rgb(texel) / texel.w;
+}
+
+// The faces side by side as Mapping::HorizontalStrip has them. The extension's rows run with the
+// second coordinate of cube maps, which goes up: sides stand on their heads, seen from inside.
+Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
+  std::array<TexelGrid, kFaces> grids;
+  tbb::parallel_for(0, kFaces, [&](int i) {
+    const int image = faces[size_t(i)];
+    Bytes storage;
+    const std::string name = file.describeImage(image);
+    DecodedImage d = decodeImage(file.image(image, storage), name);
+    if (d.width != d.height || d.width > kMaxFace)
+      throwInput("{}: is {} x {}; a face of an environment is square, {} x {} at most", name,
+                 d.width, d.height, kMaxFace, kMaxFace);
+    grids[size_t(i)] = {d.width, d.height, std::move(d.texels8), std::move(d.texelsFloat)};
+  });
+  const int n = grids[0].width;
+  Image strip(kFaces * n, n, 3);
+  for (int i = 0; i < kFaces; ++i) {
+    const TexelGrid& grid = grids[size_t(i)];
+    if (grid.width != n)
+      throwInput("{}: is {} x {}, and the first face {} x {}", file.describeImage(faces[size_t(i)]),
+                 grid.width, grid.width, n, n);
+    const bool isSide = i / 2 != 1;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        strip.setRgb(i * n + (isSide ? n - 1 - x : x), isSide ? n - 1 - y : y,
+                     radianceAt(grid, x, y));
+  }
+  return strip;
+}
+
+glm::dmat3 rotationOf(GltfFile& file, const Value& light, const std::string& where) {
+  const vec4 q = vectorMember<4>(file, light, "rotation", {0, 0, 0, 1}, -1e6, 1e6, where);
+  if (!(glm::length(q) > 1e-6f)) file.fail("{}.rotation: is a quaternion of length 0", where);
+  return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
+}
+
+// The first coefficient is the mean irradiance over all normals, over Y00; the images say the same
+// by pi times their mean radiance.
+void compareWithCoefficients(GltfFile& file, const Value& light, const Image& latLong,
+                             const std::string& where) {
+  const Value& coefficients = light.Get("irradianceCoefficients");
+  if (!coefficients.IsArray() || !coefficients.Get(0).IsArray()) return;
+  double stated = 0;
+  for (int i = 0; i < 3; ++i)
+    if (const Value& x = coefficients.Get(0).Get(i); x.IsNumber())
+      stated += x.GetNumberAsDouble() * std::sqrt(1 / (4 * kPiD)) / 3;
+  const dvec3 mean = kPiD * meanRadiance(latLong);
+  const double shown = (mean.x + mean.y + mean.z) / 3, ratio = shown / stated;
+  if (stated > 0 && !(ratio > 0.9 && ratio < 1.1))
+    file.warnOnce(
+        fmt::format("{}: its images give {:.3g} times the light of its "
+                    "irradianceCoefficients; the images are taken",
+                    where, ratio));
+}
+
+}  // namespace
+
+std::optional<Image> readEnvironment(GltfFile& file) {
+  std::string where;
+  const Value* light = findLight(file, where);
+  if (!light) return std::nullopt;
+  const float intensity = member(file, *light, "intensity", 1, 0, 1e30, where);
+  const glm::dmat3 rotation = rotationOf(file, *light, where);
+  Image strip = readStrip(file, facesOf(file, *light, where));
+  if (const RepairReport report = repair(strip, false); report.total() > 0)
+    file.warnOnce(where + ": repaired " + describe(report));
+  Image latLong = latLongOf(strip, Mapping::HorizontalStrip, rotation);
+  compareWithCoefficients(file, *light, latLong, where);
+  for (float& f : latLong.texels) f *= intensity;
+  return latLong;
+}
+
+}  // namespace chromeball

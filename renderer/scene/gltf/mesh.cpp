@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <set>
+
+#include "scene/gltf/accessor.h"
+#include "scene/gltf/pose.h"
+#include "scene/mesh_attributes.h"
+#include "scene/thin_wall.h"
+
+namespace chromeball {
+namespace {
+
+// Triangles of a vertex sequence, each with the front the specification gives it (3.7.2.1).
+std::vector<Triangle> assemble(const std::vector<uint32_t>& v, int mode) {
+  std::vector<Triangle> triangles;
+  if (v.size() < 3) return triangles;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    triangles.reserve(v.size() / 3);
+    for (size_t i = 0; i + 2 < v.size(); i += 3) triangles.push_back({v[i], v[i + 1], v[i + 2]});
+    return triangles;
+  }
+  triangles.reserve(v.size() - 2);
+  for (size_t i = 0; i + 2 < v.size(); ++i) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+      triangles.push_back({v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
+    else
+      triangles.push_back({v[i + 1], v[i + 2], v[0]});
+  }
+  return triangles;
+}
+
+void checkFinite(const GltfFile& file, const std::vector<vec3>& positions,
+                 const std::string& where) {
+  for (size_t i = 0; i < positions.size(); ++i)
+    if (!isFinite(positions[i])) file.fail("{}: the position of vertex {} is not finite", where, i);
+}
+
+// Reads one primitive's vertex attributes, whose lengths must agree.
+class AttributeReader {
+ public:
+  AttributeReader(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where)
+      : file_(file), primitive_(primitive), where_(where) {}
+
+  // The attribute by `readArray` (see gltf_accessor.h); empty where the primitive lacks it.
+  template <class T>
+  std::vector<T> read(const std::string& name,
+                      std::vector<T> (*readArray)(GltfFile&, int, const std::string&)) {
+    const auto found = primitive_.attributes.find(name);
+    if (found == primitive_.attributes.end()) return {};
+    const std::string at = where_ + ".attributes." + name;
+    std::vector<T> array = readArray(file_, found->second, at);
+    if (vertexCount_ == 0) vertexCount_ = array.size();
+    if (array.size() != vertexCount_)
+      file_.fail("{}: {} elements for {} vertices", at, array.size(), vertexCount_);
+    return array;
+  }
+
+ private:
+  GltfFile& file_;
+  const tinygltf::Primitive& primitive_;
+  const std::string& where_;
+  size_t vertexCount_ = 0;
+};
+
+// The UV sets that the material reads, by textures or tangents.
+std::vector<int> uvSetsOf(Material material) {
+  std::set<int> sets;
+  for (const TextureSlot* slot : textureSlots(material))
+    if (*slot) sets.insert(slot->uvSet);
+  if (const std::optional<TextureSlot> slot = tangentSpace(material)) sets.insert(slot->uvSet);
+  return {sets.begin(), sets.end()};
+}
+
+void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const Material& material,
+                            Mesh& mesh) {
+  for (const int set : uvSetsOf(material)) {
+    if (int(mesh.uvs.size()) <= set) mesh.uvs.resize(size_t(set) + 1);
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    mesh.uvs[set] = attributes.read(name, readVectors<2>);
+    if (!mesh.uvs[set].empty()) continue;
+    file.warnOnce(fmt::format("a textured primitive lacks {}: (0, 0) is used", name));
+    mesh.uvs[set].assign(mesh.positions.size(), vec2(0));
+  }
+}
+
+void readVertexColors(GltfFile& file, AttributeReader& attributes, const std::string& where,
+                      Mesh& mesh) {
+  mesh.colors = attributes.read("COLOR_0", readColors);
+  for (vec4& c : mesh.colors) {
+    if (!isFinite(Rgb(c)) || !std::isfinite(c.w))
+      file.fail("{}.attributes.COLOR_0: holds a colour that is not finite", where);
+    c = glm::max(c, vec4(0));
+  }
+  const bool white = std::all_of(mesh.colors.begin(), mesh.colors.end(),
+                                 [](const vec4& c) { return c == vec4(1); });
+  if (white) mesh.colors.clear();
+}
+
+// Whoever reads a normal map needs normals and tangents.
+void completeTangents(const Material& material, Mesh& mesh) {
+  const std::optional<TextureSlot> slot = tangentSpace(material);
+  if (!slot) return;
+  if (mesh.normals.empty()) makeFlat(mesh);
+  if (!mesh.tangents.empty()) return mendTangents(mesh);
+  std::vector<vec2> uv = mesh.uvs[size_t(slot->uvSet)];
+  for (vec2& coordinates : uv) coordinates = slot->transform(coordinates);
+  computeTangents(mesh, uv);
+}
+
+}  // namespace
+
+bool isSkinned(const tinygltf::Primitive& primitive, const Pose& pose) {
+  return !pose.joints.empty() && primitive.attributes.contains("JOINTS_0") &&
+         primitive.attributes.contains("WEIGHTS_0");
+}
+
+bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where) {
+  switch (primitive.mode) {
+    case TINYGLTF_MODE_TRIANGLES:
+    case TINYGLTF_MODE_TRIANGLE_STRIP:
+    case TINYGLTF_MODE_TRIANGLE_FAN:
+      if (primitive.attributes.contains("POSITION")) return true;
+      file.warnOnce("primitives without POSITION are left out");
+      return false;
+    case TINYGLTF_MODE_POINTS:
+    case TINYGLTF_MODE_LINE:
+    case TINYGLTF_MODE_LINE_LOOP:
+    case TINYGLTF_MODE_LINE_STRIP:
+      file.warnOnce("points and lines are left out");
+      return false;
+  }
+  file.fail("{}.mode: {} is not one of glTF's (0 to 6)", where, primitive.mode);
+}
+
+MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
+                    const Material& material) {
+  MeshRecipe recipe{
+      .mode = primitive.mode,
+      .indices = primitive.indices,
+      .attributes = primitive.attributes,
+      .targets = primitive.targets,
+      .weights = {},
+      .uvSets = {},
+      .tangentSpace = {},
+      .hasAlpha = material.alphaMode != AlphaMode::Opaque || passesStraight(material)};
+  if (!primitive.targets.empty()) recipe.weights.assign(pose.weights.begin(), pose.weights.end());
+  recipe.uvSets = uvSetsOf(material);
+  if (const std::optional<TextureSlot> slot = tangentSpace(material)) {
+    recipe.tangentSpace.push_back(uint32_t(slot->uvSet));
+    for (const vec2& v : {slot->uvRow0, slot->uvRow1, slot->uvOffset})
+      for (int k = 0; k < 2; ++k) recipe.tangentSpace.push_back(std::bit_cast<uint32_t>(v[k]));
+  }
+  return recipe;
+}
+
+std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& primitive,
+                                  const Pose& pose, const std::string& where,
+                                  const Material& material) {
+  AttributeReader attributes(file, primitive, where);
+  Mesh mesh;
+  mesh.positions = attributes.read("POSITION", readVectors<3>);
+  std::vector<uint32_t> vertices;
+  if (primitive.indices >= 0) {
+    vertices = readIndices(file, primitive.indices, mesh.positions.size(), where + ".indices");
+  } else {
+    vertices.resize(mesh.positions.size());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+  }
+  mesh.triangles = assemble(vertices, primitive.mode);
+  if (mesh.triangles.empty()) {
+    file.warnOnce("primitives with fewer than three indices are left out");
+    return std::nullopt;
+  }
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES && vertices.size() % 3 != 0)
+    file.warnOnce("indices beyond the last whole triangle are left out");
+
+  mesh.normals = attributes.read("NORMAL", readVectors<3>);
+  if (tangentSpace(material) && !mesh.normals.empty())
+    mesh.tangents = attributes.read("TANGENT", readVectors<4>);
+  readTextureCoordinates(file, attributes, material, mesh);
+  readVertexColors(file, attributes, where, mesh);
+
+  applyMorphTargets(file, primitive, pose.weights, where, mesh);
+  if (isSkinned(primitive, pose)) applySkin(file, primitive, pose.joints, where, mesh);
+  checkFinite(file, mesh.positions, where);
+  dropUnusedVertices(mesh);
+  mendNormals(mesh);
+  completeTangents(material, mesh);
+  return mesh;
+}
+
+}  // namespace chromeball

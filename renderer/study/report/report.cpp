@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/tonemap.h"
+#include "lighting/light_preview.h"
+#include "probe/mapping.h"
+#include "study/estimate_text.h"
+#include "study/report/log_log_plot.h"
+#include "study/report/pictures.h"
+#include "study/tables.h"
+#include "study/verdict.h"
+
+namespace chromeball {
+
+// tools/report/report.html and report.js, which CMake puts into a source file.
+extern const char* const kReportHtml;
+extern const char* const kReportScript;
+
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
+}
+
+void fill(std::string& page, const std::string& name, const std::string& contents) {
+  const std::string mark = "{{" + name + "}}";
+  for (size_t at = page.find(mark); at != std::string::npos;
+       at = page.find(mark, at + contents.size()))
+    page.replace(at, mark.size(), contents);
+}
+
+std::string plot(const StudyResults& results, const char* title, const char* xLabel, Ticks ticks,
+                 double (*abscissa)(const Cell&)) {
+  PlotPanel panel{"", {}};
+  for (const StrategyResult& strategy : results.strategies) {
+    PlotSeries& series = panel.series.emplace_back(PlotSeries{strategy.name, {}});
+    for (const Cell& cell : strategy.cells) {
+      const Estimate& e = cell.error.relMse;
+      series.points.push_back({abscissa(cell), e.mean, e.low(), e.high()});
+    }
+  }
+  return logLogPlot(title, xLabel, "relMSE", {panel}, ticks);
+}
+
+std::string plusMinus(const EstimateText& e) {
+  if (e.halfInterval == "0") return e.number;
+  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", e.number, e.halfInterval);
+}
+std::string plusMinus(const Estimate& e) { return plusMinus(estimateText(e)); }
+
+// Of what means nothing where it may be 0.
+std::string resolved(const Estimate& e) {
+  const EstimateText text = estimateText(e);
+  if (text.isResolved) return plusMinus(text);
+  return fmt::format("<span class=\"soft\">not resolved &plusmn; {}</span>", text.halfInterval);
+}
+
+std::string row(const Cell& cell, const StrategyResult& strategy, double mostEfficient) {
+  const double width = 70 * std::max(0.0, cell.efficiency.mean / mostEfficient);
+  std::string equal = "none seen";
+  if (strategy.unbiased) equal = "unbiased";
+  if (const auto& c = strategy.biasEqualsNoise)
+    equal = fmt::format("{} <span class=\"soft\">({} to {})</span>", shortNumber(c->samples, 2),
+                        shortNumber(c->low, 2), shortNumber(c->high, 2));
+  return fmt::format(
+      "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
+      "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
+      "td><td>{6}</td><td>{7}</td><td>{8}</td>"
+      "<td>{9}</td></tr>\n",
+      escaped(cell.strategy), width, resolved(cell.efficiency), resolved(cell.error.relMse),
+      plusMinus(cell.seconds), cell.prepareSeconds,
+      resolved({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
+      strategy.variance ? plusMinus(strategy.variance->slope) : "",
+      strategy.relMse ? plusMinus(strategy.relMse->slope) : "", equal);
+}
+
+std::string table(const Study& study, const StudyResults& results) {
+  std::string html =
+      "<table "
+      "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</th>"
+      "<th>seconds</th><th>to prepare</th><th>bias, %</th><th>slope of<br>variance</th>"
+      "<th>slope of<br>relMSE</th><th>bias = noise<br>at samples</th></tr></thead><tbody>\n";
+  const std::vector<const Cell*> cells = ranking(study, results);
+  for (const Cell* cell : cells)
+    for (const StrategyResult& strategy : results.strategies)
+      if (strategy.name == cell->strategy)
+        html += row(*cell, strategy, cells.front()->efficiency.mean);
+  return html + "</tbody></table>\n";
+}
+
+std::string pairsTable(const StudyResults& results) {
+  if (results.pairs.empty())
+    return "<p>Fewer than two strategies can be held to one another here.</p>\n";
+  std::string html =
+      "<table id=\"pairs\"><thead><tr><th>pair</th><th>p</th><th>tiles that differ</th></tr>"
+      "</thead><tbody>\n";
+  for (const PairResult& pair : results.pairs)
+    html += fmt::format("<tr><td>{} and {}</td><td{}>{:.2g}</td><td>{:.2g}%</td></tr>\n",
+                        escaped(pair.a), escaped(pair.b),
+                        pair.agreement.pValue < 0.05 ? " class=\"fails\"" : "",
+                        pair.agreement.pValue, 100 * pair.agreement.share);
+  return html + "</tbody></table>\n";
+}
+
+std::string dots(const std::string& name, const std::vector<vec3>& directions) {
+  std::string svg = "<svg viewBox=\"0 0 200 100\">";
+  for (const vec3& direction : directions) {
+    const auto uv = directionToUv(Mapping::LatLong, glm::dvec3(direction));
+    svg += fmt::format(
+        "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"1.1\" fill=\"#fff\" stroke=\"#000\" "
+        "stroke-width=\".5\"/>",
+        200 * uv.x, 100 * uv.y);
+  }
+  return fmt::format("<figure>{}</svg><figcaption><b>{}</b>{}</figcaption></figure>\n", svg,
+                     escaped(name),
+                     directions.empty() ? ": none, its rays find the probe by themselves" : "");
+}
+
+std::string probeUri(const Probe& probe) {
+  const Image picture = probePicture(probe, 512);
+  std::vector<uint8_t> bytes;
+  for (const float number : picture.texels)
+    bytes.push_back(uint8_t(std::lround(255 * linearToSrgb(number))));
+  return pngUri(picture.width, picture.height, 3, bytes);
+}
+
+std::string paragraphs(const std::vector<std::string>& texts) {
+  std::string html;
+  for (const std::string& text : texts) html += "<p class=\"warning\">" + escaped(text) + "</p>\n";
+  return html;
+}
+
+std::string verdictList(const Study& study, const StudyResults& results) {
+  const std::vector<std::string> sentences = verdict(study, results);
+  if (sentences.empty()) return "";
+  std::string html = "<ul id=\"verdict\">\n";
+  for (const std::string& sentence : sentences) {
+    std::string text = escaped(sentence);
+    for (size_t at = 0; (at = text.find("+-", at)) != std::string::npos;)
+      text.replace(at, 2, "&plusmn;");
+    html += "<li>" + text + "</li>\n";
+  }
+  return html + "</ul>\n";
+}
+
+std::string repeatsText(const StudyResults& results) {
+  size_t fewest = SIZE_MAX, most = 0;
+  for (const StrategyResult& strategy : results.strategies)
+    for (const Cell& cell : strategy.cells) {
+      fewest = std::min(fewest, cell.repeatSeconds.size());
+      most = std::max(most, cell.repeatSeconds.size());
+    }
+  return fewest < most ? fmt::format("{} to {}", fewest, most) : fmt::format("{}", most);
+}
+
+std::string referenceText(const Study& study, const StudyResults& results) {
+  const std::string origin =
+      study.referenceFile.empty()
+          ? fmt::format("{} samples a pixel by {}", study.referenceSamples, study.referenceStrategy)
+          : study.referenceFile;
+  return fmt::format("{}, relative standard error {:.2g}% a pixel", origin,
+                     100 * results.referenceNoise);
+}
+
+}  // namespace
+
+std::string samplesPlot(const StudyResults& results) {
+  return plot(results, "error against samples", "samples a pixel", Ticks::Binary,
+              [](const Cell& cell) { return cell.samples; });
+}
+
+std::string secondsPlot(const StudyResults& results) {
+  return plot(results, "error against time", "seconds", Ticks::Decimal,
+              [](const Cell& cell) { return cell.seconds.mean; });
+}
+
+std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
+                       const ReportScene& scene, const Machine& machine) {
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  const std::string at = budget ? budget->label() : "no common budget";
+  std::string page = kReportHtml;
+  fill(page, "title",
+       escaped(fmt::format("{}: {} lighting strategies", scene.name, results.strategies.size())));
+  fill(page, "subtitle",
+       escaped(fmt::format("{} x {} pixels, {} independent renders of each strategy and budget; "
+                           "reference: {}.",
+                           results.reference.mean.width, results.reference.mean.height,
+                           repeatsText(results), referenceText(study, results))));
+  fill(page, "verdict", verdictList(study, results));
+  fill(page, "warnings", paragraphs(results.warnings));
+  fill(page, "plots", samplesPlot(results) + secondsPlot(results));
+  fill(page, "tableNote",
+       escaped(fmt::format(
+           "At {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), {} being 1: of "
+           "two unbiased strategies, one of twice the efficiency needs half the time for the same "
+           "error. After +-: half an interval of 95%; not resolved: it holds 0. Slopes are of log "
+           "error against log samples: -1 for independent samples.",
+           at, study.baseline)));
+  fill(page, "table", table(study, results));
+  fill(page, "pairsNote",
+       escaped(fmt::format(
+           "Unbiased strategies must agree but for noise. Welch's t-test on each tile of {0} x {0} "
+           "pixels at {1}; p is the chance that the tile which differs most would do so by "
+           "accident, corrected for the number of tiles (Sidak). Of twenty such pairs one falls "
+           "below 0.05 by chance. Strategies of a relMSE above {2:g} are left out: they have not "
+           "met all the light yet.",
+           Agreement::kTile, at, kMostNoiseOfPairs)));
+  fill(page, "pairs", pairsTable(results));
+  std::string probes;
+  for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
+  fill(page, "probes", probes);
+  fill(page, "probe", probeUri(*scene.probe));
+  fill(page, "exposure", fmt::format("{:g}", scene.exposure));
+  fill(page, "command", escaped(machine.command));
+  fill(page, "machine",
+       escaped(fmt::format("chromeball {}, {}; {}, {} threads; {}; {}.", CHROMEBALL_VERSION,
+                           machine.compiler, machine.processor, machine.threads, machine.system,
+                           machine.date)));
+  fill(page, "method",
+       "Strategies take turns (A B C A B C), so that a machine that drifts favours none; seconds "
+       "are "
+       "of rendering alone. Every render has a seed of its own, and the reference has others than "
+       "any of them. Every number is in <code>results.csv</code> and <code>results.json</code>, "
+       "every render in <code>renders/</code>.");
+  fill(page, "data", reportPictures(store, results).dump());
+  fill(page, "script", kReportScript);
+  return page;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "image/io/read.h"
+
+namespace chromeball {
+namespace {
+
+// The reference's own variance should be below this share of what is measured with it.
+constexpr double kSmallShare = 0.1;
+
+Estimate estimateOf(const std::vector<double>& numbers) {
+  double mean = 0, scatter = 0;
+  const double n = double(numbers.size());
+  for (const double x : numbers) mean += x / n;
+  for (const double x : numbers) scatter += (x - mean) * (x - mean);
+  return {mean, n > 1 ? std::sqrt(scatter / (n - 1) / n) : 0};
+}
+
+double mean(const std::vector<StoredRender>& renders, double StoredRender::*member) {
+  double sum = 0;
+  for (const StoredRender& render : renders) sum += render.*member;
+  return sum / double(renders.size());
+}
+
+// All repeats that are stored; empty where they are too few to judge by.
+std::vector<StoredRender> loadRepeats(const RenderStore& store, const std::string& strategy,
+                                      const Budget& budget) {
+  std::vector<StoredRender> renders;
+  while (std::optional<StoredRender> render = store.find({strategy, budget, int(renders.size())}))
+    renders.push_back(*std::move(render));
+  if (renders.size() < size_t(Study::kFewestRepeats)) return {};
+  return renders;
+}
+
+bool isWhole(const Study& study, const StudyResults& results) {
+  for (const StrategyResult& strategy : results.strategies) {
+    if (std::count(study.strategies.begin(), study.strategies.end(), strategy.name) == 0) continue;
+    for (const Budget& budget : study.budgets) {
+      const Cell* cell = findCell(strategy, budget);
+      if (!cell || int(cell->repeatSeconds.size()) < study.repeats) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Image> images(std::vector<StoredRender> renders) {
+  std::vector<Image> result;
+  for (StoredRender& render : renders) result.push_back(std::move(render.image));
+  return result;
+}
+
+Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<StoredRender> renders,
+            const Reference& reference) {
+  Cell cell{.strategy = strategy, .budget = budget};
+  for (const StoredRender& render : renders) cell.repeatSeconds.push_back(render.seconds);
+  cell.samples = mean(renders, &StoredRender::samples);
+  cell.seconds = estimateOf(cell.repeatSeconds);
+  cell.prepareSeconds = mean(renders, &StoredRender::prepareSeconds);
+  cell.noise = mean(renders, &StoredRender::noise);
+  cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
+  cell.error = cellError(images(std::move(renders)), reference);
+  return cell;
+}
+
+Estimate efficiency(const Cell& cell, const Cell& baseline) {
+  if (&cell == &baseline) return {1, 0};
+  std::vector<double> logRatios;
+  const size_t turns = std::min(cell.repeatSeconds.size(), baseline.repeatSeconds.size());
+  for (size_t r = 0; r < turns; ++r)
+    logRatios.push_back(std::log(baseline.repeatSeconds[r] / cell.repeatSeconds[r]));
+  const Estimate logSpeed = estimateOf(logRatios);
+  const Estimate &here = cell.error.relMse, &there = baseline.error.relMse;
+  const double ratio = there.mean / here.mean * std::exp(logSpeed.mean);
+  return {ratio, ratio * std::sqrt(std::pow(here.standardError / here.mean, 2) +
+                                   std::pow(there.standardError / there.mean, 2) +
+                                   std::pow(logSpeed.standardError, 2))};
+}
+
+void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::string& baseline) {
+  const auto base = std::find_if(strategies.begin(), strategies.end(),
+                                 [&](const StrategyResult& s) { return s.name == baseline; });
+  for (StrategyResult& strategy : strategies)
+    for (Cell& cell : strategy.cells) {
+      const Cell* other = findCell(*base, cell.budget);
+      cell.efficiency = other ? efficiency(cell, *other) : Estimate{std::nan(""), 0};
+    }
+}
+
+void fitConvergence(StrategyResult& strategy) {
+  std::vector<ConvergencePoint> variances, errors;
+  std::vector<Estimate> biases;
+  for (const Cell& cell : strategy.cells) {
+    variances.push_back({cell.samples, cell.error.variance});
+    errors.push_back({cell.samples, cell.error.relMse});
+    biases.push_back(cell.error.squaredBias);
+  }
+  strategy.variance = fitPowerLaw(variances);
+  strategy.relMse = fitPowerLaw(errors);
+  strategy.squaredBias = combine(biases);
+  if (strategy.variance && !strategy.unbiased)
+    strategy.biasEqualsNoise = biasEqualsNoise(*strategy.variance, strategy.squaredBias);
+}
+
+std::vector<PairResult> comparePairs(const Study& study, const RenderStore& store,
+                                     const StudyResults& results) {
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  std::vector<PairResult> pairs;
+  std::vector<std::pair<std::string, std::vector<Image>>> sets;
+  for (const StrategyResult& strategy : results.strategies)
+    if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr;
+        cell && cell->error.relMse.mean < kMostNoiseOfPairs)
+      sets.emplace_back(strategy.name, images(loadRepeats(store, strategy.name, *budget)));
+  for (size_t i = 0; i < sets.size(); ++i)
+    for (size_t j = i + 1; j < sets.size(); ++j)
+      pairs.push_back(
+          {sets[i].first, sets[j].first, *budget, agreement(sets[i].second, sets[j].second)});
+  return pairs;
+}
+
+// Squared standard error of the mean of the parts, from how they scatter.
+Reference combineParts(const std::vector<Image>& parts) {
+  Reference reference{parts[0], parts[0]};
+  for (size_t i = 0; i < parts[0].texels.size(); ++i) {
+    std::vector<double> numbers;
+    for (const Image& part : parts) numbers.push_back(part.texels[i]);
+    const Estimate e = estimateOf(numbers);
+    reference.mean.texels[i] = float(e.mean);
+    reference.squaredError.texels[i] = float(e.standardError * e.standardError);
+  }
+  return reference;
+}
+
+std::vector<std::string> warningsOf(const Study& study, const StudyResults& results) {
+  std::vector<std::string> warnings;
+  if (!results.complete)
+    warnings.push_back("The comparison is not complete: some strategies lack some budgets.");
+  if (!results.referenceErrorKnown)
+    warnings.push_back(
+        fmt::format("{} has no variance layer: it is taken for exact.", study.referenceFile));
+  double worst = 0, invalid = 0;
+  std::string where;
+  for (const StrategyResult& strategy : results.strategies)
+    for (const Cell& cell : strategy.cells) {
+      invalid += cell.invalidSamples;
+      const double share = cell.error.reference / cell.error.relMse.mean;
+      if (share <= worst) continue;
+      worst = share;
+      where = fmt::format("{} at {}", strategy.name, cell.budget.label());
+    }
+  if (worst > kSmallShare)
+    warnings.push_back(fmt::format(
+        "The reference's own error is not small: its variance is {:.0f}% of the relMSE of {}. It "
+        "was removed, but intervals of small numbers are wide; give --reference-samples more.",
+        100 * worst, where));
+  if (invalid > 0)
+    warnings.push_back(fmt::format(
+        "{:.0f} samples were invalid (NaN, infinite or negative) and left out.", invalid));
+  return warnings;
+}
+
+}  // namespace
+
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height) {
+  if (study.referenceFile.empty()) {
+    std::vector<Image> parts;
+    for (int part = 0; part < Study::kReferenceParts; ++part)
+      parts.push_back(store.find(study.referencePart(part)).value().image);
+    return combineParts(parts);
+  }
+  const ImageFile file = readImageFile(study.referenceFile);
+  const std::optional<Image> color = findColor(file);
+  if (!color) throwInput("--reference: {}: has no colour", study.referenceFile);
+  if (color->width != width || color->height != height)
+    throwInput("--reference: {} is {} x {}, but the picture is {} x {}; give --size {}x{}",
+               study.referenceFile, color->width, color->height, width, height, color->width,
+               color->height);
+  const std::optional<Image> variance = findLayer(file, "variance");
+  return {*color, variance && variance->channels == 3 ? *variance : Image()};
+}
+
+StudyResults studyResults(const Study& study, const RenderStore& store,
+                          const Reference& reference) {
+  StudyResults results;
+  results.reference = reference;
+  results.referenceErrorKnown = !reference.squaredError.empty();
+  for (const std::string& name : study.shownStrategies) {
+    StrategyResult& strategy = results.strategies.emplace_back();
+    strategy.name = name;
+    for (const Budget& budget : study.shownBudgets) {
+      std::vector<StoredRender> renders = loadRepeats(store, name, budget);
+      if (renders.empty()) continue;
+      strategy.unbiased = renders.front().unbiased;
+      strategy.cells.push_back(cellOf(name, budget, std::move(renders), reference));
+    }
+    fitConvergence(strategy);
+    for (const Cell& cell : strategy.cells)
+      results.referenceNoise = std::sqrt(cell.error.reference);
+  }
+  results.complete = isWhole(study, results);
+  compareWithBaseline(results.strategies, study.baseline);
+  results.pairs = comparePairs(study, store, results);
+  results.warnings = warningsOf(study, results);
+  return results;
+}
+
+const Cell* findCell(const StrategyResult& strategy, const Budget& budget) {
+  for (const Cell& cell : strategy.cells)
+    if (cell.budget == budget) return &cell;
+  return nullptr;
+}
+
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
+                                          bool (*isWanted)(const Budget&)) {
+  const auto has = [&](const std::string& name, const Budget& budget) {
+    return std::any_of(
+        results.strategies.begin(), results.strategies.end(),
+        [&](const StrategyResult& s) { return s.name == name && findCell(s, budget); });
+  };
+  for (auto budget = study.shownBudgets.rbegin(); budget != study.shownBudgets.rend(); ++budget)
+    if (isWanted(*budget) &&
+        std::all_of(study.strategies.begin(), study.strategies.end(),
+                    [&](const std::string& name) { return has(name, *budget); }))
+      return *budget;
+  return std::nullopt;
+}
+
+std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results) {
+  return largestCommonBudget(study, results, [](const Budget&) { return true; });
+}
+
+}  // namespace chromeball

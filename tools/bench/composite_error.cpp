@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a local scene that is not quite right costs a composite: the terrace with its objects put
+// in, against a picture of terrace and objects together. Errors are of the pixels that see the
+// local scene where the objects change it by more than 2%; the difference formula against the
+// ratio. The objects are made rough here: caustics of the sun are more noise than light in all
+// these pictures, and would hide what is measured.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "composite/compose.h"
+#include "composite/local_scene.h"
+#include "composite/reflectance.h"
+#include "composite/render_composite.h"
+#include "demo/terrace.h"
+#include "scene/gltf/gltf.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kColumns = 120, kRows = 80, kTruthSamples = 4096, kCompositeSamples = 1024;
+constexpr float kRough = 0.7f;
+const std::atomic<bool> kGoOn = false;
+const auto kQuiet = [](double) {};
+
+Scene load(demo::Terrace what, float leastRoughness = kRough) {
+  const auto file = std::filesystem::temp_directory_path() / "chromeball-terrace.glb";
+  demo::writeTerrace(file, what);
+  Scene scene = loadGltf(file, {}, [](const std::string&) {});
+  std::filesystem::remove(file);
+  for (Material& m : scene.materials) m.roughness = std::max(m.roughness, leastRoughness);
+  return scene;
+}
+
+RenderSettings settingsOf(int samples, uint64_t seed) {
+  RenderSettings s;
+  s.width = kColumns, s.height = kRows, s.samples = samples, s.seed = seed;
+  s.hideProbe = true;
+  return s;
+}
+
+Image picture(demo::Terrace what, const Probe& probe, uint64_t seed) {
+  const Scene scene = load(what);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  return render(scene, Accel(scene), scene.cameras.front(), *lighting,
+                settingsOf(kTruthSamples, seed), kQuiet, kGoOn)
+      .film.mean();
+}
+
+struct Truth {
+  Image probe = demo::terraceProbe(512);
+  Image plate = picture(demo::Terrace::Photograph, Probe(probe), 1);
+  Image whole = picture(demo::Terrace::Whole, Probe(probe), 2);
+
+  static const Truth& get() {
+    static const Truth truth;
+    return truth;
+  }
+};
+
+// Whether the objects matter there.
+bool isChanged(int x, int y) {
+  const double plate = luminance(Truth::get().plate.rgb(x, y));
+  return std::abs(luminance(Truth::get().whole.rgb(x, y)) - plate) > 0.02 * plate;
+}
+
+enum class Reflectance { True, Grey, Solved };
+struct Mistake {
+  Reflectance reflectance = Reflectance::True;
+  float albedo = 1;    // factor on the local scene's
+  float exposure = 1;  // factor on the probe
+  int maxDepth = 8;
+};
+
+void errorOf(const Image& found, const DifferentialFilm& film, const char* name,
+             benchmark::State& state) {
+  const Truth& truth = Truth::get();
+  double squares = 0, sum = 0, reference = 0;
+  int count = 0;
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x) {
+      if (film.at(x, y).covered > 0 || !isChanged(x, y)) continue;
+      const double whole = luminance(truth.whole.rgb(x, y));
+      const double error = luminance(found.rgb(x, y)) - whole;
+      squares += error * error / (whole * whole + 0.01);
+      sum += error, reference += whole, ++count;
+    }
+  state.counters[std::string(name) + " rel. RMSE %"] = 100 * std::sqrt(squares / count);
+  state.counters[std::string(name) + " bias %"] = 100 * sum / reference;
+}
+
+ObjectMask objectsOf(const Scene& scene) {
+  return findObjects(scene, {{"floor", ""}, {"wall", ""}, {"pillar", ""}, {"vase", ""}}, "");
+}
+
+void compositeError(benchmark::State& state, const Mistake& mistake) {
+  const Truth& truth = Truth::get();
+  const bool isTrue = mistake.reflectance == Reflectance::True;
+  Scene scene = load(isTrue ? demo::Terrace::Whole : demo::Terrace::Model);
+  const ObjectMask isObject = objectsOf(scene);
+  for (size_t i = 0; i < isObject.size(); ++i)
+    if (!isObject[i]) {
+      vec4& color = scene.materials[size_t(scene.instances[i].material)].baseColor;
+      color = vec4(Rgb(color) * mistake.albedo, color.w);
+    }
+  const Probe probe(truth.probe, 0, mistake.exposure);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  const Camera& camera = scene.cameras.front();
+  RenderSettings settings = settingsOf(kCompositeSamples, 3);
+  settings.maxDepth = mistake.maxDepth;
+
+  Projection projection(camera, kColumns, kRows);
+  if (mistake.reflectance == Reflectance::Solved) makeProjected(scene, isObject, projection);
+  for (auto _ : state) {
+    if (mistake.reflectance == Reflectance::Solved)
+      solveReflectance({scene, isObject, camera, *lighting, truth.plate}, settings, 2, projection,
+                       kQuiet, kGoOn);
+    const CompositeRender r =
+        renderComposite(scene, Accel(scene), isObject, camera, *lighting, truth.plate, settings,
+                        Passes::One, false, kQuiet, kGoOn);
+    for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
+      errorOf(compose(r.film, r.mean, truth.plate, mode).color, r.film,
+              mode == CompositeMode::Difference ? "difference" : "ratio", state);
+  }
+}
+
+#define MISTAKE(name, ...)                                     \
+  BENCHMARK_CAPTURE(compositeError, name, Mistake __VA_ARGS__) \
+      ->Iterations(1)                                          \
+      ->Unit(benchmark::kMillisecond)
+MISTAKE(none, {});
+MISTAKE(reflectance solved from the plate, {.reflectance = Reflectance::Solved});
+MISTAKE(grey 0.3 everywhere, {.reflectance = Reflectance::Grey});
+MISTAKE(reflectance - 30 %, {.albedo = 0.7f});
+MISTAKE(reflectance - 10 %, {.albedo = 0.9f});
+MISTAKE(reflectance + 10 %, {.albedo = 1.1f});
+MISTAKE(reflectance + 30 %, {.albedo = 1.3f});
+MISTAKE(probe - 30 %, {.exposure = 0.7f});
+MISTAKE(probe - 10 %, {.exposure = 0.9f});
+MISTAKE(probe + 10 %, {.exposure = 1.1f});
+MISTAKE(probe + 30 %, {.exposure = 1.3f});
+MISTAKE(probe - 30 % and solved, {.reflectance = Reflectance::Solved, .exposure = 0.7f});
+MISTAKE(no interreflection, {.maxDepth = 1});
+#undef MISTAKE
+
+// How many times less the variance of the difference is from one pass than from two renders: in all
+// pixels that see the local scene, and in those that the objects change. Where they take all light,
+// in the core of a shadow, there is nothing to cancel.
+void compositeNoise(benchmark::State& state, float leastRoughness) {
+  const Truth& truth = Truth::get();
+  const Scene scene = load(demo::Terrace::Whole, leastRoughness);
+  const ObjectMask isObject = objectsOf(scene);
+  const Probe probe(truth.probe);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
+  const auto renderIn = [&](Passes passes) {
+    return renderComposite(scene, Accel(scene), isObject, scene.cameras.front(), *lighting,
+                           truth.plate, settingsOf(kCompositeSamples, 3), passes, false, kQuiet,
+                           kGoOn);
+  };
+  for (auto _ : state) {
+    const CompositeRender one = renderIn(Passes::One), two = renderIn(Passes::Two);
+    const auto oneErrors = squaredStandardErrors(one.errors);
+    const auto twoErrors = squaredStandardErrors(two.errors);
+    glm::dvec2 all(0), changed(0);  // sums of squared standard errors
+    for (int y = 0; y < kRows; ++y)
+      for (int x = 0; x < kColumns; ++x) {
+        if (one.film.at(x, y).covered > 0) continue;
+        const size_t i = size_t(y) * kColumns + size_t(x);
+        const glm::dvec2 errors(oneErrors[i].w, twoErrors[i].w);
+        all += errors;
+        if (isChanged(x, y)) changed += errors;
+      }
+    state.counters["gain"] = all.y / all.x;
+    state.counters["gain where changed"] = changed.y / changed.x;
+  }
+}
+BENCHMARK_CAPTURE(compositeNoise, rough objects, kRough)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(compositeNoise, mirrors and gold, 0.0f)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What placing 300 lights costs: the tables of a 1024 x 512 map, and then the lights from them.
+// CHROMEBALL_PROBE names another map than the project's own studio.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+#include "lighting/constellation/cube_grid.h"
+#include "lighting/constellation/kollig_keller.h"
+#include "lighting/constellation/lightgen.h"
+#include "lighting/constellation/median_cut.h"
+#include "lighting/constellation/penrose.h"
+#include "lighting/constellation/variance_cut.h"
+#include "probe/load.h"
+#include "probe/synth.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kLights = 300;
+
+const Image& map() {
+  static const char* path = std::getenv("CHROMEBALL_PROBE");
+  static const Image image = path ? loadProbe(path).latLong : studioProbe({1024, 512});
+  return image;
+}
+
+template <class Table, class... Arguments>
+void build(benchmark::State& state, Arguments... arguments) {
+  for (auto _ : state) {
+    const Table table(map(), arguments...);
+    benchmark::DoNotOptimize(&table);
+  }
+}
+
+void regionTable(benchmark::State& state) { build<RegionTable>(state); }
+void importanceTable(benchmark::State& state) { build<ImportanceTable>(state); }
+void coarseTable(benchmark::State& state) { build<TexelTable>(state, kCoarseCells); }
+
+template <class Table, class Make>
+void place(benchmark::State& state, const Table& table, Make make) {
+  size_t lights = 0;
+  for (auto _ : state) lights = make(table).size();
+  state.counters["lights"] = double(lights);
+}
+
+void medianCut300(benchmark::State& state) {
+  place(state, RegionTable(map()), [](const auto& table) { return medianCut(table, kLights); });
+}
+void varianceCut300(benchmark::State& state) {
+  place(state, RegionTable(map()), [](const auto& table) { return varianceCut(table, kLights); });
+}
+void penrose300(benchmark::State& state) {
+  place(state, ImportanceTable(map()),
+        [](const auto& table) { return penrose(table, kLights, 1); });
+}
+void lightGen300(benchmark::State& state) {
+  place(state, TexelTable(map(), kCoarseCells),
+        [](const auto& table) { return lightGen(table, kLights, 1); });
+}
+void kolligKeller300(benchmark::State& state) {
+  place(state, TexelTable(map(), kCoarseCells),
+        [](const auto& table) { return kolligKeller(table, kLights); });
+}
+void cubeGrid294(benchmark::State& state) {
+  place(state, TexelTable(map(), kFineCells), [](const auto& table) { return cubeGrid(table, 7); });
+}
+
+BENCHMARK(regionTable)->Unit(benchmark::kMillisecond);
+BENCHMARK(importanceTable)->Unit(benchmark::kMillisecond);
+BENCHMARK(coarseTable)->Unit(benchmark::kMillisecond);
+BENCHMARK(medianCut300)->Unit(benchmark::kMillisecond);
+BENCHMARK(varianceCut300)->Unit(benchmark::kMillisecond);
+BENCHMARK(penrose300)->Unit(benchmark::kMillisecond);
+BENCHMARK(lightGen300)->Unit(benchmark::kMillisecond);
+BENCHMARK(kolligKeller300)->Unit(benchmark::kMillisecond);
+BENCHMARK(cubeGrid294)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the fit of directional lights costs, and what each count leaves of the error. The probe is
+// CHROMEBALL_PROBE's, or a studio.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+#include "lighting/fit/irradiance_fit.h"
+#include "lighting/fit/radiance_points.h"
+#include "math/icosphere.h"
+#include "probe/irradiance.h"
+#include "probe/load.h"
+#include "probe/synth.h"
+
+namespace chromeball {
+namespace {
+
+const Image& fitProbe() {
+  static const Image probe = [] {
+    const char* path = std::getenv("CHROMEBALL_PROBE");
+    return path ? loadProbe(path).latLong : studioProbe({512, 256});
+  }();
+  return probe;
+}
+
+// All of it, the exact irradiance of 20480 normals included.
+void irradianceFit(benchmark::State& state) {
+  const Image& probe = fitProbe();
+  IrradianceFit fit;
+  for (auto _ : state) fit = fitIrradiance(probe, {.count = int(state.range(0))});
+  state.counters["mean%"] = fit.meanError;
+  state.counters["max%"] = fit.maxError;
+}
+BENCHMARK(irradianceFit)
+    ->RangeMultiplier(2)
+    ->Range(2, 256)
+    ->Iterations(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+// The exact irradiance alone.
+void irradianceOfTheProbe(benchmark::State& state) {
+  const Image& probe = fitProbe();
+  const std::vector<vec3> normals = icosphereNormals(5);
+  for (auto _ : state) benchmark::DoNotOptimize(exactIrradiance(probe, normals));
+}
+BENCHMARK(irradianceOfTheProbe)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+// The inner loop: one light against a probe of so many rows.
+void productWithALight(benchmark::State& state) {
+  const RadiancePoints points(fitProbe(), int(state.range(0)), 1);
+  for (auto _ : state) benchmark::DoNotOptimize(points.productWith(dvec3(0.6, 0.8, 0)));
+}
+BENCHMARK(productWithALight)->Arg(32)->Arg(64)->Arg(128)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace chromeball

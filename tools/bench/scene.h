@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene that the rendering benchmarks share: the still life in matte paint or in metal.
+// CHROMEBALL_PROBE names another probe than the project's own studio.
+#pragma once
+
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+
+#include "demo/still_life.h"
+#include "integrate/path.h"
+#include "probe/load.h"
+#include "probe/synth.h"
+#include "scene/gltf/gltf.h"
+#include "trace/accel.h"
+
+namespace chromeball {
+
+inline constexpr int kWidth = 320, kHeight = 240, kSamples = 64, kDepth = 5;
+
+inline Image benchmarkProbe() {
+  if (const char* path = std::getenv("CHROMEBALL_PROBE")) return loadProbe(path).latLong;
+  return studioProbe({1024, 512});
+}
+
+struct BenchmarkScene {
+  Scene scene;
+  Accel accel;
+  Probe probe;
+  std::unique_ptr<LightingStrategy> lighting;
+  std::unique_ptr<Emitters> emitters;
+
+  explicit BenchmarkScene(Scene s)
+      : scene(std::move(s)),
+        accel(scene),
+        probe(benchmarkProbe()),
+        lighting(makeStrategy("importance", probe, Mis::Balance, "benchmark")),
+        emitters(Emitters::make(scene)) {
+    prepareBsdfs(scene);
+  }
+
+  static const BenchmarkScene& get(demo::Finish finish) {
+    static const BenchmarkScene lambertian(load(demo::Finish::Lambertian));
+    static const BenchmarkScene conductors(load(demo::Finish::Conductors));
+    return finish == demo::Finish::Lambertian ? lambertian : conductors;
+  }
+
+  static Scene load(demo::Finish finish) {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / "chromeball-benchmark.glb";
+    demo::writeStillLife(file, finish);
+    Scene scene = loadGltf(file, {}, [](const std::string&) {});
+    std::filesystem::remove(file);
+    return scene;
+  }
+};
+
+// Calls radiance(ray, sampler) for every sample of every pixel, on this thread.
+template <class Radiance>
+Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance) {
+  const CameraRays rays(camera, float(kWidth) / kHeight);
+  const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * (kDepth + 1), 1);
+  PixelSampler sampler(table, 1);
+  Rgb sum(0);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      sampler.startPixel(uint32_t(x), uint32_t(y), 0);
+      for (int i = 0; i < samples; ++i) {
+        sampler.startSample(uint32_t(i));
+        const vec2 offset = sampler.get2(dimension::kPixel);
+        Ray ray;
+        rays.ray((float(x) + offset.x) / kWidth, (float(y) + offset.y) / kHeight, ray.origin,
+                 ray.direction);
+        sum += radiance(ray, sampler);
+      }
+    }
+  return sum;
+}
+
+// Of this thread.
+inline double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+}  // namespace chromeball

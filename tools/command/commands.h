@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `chromeball`, one file each. Each adds itself to the command line; its
+// callback throws InputError or RunError, which main turns into one line and an exit status.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace chromeball {
+
+void addRenderCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
+void addProbeCommand(CLI::App& app);  // info, convert, synth, irradiance
+void addImageCommand(CLI::App& app);  // view, error
+void addLightsCommand(CLI::App& app);
+void addLightsErrorCommand(CLI::App& app);
+
+}  // namespace chromeball

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+#include "base/error.h"
+#include "commands.h"
+#include "job/job_description.h"
+#include "job/machine.h"
+#include "job/output_file.h"
+#include "progress_bar.h"
+#include "scene_options.h"
+#include "study/report/probe_dots.h"
+#include "study/report/report.h"
+#include "study/run.h"
+#include "study/tables.h"
+#include "study/verdict.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupted = false;
+
+struct Arguments {
+  RenderOptions scene;
+  std::vector<std::string> strategies{"all"};
+  std::vector<int> samples;
+  std::vector<double> times;
+  int repeats = 4;
+  std::string reference, referenceStrategy = "auto", baseline, folder;
+  std::optional<int> referenceSamples;
+};
+
+std::vector<std::string> resolveStrategies(const std::vector<std::string>& given) {
+  std::vector<std::string> names;
+  for (const std::string& name : given) {
+    std::vector<std::string> these{resolveStrategy(name)};
+    if (name == "all") {
+      these.clear();
+      for (const std::string_view known : strategyNames())
+        these.push_back(resolveStrategy(std::string(known)));
+    }
+    for (const std::string& one : these)
+      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
+  }
+  return names;
+}
+
+void sortOut(std::vector<Budget>& budgets) {
+  std::sort(budgets.begin(), budgets.end());
+  budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
+}
+
+std::vector<Budget> planBudgets(const Arguments& a) {
+  std::vector<Budget> budgets;
+  for (const int samples : a.samples) {
+    if (samples < 1) throwInput("--samples: {} is not 1 or more", samples);
+    budgets.push_back({false, double(samples)});
+  }
+  for (const double seconds : a.times) {
+    if (!(seconds > 0) || !std::isfinite(seconds))
+      throwInput("--times: {} is not above 0 seconds", seconds);
+    budgets.push_back({true, seconds});
+  }
+  if (budgets.empty()) budgets = {{false, 1}, {false, 4}, {false, 16}, {false, 64}};
+  sortOut(budgets);
+  return budgets;
+}
+
+// Enough for the reference's variance to be small beside that of any strategy half as good as its
+// own; nobody knows how many samples a budget of seconds will hold.
+int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
+  constexpr int kTimes = 16, kLeast = 1024;
+  if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
+    throwInput("--reference-samples: {} is not {} or more", *a.referenceSamples,
+               Study::kReferenceParts);
+  double most = 0;
+  for (const Budget& budget : budgets) most = std::max(most, budget.timed ? kLeast : budget.amount);
+  return a.referenceSamples.value_or(std::max(kLeast, int(std::min(kTimes * most, 1e6))));
+}
+
+Study planStudy(const Arguments& a) {
+  Study study;
+  study.folder = a.folder;
+  study.strategies = resolveStrategies(a.strategies);
+  study.budgets = planBudgets(a);
+  if (a.repeats < Study::kFewestRepeats)
+    throwInput("--repeats: {} is not {} or more", a.repeats, Study::kFewestRepeats);
+  study.repeats = a.repeats;
+  study.baseline = a.baseline.empty() ? study.strategies.front() : resolveStrategy(a.baseline);
+  if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
+    throwInput("--baseline: `{}` is not one of the strategies that are compared", a.baseline);
+  study.referenceFile = a.reference;
+  if (!a.reference.empty() && a.referenceSamples)
+    throwInput("--reference-samples: the reference is a file; give one or the other");
+  study.referenceStrategy = resolveStrategy(a.referenceStrategy);
+  planReferenceSamples(a, study.budgets);  // refuses what cannot be
+  if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
+  if (fs::exists(a.folder) && !fs::is_directory(a.folder))
+    throwInput("--output: {} is a file; give a folder", a.folder);
+  return study;
+}
+
+// The results show what runs before this one left in the folder as well.
+void showStored(Study& study, const RenderStore& store) {
+  study.shownStrategies = study.strategies;
+  study.shownBudgets = study.budgets;
+  for (const RenderKey& key : store.firstRepeats()) {
+    auto& names = study.shownStrategies;
+    if (std::count(names.begin(), names.end(), key.strategy) == 0) names.push_back(key.strategy);
+    study.shownBudgets.push_back(key.budget);
+  }
+  sortOut(study.shownBudgets);
+}
+
+void checkReference(const StudyRun& run, const Study& study) {
+  if (study.referenceFile.empty() && !run.strategy(kReference).unbiased())
+    throwInput("--reference-strategy: `{}` is biased; a reference must not be",
+               study.referenceStrategy);
+}
+
+// The files of a report; its renders are read again, never overwritten.
+struct ReportFiles {
+  explicit ReportFiles(const fs::path& folder)
+      : csv((folder / "results.csv").string()),
+        json((folder / "results.json").string()),
+        samples((folder / "samples.svg").string()),
+        seconds((folder / "seconds.svg").string()),
+        page((folder / "index.html").string()) {}
+  std::string csv, json, samples, seconds, page;
+};
+
+void checkOutputs(const ReportFiles& files, const Arguments& a, const LoadedScene& loaded) {
+  std::vector<std::string> inputs = loaded.files;
+  inputs.push_back(a.scene.scene);
+  inputs.push_back(a.reference);
+  checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
+}
+
+void compare(const Arguments& a) {
+  RenderJob job = planJob(a.scene);
+  Study study = planStudy(a);
+  std::optional<tbb::global_control> threads;
+  if (a.scene.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, a.scene.threads);
+  const LoadedScene loaded = loadScene(job);
+  const ReportFiles files(a.folder);
+  checkOutputs(files, a, loaded);
+  job.settings.aovs.clear();
+  job.settings.noiseLimit.reset();
+  study.seed = job.settings.seed;
+  study.identity = identityOf(a.scene, job, loaded);
+
+  const RenderStore store(study, {job.settings.width, job.settings.height});
+  showStored(study, store);
+  study.referenceSamples = planReferenceSamples(a, study.shownBudgets);
+  StudyRun run(study, store, loaded, job.settings);
+  checkReference(run, study);
+  if (!study.referenceFile.empty())
+    loadReference(study, store, job.settings.width, job.settings.height);
+  sayNotes(job, loaded, a.scene.quiet);
+  if (job.file.composite)
+    warn(
+        fmt::format("{}: [composite] is left out: strategies are compared on the whole model, "
+                    "without the plate",
+                    a.scene.scene));
+
+  const auto results = [&] {
+    const RenderSettings& s = job.settings;
+    return studyResults(study, store, loadReference(study, store, s.width, s.height));
+  };
+  ReportScene about{
+      fs::path(a.scene.scene).filename().string(), &loaded.probe, a.scene.exposure, {}};
+  for (const std::string& name : study.strategies)
+    about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
+  const auto write = [&](const StudyResults& r) {
+    const Machine machine = thisMachine();
+    writeText(files.csv, resultsCsv(r));
+    writeText(files.json, resultsJson(study, r, machine).dump(2) + "\n");
+    writeText(files.samples, samplesPlot(r));
+    writeText(files.seconds, secondsPlot(r));
+    writeText(files.page, reportHtml(study, store, r, about, machine));
+  };
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const bool whole = [&] {
+    ProgressBar bar(a.scene.progress || (ProgressBar::isTerminal() && !a.scene.quiet));
+    return run.run([&](double share) { bar.update(share); }, [&] { write(results()); },
+                   interrupted);
+  }();
+  if (!whole)
+    throw Interrupted(
+        fmt::format("interrupted; {} of {} renders are in {}, and the same command "
+                    "goes on from there",
+                    run.stored(), run.total(), study.folder));
+  const StudyResults all = results();
+  write(all);
+  for (const std::string& warning : all.warnings) warn(warning);
+  if (a.scene.quiet) return;
+  fmt::print("{}", resultsTable(study, all));
+  for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
+}
+
+}  // namespace
+
+void addCompareCommand(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  Arguments& a = *arguments;
+  CLI::App* command = app.add_subcommand(
+      "compare", "What each lighting strategy costs and gains: error, bias and time of a scene");
+  addSceneOptions(*command, a.scene);
+  command->add_option("--strategies", a.strategies, "NAME or NAME:COUNT, with commas; or all")
+      ->delimiter(',');
+  command->add_option("--samples", a.samples, "Samples a pixel: 1,4,16,64")->delimiter(',');
+  command->add_option("--times", a.times, "Seconds a render: 1,2,4")->delimiter(',');
+  command->add_option("--repeats", a.repeats, "Independent renders of each, 3 or more")
+      ->capture_default_str();
+  command->add_option("--reference", a.reference, "Picture that is taken for the truth");
+  command->add_option("--reference-samples", a.referenceSamples,
+                      "Where it is made on the spot: samples a pixel");
+  command->add_option("--reference-strategy", a.referenceStrategy, "and by which strategy")
+      ->capture_default_str();
+  command->add_option("--baseline", a.baseline, "Strategy of efficiency 1 (the first)");
+  command
+      ->add_option("-o,--output", a.folder,
+                   "Folder of the report; one that holds a part of "
+                   "this comparison is continued")
+      ->required();
+  command->callback([arguments] { compare(*arguments); });
+}
+
+}  // namespace chromeball

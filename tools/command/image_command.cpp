@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.h"
+#include "image_commands.h"
+
+namespace chromeball {
+
+void addImageCommand(CLI::App& app) {
+  CLI::App* image = app.add_subcommand("image", "Look at images, and compare them.");
+  image->require_subcommand(1);
+  addImageErrorCommand(*image);
+  addImageViewCommand(*image);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `chromeball image`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace chromeball {
+
+void addImageErrorCommand(CLI::App& image);
+void addImageViewCommand(CLI::App& image);
+
+}  // namespace chromeball

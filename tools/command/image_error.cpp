@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image error A B
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
+#include "image_commands.h"
+#include "job/output_file.h"
+#include "measure/false_color.h"
+#include "measure/flip.h"
+#include "measure/image_error.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string a, b, output, map = "relative";
+  bool json = false, flip = false;
+};
+
+// What is printed.
+struct Findings {
+  ImageError error;
+  std::optional<double> flip;  // mean
+};
+
+// JSON has no infinity: null there.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json toJson(const Findings& findings) {
+  const ImageError& error = findings.error;
+  Json json = {{"mse", number(error.mse)},   {"relmse", number(error.relMse)},
+               {"bias", number(error.bias)}, {"max_difference", number(error.maxDifference)},
+               {"psnr", number(error.psnr)}, {"invalid", error.invalid}};
+  if (const auto& z = error.zScores)
+    json["z"] = {{"count", z->count},
+                 {"mean", number(z->mean)},
+                 {"sd", number(z->standardDeviation)},
+                 {"beyond_3_sigma", number(z->shareBeyond3)},
+                 {"largest", number(z->largest)},
+                 {"p_value", number(z->pValue)}};
+  if (findings.flip) json["flip"] = *findings.flip;
+  return json;
+}
+
+void print(const Findings& findings) {
+  const ImageError& error = findings.error;
+  fmt::print("mse             {:.6g}\n", error.mse);
+  fmt::print("relmse          {:.6g}\n", error.relMse);
+  fmt::print("bias            {:.6g}\n", error.bias);
+  fmt::print("max difference  {:.6g}\n", error.maxDifference);
+  fmt::print("psnr            {:.4g} dB\n", error.psnr);
+  if (error.invalid > 0) fmt::print("invalid         {} numbers left out\n", error.invalid);
+  if (findings.flip) fmt::print("flip            {:.6g}\n", *findings.flip);
+  if (const auto& z = error.zScores)
+    fmt::print(
+        "z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (0.27% by noise), of {} "
+        "numbers; the largest {:.3g}, by noise with a chance of {:.2g}\n",
+        z->mean, z->standardDeviation, 100 * z->shareBeyond3, z->count, z->largest, z->pValue);
+}
+
+struct Side {
+  Image color;
+  std::optional<Image> variance;
+
+  explicit Side(const std::string& path) {
+    const ImageFile file = readImageFile(path);
+    std::optional<Image> found = findColor(file);
+    if (!found) throwInput("{}: has no colour", path);
+    color = *std::move(found);
+    variance = findLayer(file, "variance");
+  }
+  const Image* varianceOrNull() const { return variance ? &*variance : nullptr; }
+};
+
+// Integer files hold what a screen shows; for others FLIP looks at several exposures.
+bool isForScreens(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
+Image flipOf(const Arguments& arguments, const Side& a, const Side& b) {
+  return isForScreens(arguments.a) && isForScreens(arguments.b) ? flip(b.color, a.color)
+                                                                : hdrFlip(b.color, a.color);
+}
+
+// A false-colour picture, and what its colours mean.
+void writeMap(const Arguments& arguments, const Image& map) {
+  constexpr double kDecades = 3, kMostZ = 5;
+  const bool logarithmic = arguments.map == "relative";
+  const double most = arguments.map == "flip" ? 1
+                      : arguments.map == "z"  ? kMostZ
+                                              : roundUp(percentile(map.texels, 0.99));
+  Image picture(map.width, map.height, 3);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const double number = *map.at(x, y);
+      const Color8 color =
+          heatColor(logarithmic ? logLevel(number, most, kDecades) : number / most);
+      for (int c = 0; c < 3; ++c) picture.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
+    }
+  writeImage(arguments.output, picture);
+  if (!arguments.json)
+    fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
+               logarithmic ? "logarithmic" : "linear",
+               logarithmic ? most * std::pow(10, -kDecades) : 0, most);
+}
+
+void run(const Arguments& arguments) {
+  static constexpr std::array<std::string_view, 3> kMaps = {"relative", "z", "flip"};
+  if (std::find(kMaps.begin(), kMaps.end(), arguments.map) == kMaps.end())
+    throwInput("--map: `{}` is not known; {}", arguments.map,
+               didYouMean(arguments.map, {kMaps.begin(), kMaps.end()}));
+  if (!arguments.output.empty()) checkOutputFile(arguments.output, {".png"});
+  checkDistinct({arguments.output}, {arguments.a, arguments.b});
+  const Side a(arguments.a), b(arguments.b);
+  if (a.color.width != b.color.width || a.color.height != b.color.height)
+    throwInput("{}: is {} x {}, but {} is {} x {}; only images of one size can be compared",
+               arguments.a, a.color.width, a.color.height, arguments.b, b.color.width,
+               b.color.height);
+  Findings findings{imageError(a.color, b.color, a.varianceOrNull(), b.varianceOrNull()),
+                    std::nullopt};
+  Image flipped;
+  if (arguments.flip || arguments.map == "flip") {
+    flipped = flipOf(arguments, a, b);
+    double sum = 0;
+    for (const float number : flipped.texels) sum += number;
+    findings.flip = sum / double(flipped.texels.size());
+  }
+  if (arguments.map == "z" && !findings.error.zScores)
+    throwInput("--map: neither {} nor {} has a variance layer; render with --aov variance",
+               arguments.a, arguments.b);
+  if (arguments.json)
+    fmt::print("{}\n", toJson(findings).dump(2));
+  else
+    print(findings);
+  if (!arguments.output.empty())
+    writeMap(arguments, arguments.map == "flip" ? flipped
+                        : arguments.map == "z"
+                            ? zScoreImage(a.color, b.color, a.varianceOrNull(), b.varianceOrNull())
+                            : relativeErrorImage(a.color, b.color));
+}
+
+}  // namespace
+
+void addImageErrorCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand("error", "How far image A is from the reference B.");
+  command->add_option("A", arguments->a, "the image")->required();
+  command->add_option("B", arguments->b, "the reference")->required();
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->add_flag(
+      "--flip", arguments->flip,
+      "also what one sees flipping between them (Andersson et al. 2020, 2021), 0 to 1");
+  command->add_option("-o,--output", arguments->output, "write a false-colour difference .png");
+  command
+      ->add_option("--map", arguments->map,
+                   "of what: relative (error), z (in sigmas, needs variance layers) or flip")
+      ->capture_default_str();
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image view IN OUT.png
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "image/io/read.h"
+#include "image/io/write.h"
+#include "image_commands.h"
+#include "job/id_manifest.h"
+#include "job/output_file.h"
+#include "layer_view.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string in, out, layer, tone = "none";
+  float exposure = 0;
+};
+
+// A damaged file's names may hold anything.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (uint8_t(c) < ' ' || c == 127) c = '?';
+  return text;
+}
+
+// Which colour stands for what.
+void printLegend(const Image& ids, const std::map<int, std::string>& names) {
+  constexpr size_t kMost = 64;
+  std::set<int> present;
+  for (const float id : ids.texels)
+    if (id >= 1 && id < 1e9f) present.insert(int(id));
+  size_t shown = 0;
+  for (const int id : present) {
+    if (++shown > kMost) break;
+    const auto name = names.find(id);
+    const Color8 c = idColor(id);
+    fmt::print("#{:02x}{:02x}{:02x}  {}  {}\n", c[0], c[1], c[2], id,
+               name == names.end() ? "" : printable(name->second));
+  }
+  if (present.size() > kMost) fmt::print("and {} more\n", present.size() - kMost);
+}
+
+Image colorOf(const std::string& path) {
+  ImageFile file = readImageFile(path);
+  if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
+  return colorOf(std::move(file), path);
+}
+
+Image viewOf(const std::string& path, const std::string& layer) {
+  const ImageFile file = readImageFile(path);
+  std::optional<Image> image = findLayer(file, layer);
+  if (!image) {
+    const std::vector<std::string> names = layerNames(file);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    throwInput("{}: has no layer `{}`; {}", path, layer,
+               known.empty() ? "it has only its colour" : didYouMean(layer, known));
+  }
+  if (isOfIds(layer)) printLegend(*image, readManifest(file.metadata, layer));
+  return layerView(layer, *std::move(image));
+}
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
+  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+  if (!std::isfinite(transform.exposure)) throwInput("--exposure: should be a number of stops");
+  writeImage(
+      arguments.out,
+      arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer),
+      transform);
+}
+
+}  // namespace
+
+void addImageViewCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand("view", "Make an image that a screen can show.");
+  command->add_option("IN", arguments->in, "the image")->required();
+  command->add_option("OUT", arguments->out, "the image to write, .png")->required();
+  command->add_option("--exposure", arguments->exposure, "stops: radiance times 2^STOPS");
+  command->add_option("--tonemap", arguments->tone, "none, reinhard, aces, neutral or filmic")
+      ->capture_default_str();
+  command->add_option("--layer", arguments->layer,
+                      "albedo, normal (-1..1 as 0..1), depth (near is white), node and material (a "
+                      "colour each, printed with its name), variance, samples, ...");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball lights-error PROBE --methods a,b,c --counts 2,4,8,...
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/error.h"
+#include "commands.h"
+#include "job/output_file.h"
+#include "light_methods.h"
+#include "lighting/fit/light_error.h"
+#include "math/icosphere.h"
+#include "probe/irradiance.h"
+#include "probe/load.h"
+#include "study/report/log_log_plot.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string probe, mapping = "auto", csv, plot;
+  std::vector<std::string> methods;
+  std::vector<int> counts;
+  int normals = 20480;
+  uint64_t seed = 0;
+};
+
+struct Row {
+  std::string method;
+  int count;      // asked for
+  size_t lights;  // made
+  LightError error;
+  double seconds;  // that making them took
+};
+
+int subdivisionsFor(int normals) {
+  constexpr int kMost = 8;
+  for (int i = 0, faces = 20; i <= kMost; ++i, faces *= 4)
+    if (faces == normals) return i;
+  throwInput("--normals: {} should be 20 times a power of 4: 20, 80, 320, 1280, 5120, 20480, ...",
+             normals);
+}
+
+Row measure(const Image& latLong, const LightOptions& options, std::span<const vec3> normals,
+            std::span<const dvec3> irradiance) {
+  const auto start = std::chrono::steady_clock::now();
+  const LightRig rig = makeLights(latLong, options).rig;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const auto lit = irradianceOf(rig.lights, rig.ambient.value_or(Rgb(0)), normals);
+  return {options.method, *options.count, rig.lights.size(), lightError(lit, irradiance),
+          seconds.count()};
+}
+
+std::string formatCsv(const std::vector<Row>& rows) {
+  std::string text = "method,count,lights,mean_percent,max_percent,seconds\n";
+  for (const Row& row : rows)
+    text += fmt::format("{},{},{},{:.6g},{:.6g},{:.4g}\n", row.method, row.count, row.lights,
+                        row.error.mean, row.error.max, row.seconds);
+  return text;
+}
+
+std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows) {
+  PlotPanel mean{"mean over the normals", {}}, max{"maximum over the normals", {}};
+  for (const std::string& method : arguments.methods) {
+    PlotSeries& means = mean.series.emplace_back(PlotSeries{method, {}});
+    PlotSeries& maxima = max.series.emplace_back(PlotSeries{method, {}});
+    for (const Row& row : rows)
+      if (row.method == method) {
+        means.points.push_back({double(row.lights), row.error.mean});
+        maxima.points.push_back({double(row.lights), row.error.max});
+      }
+  }
+  return logLogPlot(std::filesystem::path(arguments.probe).filename().string(),
+                    "number of directional lights", "error of irradiance, % of its mean",
+                    {mean, max});
+}
+
+void run(const Arguments& arguments) {
+  for (const std::string& method : arguments.methods) checkLightMethod(method, "--methods");
+  if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
+  if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
+  checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
+  const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
+  const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.probe))
+    fmt::print(stderr, "chromeball: {}\n", warning);
+  const std::vector<dvec3> irradiance = exactIrradiance(probe.latLong, normals);
+
+  std::vector<Row> rows;
+  fmt::print("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %",
+             "max %", "seconds");
+  for (const std::string& method : arguments.methods)
+    for (const int count : arguments.counts) {
+      const LightOptions options{.method = method, .count = count, .seed = arguments.seed};
+      const Row& row = rows.emplace_back(measure(probe.latLong, options, normals, irradiance));
+      fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
+                 row.lights, row.error.mean, row.error.max, row.seconds);
+      std::fflush(stdout);
+    }
+  if (!arguments.csv.empty()) writeText(arguments.csv, formatCsv(rows));
+  if (!arguments.plot.empty()) writeText(arguments.plot, formatPlot(arguments, rows));
+}
+
+}  // namespace
+
+void addLightsErrorCommand(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "lights-error", "How far the irradiance of directional lights is from their probe's.");
+  command->add_option("PROBE", arguments->probe, "the probe's image")->required();
+  command->add_option("--methods", arguments->methods, "some of " + lightMethodList())
+      ->required()
+      ->delimiter(',');
+  command->add_option("--counts", arguments->counts, "how many lights: 2,4,8,...")
+      ->required()
+      ->delimiter(',');
+  command->add_option("--normals", arguments->normals, "where to compare: 20 times a power of 4")
+      ->capture_default_str();
+  command->add_option("--csv", arguments->csv, "write the table to this file");
+  command->add_option("--plot", arguments->plot, "write a plot of the table to this .svg");
+  command->add_option("--seed", arguments->seed, "of the methods that throw dice");
+  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto guesses");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

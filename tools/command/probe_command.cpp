@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+
+void addProbeCommand(CLI::App& app) {
+  CLI::App* probe = app.add_subcommand("probe", "Look at, convert and make light probes.");
+  probe->require_subcommand(1);
+  addProbeInfoCommand(*probe);
+  addProbeConvertCommand(*probe);
+  addProbeSynthCommand(*probe);
+  addProbeIrradianceCommand(*probe);
+}
+
+}  // namespace chromeball

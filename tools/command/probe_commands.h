@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `chromeball probe`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace chromeball {
+
+void addProbeInfoCommand(CLI::App& probe);
+void addProbeConvertCommand(CLI::App& probe);
+void addProbeSynthCommand(CLI::App& probe);
+void addProbeIrradianceCommand(CLI::App& probe);
+
+}  // namespace chromeball

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe info FILE
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "probe/info.h"
+#include "probe/load.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Vector>
+Json toJson(const Vector& v) {
+  return {v.x, v.y, v.z};
+}
+
+Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
+  Json suns = Json::array(), shares = Json::array();
+  for (const Sun& sun : info.suns)
+    suns.push_back({{"direction", toJson(sun.direction)},
+                    {"irradiance", toJson(sun.irradiance)},
+                    {"angle", sun.angle}});
+  for (const auto& [texels, share] : info.brightestShares)
+    shares.push_back({{"texels", texels}, {"share", share}});
+  return {{"file", file},
+          {"width", probe.fileWidth},
+          {"height", probe.fileHeight},
+          {"mapping", mappingName(probe.mapping)},
+          {"mapping_guessed", probe.guessed},
+          {"mapping_reason", probe.guessed ? probe.reason : "given"},
+          {"turned", probe.turned},
+          {"lat_long", {{"width", probe.latLong.width}, {"height", probe.latLong.height}}},
+          {"min", toJson(info.min)},
+          {"mean", toJson(info.mean)},
+          {"max", toJson(info.max)},
+          {"share_at_max", probe.shareAtMaximum},
+          {"dynamic_range", info.dynamicRange},
+          {"invalid_texels",
+           {{"nan", probe.repair.nan},
+            {"infinite", probe.repair.infinite},
+            {"negative", probe.repair.negative},
+            {"first", probe.repair.total() > 0 ? Json{probe.repair.firstX, probe.repair.firstY}
+                                               : Json(nullptr)}}},
+          {"mean_radiance", toJson(info.meanRadiance)},
+          {"brightest",
+           {{"direction", toJson(info.brightestDirection)}, {"radiance", toJson(info.brightest)}}},
+          {"suns", suns},
+          {"brightest_shares", shares}};
+}
+
+template <class Vector>
+std::string triple(const Vector& v) {
+  return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z);
+}
+
+void print(const LoadedProbe& probe, const ProbeInfo& info) {
+  fmt::print("resolution       {} x {}\n", probe.fileWidth, probe.fileHeight);
+  fmt::print("mapping          {} ({})\n", mappingName(probe.mapping),
+             probe.guessed ? "guessed: " + probe.reason : "given");
+  if (probe.turned)
+    fmt::print(
+        "turned           by 180 degrees: by its attribute `envmap` the centre looks along +Z\n");
+  if (probe.mapping != Mapping::LatLong)
+    fmt::print("as lat-long      {} x {}, of which the following speaks\n", probe.latLong.width,
+               probe.latLong.height);
+  fmt::print("min RGB          {}\nmean RGB         {}\nmax RGB          {}\n", triple(info.min),
+             triple(info.mean), triple(info.max));
+  fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.shareAtMaximum);
+  fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
+  fmt::print("invalid texels   {}\n",
+             probe.repair.total() > 0 ? describe(probe.repair) + ", repaired" : "none");
+  fmt::print("mean radiance    {} over the sphere\n", triple(info.meanRadiance));
+  fmt::print("brightest        {} from direction {}\n", triple(info.brightest),
+             triple(info.brightestDirection));
+  for (const auto& [texels, share] : info.brightestShares)
+    fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", texels, 100 * share);
+  if (info.suns.empty()) fmt::print("suns             none\n");
+  for (const Sun& sun : info.suns)
+    fmt::print("sun              direction {}, irradiance {}, {:.3g} degrees wide\n",
+               triple(sun.direction), triple(sun.irradiance), sun.angle);
+}
+
+}  // namespace
+
+void addProbeInfoCommand(CLI::App& probeCommand) {
+  struct Arguments {
+    std::string file, mapping = "auto";
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probeCommand.add_subcommand("info", "What a probe holds, in numbers.");
+  command->add_option("FILE", arguments->file, "the probe's image")->required();
+  command->add_option("--mapping", arguments->mapping,
+                      "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback([arguments] {
+    const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
+    for (const std::string& warning : lightWarnings(probe, arguments->file))
+      fmt::print(stderr, "chromeball: warning: {}\n", warning);
+    const ProbeInfo info = probeInfo(probe.latLong);
+    if (arguments->json)
+      fmt::print(
+          "{}\n",
+          toJson(probe, info, arguments->file).dump(2, ' ', false, Json::error_handler_t::replace));
+    else
+      print(probe, info);
+  });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe irradiance IN OUT
+#include "base/error.h"
+#include "base/suggest.h"
+#include "image/io/write.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "probe/irradiance.h"
+#include "probe/load.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string in, out, size, method = "exact", mapping = "auto";
+};
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
+  const bool exact = arguments.method == "exact";
+  if (!exact && arguments.method != "sh")
+    throwInput("--method: unknown method `{}`; {}", arguments.method,
+               didYouMean(arguments.method, {"exact", "sh"}));
+  const std::optional<ImageSize> given =
+      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size));
+  const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.in))
+    fmt::print(stderr, "chromeball: {}\n", warning);
+  const ImageSize size = given.value_or(ImageSize{probe.latLong.width, probe.latLong.height});
+  writeImage(arguments.out,
+             exact ? irradianceMap(probe.latLong, size) : shIrradianceMap(probe.latLong, size));
+}
+
+}  // namespace
+
+void addProbeIrradianceCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.");
+  command->add_option("IN", arguments->in, "the probe's image")->required();
+  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
+  command
+      ->add_option("--method", arguments->method,
+                   "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
+      ->capture_default_str();
+  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto guesses");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe synth KIND OUT
+#include <functional>
+#include <map>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "image/io/write.h"
+#include "job/arguments.h"
+#include "probe/sky.h"
+#include "probe/synth.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string kind, out, size = "1024x512", radiance = "1,1,1", texel, direction, slope = "0,1,0";
+  ClearSky sky;
+  bool withoutSun = false;
+};
+
+dvec3 parseVector(const std::string& text, std::string_view option) {
+  const std::vector<double> v = parseNumbers(text, 3, option);
+  return {v[0], v[1], v[2]};
+}
+
+Rgb parseRadiance(const Arguments& arguments) {
+  const Rgb radiance = Rgb(parseVector(arguments.radiance, "--radiance"));
+  if (!isFinite(radiance) || std::min({radiance.x, radiance.y, radiance.z}) < 0)
+    throwInput("--radiance: {} should be finite and not negative", arguments.radiance);
+  return radiance;
+}
+
+Image oneHot(const Arguments& arguments, const ImageSize& size) {
+  int x = size.width / 2, y = size.height / 2;
+  if (!arguments.texel.empty()) {
+    const std::vector<double> texel = parseNumbers(arguments.texel, 2, "--texel");
+    const bool inside = texel[0] >= 0 && texel[0] < size.width && texel[1] >= 0 &&
+                        texel[1] < size.height && std::floor(texel[0]) == texel[0] &&
+                        std::floor(texel[1]) == texel[1];
+    if (!inside)
+      throwInput("--texel: {} should be whole numbers inside {} x {}", arguments.texel, size.width,
+                 size.height);
+    x = int(texel[0]), y = int(texel[1]);
+  } else if (!arguments.direction.empty()) {
+    const dvec3 direction = parseVector(arguments.direction, "--direction");
+    if (glm::length(direction) == 0) throwInput("--direction: should not be zero");
+    const dvec2 uv = directionToUv(Mapping::LatLong, direction);
+    x = std::min(int(uv.x * size.width), size.width - 1);
+    y = std::min(int(uv.y * size.height), size.height - 1);
+  }
+  return oneHotProbe(size, x, y, parseRadiance(arguments));
+}
+
+Image gradient(const Arguments& arguments, const ImageSize& size) {
+  const dvec3 slope = parseVector(arguments.slope, "--slope");
+  if (glm::length(slope) > 1)
+    throwInput("--slope: {} should be no longer than 1, so that radiance is not negative",
+               arguments.slope);
+  return gradientProbe(size, parseRadiance(arguments), slope);
+}
+
+using Maker = Image (*)(const Arguments&, const ImageSize&);
+
+const std::map<std::string_view, Maker> kMakers = {
+    {"constant", [](const Arguments& a,
+                    const ImageSize& size) { return constantProbe(size, parseRadiance(a)); }},
+    {"one-hot", oneHot},
+    {"gradient", gradient},
+    {"sun-sky", [](const Arguments& a,
+                   const ImageSize& size) { return clearSkyProbe(size, a.sky, !a.withoutSun); }},
+    {"overcast",
+     [](const Arguments& a, const ImageSize& size) {
+       return overcastProbe(size, parseRadiance(a), a.sky.groundAlbedo);
+     }},
+    {"studio", [](const Arguments&, const ImageSize& size) { return studioProbe(size); }}};
+
+void run(const Arguments& arguments) {
+  const auto maker = kMakers.find(arguments.kind);
+  if (maker == kMakers.end()) {
+    std::vector<std::string_view> kinds;
+    for (const auto& [kind, unused] : kMakers) kinds.push_back(kind);
+    throwInput("unknown kind of probe `{}`; {}", arguments.kind, didYouMean(arguments.kind, kinds));
+  }
+  checkWritable(arguments.out);
+  if (!(arguments.sky.groundAlbedo >= 0 && arguments.sky.groundAlbedo <= 1))
+    throwInput("--ground-albedo: {} should be 0 to 1", arguments.sky.groundAlbedo);
+  writeImage(arguments.out, maker->second(arguments, parseSize(arguments.size)));
+}
+
+}  // namespace
+
+void addProbeSynthCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand("synth", "Make a lat-long probe from a formula.");
+  command
+      ->add_option("KIND", arguments->kind,
+                   "constant, one-hot, gradient, sun-sky, overcast or studio")
+      ->required();
+  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT")->capture_default_str();
+  command
+      ->add_option("--radiance", arguments->radiance,
+                   "R,G,B: of constant, one-hot's texel, gradient's mean, overcast's zenith")
+      ->capture_default_str();
+  command->add_option("--texel", arguments->texel, "X,Y: one-hot's texel; else the middle one");
+  command->add_option("--direction", arguments->direction, "X,Y,Z: or the one it lies in")
+      ->excludes("--texel");
+  command->add_option("--slope", arguments->slope, "X,Y,Z: gradient is radiance (1 + slope . D)")
+      ->capture_default_str();
+  command->add_option("--sun-elevation", arguments->sky.sunElevation, "degrees, 0 to 90")
+      ->capture_default_str();
+  command
+      ->add_option("--sun-azimuth", arguments->sky.sunAzimuth,
+                   "degrees from -Z, counter-clockwise seen from above")
+      ->capture_default_str();
+  command->add_option("--turbidity", arguments->sky.turbidity, "2 (very clear) to 10 (hazy)")
+      ->capture_default_str();
+  command->add_option("--ground-albedo", arguments->sky.groundAlbedo, "0 to 1: sun-sky, overcast")
+      ->capture_default_str();
+  command->add_flag("--no-sun", arguments->withoutSun, "sun-sky without its sun");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

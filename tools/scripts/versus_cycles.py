@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Error and time of chromeball and of Cycles for the same picture; see versus_cycles.sh.
+
+relMSE is measured against a reference by the same renderer, so that a small difference between
+the two (a filter, a Fresnel term) does not count as noise; the table's last line says how far
+apart the references are. A reference has noise too, which makes each relMSE larger by the factor
+1 + samples / reference samples: the same for both, so the ratio keeps. Only rendering is timed:
+no loading, no building of the BVH or of the probe's tables. With relMSE ~ 1/samples, relMSE x
+seconds does not depend on the number of samples, and the ratio of the two renderers' products
+says how many times longer one takes for the error of the other.
+"""
+import argparse
+import hashlib
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WORK = ROOT / "build" / "versus"
+CHROMEBALL = ROOT / "build" / "chromeball"
+SCENES = ("lambertian", "conductors", "glass")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="versus_cycles.sh", description=__doc__.split("\n")[0])
+    parser.add_argument("--probe", type=pathlib.Path, default=ROOT / "probes" / "dusk.exr",
+                        help="a lat-long map (make one with chromeball probe convert)")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=SCENES)
+    parser.add_argument("--size", default="320x240")
+    parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--reference-samples", type=int, default=4096)
+    parser.add_argument("--depth", type=int, default=5, help="scattering events")
+    parser.add_argument("--seeds", type=int, default=5, help="pictures by each renderer")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--strategy", default="auto", help="chromeball's")
+    return parser.parse_args()
+
+
+def run(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{command[0]} failed:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Chromeball:
+    name = "chromeball"
+
+    @staticmethod
+    def render(options, model, output, samples, seed):
+        """Returns the seconds of rendering."""
+        stats = output.with_suffix(".json")
+        run(CHROMEBALL, "render", model, "--probe", options.probe, "--probe-mapping", "lat-long",
+            "--size", options.size, "--samples", samples, "--max-depth", options.depth,
+            "--strategy", options.strategy, "--seed", seed, "--threads", options.threads,
+            "--stats", stats, "--quiet", "-o", output)
+        return json.loads(stats.read_text())["seconds"]["render"]
+
+
+class Cycles:
+    name = "Cycles"
+
+    @staticmethod
+    def render(options, model, output, samples, seed):
+        """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
+        log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1,
+                  "--python", ROOT / "tools" / "scripts" / "cycles_picture.py", "--", model, options.probe, output,
+                  options.size, samples, seed, options.threads, options.depth)
+        clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
+        times = {}
+        for hours, minutes, seconds, event in clock.findall(log):
+            times[event] = 3600 * int(hours or 0) + 60 * int(minutes) + float(seconds)
+        return times["Finished"] - times["Sample 0/"]
+
+
+def error(picture, reference):
+    return json.loads(run(CHROMEBALL, "image", "error", picture, reference, "--json"))
+
+
+def reference(options, renderer, model):
+    """Rendered once for each model, probe and setting."""
+    key = hashlib.sha1(model.read_bytes() + options.probe.read_bytes() + repr(
+        (options.size, options.reference_samples, options.depth)).encode()).hexdigest()[:12]
+    path = WORK / f"reference-{renderer.name}-{model.stem}-{key}.exr"
+    if not path.exists():
+        print(f"rendering {path.name}", flush=True)
+        partial = path.with_suffix(".part.exr")
+        renderer.render(options, model, partial, options.reference_samples, 1_000_003)
+        partial.rename(path)
+    return path
+
+
+def compare(options, scene):
+    model = WORK / f"{scene}.glb"
+    run(ROOT / "build" / "make_demo", scene, model)
+    renderers = (Chromeball, Cycles)
+    references = {r: reference(options, r, model) for r in renderers}
+    errors, seconds = {r: [] for r in renderers}, {r: [] for r in renderers}
+    for seed in range(1, options.seeds + 1):
+        for r in renderers:  # in turns, so that a change of the machine's speed meets both
+            picture = WORK / f"{r.name}-{scene}.exr"
+            seconds[r].append(r.render(options, model, picture, options.samples, seed))
+            errors[r].append(error(picture, references[r])["relmse"])
+
+    width, height = map(int, options.size.split("x"))
+    print(f"\n{scene}: {options.probe.name}, {options.size}, {options.samples} samples a pixel, "
+          f"depth {options.depth}, {options.threads} threads, {options.seeds} seeds, "
+          f"references of {options.reference_samples} samples")
+    print(f"{'':12}{'relMSE':>12}{'seconds':>10}{'Msamples/s':>12}{'relMSE x s':>12}")
+    product = {}
+    for r in renderers:
+        mean_error, median_seconds = statistics.mean(errors[r]), statistics.median(seconds[r])
+        product[r] = mean_error * median_seconds
+        rate = width * height * options.samples / median_seconds / 1e6
+        print(f"{r.name:12}{mean_error:12.3e}{median_seconds:10.2f}{rate:12.2f}{product[r]:12.3e}")
+    apart = error(references[Chromeball], references[Cycles])
+    ratio = product[Cycles] / product[Chromeball]
+    print(f"Cycles takes {ratio:.2f} times as long for the same error. "
+          f"References differ by {100 * apart['bias']:+.3f}% in their means, "
+          f"relMSE {apart['relmse']:.2e}.", flush=True)
+
+
+def main():
+    options = arguments()
+    options.probe = options.probe.resolve()
+    WORK.mkdir(parents=True, exist_ok=True)
+    print(run("blender", "--version").splitlines()[0], "and", run(CHROMEBALL, "--version").strip())
+    for scene in options.scenes:
+        compare(options, scene)
+
+
+main()
