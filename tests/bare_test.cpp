@@ -203,10 +203,10 @@ TEST(SlowBare, TexturesOfModels) {
   const size_t frame = frameOf(bomb);
   bomb[frame + 1] = 0xc2;  // progressive
   std::fill_n(bomb.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xfc));
-  for (int place = 0; place < 3; ++place)
+  for (int location = 0; location < 3; ++location)
     for (const bool isBomb : {false, true}) {
       GltfWriter model;
-      model.add("images", imagesOf(model, isBomb ? bomb : damaged)[size_t(place)]);
+      model.add("images", imagesOf(model, isBomb ? bomb : damaged)[size_t(location)]);
       model.add("textures", {{"source", 0}});
       model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
       addTriangle(model, {{"material", 0}});
@@ -229,7 +229,7 @@ TEST(SlowBare, TexturesOfModels) {
         expectRefused(words, "64764 x 64764 texels cannot be held by", kSmall);
       } else {
         const CommandResult result = runCommand(words);
-        EXPECT_EQ(result.status, 0) << place << ": " << result.error;
+        EXPECT_EQ(result.status, 0) << location << ": " << result.error;
       }
     }
 }
@@ -278,8 +278,8 @@ TEST(Bare, JpegScansAreCounted) {
     for (int i = 1; i < count; ++i) bytes = joined({bytes, scan, {0xff, 0}});
     return joined({bytes, {0xff, 0xd9}});
   };
-  EXPECT_NO_THROW(bareJpeg(withScans(kMostJpegScans), "a"));
-  EXPECT_THROW(bareJpeg(withScans(kMostJpegScans + 1), "a"), InputError);
+  EXPECT_NO_THROW(bareJpeg(withScans(kMaxJpegScans), "a"));
+  EXPECT_THROW(bareJpeg(withScans(kMaxJpegScans + 1), "a"), InputError);
   // What follows the picture is not part of it.
   Bytes followed = jpeg;
   for (int i = 0; i < 200; ++i) followed = joined({followed, scan});

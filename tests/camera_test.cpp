@@ -147,14 +147,15 @@ TEST(Camera, FramingShowsAllVerticesAndFillsThePicture) {
         EXPECT_GT(camera.back.z, 0.8f);  // from the front, above, from the right
         EXPECT_GT(camera.back.y, 0);
         EXPECT_GT(camera.back.x, 0);
-        vec2 least(1), most(0);
+        vec2 minimum(1), maximum(0);
         for (const vec3& p : scene.meshes[0].positions) {
-          least = glm::min(least, project(camera, p, aspect));
-          most = glm::max(most, project(camera, p, aspect));
+          minimum = glm::min(minimum, project(camera, p, aspect));
+          maximum = glm::max(maximum, project(camera, p, aspect));
         }
-        EXPECT_TRUE(glm::all(glm::greaterThan(least, vec2(0.02f)))) << least.x << " " << least.y;
-        EXPECT_TRUE(glm::all(glm::lessThan(most, vec2(0.98f)))) << most.x << " " << most.y;
-        EXPECT_NEAR(maxComponent(vec3(most - least, 0)), 1 / 1.05f, 1e-3f);
+        EXPECT_TRUE(glm::all(glm::greaterThan(minimum, vec2(0.02f))))
+            << minimum.x << " " << minimum.y;
+        EXPECT_TRUE(glm::all(glm::lessThan(maximum, vec2(0.98f)))) << maximum.x << " " << maximum.y;
+        EXPECT_NEAR(maxComponent(vec3(maximum - minimum, 0)), 1 / 1.05f, 1e-3f);
       }
 }
 

@@ -66,10 +66,10 @@ struct World {
 };
 
 // Intervals of 95% hold the truth in at least 93% of the studies, and are not wide for nothing.
-void expectCovers(int covered, int studies, const char* what, double most = 1) {
-  const double share = double(covered) / studies;
-  EXPECT_GE(share, 0.93) << what;
-  EXPECT_LE(share, most) << what;
+void expectCovers(int covered, int studies, const char* what, double maximum = 1) {
+  const double fraction = double(covered) / studies;
+  EXPECT_GE(fraction, 0.93) << what;
+  EXPECT_LE(fraction, maximum) << what;
 }
 
 TEST(CellError, intervalsHoldTheTruth) {
@@ -163,7 +163,7 @@ TEST(Agreement, pValuesAreUniformForTheSamePicture) {
   for (int study = 0; study < kStudies; ++study) {
     const Agreement result = agreement(world.repeats(4, 1), world.repeats(4, 1));
     below5 += result.pValue < 0.05;
-    failing += result.share > 0;
+    failing += result.fraction > 0;
   }
   // Welch's approximation is careful with so few repeats.
   expectCovers(kStudies - below5, kStudies, "p-value");
@@ -180,7 +180,7 @@ TEST(Agreement, anotherPictureIsFound) {
   const Agreement result = agreement(a, b);
   EXPECT_EQ(result.tiles, 6u);
   EXPECT_LT(result.pValue, 0.01);
-  EXPECT_NEAR(result.share, 1.0 / 6, 1e-9);
+  EXPECT_NEAR(result.fraction, 1.0 / 6, 1e-9);
   EXPECT_LT(*result.z.at(0, 1), -3);
   EXPECT_LT(std::fabs(*result.z.at(2, 0)), 4);
 }

@@ -359,7 +359,7 @@ TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
 TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
   const RenderScene scene;
   struct Setting {
-    const char *option, *key, *most, *tooMany;
+    const char *option, *key, *maximum, *tooMany;
   };
   for (const Setting& s :
        {Setting{"--samples", "samples", "", "2000000001"},
@@ -377,7 +377,7 @@ TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
     };
     for (const bool inFile : {false, true}) {
       EXPECT_EQ(run(s.tooMany, inFile).status, 2) << s.key << inFile;
-      if (*s.most) EXPECT_EQ(run(s.most, inFile).status, 0) << s.key << inFile;
+      if (*s.maximum) EXPECT_EQ(run(s.maximum, inFile).status, 0) << s.key << inFile;
     }
   }
 }

@@ -31,14 +31,14 @@ inline Image noise(int width, int height) {
   return map;
 }
 
-inline std::vector<Image> realProbes(int most) {
+inline std::vector<Image> realProbes(int maximum) {
   std::vector<Image> maps;
   for (const char* file :
        {"probes/probulator/grace_latlong_small.hdr", "probes/probulator/uffizi_latlong_small.hdr",
         "probes/probulator/ennis_latlong_small.hdr", "probes/probulator/pisa_latlong_small.hdr",
         "probes/probulator/wells_latlong_small.hdr", "probes/misc/mitsuba_museum.exr",
         "probes/polyhaven/kloppenheim_05_1k.hdr", "probes/polyhaven/studio_small_05_1k.hdr"})
-    if (const auto path = sharedData(file); path && int(maps.size()) < most)
+    if (const auto path = sharedData(file); path && int(maps.size()) < maximum)
       maps.push_back(loadProbe(*path).latLong);
   return maps;
 }

@@ -62,10 +62,10 @@ TEST(Constellation, VarianceCutPartsTwoSuns) {
 double objective(const TexelTable& table, const Constellation& lights) {
   double sum = 0;
   for (const TexelSum& cell : table.cells()) {
-    double most = -cell.weight;
+    double maximum = -cell.weight;
     for (const DirectionalLight& light : lights)
-      most = std::max(most, glm::dot(cell.moment, dvec3(light.direction)));
-    sum += cell.weight - most;
+      maximum = std::max(maximum, glm::dot(cell.moment, dvec3(light.direction)));
+    sum += cell.weight - maximum;
   }
   return sum;
 }
@@ -147,10 +147,10 @@ TEST(Constellation, PenroseIsEvenAndSpaced) {
   for (const int n : found) squares += std::pow(n - double(count) / (columns * rows), 2);
   EXPECT_LT(std::sqrt(squares / (columns * rows)), 2);
   // Hexagons of area 2 / count would keep 0.034; random points 0.0005 or so.
-  double least = 1;
+  double minimum = 1;
   for (size_t i = 0; i < points.size(); ++i)
-    for (size_t j = 0; j < i; ++j) least = std::min(least, glm::distance(points[i], points[j]));
-  EXPECT_GT(least, 0.25 * std::sqrt(2.0 / count));
+    for (size_t j = 0; j < i; ++j) minimum = std::min(minimum, glm::distance(points[i], points[j]));
+  EXPECT_GT(minimum, 0.25 * std::sqrt(2.0 / count));
 }
 
 // Madsen and Laursen's measure: mean |E_lights - E_probe| over normals and channels, over mean E.

@@ -58,7 +58,7 @@ TEST(Depth, GlassHasALimitOfItsOwn) {
   EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
   const DepthCut& cut = r.rays.depthCut;
   EXPECT_EQ(cut.byDepth, 0);
-  EXPECT_NEAR(cut.share(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
+  EXPECT_NEAR(cut.fraction(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
 }
 
 // Other materials count their bounces as ever: 0 is what the camera sees shine, 1 direct light.
@@ -101,7 +101,7 @@ TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
     const RenderResult r = look(scene, smallRender(16, 16, 512, depth));
     const DepthCut& cut = r.rays.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
-    EXPECT_NEAR(cut.share(cut.byDepth) / expected, 1, 0.12) << depth;
+    EXPECT_NEAR(cut.fraction(cut.byDepth) / expected, 1, 0.12) << depth;
     EXPECT_EQ(cut.byTransmission, 0);
     EXPECT_NEAR(meanColor(r.film.mean()).y, (1 - expected) / (1 - kAlbedo), 0.02);
   }

@@ -106,7 +106,7 @@ TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
                 1e-6);
     EXPECT_NEAR(std::ldexp(found.meanRadiance.y, -exponent) / info.meanRadiance.y, 1, 1e-12);
     EXPECT_NEAR(found.dynamicRange / info.dynamicRange, 1, 1e-6);
-    EXPECT_NEAR(found.brightestShares[0].share, info.brightestShares[0].share, 1e-6);
+    EXPECT_NEAR(found.brightestShares[0].fraction, info.brightestShares[0].fraction, 1e-6);
     EXPECT_NEAR(std::ldexp(exactIrradiance(other, {&normal, 1})[0].y, -exponent) / irradiance, 1,
                 1e-6);
   }

@@ -42,9 +42,9 @@ struct Case {
   }
 };
 
-ExtendedPoint transmissive(float share, bool thinWalled) {
+ExtendedPoint transmissive(float fraction, bool thinWalled) {
   ExtendedPoint e;
-  e.transmission = share;
+  e.transmission = fraction;
   e.thinWalled = thinWalled;
   return e;
 }
@@ -369,11 +369,11 @@ TEST(ExtendedBsdf, sheetMirrorsItsHighlightBelow) {
   const ExtendedBsdf bsdf(dielectric(0.4f), transmissive(1, true), {Rgb(1.5f), 1.5f}, flatSurface(),
                           directionAt(30), 0);
   // The brightest direction below is straight on.
-  float most = 0, at = 0;
+  float maximum = 0, at = 0;
   for (float angle = 0; angle < 80; angle += 1) {
     const vec3 wi = directionAt(-angle);
     const float f = bsdf.evaluate({wi.x, 0, -wi.z}).fCos.x;
-    if (f > most) most = f, at = angle;
+    if (f > maximum) maximum = f, at = angle;
   }
   EXPECT_NEAR(at, 30, 6);
 }

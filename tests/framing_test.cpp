@@ -21,15 +21,15 @@ vec2 seenAt(const Camera& camera, const vec3& point) {
 
 // The larger of the shares of the picture's width and height that a mesh takes; 0 where a part of
 // it is not seen.
-float shareOf(const Camera& camera, const Mesh& mesh) {
-  vec2 least(1e9f), most(-1e9f);
+float samplesOf(const Camera& camera, const Mesh& mesh) {
+  vec2 minimum(1e9f), maximum(-1e9f);
   for (const vec3& p : mesh.positions) {
     if (glm::dot(p - camera.position, camera.back) >= 0) return 0;
-    least = glm::min(least, seenAt(camera, p));
-    most = glm::max(most, seenAt(camera, p));
+    minimum = glm::min(minimum, seenAt(camera, p));
+    maximum = glm::max(maximum, seenAt(camera, p));
   }
-  if (std::min(least.x, least.y) < 0 || std::max(most.x, most.y) > 1) return 0;
-  return std::max(most.x - least.x, most.y - least.y);
+  if (std::min(minimum.x, minimum.y) < 0 || std::max(maximum.x, maximum.y) > 1) return 0;
+  return std::max(maximum.x - minimum.x, maximum.y - minimum.y);
 }
 
 Scene ball() {
@@ -45,7 +45,7 @@ void addGround(Scene& scene, vec2 from, float size) {
 TEST(Framing, AGroundOfAnySizeAndAnyNumberOfTilesIsLeftOut) {
   Scene scene = ball();
   const Camera alone = framingCamera(scene, kAspect);
-  EXPECT_GT(shareOf(alone, scene.meshes[0]), 0.9f);
+  EXPECT_GT(samplesOf(alone, scene.meshes[0]), 0.9f);
   for (const float size : {20.0f, 100.0f, 10000.0f}) {
     Scene grounded = ball();
     addGround(grounded, vec2(-size / 2), size);
@@ -53,17 +53,17 @@ TEST(Framing, AGroundOfAnySizeAndAnyNumberOfTilesIsLeftOut) {
   }
   for (int x = -5; x < 5; ++x)
     for (int z = -5; z < 5; ++z) addGround(scene, 10.0f * vec2(x, z), 10);
-  EXPECT_GT(shareOf(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
+  EXPECT_GT(samplesOf(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
 }
 
 TEST(Framing, WhatIsFlatAndNoGroundCounts) {
   Scene board = ball();  // on a board twice as wide
   addGround(board, vec2(-2), 4);
-  EXPECT_GT(shareOf(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
+  EXPECT_GT(samplesOf(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
   Scene flat;  // nothing stands on it
   addMaterial(flat, lambert(Rgb(0.5f)));
   addGround(flat, vec2(-50), 100);
-  EXPECT_GT(shareOf(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
+  EXPECT_GT(samplesOf(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
 }
 
 // Walls, floor and ceiling of a room around the outline (counter-clockwise seen from above), which

@@ -107,14 +107,14 @@ Seen lookThrough(const Scene& scene, const vec2& centre, const Rgb& color) {
   const Image image =
       squareView(scene, {centre, 0.3f}, 0.06f, 48, darkness(), smallRender(0, 0, 64, 12));
   Seen seen;
-  const float share = 1.0f / float(image.width * image.height);
+  const float fraction = 1.0f / float(image.width * image.height);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = image.rgb(x, y);
-      seen.dark += maxComponent(c) < 0.15f ? share : 0;
-      seen.open += std::min({c.x, c.y, c.z}) > 0.95f ? share : 0;
+      seen.dark += maxComponent(c) < 0.15f ? fraction : 0;
+      seen.open += std::min({c.x, c.y, c.z}) > 0.95f ? fraction : 0;
       const Rgb twice = color * color;
-      seen.tinted += glm::distance(c, twice) < 0.15f * maxComponent(twice) ? share : 0;
+      seen.tinted += glm::distance(c, twice) < 0.15f * maxComponent(twice) ? fraction : 0;
     }
   return seen;
 }

@@ -77,9 +77,9 @@ TEST(GltfPixels, VertexColorTest) {
   if (!scene) GTEST_SKIP() << "no sample models";
   const Front front(*scene, 160);
   const auto secondary = [](const Rgb& c) {  // cyan, magenta or yellow
-    const float least = std::min({c.x, c.y, c.z}), most = maxComponent(c);
-    const float middle = c.x + c.y + c.z - least - most;
-    return middle > 0.1f && least < 0.25f * middle;
+    const float minimum = std::min({c.x, c.y, c.z}), maximum = maxComponent(c);
+    const float middle = c.x + c.y + c.z - minimum - maximum;
+    return middle > 0.1f && minimum < 0.25f * middle;
   };
   EXPECT_LT(front.count(secondary), 5);  // where edges blend
   EXPECT_GT(front.count(isRed), 100);

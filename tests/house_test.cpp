@@ -75,9 +75,9 @@ std::vector<std::string> violations(const std::string& path, const std::string& 
 
   for (std::sregex_iterator match(text.begin(), text.end(), kInclude), end; match != end; ++match) {
     const std::string header = (*match)[2];
-    for (const auto& [library, place] : kSeenBy)
-      if (header.find(library) != std::string::npos && !path.starts_with(place))
-        found.push_back(path + " includes " + header + ": only " + place + " may");
+    for (const auto& [library, location] : kSeenBy)
+      if (header.find(library) != std::string::npos && !path.starts_with(location))
+        found.push_back(path + " includes " + header + ": only " + location + " may");
     if (!inLibrary || (*match)[1] == "<") continue;
 
     const std::string from = room[1], to = header.substr(0, header.rfind('/'));
@@ -117,7 +117,8 @@ TEST(House, CheckFindsWhatItShould) {
   EXPECT_EQ(count("renderer/scene/scene_file.h", "#include <toml++/toml.h>\n"), 1u);
   EXPECT_EQ(count("renderer/film/a.cpp", "#include <CLI/CLI.hpp>\n"), 1u);
   EXPECT_EQ(count("renderer/probe/a.cpp", "#include <Eigen/Core>\n"), 1u);
-  EXPECT_EQ(count("tools/command/render.cpp", "#include <CLI/CLI.hpp>\n#include \"film/film.h\"\n"), 0u);
+  EXPECT_EQ(count("tools/command/render.cpp", "#include <CLI/CLI.hpp>\n#include \"film/film.h\"\n"),
+            0u);
 }
 
 TEST(House, IncludesGoOneWay) {

@@ -70,7 +70,7 @@ TEST(ImageError, ZScoresOfNormalNoise) {
   EXPECT_EQ(z->count, 60000u);
   EXPECT_NEAR(z->mean, 0, 4 / std::sqrt(60000.0));
   EXPECT_NEAR(z->standardDeviation, 1, 4 / std::sqrt(2 * 60000.0));
-  EXPECT_NEAR(z->shareBeyond3, 0.0027, 0.001);
+  EXPECT_NEAR(z->fractionBeyond3, 0.0027, 0.001);
 
   // One variance too few: the scores scatter more. A shift of one sigma is seen.
   EXPECT_GT(imageError(a, b, nullptr, &varianceB).zScores->standardDeviation, 1.5);

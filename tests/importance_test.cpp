@@ -91,7 +91,7 @@ TEST(SlowImportance, samplesItsDensityOnEveryProbe) {
             return std::optional(
                 importance.sampleDirection(double(random1(i, 0)), double(random1(i, 1))).wi);
           },
-          [&](const vec3& w) { return importance.density(w); }, 200000, 3, 16, 32);
+          [&](const vec3& w) { return importance.pdf(w); }, 200000, 3, 16, 32);
       EXPECT_NEAR(test.totalProbability, 1, 5e-3);
       EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, 2 * int(all.size())));
     }
@@ -104,17 +104,17 @@ TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
     const Importance importance(probe, false);
     for (int i = 0; i < 20000; ++i) {
       const DirectionSample s = importance.sampleDirection(random1(i, 0), random1(i, 1));
-      ASSERT_GT(s.density, 0);
-      ASSERT_NEAR(importance.density(s.wi), s.density, 2e-3f * s.density + 1e-3f);
+      ASSERT_GT(s.pdf, 0);
+      ASSERT_NEAR(importance.pdf(s.wi), s.pdf, 2e-3f * s.pdf + 1e-3f);
       const vec3 w = squareToUniformSphere(random2(i, 2));
       if (luminance(probe.radiance(w)) > 0) {
-        ASSERT_GT(importance.density(w), 0);
+        ASSERT_GT(importance.pdf(w), 0);
       }
     }
   }
 }
 
-// The density follows the radiance inside texels too, so on a grey probe every sample carries
+// The pdf follows the radiance inside texels too, so on a grey probe every sample carries
 // almost the same weight: the estimate of the mean radiance has next to no variance.
 TEST(Importance, weightsAreConstantOnAGreyProbe) {
   Image image = constantProbe({512, 256}, Rgb(1));
@@ -140,27 +140,27 @@ TEST(Importance, aSunOf1e12LeavesTheTexelsAfterItTheirWidth) {
   // Without the sun, the columns right of it must be as likely as those left of it.
   const vec3 left(*uvToDirection(Mapping::LatLong, {500.5 / 4096, 20.5 / 64}));
   const vec3 right(*uvToDirection(Mapping::LatLong, {3500.5 / 4096, 20.5 / 64}));
-  EXPECT_GT(importance.density(left), 0);
-  EXPECT_NEAR(importance.density(right) / importance.density(left), 1, 1e-3);
+  EXPECT_GT(importance.pdf(left), 0);
+  EXPECT_NEAR(importance.pdf(right) / importance.pdf(left), 1, 1e-3);
   const DirectionSample last = importance.sampleDirection(0x1.fffffffffp-1, 0.3);
-  EXPECT_NEAR(luminance(last.irradiance),
-              luminance(probe.radiance(right)) / importance.density(right), 1e6);
+  EXPECT_NEAR(luminance(last.irradiance), luminance(probe.radiance(right)) / importance.pdf(right),
+              1e6);
 }
 
 TEST(Importance, blackProbesGiveNoSamples) {
   const Probe probe(constantProbe({8, 4}, Rgb(0)));
   const Importance importance(probe, true);
-  EXPECT_EQ(importance.sampleDirection(0.3, 0.4).density, 0);
-  EXPECT_EQ(importance.density(vec3(0, 1, 0)), 0);
+  EXPECT_EQ(importance.sampleDirection(0.3, 0.4).pdf, 0);
+  EXPECT_EQ(importance.pdf(vec3(0, 1, 0)), 0);
 }
 
 TEST(Importance, compensationTakesTheMeanOffAndFallsBackWhereNothingIsLeft) {
   const Probe flat(constantProbe({32, 16}, Rgb(5)));
-  EXPECT_NEAR(Importance(flat, true).density(vec3(0, 0, 1)), 0.25f * kInvPi, 1e-3);
+  EXPECT_NEAR(Importance(flat, true).pdf(vec3(0, 0, 1)), 0.25f * kInvPi, 1e-3);
   const Probe sun(spot(64, 32, 40, 9, 2000, 0.5f));
   const Importance compensated(sun, true);
-  EXPECT_EQ(compensated.density(vec3(0, -1, 0)), 0);
-  EXPECT_GT(compensated.density(vec3(*uvToDirection(Mapping::LatLong, {40.5 / 64, 9.5 / 32}))), 10);
+  EXPECT_EQ(compensated.pdf(vec3(0, -1, 0)), 0);
+  EXPECT_GT(compensated.pdf(vec3(*uvToDirection(Mapping::LatLong, {40.5 / 64, 9.5 / 32}))), 10);
 }
 
 }  // namespace

@@ -90,13 +90,13 @@ TEST(Clamp, IsOffUnlessAskedAndSaysWhatItTook) {
   RenderResult r = renderWith(Firefly(), settings);
   const double bright = luminance(Rgb(20, 10, 0));
   EXPECT_EQ(r.clamped.count, 0u);
-  EXPECT_EQ(r.clamped.shareRemoved(), 0);
+  EXPECT_EQ(r.clamped.fractionRemoved(), 0);
   EXPECT_NEAR(luminance(r.film.mean().rgb(0, 0)), 0.5 * (1 + bright), 1e-5);  // two blocks of two
 
   settings.clamp = 4.0f;
   r = renderWith(Firefly(), settings);
   EXPECT_EQ(r.clamped.count, 12u);
-  EXPECT_NEAR(r.clamped.shareRemoved(), bright * 0.8 / (1 + bright), 1e-6);
+  EXPECT_NEAR(r.clamped.fractionRemoved(), bright * 0.8 / (1 + bright), 1e-6);
   const Rgb clamped = r.film.mean().rgb(0, 0);
   EXPECT_NEAR(clamped.x, 0.5 * (1 + 4), 1e-6);  // the hue stays
   EXPECT_NEAR(clamped.y, 0.5 * (1 + 2), 1e-6);

@@ -236,7 +236,7 @@ TEST(ShIrradiance, IsNegativeNextToASun) {
 // What nine coefficients leave out of real probes: little energy, more than that of error.
 TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyAndErrsByPercents) {
   int probes = 0;
-  double least = 1, most = 0;
+  double minimum = 1, maximum = 0;
   const std::vector<vec3> normals = icosphereNormals(3);
   for (const char* name :
        {"debevec/galileo_probe.hdr", "debevec/stpeters_cross.hdr", "polyhaven/pmndrs_sunrise.hdr",
@@ -254,11 +254,11 @@ TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyAndErrsByPercents) {
       sum += e, error += std::fabs(off), energy += e * e, lost += off * off;
     }
     EXPECT_LT(lost / energy, 0.01) << name;
-    least = std::min(least, error / sum), most = std::max(most, error / sum);
+    minimum = std::min(minimum, error / sum), maximum = std::max(maximum, error / sum);
   }
   if (probes < 6) GTEST_SKIP() << "no real probes";
-  EXPECT_NEAR(least, 0.011, 0.002);
-  EXPECT_NEAR(most, 0.10, 0.01);
+  EXPECT_NEAR(minimum, 0.011, 0.002);
+  EXPECT_NEAR(maximum, 0.10, 0.01);
 }
 
 TEST(SlowIrradiance, PublishedImages) {

@@ -47,10 +47,10 @@ Moments light(const Scene& scene, Mis mis, int samples = 256) {
   return Moments::of(means);
 }
 
-void expectShare(const Scene& scene, const Scene& whole, double share, const char* what) {
+void expectFraction(const Scene& scene, const Scene& whole, double fraction, const char* what) {
   const double all = light(whole, Mis::Balance, 1024).mean;
   for (const Mis mis : {Mis::Off, Mis::Balance, Mis::Power})
-    EXPECT_NEAR(light(scene, mis).mean / all, share, 0.03) << what << " " << int(mis);
+    EXPECT_NEAR(light(scene, mis).mean / all, fraction, 0.03) << what << " " << int(mis);
 }
 
 const Scene& wholeLamp() {
@@ -60,20 +60,21 @@ const Scene& wholeLamp() {
 
 TEST(LampAlpha, BlendedLampsLendTheirShare) {
   for (const float alpha : {0.0f, 0.3f, 1.0f})
-    expectShare(floorUnder(lampOfAlpha(AlphaMode::Blend, alpha)), wholeLamp(), alpha, "blend");
+    expectFraction(floorUnder(lampOfAlpha(AlphaMode::Blend, alpha)), wholeLamp(), alpha, "blend");
   // Of a material that is opaque, alpha says nothing.
-  expectShare(floorUnder(lampOfAlpha(AlphaMode::Opaque, 0.3f)), wholeLamp(), 1, "opaque");
+  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Opaque, 0.3f)), wholeLamp(), 1, "opaque");
 }
 
 TEST(LampAlpha, MasksShowAllOrNothing) {
-  expectShare(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.4f)), wholeLamp(), 0, "below the cutoff");
-  expectShare(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.6f)), wholeLamp(), 1, "above");
+  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.4f)), wholeLamp(), 0,
+                 "below the cutoff");
+  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.6f)), wholeLamp(), 1, "above");
 }
 
 TEST(LampAlpha, VertexColoursCount) {
   Scene scene = floorUnder(lampOfAlpha(AlphaMode::Blend, 0.8f));
   scene.meshes[1].colors.assign(4, vec4(1, 1, 1, 0.5f));
-  expectShare(scene, wholeLamp(), 0.4, "vertex colour");
+  expectFraction(scene, wholeLamp(), 0.4, "vertex colour");
 }
 
 // One half of the lamp is cut away by its texture: what shines is a lamp of half the size.
@@ -91,7 +92,7 @@ TEST(LampAlpha, TexturesCount) {
     scene.textures.push_back(texture);
     scene.materials[1].baseColorTexture.texture = 0;
     scene.meshes[1].uvs = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    expectShare(scene, half, 1, "texture");
+    expectFraction(scene, half, 1, "texture");
   }
 }
 
@@ -103,8 +104,8 @@ TEST(LampAlpha, TheChoiceOfLampsKnowsAlpha) {
   addQuad(scene, addMaterial(scene, lampOfAlpha(AlphaMode::Opaque, 1)), {3, 1, -1}, {2, 0, 0},
           {0, 0, 2});
   const auto both = Emitters::make(scene);
-  EXPECT_NEAR(both->density(1, 1, 1) / both->density(2, 1, 1), 0.1f, 1e-6f);
-  EXPECT_GT(Emitters::make(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.1f)))->density(1, 1, 1), 0);
+  EXPECT_NEAR(both->pdf(1, 1, 1) / both->pdf(2, 1, 1), 0.1f, 1e-6f);
+  EXPECT_GT(Emitters::make(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.1f)))->pdf(1, 1, 1), 0);
 }
 
 // A composite's lamp, put in: it changes alpha of what an opaque one changes.

@@ -69,10 +69,11 @@ TEST(Mapping, ImageToDirectionAndBack) {
         EXPECT_LT(glm::distance(directionToUv(mapping, *direction), uv), 1e-10)
             << mappingName(mapping) << " " << uv.x << " " << uv.y;
       }
-    const double share = mapping == Mapping::AngularMap || mapping == Mapping::MirrorBall ? kPiD / 4
-                         : faceLayout(mapping).columns * faceLayout(mapping).rows == 12   ? 0.5
-                                                                                          : 1;
-    EXPECT_NEAR(double(valid) / (kSteps * kSteps), share, 0.01) << mappingName(mapping);
+    const double fraction = mapping == Mapping::AngularMap || mapping == Mapping::MirrorBall
+                                ? kPiD / 4
+                            : faceLayout(mapping).columns * faceLayout(mapping).rows == 12 ? 0.5
+                                                                                           : 1;
+    EXPECT_NEAR(double(valid) / (kSteps * kSteps), fraction, 0.01) << mappingName(mapping);
   }
 }
 
@@ -132,7 +133,7 @@ TEST(Mapping, SolidAnglesSumToTheSphere) {
     for (int j = 0; j < kSteps; ++j)
       for (int i = 0; i < kSteps; ++i) {
         const dvec2 uv((i + 0.5) / kSteps, (j + 0.5) / kSteps);
-        if (uvToDirection(mapping, uv)) sum += solidAngleDensity(mapping, uv);
+        if (uvToDirection(mapping, uv)) sum += solidAnglePdf(mapping, uv);
       }
     EXPECT_NEAR(sum / (kSteps * kSteps), 4 * kPiD, 0.01) << mappingName(mapping);
   }

@@ -92,9 +92,9 @@ TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
 TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
   const auto folder = sharedData("probes/openexr");
   if (!folder) GTEST_SKIP() << "../shared/data/probes/openexr is not there";
-  for (const std::string place : {"Orientation", "StageEnv"}) {
-    const Probe cube(loadProbe(*folder / (place + "Cube.exr")).latLong);
-    const Probe latLong(loadProbe(*folder / (place + "LatLong.exr")).latLong);
+  for (const std::string location : {"Orientation", "StageEnv"}) {
+    const Probe cube(loadProbe(*folder / (location + "Cube.exr")).latLong);
+    const Probe latLong(loadProbe(*folder / (location + "LatLong.exr")).latLong);
     double agree = 0, turned = 0;  // sums of absolute differences of what a screen would show
     for (const vec3& d : icosphereNormals(4)) {
       const auto shown = [](const Probe& probe, const vec3& to) {
@@ -104,7 +104,7 @@ TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
       agree += luminance(glm::abs(seen - shown(latLong, d)));
       turned += luminance(glm::abs(seen - shown(latLong, {-d.x, d.y, -d.z})));
     }
-    EXPECT_LT(agree, 0.5 * turned) << place;
+    EXPECT_LT(agree, 0.5 * turned) << location;
   }
 }
 
@@ -123,7 +123,7 @@ TEST(ProbeFile, LightThatWasCutOffIsSaid) {
   EXPECT_NE(said("black.exr", constantProbe({64, 32}, Rgb(0))).find("is black"), std::string::npos);
   for (float& x : image.texels) x = std::min(x, 1.0f);
   EXPECT_NE(said("clipped.exr", image).find("have the greatest value, 1:"), std::string::npos);
-  EXPECT_GT(loadProbe(folder / "clipped.exr").shareAtMaximum, 0.2);
+  EXPECT_GT(loadProbe(folder / "clipped.exr").fractionAtMaximum, 0.2);
 }
 
 // Of texels that are equally bright, at the equator and at a pole, which have little solid angle.
@@ -135,9 +135,9 @@ TEST(ProbeInfo, BrighterSetsHoldTheSmallerOnes) {
   ASSERT_GE(info.brightestShares.size(), 3u);
   for (size_t i = 1; i < info.brightestShares.size(); ++i) {
     EXPECT_GT(info.brightestShares[i].texels, info.brightestShares[i - 1].texels);
-    EXPECT_GT(info.brightestShares[i].share, info.brightestShares[i - 1].share);
+    EXPECT_GT(info.brightestShares[i].fraction, info.brightestShares[i - 1].fraction);
   }
-  EXPECT_NEAR(info.brightestShares[0].share,
+  EXPECT_NEAR(info.brightestShares[0].fraction,
               5 * texelSolidAngle(16, 64, 32) / (4 * kPiD * luminance(Rgb(info.meanRadiance))),
               1e-6);
 }
@@ -149,7 +149,7 @@ TEST(ProbeInfo, OneTexel) {
   EXPECT_NEAR(info.meanRadiance.y, 2000 * solidAngle / (4 * kPiD), 1e-9);
   EXPECT_EQ(info.max, Rgb(1000, 2000, 500));
   EXPECT_EQ(info.min, Rgb(0));
-  EXPECT_EQ(info.brightestShares.front().share, 1);
+  EXPECT_EQ(info.brightestShares.front().fraction, 1);
   ASSERT_EQ(info.suns.size(), 1u);
   EXPECT_NEAR(info.suns[0].irradiance.x / (1000 * solidAngle), 1, 1e-3);
   EXPECT_LT(glm::distance(info.suns[0].direction, info.brightestDirection), 1e-3);
@@ -164,7 +164,7 @@ TEST(ProbeInfo, ConstantAndBlack) {
   EXPECT_TRUE(constant.suns.empty());
   const ProbeInfo black = probeInfo(constantProbe({30, 20}, Rgb(0)));
   EXPECT_EQ(black.dynamicRange, 0);
-  EXPECT_EQ(black.brightestShares.front().share, 0);
+  EXPECT_EQ(black.brightestShares.front().fraction, 0);
   EXPECT_TRUE(black.suns.empty());
 }
 

@@ -32,7 +32,7 @@ TEST(SlowProduct, samplesItsDensityOnEveryProbe) {
             return std::optional(
                 product.sampleDirection(point, double(random1(i, 0)), double(random1(i, 1))).wi);
           },
-          [&](const vec3& w) { return product.escaped(point, w).density; }, 100000, 4, 12, 24);
+          [&](const vec3& w) { return product.escaped(point, w).pdf; }, 100000, 4, 12, 24);
       EXPECT_NEAR(test.totalProbability, 1, 5e-3);
       EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, 2 * int(all.size())));
     }
@@ -60,10 +60,10 @@ TEST(Product, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
       const LightPoint point = pointWith(normal);
       const DirectionSample s =
           product.sampleDirection(pointWith(normal), random1(i, 2), random1(i, 3));
-      ASSERT_GT(s.density, 0);
+      ASSERT_GT(s.pdf, 0);
       const vec3 w = squareToUniformSphere(random2(i, 4));
       if (luminance(probe.radiance(w)) > 0) {
-        ASSERT_GT(product.escaped(point, w).density, 0);
+        ASSERT_GT(product.escaped(point, w).pdf, 0);
       }
     }
   }
@@ -102,8 +102,8 @@ TEST(Product, leavesATenthOfTheVarianceThatLuminanceAloneLeaves) {
 TEST(Product, blackProbesGiveNoSamples) {
   const Probe probe(constantProbe({8, 4}, Rgb(0)));
   const Product product(probe);
-  EXPECT_EQ(product.sampleDirection(pointWith(vec3(0, 1, 0)), 0.3, 0.4).density, 0);
-  EXPECT_EQ(product.escaped(pointWith(vec3(0, 1, 0)), vec3(0, 1, 0)).density, 0);
+  EXPECT_EQ(product.sampleDirection(pointWith(vec3(0, 1, 0)), 0.3, 0.4).pdf, 0);
+  EXPECT_EQ(product.escaped(pointWith(vec3(0, 1, 0)), vec3(0, 1, 0)).pdf, 0);
 }
 
 }  // namespace

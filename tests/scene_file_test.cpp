@@ -46,11 +46,11 @@ class SceneFileTest : public testing::Test {
   // The error is one line, says `line` of the scene file, and mentions all of `words`.
   void expectError(const std::string& toml, int line, const std::vector<std::string>& words) const {
     const std::string error = errorOf(toml);
-    const std::string place = fmt::format("{}:{}: ", scenePath(), line);
-    EXPECT_EQ(error.substr(0, place.size()), place) << error;
+    const std::string location = fmt::format("{}:{}: ", scenePath(), line);
+    EXPECT_EQ(error.substr(0, location.size()), location) << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     for (const auto& word : words)
-      EXPECT_NE(error.find(word, place.size()), std::string::npos) << word << " in: " << error;
+      EXPECT_NE(error.find(word, location.size()), std::string::npos) << word << " in: " << error;
   }
 
   fs::path root_;
@@ -76,7 +76,7 @@ TEST_F(SceneFileTest, LightsDepthsAndSides) {
   EXPECT_EQ(scene.lightUnits->name, "radiometric");
   EXPECT_EQ(scene.maxTransmissionDepth, 12);
   EXPECT_EQ(scene.singleSided->name, "light");
-  EXPECT_EQ(scene.singleSided->place, scenePath() + ":7");
+  EXPECT_EQ(scene.singleSided->location, scenePath() + ":7");
   EXPECT_EQ(readWithModel("[lighting]\nlights = 'off'").modelLights, 0.0f);
   expectError("[lighting]\nlights = 'on'", 3, {"`lights` must be \"off\" or a factor"});
   expectError("[lighting]\nlights = -1", 3, {"`lights` must be \"off\" or a factor"});
@@ -99,13 +99,13 @@ TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
   ASSERT_TRUE(walk);
   EXPECT_EQ(walk->name, "Walk");
   EXPECT_EQ(walk->seconds, 1.5);
-  EXPECT_EQ(walk->place, scenePath() + ":3");
+  EXPECT_EQ(walk->location, scenePath() + ":3");
   EXPECT_EQ(choice("time = 2").animation->name, "");
 }
 
 TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
-  const std::string place = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
-  const SceneFile parallel = readWithModel(place + "orthographic = 3");
+  const std::string location = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+  const SceneFile parallel = readWithModel(location + "orthographic = 3");
   EXPECT_TRUE(parallel.camera->orthographic);
   EXPECT_EQ(parallel.camera->halfHeight, 1.5f);
   EXPECT_FALSE(parallel.lens);
@@ -115,8 +115,8 @@ TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
   EXPECT_EQ(lens.lens->focus, 2);
   expectError("[camera]\naperture = 0.05", 3, {"`focus`", "go together"});
   expectError("[camera]\naperture = 0\nfocus = 1", 3, {"`aperture`", "above 0"});
-  expectError(place + "fov = 40\northographic = 3", 5, {"orthographic", "no `fov`"});
-  expectError(place + "orthographic = -3", 5, {"`orthographic`", "above 0"});
+  expectError(location + "fov = 40\northographic = 3", 5, {"orthographic", "no `fov`"});
+  expectError(location + "orthographic = -3", 5, {"`orthographic`", "above 0"});
 }
 
 TEST_F(SceneFileTest, EveryKeyArrives) {
@@ -152,7 +152,7 @@ aovs = ["albedo", "depth"]
   EXPECT_EQ(scene.probeRotation, -30.f);
   EXPECT_EQ(scene.probeScale, 2.5f);
   EXPECT_EQ(scene.strategy->name, "median-cut:64");
-  EXPECT_EQ(scene.strategy->place, scenePath() + ":12");
+  EXPECT_EQ(scene.strategy->location, scenePath() + ":12");
   EXPECT_EQ(scene.mis->name, "power");
   EXPECT_EQ(scene.size->width, 800);
   EXPECT_EQ(scene.size->height, 600);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a sampler of directions really have the density it claims? Chi-square over the sphere.
+// Does a sampler of directions really have the pdf it claims? Chi-square over the sphere.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace chromeball {
 
-// Integral of f over a rectangle, halved at least `least` times (so that no feature falls between
+// Integral of f over a rectangle, halved at least `minimum` times (so that no feature falls between
 // the points) and then until a finer rule agrees.
 inline double integrate(const std::function<double(double, double)>& f, double x0, double x1,
-                        double y0, double y1, double tolerance, int least, int depth = 0) {
+                        double y0, double y1, double tolerance, int minimum, int depth = 0) {
   const auto rule = [&](int n) {
     double sum = 0;
     for (int i = 0; i < n; ++i)
@@ -23,25 +23,25 @@ inline double integrate(const std::function<double(double, double)>& f, double x
         sum += f(x0 + (x1 - x0) * (i + 0.5) / n, y0 + (y1 - y0) * (j + 0.5) / n);
     return sum * (x1 - x0) * (y1 - y0) / (n * n);
   };
-  const double coarse = depth < least ? 0 : rule(3), fine = depth < least ? 0 : rule(6);
-  if (depth >= least && (depth >= 9 || std::fabs(coarse - fine) < tolerance)) return fine;
+  const double coarse = depth < minimum ? 0 : rule(3), fine = depth < minimum ? 0 : rule(6);
+  if (depth >= minimum && (depth >= 9 || std::fabs(coarse - fine) < tolerance)) return fine;
   const double xm = (x0 + x1) / 2, ym = (y0 + y1) / 2, t = tolerance / 2;
-  return integrate(f, x0, xm, y0, ym, t, least, depth + 1) +
-         integrate(f, xm, x1, y0, ym, t, least, depth + 1) +
-         integrate(f, x0, xm, ym, y1, t, least, depth + 1) +
-         integrate(f, xm, x1, ym, y1, t, least, depth + 1);
+  return integrate(f, x0, xm, y0, ym, t, minimum, depth + 1) +
+         integrate(f, xm, x1, y0, ym, t, minimum, depth + 1) +
+         integrate(f, x0, xm, ym, y1, t, minimum, depth + 1) +
+         integrate(f, xm, x1, ym, y1, t, minimum, depth + 1);
 }
 
 struct SphereTest {
   ChiSquare chiSquare;
-  double totalProbability;  // integral of the density
+  double totalProbability;  // integral of the pdf
 };
 
 // Draws `samples` directions from `draw` (nullopt: absorbed), in bins of equal solid angle (height
-// along z times azimuth), against the integral of `density` over each bin.
+// along z times azimuth), against the integral of `pdf` over each bin.
 inline SphereTest testDirections(const std::function<std::optional<vec3>(int)>& draw,
-                                 const std::function<double(const vec3&)>& density, int samples,
-                                 int leastHalvings = 2, int heights = 24, int azimuths = 48) {
+                                 const std::function<double(const vec3&)>& pdf, int samples,
+                                 int minHalvings = 2, int heights = 24, int azimuths = 48) {
   const auto bin = [&](const vec3& w) {
     const int i = std::clamp(int((w.z + 1) / 2 * float(heights)), 0, heights - 1);
     const int j = std::clamp(int(azimuthTurns(w) * float(azimuths)), 0, azimuths - 1);
@@ -57,10 +57,10 @@ inline SphereTest testDirections(const std::function<std::optional<vec3>(int)>& 
     for (int j = 0; j < azimuths; ++j) {
       const double probability = integrate(
           [&](double z, double turns) {
-            return 2 * kPiD * density(unitVector(float(z), float(turns)));
+            return 2 * kPiD * pdf(unitVector(float(z), float(turns)));
           },
           -1 + 2.0 * i / heights, -1 + 2.0 * (i + 1) / heights, double(j) / azimuths,
-          double(j + 1) / azimuths, 1e-6, leastHalvings);
+          double(j + 1) / azimuths, 1e-6, minHalvings);
       expected[i * azimuths + j] = probability * samples;
       total += probability;
     }

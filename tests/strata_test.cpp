@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One direction in each region: the density claimed, and the light that the probe has.
+// One direction in each region: the pdf claimed, and the light that the probe has.
 #include "lighting/strata.h"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ LightPoint at(int depth) {
   return point;
 }
 
-float density(const Strata& strata, const vec3& wi, int depth) {
-  return strata.escaped(at(depth), wi).density;
+float pdf(const Strata& strata, const vec3& wi, int depth) {
+  return strata.escaped(at(depth), wi).pdf;
 }
 
 TEST(Strata, samplesItsDensityInEveryRegion) {
@@ -53,7 +53,7 @@ TEST(Strata, samplesItsDensityInEveryRegion) {
         [&](int i) {
           return std::optional(strata.sampleRegion(i % regions, random1(i, 0), random1(i, 1)).wi);
         },
-        [&](const vec3& w) { return density(strata, w, 0) / float(regions); }, 100000, 3, 12, 24);
+        [&](const vec3& w) { return pdf(strata, w, 0) / float(regions); }, 100000, 3, 12, 24);
     EXPECT_NEAR(test.totalProbability, 1, 5e-3);
     EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, int(all.size())));
   }
@@ -68,22 +68,22 @@ TEST(Strata, samplesStayInTheirRegionAndKnowTheirDensity) {
     for (int i = 0; i < 20000; ++i) {
       const int region = i % strata.regions();
       const DirectionSample s = strata.sampleRegion(region, random1(i, 0), random1(i, 1));
-      ASSERT_GT(s.density, 0);
+      ASSERT_GT(s.pdf, 0);
       if (strata.regionOf(s.wi) != region) {  // rounded into the cell next to its own
         ++strays;
         continue;
       }
-      ASSERT_NEAR(density(strata, s.wi, 0), s.density, 2e-3f * s.density + 1e-3f);
+      ASSERT_NEAR(pdf(strata, s.wi, 0), s.pdf, 2e-3f * s.pdf + 1e-3f);
       const vec3 w = squareToUniformSphere(random2(i, 2));
       if (luminance(probe.radiance(w)) > 0) {
-        ASSERT_GT(density(strata, w, 0), 0);
+        ASSERT_GT(pdf(strata, w, 0), 0);
       }
     }
     EXPECT_LT(strays, 20);
   }
 }
 
-// The density follows the radiance, so a sample carries the light of its region, whatever direction
+// The pdf follows the radiance, so a sample carries the light of its region, whatever direction
 // was drawn; together they carry the probe's.
 TEST(Strata, samplesOfAGreyProbeWeighTheSame) {
   Image map = constantProbe({256, 128}, Rgb(1));
@@ -111,8 +111,8 @@ TEST(Strata, laterHitsSampleTheProbeByItsLuminance) {
     const Importance importance(probe, false);
     for (int i = 0; i < 1000; ++i) {
       const vec3 w = squareToUniformSphere(random2(i, 0));
-      const float expected = Strata::kLater * importance.density(w);
-      EXPECT_NEAR(density(strata, w, 1), expected, 1e-4f * expected + 1e-6f) << c.name;
+      const float expected = Strata::kLater * importance.pdf(w);
+      EXPECT_NEAR(pdf(strata, w, 1), expected, 1e-4f * expected + 1e-6f) << c.name;
     }
   }
 }
@@ -159,8 +159,8 @@ TEST(Strata, blackProbesHaveNoRegions) {
   const Probe probe(constantProbe({8, 4}, Rgb(0)));
   const Strata strata(probe, 4);
   EXPECT_EQ(strata.regions(), 0);
-  EXPECT_EQ(density(strata, vec3(0, 1, 0), 0), 0);
-  EXPECT_EQ(density(strata, vec3(0, 1, 0), 1), 0);
+  EXPECT_EQ(pdf(strata, vec3(0, 1, 0), 0), 0);
+  EXPECT_EQ(pdf(strata, vec3(0, 1, 0), 1), 0);
 }
 
 }  // namespace

@@ -144,10 +144,10 @@ struct Place {
 constexpr Place kPlaces[] = {{2, 180}, {30, 77}, {61, 179.8}, {89.8, 0}, {-90, 0}};
 
 TEST(SunExtraction, KeepsEnergyForEveryNormal) {
-  for (const Place& place : kPlaces) {
-    SCOPED_TRACE(testing::Message() << place.elevation << " " << place.azimuth);
+  for (const Place& location : kPlaces) {
+    SCOPED_TRACE(testing::Message() << location.elevation << " " << location.azimuth);
     Image map = gradientProbe({1024, 512}, Rgb(0.2f, 0.25f, 0.3f), {0.1, 0.6, -0.2});
-    const dvec3 towards = direction(place.elevation, place.azimuth);
+    const dvec3 towards = direction(location.elevation, location.azimuth);
     addGlowingSun(map, towards, 0.7);
     const SunExtraction extraction = extractSuns(map);
     ASSERT_EQ(extraction.suns.size(), 1u);
@@ -157,11 +157,11 @@ TEST(SunExtraction, KeepsEnergyForEveryNormal) {
 }
 
 TEST(SunExtraction, MeasuresDiscs) {
-  for (const Place& place : kPlaces)
+  for (const Place& location : kPlaces)
     for (const double diameter : {0.5323, 4.0}) {
-      SCOPED_TRACE(testing::Message() << place.elevation << " " << diameter);
+      SCOPED_TRACE(testing::Message() << location.elevation << " " << diameter);
       Image map = constantProbe({1024, 512}, Rgb(0.01f));
-      const dvec3 towards = direction(place.elevation, place.azimuth);
+      const dvec3 towards = direction(location.elevation, location.azimuth);
       addSunDisc(map, towards, diameter, {1, 2, 3});
       const SunExtraction extraction = extractSuns(map);
       ASSERT_EQ(extraction.suns.size(), 1u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strategy `suns`: its densities, its light, and the shadows of its discs.
+// The strategy `suns`: its pdfs, its light, and the shadows of its discs.
 #include <gtest/gtest.h>
 
 #include "lighting/suns.h"
@@ -16,8 +16,8 @@ namespace {
 Image sunnySky(int suns) {
   Image map = gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1});
   for (int i = 0; i < suns; ++i) {
-    const ClearSky place{.sunElevation = 80.0 - 15 * i, .sunAzimuth = 180.0 + 65 * i};
-    addSunDisc(map, sunDirection(place), 1.5, dvec3(2.0 + i, 2, 1.5));
+    const ClearSky location{.sunElevation = 80.0 - 15 * i, .sunAzimuth = 180.0 + 65 * i};
+    addSunDisc(map, sunDirection(location), 1.5, dvec3(2.0 + i, 2, 1.5));
   }
   return map;
 }
@@ -58,14 +58,13 @@ TEST(Suns, DensityIsThatOfAllSamplesTogether) {
       EXPECT_EQ(int(taken.size()), each);
       const DirectionSample& s = taken[size_t(i % each)];
       const auto escaped = suns.escaped(samples.point(), s.wi);
-      EXPECT_EQ(s.density, escaped.density);
-      EXPECT_NEAR(s.irradiance.x * s.density / escaped.radiance.x, 1, 1e-5);
+      EXPECT_EQ(s.pdf, escaped.pdf);
+      EXPECT_NEAR(s.irradiance.x * s.pdf / escaped.radiance.x, 1, 1e-5);
       EXPECT_NEAR(escaped.radiance.y / suns.background({}, s.wi).y, 1, 1e-5);
       return s.wi;
     };
     const SphereTest test = testDirections(
-        draw, [&](const vec3& wi) { return suns.escaped(samples.point(), wi).density / each; },
-        60000);
+        draw, [&](const vec3& wi) { return suns.escaped(samples.point(), wi).pdf / each; }, 60000);
     EXPECT_NEAR(test.totalProbability, 1, 2e-3);
     EXPECT_GT(test.chiSquare.pValue, 1e-3);
   }
@@ -101,15 +100,15 @@ TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
         // compensated table leaves it to the surface to find the rest.
         for (const DirectionSample& s : samples.take(i)) {
           const float cosine = std::max(0.0f, glm::dot(normal, s.wi));
-          const float weight = compensated ? misWeight(Mis::Balance, s.density, cosine / kPi) : 1;
+          const float weight = compensated ? misWeight(Mis::Balance, s.pdf, cosine / kPi) : 1;
           sum += luminance(s.irradiance) * cosine * weight;
         }
         if (compensated) {
           const vec3 wi = frame.toWorld(squareToCosineHemisphere(random2(i, 0)));
           const float pdf = std::max(1e-6f, glm::dot(normal, wi) / kPi);
           const auto escaped = suns.escaped(samples.point(), wi);
-          sum += kPi * luminance(escaped.radiance) *
-                 bsdfSampleWeight(Mis::Balance, pdf, escaped.density);
+          sum +=
+              kPi * luminance(escaped.radiance) * bsdfSampleWeight(Mis::Balance, pdf, escaped.pdf);
         }
         estimates.push_back(sum);
       }
@@ -141,7 +140,7 @@ TEST(Suns, WithoutSunsIsImportance) {
     const auto& sample = a.take(i);
     ASSERT_EQ(sample.size(), 1u);
     EXPECT_EQ(sample[0].wi, b.take(i)[0].wi);
-    EXPECT_EQ(sample[0].density, importance.density(sample[0].wi));
+    EXPECT_EQ(sample[0].pdf, importance.pdf(sample[0].wi));
     EXPECT_EQ(suns.background({}, sample[0].wi), probe.radiance(sample[0].wi));
   }
   const Probe black(constantProbe({8, 4}, Rgb(0)));

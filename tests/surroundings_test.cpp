@@ -110,8 +110,8 @@ TEST(Surroundings, DensitiesAgree) {
         for (const DirectionSample& sample : samples) {
           const auto found = lighting->escaped(point, sample.wi);
           // A sample at the rim of the one bright texel may be seen from its other side.
-          EXPECT_NEAR(found.density / sample.density, 1, 5e-3) << name;
-          const Rgb radiance = sample.irradiance * sample.density;
+          EXPECT_NEAR(found.pdf / sample.pdf, 1, 5e-3) << name;
+          const Rgb radiance = sample.irradiance * sample.pdf;
           EXPECT_LT(glm::length(found.radiance - radiance), 5e-3f * (1 + glm::length(radiance)));
         }
       }

@@ -18,21 +18,21 @@ struct Surfacing {
   Material material;
 };
 
-Material transmissive(float roughness, bool thinWalled, float share = 1) {
+Material transmissive(float roughness, bool thinWalled, float fraction = 1) {
   Material m;
   m.baseColor = {1, 0.9f, 0.8f, 1};
   m.metallic = 0;
   m.roughness = roughness;
   m.doubleSided = true;
   m.extended.emplace();
-  m.extended->transmission = share;
+  m.extended->transmission = fraction;
   m.extended->thinWalled = thinWalled;
   return m;
 }
 
 // Rough ones have an alpha above `leastAlpha`.
-std::vector<Surfacing> surfacings(float leastAlpha) {
-  const float rough = std::sqrt(leastAlpha) + 0.05f;
+std::vector<Surfacing> surfacings(float minAlpha) {
+  const float rough = std::sqrt(minAlpha) + 0.05f;
   std::vector<Surfacing> all = {{"rough sheet", transmissive(rough, true)},
                                 {"rough body", transmissive(rough, false)},
                                 {"rougher body", transmissive(0.9f, false)},

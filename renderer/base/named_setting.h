@@ -6,11 +6,11 @@
 
 namespace chromeball {
 
-// Only the code that uses the name (of a strategy, a camera of the model) can check it. `place` is
-// "FILE:LINE" or an option of the command line; the error for an unknown name begins with it.
+// Only the code that uses the name (of a strategy, a camera of the model) can check it. `location`
+// is "FILE:LINE" or an option of the command line; the error for an unknown name begins with it.
 struct NamedSetting {
   std::string name;
-  std::string place;
+  std::string location;
 };
 
 }  // namespace chromeball

@@ -7,7 +7,7 @@ namespace {
 using glm::dvec3;
 
 // Share of the picture's mean L_noobj below which the ratio is not formed.
-constexpr double kLeastForRatio = 1e-3;
+constexpr double kMinForRatio = 1e-3;
 
 bool isNegative(const Rgb& c) { return c.x < 0 || c.y < 0 || c.z < 0; }
 
@@ -34,10 +34,10 @@ dvec3 meanLocalRadiance(const DifferentialFilm& film) {
 Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
   Rgb gain(1);
   for (int c = 0; c < 3; ++c) {
-    const double floor = kLeastForRatio * mean[c];
+    const double floor = kMinForRatio * mean[c];
     if (!(local[c] > floor)) continue;
-    const double share = std::min(local[c] / floor - 1, 1.0);
-    gain[c] = float(glm::mix(1.0, plate[c] / local[c], share));
+    const double fraction = std::min(local[c] / floor - 1, 1.0);
+    gain[c] = float(glm::mix(1.0, plate[c] / local[c], fraction));
   }
   return gain;
 }

@@ -9,7 +9,7 @@
 namespace chromeball {
 
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
-                       const std::string& place) {
+                       const std::string& location) {
   std::vector<bool> isLocal(scene.nodeNames.size());
   for (const NamedSetting& local : names) {
     bool known = false;
@@ -17,7 +17,7 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
       if (scene.nodeNames[node] == local.name) isLocal[node] = known = true;
     if (!known) {
       const std::vector<std::string_view> all(scene.nodeNames.begin(), scene.nodeNames.end());
-      throwInput("{}: local_scene: the model has no node `{}`; {}", local.place, local.name,
+      throwInput("{}: local_scene: the model has no node `{}`; {}", local.location, local.name,
                  didYouMean(local.name, all));
     }
   }
@@ -32,7 +32,7 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
     throwInput(
         "{}: every node is part of the local scene; nothing is left to be put into the "
         "picture",
-        place);
+        location);
   return isObject;
 }
 

@@ -11,8 +11,8 @@ namespace chromeball {
 
 // True for the instances under none of the nodes `names`; a node's name speaks for all below it.
 // Throws InputError for a name that no node has (with the nearest one), and where nothing is left
-// to be put into the picture (beginning with `place`).
+// to be put into the picture (beginning with `location`).
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
-                       const std::string& place);
+                       const std::string& location);
 
 }  // namespace chromeball

@@ -47,14 +47,14 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
     for (int x = 0; x < width; ++x) {
       glm::dvec3 sum(0);
       forCovered(x, width, image.width,
-                 [&](int i, double share) { sum += share * glm::dvec3(image.rgb(i, y)); });
+                 [&](int i, double fraction) { sum += fraction * glm::dvec3(image.rgb(i, y)); });
       narrow.setRgb(x, y, Rgb(sum));
     }
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       glm::dvec3 sum(0);
       forCovered(y, height, image.height,
-                 [&](int i, double share) { sum += share * glm::dvec3(narrow.rgb(x, i)); });
+                 [&](int i, double fraction) { sum += fraction * glm::dvec3(narrow.rgb(x, i)); });
       scaled.setRgb(x, y, Rgb(sum));
     }
   return scaled;

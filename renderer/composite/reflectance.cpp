@@ -8,7 +8,7 @@ namespace {
 
 constexpr Rgb kFirstGuess(0.25f);       // typical of real surfaces
 constexpr uint32_t kSightSamples = 16;  // a pixel, to find what the camera sees
-constexpr uint32_t kMostSamples = 1024;
+constexpr uint32_t kMaxSamples = 1024;
 
 // What is seen of the local scene: how far away, and the model's own base colour.
 struct Sight {
@@ -122,8 +122,8 @@ Image repainted(const PathScene<LocalRays>& path, const Rgb& baseColor, const Ca
   const Image alpha = result.aovs.finished(Aov::Alpha);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      if (const float share = *alpha.at(x, y); share > 0)
-        image.setRgb(x, y, image.rgb(x, y) / share);
+      if (const float fraction = *alpha.at(x, y); fraction > 0)
+        image.setRgb(x, y, image.rgb(x, y) / fraction);
   return image;
 }
 
@@ -203,7 +203,7 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 
   RenderSettings step = settings;
   step.aovs = {Aov::Alpha};
-  step.samples = std::min(settings.samples, kMostSamples);
+  step.samples = std::min(settings.samples, kMaxSamples);
   step.timeLimit.reset();
   step.noiseLimit.reset();
   const std::unique_ptr<Emitters> emitters = Emitters::make(problem.scene);
@@ -222,7 +222,7 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 
   ReflectanceSolution solution;
   for (int i = 0; i < iterations && !stop; ++i) {
-    const auto report = [&](double share) { progress((i + share) / iterations); };
+    const auto report = [&](double fraction) { progress((i + fraction) / iterations); };
     Image black(settings.width, settings.height, 3);
     if (shines) black = repainted(path, Rgb(0), problem.camera, step, report, stop);
     const Image white = repainted(path, Rgb(1), problem.camera, step, report, stop);

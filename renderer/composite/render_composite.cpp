@@ -94,7 +94,7 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
 
   RenderResult result = render(
       OneWorld(worlds, true, plate, film), accel, camera, settings,
-      [&](double share) { progress(share / 2); }, stop);
+      [&](double fraction) { progress(fraction / 2); }, stop);
   Image mean = result.film.mean();
   PixelErrors errors = result.film.errors();
   if (result.samples == 0) return {std::move(result), std::move(film), mean, errors};
@@ -105,7 +105,7 @@ CompositeRender renderComposite(const Scene& scene, const Accel& accel, const Ob
   again.noiseLimit.reset();
   const RenderResult without = render(
       OneWorld(worlds, false, plate, film), accel, camera, again,
-      [&](double share) { progress((1 + share) / 2); }, stop);
+      [&](double fraction) { progress((1 + fraction) / 2); }, stop);
   result.samples = std::min(result.samples, without.samples);
   result.rays.add(without.rays);
   result.interrupted |= without.interrupted;

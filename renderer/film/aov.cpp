@@ -33,13 +33,13 @@ const std::vector<AovInfo>& allAovs() {
 
 const AovInfo& aovInfo(Aov aov) { return allAovs()[size_t(aov)]; }
 
-Aov aovFromName(const std::string& name, const std::string& place) {
+Aov aovFromName(const std::string& name, const std::string& location) {
   std::vector<std::string_view> names;
   for (const AovInfo& info : allAovs()) {
     if (name == info.name) return info.aov;
     names.push_back(info.name);
   }
-  throwInput("{}: AOV `{}` is not known; {}", place, name, didYouMean(name, names));
+  throwInput("{}: AOV `{}` is not known; {}", location, name, didYouMean(name, names));
 }
 
 AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
@@ -101,11 +101,11 @@ Image AovFilm::finished(Aov aov) const {
     Image image(width_, height_, sum.channels);
     for (size_t i = 0; i < image.texels.size(); ++i) {
       const size_t at = i / sum.channels;
-      double share = 1;
-      if (aov == Aov::Depth) share = hits_[at];
+      double fraction = 1;
+      if (aov == Aov::Depth) fraction = hits_[at];
       if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
-        share = std::max(samples_[at], 1u);  // a render may stop before any
-      image.texels[i] = share > 0 ? float(sum.sums[i] / share) : kNoDepth;
+        fraction = std::max(samples_[at], 1u);  // a render may stop before any
+      image.texels[i] = fraction > 0 ? float(sum.sums[i] / fraction) : kNoDepth;
     }
     return image;
   }

@@ -51,8 +51,8 @@ struct AovInfo {
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);
 inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects && aov <= Aov::Reflectance; }
-// `place` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
-Aov aovFromName(const std::string& name, const std::string& place);
+// `location` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
+Aov aovFromName(const std::string& name, const std::string& location);
 
 // Gathers those that come from the first hit, and the defects. Sums are doubles: in float they
 // would stall after some million samples.

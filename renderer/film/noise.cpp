@@ -44,7 +44,7 @@ double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) 
 // Which part of the mean of a window's rare light a pixel takes at least: nothing where its pixels
 // scatter alike, all where a few of them hold most of the scatter. `concentration` is 1 where all
 // scatter alike, and the number of pixels where one does it all.
-double shareOfMean(double concentration) {
+double fractionOfMean(double concentration) {
   constexpr double kEven = 4, kRare = 8;  // an edge between noise and none gives 2
   return std::clamp((concentration - kEven) / (kRare - kEven), 0.0, 1.0);
 }
@@ -78,13 +78,13 @@ glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>&
         weight[c] += alike;
       }
   });
-  double least = 0;
+  double minimum = 0;
   if (e.scatter[i].w > 0 && rareScatter > 0)
-    least = shareOfMean(count * rareSquared / (rareScatter * rareScatter));
+    minimum = fractionOfMean(count * rareSquared / (rareScatter * rareScatter));
   glm::dvec4 squared;
   for (int c = 0; c < 4; ++c) {
     const double own = e.scatter[i][c] * (weight[c] > 0 ? ratio[c] / weight[c] : 1);
-    squared[c] = std::max(own, least * rareHalves[c] / count);
+    squared[c] = std::max(own, minimum * rareHalves[c] / count);
   }
   return squared;
 }
@@ -147,8 +147,8 @@ NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
     if (!std::isnan(squaredErrors[i].w))
       relative.push_back(std::sqrt(squaredErrors[i].w) / std::max(errors.luminances[i], floor));
   if (relative.empty() || !(floor > 0)) return {kNan, kNan};
-  const auto quantile = [&](double share) {
-    const auto at = relative.begin() + std::ptrdiff_t(share * double(relative.size() - 1));
+  const auto quantile = [&](double fraction) {
+    const auto at = relative.begin() + std::ptrdiff_t(fraction * double(relative.size() - 1));
     std::nth_element(relative.begin(), at, relative.end());
     return *at;
   };

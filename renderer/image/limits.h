@@ -13,7 +13,7 @@ inline constexpr uint64_t kMaxImageFloats = uint64_t(1) << 29;  // 2 GiB: 16k x 
 
 // The most that a file can hold, whatever its header says: Deflate shrinks at most 1032 times, and
 // in a JPEG each block of 64 texels has a Huffman code of at least a bit.
-inline constexpr uint64_t kMostDeflated = 1032, kMostTexelsPerJpegByte = 8 * 64;
+inline constexpr uint64_t kMaxDeflated = 1032, kMaxTexelsPerJpegByte = 8 * 64;
 
 // Throws InputError unless all three are positive and their product is within the budget.
 inline void checkImageSize(const std::filesystem::path& path, int64_t width, int64_t height,

@@ -32,8 +32,8 @@ Rgb aces(const Rgb& c) {
 
 Rgb pbrNeutral(Rgb c) {
   constexpr float kStart = 0.8f - 0.04f, kDesaturation = 0.15f;
-  const float least = std::min(c.x, std::min(c.y, c.z));
-  c -= least < 0.08f ? least - 6.25f * least * least : 0.04f;
+  const float minimum = std::min(c.x, std::min(c.y, c.z));
+  c -= minimum < 0.08f ? minimum - 6.25f * minimum * minimum : 0.04f;
   const float peak = maxComponent(c);
   if (peak < kStart) return c;
   constexpr float d = 1 - kStart;

@@ -28,7 +28,9 @@ struct DepthCut {
   }
 
   // Share of all light, found or not.
-  double share(double cut) const { return cut > 0 ? cut / (found + byDepth + byTransmission) : 0; }
+  double fraction(double cut) const {
+    return cut > 0 ? cut / (found + byDepth + byTransmission) : 0;
+  }
 };
 
 }  // namespace chromeball

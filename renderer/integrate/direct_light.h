@@ -44,22 +44,22 @@ struct PathScene {
   bool measuresCut = true;                             // what the limits of depth take (DepthCut)
 };
 
-// Weight of a sample found with density `own` (> 0; infinite for a delta light) that the other
+// Weight of a sample found with pdf `own` (> 0; infinite for a delta light) that the other
 // technique finds with `other`.
 inline float misWeight(Mis mis, float own, float other) {
   const float ratio = other / own;
   return 1 / (1 + (mis == Mis::Power ? ratio * ratio : ratio));
 }
 
-// Weight of what the BSDF's sample found. Density `pdf` 0 stands for a mirror (or the camera), with
+// Weight of what the BSDF's sample found. Pdf `pdf` 0 stands for a mirror (or the camera), with
 // which no light sample competes; with MIS off, light samples take all they can find.
-inline float bsdfSampleWeight(Mis mis, float pdf, float lightDensity) {
-  if (pdf == 0 || lightDensity == 0) return 1;
-  return mis == Mis::Off ? 0 : misWeight(mis, pdf, lightDensity);
+inline float bsdfSampleWeight(Mis mis, float pdf, float lightPdf) {
+  if (pdf == 0 || lightPdf == 0) return 1;
+  return mis == Mis::Off ? 0 : misWeight(mis, pdf, lightPdf);
 }
 
-inline float lightSampleWeight(Mis mis, float density, float bsdfPdf) {
-  return mis == Mis::Off ? 1 : misWeight(mis, density, bsdfPdf);
+inline float lightSampleWeight(Mis mis, float pdf, float bsdfPdf) {
+  return mis == Mis::Off ? 1 : misWeight(mis, pdf, bsdfPdf);
 }
 
 // What lamps light beside the broad lobes.
@@ -82,7 +82,7 @@ Rgb probeLight(const PathScene<Rays>& path, const LightPoint& point, const Surfa
     ++counts.shadow;
     const Rgb passed = path.rays.transmittance({surface.rayOrigin(s.wi), s.wi});
     if (isBlack(passed)) continue;
-    light += bsdf.fCos * s.irradiance * passed * lightSampleWeight(path.mis, s.density, bsdf.pdf);
+    light += bsdf.fCos * s.irradiance * passed * lightSampleWeight(path.mis, s.pdf, bsdf.pdf);
   }
   return light;
 }
@@ -125,10 +125,10 @@ Rgb emitterLight(const PathScene<Rays>& path, const LightPoint& point, const Sur
       transmittanceTo(path.rays, emitter.instance, {origin, (target - origin) / length, length});
   if (media.inside() || surface.material->extended)
     passed *= Media(media).follow(surface, wi).transmittance(length);
-  const float density = path.emitters->density(instance.material, distance, cosine);
-  const Rgb fCos = broad.fCos * lightSampleWeight(path.mis, density, broad.pdf) +
-                   narrow.fCos * lightSampleWeight(path.mis, density, narrow.pdf);
-  return fCos * radiance * passed / density;
+  const float pdf = path.emitters->pdf(instance.material, distance, cosine);
+  const Rgb fCos = broad.fCos * lightSampleWeight(path.mis, pdf, broad.pdf) +
+                   narrow.fCos * lightSampleWeight(path.mis, pdf, narrow.pdf);
+  return fCos * radiance * passed / pdf;
 }
 
 // Light from the lamps without extent.

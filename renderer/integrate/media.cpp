@@ -34,10 +34,10 @@ RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) 
     const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
     return {own / outer, m.ior};
   }
-  const int place = find(&m);
+  const int location = find(&m);
   // Within another, or never entered for lack of a place: nothing changes.
-  if (place >= 0 ? place < count_ - 1 : isFull) return {Rgb(1), m.ior};
-  const float outer = place > 0 ? bodies_[size_t(place - 1)]->ior : 1;
+  if (location >= 0 ? location < count_ - 1 : isFull) return {Rgb(1), m.ior};
+  const float outer = location > 0 ? bodies_[size_t(location - 1)]->ior : 1;
   return {outer / own, m.ior};
 }
 
@@ -46,8 +46,8 @@ Media& Media::follow(const Surface& s, const vec3& wi) {
   if (!extended || extended->thinWalled || glm::dot(s.geometricNormal, wi) >= 0) return *this;
   if (s.frontFace) {
     if (count_ < int(bodies_.size())) bodies_[size_t(count_++)] = s.material;
-  } else if (const int place = find(s.material); place >= 0) {
-    for (int i = place; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
+  } else if (const int location = find(s.material); location >= 0) {
+    for (int i = location; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
     --count_;
   }
   return *this;

@@ -82,21 +82,20 @@ Rgb escapedRadiance(const PathScene<Rays>& path, const PathState& state) {
   if (state.lobes == Lobes::Narrow)
     return state.throughput * path.lighting.background(origin, direction);
   const auto escaped = path.lighting.escaped(state.from, direction);
-  return state.throughput * escaped.radiance *
-         bsdfSampleWeight(path.mis, state.pdf, escaped.density);
+  return state.throughput * escaped.radiance * bsdfSampleWeight(path.mis, state.pdf, escaped.pdf);
 }
 
 // What the path finds where its ray meets a surface that emits.
 template <class Rays>
 Rgb foundEmission(const PathScene<Rays>& path, const PathState& state, const Surface& surface,
                   const Instance& instance) {
-  float density = 0;
+  float pdf = 0;
   if (path.emitters && !surface.material->unlit)
-    density = path.emitters->density(
+    pdf = path.emitters->pdf(
         instance.material, glm::length(surface.position - state.from.position),
         std::max(-glm::dot(surface.geometricNormal, state.ray.direction), 1e-12f));
   return state.throughput * emittedRadiance(path.scene, instance, surface, -state.ray.direction) *
-         bsdfSampleWeight(path.mis, state.pdf, density);
+         bsdfSampleWeight(path.mis, state.pdf, pdf);
 }
 
 // Takes the path straight through a smooth sheet. Light samples at `from` see through it too, so

@@ -20,9 +20,9 @@ constexpr int kTile = 16;
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
 // Deeper vertices carry too little for stratification to show; they take plain random numbers.
 constexpr int kTabulatedVertices = 6;
-constexpr uint32_t kFirstPass = 4;       // samples a pixel
-constexpr uint32_t kLeastForNoise = 16;  // samples a pixel before an estimate of noise is believed
-constexpr uint32_t kMostInTheDark = 4096;  // samples a pixel without any light: there is none
+constexpr uint32_t kFirstPass = 4;        // samples a pixel
+constexpr uint32_t kMinForNoise = 16;     // samples a pixel before an estimate of noise is believed
+constexpr uint32_t kMaxInTheDark = 4096;  // samples a pixel without any light: there is none
 
 double now() {
   using namespace std::chrono;
@@ -30,7 +30,9 @@ double now() {
 }
 
 // How many of a pixel's first `samples` belong to a half.
-uint32_t shareOf(int half, uint32_t samples) { return samples / 2 + (half == 0 ? samples % 2 : 0); }
+uint32_t samplesOf(int half, uint32_t samples) {
+  return samples / 2 + (half == 0 ? samples % 2 : 0);
+}
 
 // Decides how many samples a pixel has after each pass.
 class Schedule {
@@ -42,7 +44,7 @@ class Schedule {
     if (done == 0) return std::min(kFirstPass, settings_.samples);
     double wanted = std::min(2.0 * done, double(settings_.samples));
     if (settings_.timeLimit) wanted = std::min(wanted, untilTime(done));
-    if (settings_.noiseLimit && done >= kLeastForNoise)
+    if (settings_.noiseLimit && done >= kMinForNoise)
       wanted = std::min(wanted, untilNoise(done, film));
     return uint32_t(wanted);
   }
@@ -56,24 +58,24 @@ class Schedule {
 
  private:
   // A pass has at least this share of the samples before it.
-  static constexpr double kLeastGrowth = 1.0 / 16;
+  static constexpr double kMinGrowth = 1.0 / 16;
 
   double untilTime(uint32_t done) const {
     const double affordable = done * *settings_.timeLimit / (now() - start_);
-    return affordable < done * (1 + kLeastGrowth) ? 0 : affordable;
+    return affordable < done * (1 + kMinGrowth) ? 0 : affordable;
   }
 
   // Noise falls as samples^-rate: 1/2 for independent samples, up to 1 for quasi-random ones.
   double untilNoise(uint32_t done, const Film& film) {
     const Noise noise = film.noise();
-    if (std::isnan(noise.noise)) return done < kMostInTheDark ? INFINITY : 0;
+    if (std::isnan(noise.noise)) return done < kMaxInTheDark ? INFINITY : 0;
     const double excess = noise.upper / *settings_.noiseLimit;
     if (excess <= 1) return 0;
     double rate = 0.5;
     if (last_.samples > 0 && noise.noise < last_.noise)
       rate = std::log(last_.noise / noise.noise) / std::log(double(done) / last_.samples);
     last_ = {done, noise.noise};
-    return done * std::max(std::pow(excess, 1 / std::clamp(rate, 0.5, 1.0)), 1 + kLeastGrowth);
+    return done * std::max(std::pow(excess, 1 / std::clamp(rate, 0.5, 1.0)), 1 + kMinGrowth);
   }
 
   const RenderSettings& settings_;
@@ -99,7 +101,7 @@ class Renderer {
         cameraRays_(camera, float(settings.width) / float(settings.height)),
         settings_(settings),
         result_(result),
-        table_(std::bit_ceil(std::min(shareOf(0, settings.samples), kLargestTable)),
+        table_(std::bit_ceil(std::min(samplesOf(0, settings.samples), kLargestTable)),
                dimension::kVertex + dimension::kPerVertex *
                                         (std::min(settings.maxDepth, kTabulatedVertices - 1) + 1),
                settings.seed),
@@ -179,8 +181,8 @@ class Renderer {
   // on with it, newly randomised.
   void renderHalf(Worker& worker, int x, int y, int half, uint32_t done, uint32_t wanted,
                   const Beam& beam) {
-    const uint32_t end = shareOf(half, wanted);
-    for (uint32_t begin = shareOf(half, done); begin < end;) {
+    const uint32_t end = samplesOf(half, wanted);
+    for (uint32_t begin = samplesOf(half, done); begin < end;) {
       const uint32_t table = begin / table_.size(), first = begin % table_.size();
       const uint32_t count = std::min(end - begin, table_.size() - first);
       worker.memory.sampler.startPixel(uint32_t(x), uint32_t(y),
@@ -266,8 +268,8 @@ RenderResult render(const Integrator& integrator, const Accel& accel, const Came
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {
-    const auto report = [&](double share) {
-      progress(schedule.progress(done + share * (wanted - done)));
+    const auto report = [&](double fraction) {
+      progress(schedule.progress(done + fraction * (wanted - done)));
     };
     renderer.pass(done, wanted, report, stop);
     if (stop) {

@@ -45,7 +45,7 @@ ImageSize parseSize(std::string_view text, std::string_view option) {
 LightUnits parseLightUnits(const NamedSetting& setting) {
   if (setting.name == "photometric") return LightUnits::Photometric;
   if (setting.name == "radiometric") return LightUnits::Radiometric;
-  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+  throwInput("{}: `{}` is not known; {}", setting.location, setting.name,
              didYouMean(setting.name, {"photometric", "radiometric"}));
 }
 

@@ -16,7 +16,7 @@ namespace {
 CompositeMode parseMode(const std::optional<NamedSetting>& mode) {
   if (!mode || mode->name == "difference") return CompositeMode::Difference;
   if (mode->name == "ratio") return CompositeMode::Ratio;
-  throwInput("{}: `{}` is not known; {}", mode->place, mode->name,
+  throwInput("{}: `{}` is not known; {}", mode->location, mode->name,
              didYouMean(mode->name, {"difference", "ratio"}));
 }
 
@@ -25,7 +25,7 @@ CompositeJob::Reflectance parseReflectance(const std::optional<NamedSetting>& re
   if (!reflectance || reflectance->name == "model") return Model;
   if (reflectance->name == "plate") return Plate;
   if (reflectance->name == "flat") return Flat;
-  throwInput("{}: `{}` is not known; {}", reflectance->place, reflectance->name,
+  throwInput("{}: `{}` is not known; {}", reflectance->location, reflectance->name,
              didYouMean(reflectance->name, {"model", "plate", "flat"}));
 }
 
@@ -112,7 +112,7 @@ CompositeJob planComposite(RenderJob& job, bool twoPass) {
     throwInput(
         "{}: layer `reflectance` is found where [composite] has reflectance = \"plate\" or "
         "\"flat\"",
-        entry.place);
+        entry.location);
   std::erase_if(job.settings.aovs, [](Aov aov) { return aov == Aov::Alpha || isOfComposite(aov); });
   return composite;
 }
@@ -120,13 +120,13 @@ CompositeJob planComposite(RenderJob& job, bool twoPass) {
 void prepareLocalScene(CompositeJob& composite, const RenderJob& job, LoadedScene& loaded) {
   const CompositeEntry& entry = *job.file.composite;
   Scene& scene = loaded.scene;
-  composite.isObject = findObjects(scene, entry.localScene, entry.place);
+  composite.isObject = findObjects(scene, entry.localScene, entry.location);
   if (composite.reflectance == CompositeJob::Reflectance::Flat) {
     if (!flatNormal(scene, composite.isObject))
-      throwInput("{}: the local scene is not flat; give \"plate\"", entry.reflectance->place);
+      throwInput("{}: the local scene is not flat; give \"plate\"", entry.reflectance->location);
     if (job.file.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
-                 entry.reflectance->place);
+                 entry.reflectance->location);
   }
   if (composite.reflectance != CompositeJob::Reflectance::Model) {
     composite.projection =
@@ -154,14 +154,14 @@ Rendered renderComposite(CompositeJob& job, const RenderJob& render, const Loade
   std::vector<std::string> notes;
   if (solves)
     solve(
-        job, render, loaded, lighting, [&](double share) { progress(share / 2); }, stop, details,
-        notes);
+        job, render, loaded, lighting, [&](double fraction) { progress(fraction / 2); }, stop,
+        details, notes);
   const bool looksBehind =
       std::count(job.layers.begin(), job.layers.end(), Aov::WithoutObjects) > 0;
   CompositeRender rendered = renderComposite(
       loaded.scene, accel, job.isObject, loaded.camera, lighting, job.plate, render.settings,
-      job.passes, looksBehind, [&](double share) { progress(solves ? (1 + share) / 2 : share); },
-      stop);
+      job.passes, looksBehind,
+      [&](double fraction) { progress(solves ? (1 + fraction) / 2 : fraction); }, stop);
   const Composite composite = compose(rendered.film, rendered.mean, job.plate, job.mode);
 
   PictureNoise noise(compositeErrors(rendered.film, composite, std::move(rendered.errors)));

@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr size_t kMostBytes = 1 << 20, kLongestName = 256;
+constexpr size_t kMaxBytes = 1 << 20, kLongestName = 256;
 
 std::string dumped(const ordered_json& json) {
   return json.dump(-1, ' ', true,
@@ -26,7 +26,7 @@ std::string manifestOf(const Image& ids, const Name& name) {
     if (!(id >= 1)) continue;  // 0: nothing was hit
     const ordered_json text = name(size_t(id) - 1).substr(0, kLongestName);
     bytes += dumped(text).size() + 16;
-    if (bytes > kMostBytes)
+    if (bytes > kMaxBytes)
       ++omitted;
     else
       names[std::to_string(size_t(id))] = text;

@@ -70,7 +70,7 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
     return black;
   }
   const NamedSetting mapping = file.probeMapping.value_or(NamedSetting{"auto", "--probe-mapping"});
-  return loadProbe(*file.probe, mapping.name, mapping.place);
+  return loadProbe(*file.probe, mapping.name, mapping.location);
 }
 
 Camera chooseCamera(const RenderJob& job, const Scene& scene) {
@@ -83,7 +83,7 @@ Camera chooseCamera(const RenderJob& job, const Scene& scene) {
         if (std::count(names.begin(), names.end(), camera.*name) == 0)
           names.push_back(camera.*name);
       }
-    throwInput("{}: the model has no camera `{}`; {}", wanted->place, wanted->name,
+    throwInput("{}: the model has no camera `{}`; {}", wanted->location, wanted->name,
                names.empty() ? "it has none at all" : didYouMean(wanted->name, names));
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
@@ -96,7 +96,7 @@ Camera withLens(const RenderJob& job, Camera camera) {
   if (!lens) return camera;
   if (camera.orthographic)
     throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
-               lens->place);
+               lens->location);
   camera.lensRadius = 0.5f * lens->aperture;
   camera.focus = lens->focus;
   return camera;
@@ -186,7 +186,7 @@ LoadedScene loadScene(RenderJob& job) {
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded) {
-  auto lighting = makeStrategy(strategy.name, loaded.probe, mis, strategy.place);
+  auto lighting = makeStrategy(strategy.name, loaded.probe, mis, strategy.location);
   if (!loaded.surroundings) return lighting;
   return std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
                                               *loaded.surroundings, loaded.room.get());

@@ -19,8 +19,9 @@ double pictureBytes(const RenderSettings& settings) {
   // Estimating the noise takes three fields of errors, two of luminances and the variance; later
   // the layers stand beside the file's texels.
   constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
-  const double most = std::max(kNoise, 2 * texels);
-  return double(settings.width) * settings.height * (double(Film::bytesPerPixel()) + sums + most);
+  const double maximum = std::max(kNoise, 2 * texels);
+  return double(settings.width) * settings.height *
+         (double(Film::bytesPerPixel()) + sums + maximum);
 }
 
 double memoryBudget() {

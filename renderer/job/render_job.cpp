@@ -26,8 +26,8 @@ SceneFile openScene(const std::string& path) {
 }
 
 void overlay(std::optional<NamedSetting>& setting, const std::optional<std::string>& option,
-             const char* place) {
-  if (option) setting = NamedSetting{*option, place};
+             const char* location) {
+  if (option) setting = NamedSetting{*option, location};
 }
 
 template <class T>
@@ -39,7 +39,7 @@ Mis parseMis(const NamedSetting& setting) {
   if (setting.name == "off") return Mis::Off;
   if (setting.name == "balance") return Mis::Balance;
   if (setting.name == "power") return Mis::Power;
-  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+  throwInput("{}: `{}` is not known; {}", setting.location, setting.name,
              didYouMean(setting.name, {"off", "balance", "power"}));
 }
 
@@ -47,7 +47,7 @@ SingleSided parseSingleSided(const NamedSetting& setting) {
   if (setting.name == "camera") return SingleSided::Camera;
   if (setting.name == "light") return SingleSided::Light;
   if (setting.name == "off") return SingleSided::Off;
-  throwInput("{}: `{}` is not known; {}", setting.place, setting.name,
+  throwInput("{}: `{}` is not known; {}", setting.location, setting.name,
              didYouMean(setting.name, {"camera", "light", "off"}));
 }
 
@@ -65,15 +65,15 @@ void require(bool valid, const char* option, T given, std::string_view expected)
 
 void checkRanges(const RenderOptions& o) {
   if (o.samples)
-    require(*o.samples >= 1 && *o.samples <= kMostSamples, "--samples", *o.samples,
-            fmt::format("a number from 1 to {}", kMostSamples));
+    require(*o.samples >= 1 && *o.samples <= kMaxSamples, "--samples", *o.samples,
+            fmt::format("a number from 1 to {}", kMaxSamples));
   if (o.maxDepth)
-    require(*o.maxDepth >= 0 && *o.maxDepth <= kMostDepth, "--max-depth", *o.maxDepth,
-            fmt::format("a number from 0 to {}", kMostDepth));
+    require(*o.maxDepth >= 0 && *o.maxDepth <= kMaxDepth, "--max-depth", *o.maxDepth,
+            fmt::format("a number from 0 to {}", kMaxDepth));
   if (o.maxTransmissionDepth)
-    require(*o.maxTransmissionDepth >= 0 && *o.maxTransmissionDepth <= kMostDepth,
+    require(*o.maxTransmissionDepth >= 0 && *o.maxTransmissionDepth <= kMaxDepth,
             "--max-transmission-depth", *o.maxTransmissionDepth,
-            fmt::format("a number from 0 to {}", kMostDepth));
+            fmt::format("a number from 0 to {}", kMaxDepth));
   if (o.time) require(*o.time > 0 && std::isfinite(*o.time), "--time", *o.time, "above 0 seconds");
   if (o.noise)
     require(*o.noise > 0 && std::isfinite(*o.noise), "--noise", *o.noise, "above 0 percent");
@@ -96,8 +96,8 @@ void overlayAnimation(const RenderOptions& o, SceneFile& file) {
   for (ModelEntry& model : file.models) {
     std::optional<AnimationTime>& when = model.choice.animation;
     if (!when) when.emplace();
-    if (o.animation || when->place.empty())
-      when->place = o.animation ? "--animation" : "--animation-time";
+    if (o.animation || when->location.empty())
+      when->location = o.animation ? "--animation" : "--animation-time";
     if (o.animation) when->name = *o.animation;
     if (o.animationTime) when->seconds = *o.animationTime;
   }
@@ -150,7 +150,7 @@ RenderJob planJob(const RenderOptions& o) {
   settings.timeLimit = file.timeLimit;
   settings.noiseLimit = file.noiseLimit;
   const bool limited = file.timeLimit || file.noiseLimit;
-  settings.samples = file.samples.value_or(limited ? kMostSamples : settings.samples);
+  settings.samples = file.samples.value_or(limited ? kMaxSamples : settings.samples);
   settings.maxDepth = file.maxDepth.value_or(settings.maxDepth);
   settings.maxTransmissionDepth = file.maxTransmissionDepth.value_or(settings.maxTransmissionDepth);
   settings.seed = file.seed.value_or(0);
@@ -165,9 +165,9 @@ RenderJob planJob(const RenderOptions& o) {
     for (const std::string& name : o.aovs) aovs.push_back({name, "--aov"});
   }
   for (const NamedSetting& aov : aovs) {
-    settings.aovs.push_back(aovFromName(aov.name, aov.place));
+    settings.aovs.push_back(aovFromName(aov.name, aov.location));
     if (isOfComposite(settings.aovs.back()) && !file.composite)
-      throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", aov.place,
+      throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", aov.location,
                  aov.name);
   }
   if (o.twoPass && !file.composite)

@@ -35,7 +35,7 @@ ModelEntry readModel(const Entry& entry) {
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
   const Section model(entry.file, "model", *entry.node->as_table(),
                       {"file", "translation", "rotation", "scale", "animation", "time", "variant"});
-  if (!model["file"]) failAt(model.place(), "[model] has no `file`");
+  if (!model["file"]) failAt(model.location(), "[model] has no `file`");
 
   ModelEntry result{existing(model["file"]), {}, {}};
   Transform& placement = result.placement;
@@ -48,11 +48,11 @@ ModelEntry readModel(const Entry& entry) {
   const Entry animation = model["animation"], time = model["time"];
   if (animation || time) {
     AnimationTime& when = result.choice.animation.emplace();
-    when.place = (animation ? animation : time).place();
+    when.location = (animation ? animation : time).location();
     if (animation) when.name = animation.text();
     if (time) when.seconds = time.number();
   }
-  if (const Entry e = model["variant"]) result.choice.variant = {e.text(), e.place()};
+  if (const Entry e = model["variant"]) result.choice.variant = {e.text(), e.location()};
   return result;
 }
 
@@ -60,9 +60,9 @@ void readLens(const Section& camera, SceneFile& scene) {
   const Entry aperture = camera["aperture"], focus = camera["focus"];
   if (!aperture && !focus) return;
   if (!aperture || !focus)
-    failAt((aperture ? aperture : focus).place(),
+    failAt((aperture ? aperture : focus).location(),
            "`aperture` (the lens's diameter) and `focus` (a distance) go together, in metres");
-  scene.lens = {float(aperture.positive()), float(focus.positive()), aperture.place()};
+  scene.lens = {float(aperture.positive()), float(focus.positive()), aperture.location()};
 }
 
 void readCamera(const Section& camera, SceneFile& scene) {
@@ -71,7 +71,7 @@ void readCamera(const Section& camera, SceneFile& scene) {
   if (name) {
     for (const char* key : {"position", "look_at", "up", "fov", "orthographic"})
       if (const Entry e = camera[key])
-        failAt(e.place(), "[camera] has `name`, a camera of the model; it cannot have `{}` too",
+        failAt(e.location(), "[camera] has `name`, a camera of the model; it cannot have `{}` too",
                key);
     scene.cameraName = name.name();
     return;
@@ -79,12 +79,12 @@ void readCamera(const Section& camera, SceneFile& scene) {
   const Entry orthographic = camera["orthographic"];
   if (!position && !target && !camera["up"] && !camera["fov"] && !orthographic) return;
   if (!position || !target)
-    failAt(camera.place(), "[camera] needs `name`, or both `position` and `look_at`");
+    failAt(camera.location(), "[camera] needs `name`, or both `position` and `look_at`");
 
   const vec3 from = position.vector(), to = target.vector();
   const Entry upEntry = camera["up"], fovEntry = camera["fov"];
   if (orthographic && fovEntry)
-    failAt(fovEntry.place(), "[camera] is `orthographic`; it has no `fov`");
+    failAt(fovEntry.location(), "[camera] is `orthographic`; it has no `fov`");
   const vec3 up = upEntry ? upEntry.vector() : vec3(0, 1, 0);
   const float fov = fovEntry ? glm::radians(float(fovEntry.number(
                                    "degrees between 0 and 180",
@@ -93,11 +93,11 @@ void readCamera(const Section& camera, SceneFile& scene) {
   if (fovEntry && fov < glm::radians(kPi))
     scene.warnings.push_back(fmt::format(
         "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
-        fovEntry.place(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
+        fovEntry.location(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
   try {
     scene.camera = Camera::lookAt(from, to, up, fov);
   } catch (const InputError& error) {
-    failAt(camera.place(), "{}", error.what());
+    failAt(camera.location(), "{}", error.what());
   }
   if (orthographic) {
     scene.camera->orthographic = true;
@@ -130,10 +130,10 @@ void readRender(const Section& render, SceneFile& scene) {
     if (!e.isArrayOf(2)) e.mustBe("[width, height]");
     scene.size = {int(e.element(0).integer(1, 65536)), int(e.element(1).integer(1, 65536))};
   }
-  if (const Entry e = render["samples"]) scene.samples = uint32_t(e.integer(1, kMostSamples));
-  if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMostDepth));
+  if (const Entry e = render["samples"]) scene.samples = uint32_t(e.integer(1, kMaxSamples));
+  if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMaxDepth));
   if (const Entry e = render["max_transmission_depth"])
-    scene.maxTransmissionDepth = int(e.integer(0, kMostDepth));
+    scene.maxTransmissionDepth = int(e.integer(0, kMaxDepth));
   if (const Entry e = render["single_sided"]) scene.singleSided = e.name();
   if (const Entry e = render["seed"]) scene.seed = uint64_t(e.integer(0, INT64_MAX));
   if (const Entry e = render["time"]) scene.timeLimit = e.positive();

@@ -26,7 +26,7 @@ struct ModelEntry {
 
 // [composite]: objects of the model are put into a photograph.
 struct CompositeEntry {
-  std::string place;                     // of the section, for errors
+  std::string location;                  // of the section, for errors
   std::string plate;                     // the photograph
   std::vector<NamedSetting> localScene;  // nodes that stand for real things; the others are put in
   std::optional<NamedSetting> reflectance;   // of the local scene: "model", "plate" or "flat"
@@ -36,8 +36,8 @@ struct CompositeEntry {
 };
 
 // Largest values of settings, the same on the command line.
-inline constexpr uint32_t kMostSamples = 2'000'000'000;
-inline constexpr int kMostDepth = 1'000'000;
+inline constexpr uint32_t kMaxSamples = 2'000'000'000;
+inline constexpr int kMaxDepth = 1'000'000;
 
 // What the file says; what it leaves out is nullopt or empty, for the command line or the default
 // to fill. File names are resolved against the scene file's folder.
@@ -49,7 +49,7 @@ struct SceneFile {
                                  // orthographic (height of the view, metres)
   struct Lens {
     float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
-    std::string place;      // for an error
+    std::string location;   // for an error
   };
   std::optional<Lens> lens;  // for whichever camera it is
 
@@ -68,8 +68,8 @@ struct SceneFile {
     int width, height;  // 1..65536
   };
   std::optional<Size> size;
-  std::optional<uint32_t> samples;                    // 1..kMostSamples, per pixel
-  std::optional<int> maxDepth, maxTransmissionDepth;  // 0..kMostDepth
+  std::optional<uint32_t> samples;                    // 1..kMaxSamples, per pixel
+  std::optional<int> maxDepth, maxTransmissionDepth;  // 0..kMaxDepth
   std::optional<NamedSetting> singleSided;            // "camera", "light" or "off"
   std::optional<uint64_t> seed;
   std::optional<double> timeLimit;   // seconds, > 0

@@ -29,11 +29,11 @@ std::string listed(const std::vector<std::string_view>& keys) {
 
 const LampType& typeOf(const Section& light) {
   const Entry entry = light["type"];
-  if (!entry) failAt(light.place(), "[light] has no `type`: \"point\", \"spot\" or \"disc\"");
+  if (!entry) failAt(light.location(), "[light] has no `type`: \"point\", \"spot\" or \"disc\"");
   const std::string name = entry.text();
   for (const LampType& type : kTypes)
     if (type.name == name) return type;
-  failAt(entry.place(), "`type` {} is not known; {}", name, didYouMean(name, typeNames()));
+  failAt(entry.location(), "`type` {} is not known; {}", name, didYouMean(name, typeNames()));
 }
 
 // A number for grey, or three.
@@ -45,23 +45,24 @@ Rgb readColor(const Entry& entry) {
 
 vec3 readDirection(const Section& light) {
   const Entry entry = light["direction"];
-  if (!entry) failAt(light.place(), "[light] has no `direction`, where it shines");
+  if (!entry) failAt(light.location(), "[light] has no `direction`, where it shines");
   const glm::dvec3 direction(entry.vector());
   if (!(glm::length(direction) > 0)) entry.mustBe("other than 0, 0, 0");
   return vec3(glm::normalize(direction));
 }
 
-double readAngle(const Entry& entry, double fallback, double least, double most) {
+double readAngle(const Entry& entry, double fallback, double minimum, double maximum) {
   if (!entry) return fallback;
-  return entry.number(fmt::format("degrees from {:g} to {:g}, between axis and edge", least, most),
-                      [&](double x) { return x >= least && x <= most; });
+  return entry.number(
+      fmt::format("degrees from {:g} to {:g}, between axis and edge", minimum, maximum),
+      [&](double x) { return x >= minimum && x <= maximum; });
 }
 
 // `key` as it is given, or the share `ofOneWatt` of `power`.
 Rgb readStrength(const Section& light, std::string_view key, float ofOneWatt) {
   const Entry own = light[key], power = light["power"];
-  if (own && power) failAt(power.place(), "[light] has `{}`; it cannot have `power` too", key);
-  if (!own && !power) failAt(light.place(), "[light] has neither `{}` nor `power`", key);
+  if (own && power) failAt(power.location(), "[light] has `{}`; it cannot have `power` too", key);
+  if (!own && !power) failAt(light.location(), "[light] has neither `{}` nor `power`", key);
   return own ? readColor(own) : readColor(power) * ofOneWatt;
 }
 
@@ -81,7 +82,7 @@ PunctualLight readPunctual(const Section& light, bool isSpot) {
 }
 
 DiscLamp readDisc(const Section& light) {
-  if (!light["radius"]) failAt(light.place(), "[light] has no `radius`");
+  if (!light["radius"]) failAt(light.location(), "[light] has no `radius`");
   DiscLamp disc;
   disc.direction = readDirection(light);
   disc.radius = float(light["radius"].positive());
@@ -103,9 +104,9 @@ Lamp readLamp(const Entry& entry) {
     const bool isCommon = key == "type" || key == "name" || key == "position";
     if (const Entry e = light[key];
         e && !isCommon && std::find(type.keys.begin(), type.keys.end(), key) == type.keys.end())
-      failAt(e.place(), "a {} light has no `{}`; it has {}", type.name, key, listed(type.keys));
+      failAt(e.location(), "a {} light has no `{}`; it has {}", type.name, key, listed(type.keys));
   }
-  if (!light["position"]) failAt(light.place(), "[light] has no `position`");
+  if (!light["position"]) failAt(light.location(), "[light] has no `position`");
   const vec3 position = light["position"].vector();
   Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}};
   if (type.name == "disc")

@@ -19,7 +19,7 @@ std::string existing(const Entry& entry) {
   const std::string path = resolved(entry);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
-    failAt(entry.place(), "`{}`: no such file: {} (paths are relative to the scene file)",
+    failAt(entry.location(), "`{}`: no such file: {} (paths are relative to the scene file)",
            entry.key, path);
   return path;
 }

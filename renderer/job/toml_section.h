@@ -17,12 +17,12 @@
 namespace chromeball {
 
 template <class... Args>
-[[noreturn]] void failAt(const std::string& place, fmt::format_string<Args...> format,
+[[noreturn]] void failAt(const std::string& location, fmt::format_string<Args...> format,
                          Args&&... args) {
   std::string what = fmt::format(format, std::forward<Args>(args)...);
   for (char& c : what)
     if (uint8_t(c) < ' ') c = '?';  // a quoted key may hold a line break; an error is one line
-  throwInput("{}: {}", place, what);
+  throwInput("{}: {}", location, what);
 }
 
 // One value of the file with what an error about it has to say.
@@ -32,7 +32,7 @@ struct Entry {
   const toml::node* node;  // nullptr: the file does not give it
 
   explicit operator bool() const { return node; }
-  std::string place() const { return fmt::format("{}:{}", file, node->source().begin.line); }
+  std::string location() const { return fmt::format("{}:{}", file, node->source().begin.line); }
 
   [[noreturn]] void mustBe(std::string_view what) const {
     std::string found;
@@ -50,7 +50,7 @@ struct Entry {
       found = "a boolean";
     else
       found = "a date or time";
-    failAt(place(), "`{}` must be {}, not {}", key, what, found);
+    failAt(location(), "`{}` must be {}, not {}", key, what, found);
   }
 
   Entry element(size_t i) const { return {file, key, node->as_array()->get(i)}; }
@@ -62,12 +62,12 @@ struct Entry {
     if (!node->is_string() || node->as_string()->get().empty()) mustBe("a string");
     return node->as_string()->get();
   }
-  NamedSetting name() const { return {text(), place()}; }
+  NamedSetting name() const { return {text(), location()}; }
 
-  int64_t integer(int64_t least, int64_t most) const {
+  int64_t integer(int64_t minimum, int64_t maximum) const {
     const auto* number = node->as_integer();
-    if (!number || number->get() < least || number->get() > most)
-      mustBe(fmt::format("a whole number from {} to {}", least, most));
+    if (!number || number->get() < minimum || number->get() > maximum)
+      mustBe(fmt::format("a whole number from {} to {}", minimum, maximum));
     return number->get();
   }
 
@@ -105,7 +105,7 @@ class Section {
   Entry operator[](std::string_view key) const {
     return {file_, std::string(key), table_.get(key)};
   }
-  std::string place() const { return fmt::format("{}:{}", file_, table_.source().begin.line); }
+  std::string location() const { return fmt::format("{}:{}", file_, table_.source().begin.line); }
 
   Section section(std::string_view key, const std::vector<std::string_view>& keys) const {
     static const toml::table kEmpty;

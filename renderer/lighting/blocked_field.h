@@ -30,7 +30,7 @@ class BlockedField {
     return field_.at(direction, p);
   }
 
-  // Density over solid angle for each unit of a point's weight, over everything.
+  // Pdf over solid angle for each unit of a point's weight, over everything.
   float scale() const { return scale_; }
 
   // Directions spread over a block.

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-constexpr float kDelta = std::numeric_limits<float>::infinity();  // density of a direction alone
+constexpr float kDelta = std::numeric_limits<float>::infinity();  // pdf of a direction alone
 
 // In proportion to the light of a Lambertian surface, which is positive wherever a plain BSDF is;
 // where light may come from behind the normal, in proportion to what the BSDF makes of it.
@@ -34,24 +34,24 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
     out.insert(out.end(), lights_.begin(), lights_.end());
     return;
   }
-  // First the lights that shine here, with their importance in the density's place; then, of these,
+  // First the lights that shine here, with their importance in the pdf's place; then, of these,
   // the chosen ones.
   const size_t first = out.size();
   float total = 0;
   for (const DirectionSample& light : lights_)
-    if (const float share = importance(light, point); share > 0) {
-      total += share;
-      out.push_back({light.wi, light.irradiance, share});
+    if (const float fraction = importance(light, point); fraction > 0) {
+      total += fraction;
+      out.push_back({light.wi, light.irradiance, fraction});
     }
   const float step = total / kLater;
   float target = step * sampler.get1(dimension::kLight), sum = 0;
   size_t kept = first;
   for (size_t i = first; i < out.size(); ++i) {
-    const float share = out[i].density;
+    const float fraction = out[i].pdf;
     int times = 0;
-    for (sum += share; sum > target; target += step) ++times;
+    for (sum += fraction; sum > target; target += step) ++times;
     if (times > 0)
-      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / share), kDelta};
+      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / fraction), kDelta};
   }
   out.resize(kept);
 }

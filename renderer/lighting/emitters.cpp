@@ -19,10 +19,10 @@ double meanOfTexels(const Scene& scene, const TextureSlot& slot, const Value& va
   return sum / (double(grid.width) * grid.height);
 }
 
-// Mean share of the material that is there. Not less than kLeast where any may be: filters and
+// Mean share of the material that is there. Not less than kMin where any may be: filters and
 // vertex colours reach where no texel does.
 double meanAlpha(const Scene& scene, const Material& m) {
-  constexpr double kLeast = 0.01;
+  constexpr double kMin = 0.01;
   if (m.alphaMode == AlphaMode::Opaque) return 1;
   if (m.alphaMode == AlphaMode::Blend && m.baseColor.w == 0) return 0;
   const auto shown = [&](const vec4& texel) {
@@ -31,7 +31,7 @@ double meanAlpha(const Scene& scene, const Material& m) {
   };
   const double mean =
       m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, shown) : double(shown(vec4(1)));
-  return std::max(mean, kLeast);
+  return std::max(mean, kMin);
 }
 
 // Mean luminance a material emits; positive wherever it emits at all.
@@ -76,7 +76,7 @@ Emitters::Emitters(std::vector<EmissiveTriangle> triangles, const std::vector<do
                    const std::vector<double>& radiances)
     : triangles_(std::move(triangles)), choice_(1, int(triangles_.size())) {
   const double total = choice_.setRow(0, powers);
-  for (double radiance : radiances) areaDensity_.push_back(float(radiance / total));
+  for (double radiance : radiances) areaPdf_.push_back(float(radiance / total));
 }
 
 Emitters::Point Emitters::sample(double choice, float v) const {

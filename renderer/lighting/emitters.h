@@ -10,7 +10,7 @@
 namespace chromeball {
 
 // Every triangle whose material emits, chosen by power (mean emitted luminance x mean alpha x area)
-// and sampled uniformly over its area. The density over area is then the same for all points of a
+// and sampled uniformly over its area. The pdf over area is then the same for all points of a
 // material: its mean luminance x alpha / total.
 class Emitters {
  public:
@@ -25,10 +25,10 @@ class Emitters {
   // `choice` in [0, 1) is fine enough to reach the weakest of a million triangles (getFine1()).
   Point sample(double choice, float v) const;
 
-  // Density over solid angle of sampling a point of `material` seen from `distance` metres under
+  // Pdf over solid angle of sampling a point of `material` seen from `distance` metres under
   // the cosine `cosine` (> 0) at the emitter.
-  float density(int material, float distance, float cosine) const {
-    return areaDensity_[material] * distance * distance / cosine;
+  float pdf(int material, float distance, float cosine) const {
+    return areaPdf_[material] * distance * distance / cosine;
   }
 
  private:
@@ -40,7 +40,7 @@ class Emitters {
            const std::vector<double>& radiances);
 
   std::vector<EmissiveTriangle> triangles_;
-  std::vector<float> areaDensity_;  // by material, 1/m^2; 0 where it does not emit
+  std::vector<float> areaPdf_;  // by material, 1/m^2; 0 where it does not emit
   CdfRows choice_;
 };
 

@@ -23,7 +23,7 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
     // The point may lie on the surface itself.
     if (!(larger > 0) || !isSeen(y, point.position)) continue;
     out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * larger,
-                   out[i].density / larger};
+                   out[i].pdf / larger};
   }
   out.resize(kept);
 }
@@ -32,10 +32,10 @@ LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
                                                       const vec3& wi) const {
   const Surroundings::Point y = behind(point.position, wi);
   Escaped found = strategy_->escaped(point, glm::normalize(y.position - surroundings_.capture));
-  if (found.density == 0) return found;
+  if (found.pdf == 0) return found;
   const float larger = enlargement(point.position, y);
   const bool isSampled = larger > 0 && isSeen(y, surroundings_.capture);
-  found.density = isSampled ? found.density / larger : 0;
+  found.pdf = isSampled ? found.pdf / larger : 0;
   return found;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 // Share of the plain table's weight below which compensation is not worth having: rounding alone
 // leaves a constant probe 1e-7.
-constexpr double kLeastCompensated = 1e-3;
+constexpr double kMinCompensated = 1e-3;
 
 double meanLuminance(const Probe& probe) {
   double sum = 0, weight = 0;
@@ -36,7 +36,7 @@ Importance::Importance(const Probe& probe, bool compensated)
     const double plain = total_;
     field_ = LuminanceField(probe, float(meanLuminance(probe)));
     total_ = tabulate();
-    if (total_ < kLeastCompensated * plain) {
+    if (total_ < kMinCompensated * plain) {
       field_ = LuminanceField(probe);
       total_ = tabulate();
     }
@@ -61,15 +61,15 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   const int row = rows_.sample(0, v);
   const int column = columns_.sample(row, u);
   const LuminanceField::Point point = field_.sample(column, row, float(u), float(v));
-  const float density = point.weight * scale_;
-  return {point.direction, point.radiance / density, density};
+  const float pdf = point.weight * scale_;
+  return {point.direction, point.radiance / pdf, pdf};
 }
 
 void Importance::sample(const LightPoint&, const PixelSampler& sampler,
                         std::vector<DirectionSample>& out) const {
   const DirectionSample sample = sampleDirection(sampler.bits(dimension::kLight) * 0x1p-32,
                                                  sampler.bits(dimension::kLight + 1) * 0x1p-32);
-  if (sample.density > 0) out.push_back(sample);
+  if (sample.pdf > 0) out.push_back(sample);
 }
 
 LightingStrategy::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
@@ -77,6 +77,6 @@ LightingStrategy::Escaped Importance::escaped(const LightPoint&, const vec3& wi)
   return {seen.radiance, seen.weight * scale_};
 }
 
-float Importance::density(const vec3& wi) const { return escaped({}, wi).density; }
+float Importance::pdf(const vec3& wi) const { return escaped({}, wi).pdf; }
 
 }  // namespace chromeball

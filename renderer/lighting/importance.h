@@ -9,9 +9,9 @@
 
 namespace chromeball {
 
-// The density over the map is the bilinear interpolant of w = luminance x sin(theta) between texel
+// The pdf over the map is the bilinear interpolant of w = luminance x sin(theta) between texel
 // centres, as the radiance itself is; a row of cells is chosen, then a cell, then a point in it.
-// Density over solid angle = w / (total x jacobian x sin(theta)), which follows the radiance even
+// Pdf over solid angle = w / (total x jacobian x sin(theta)), which follows the radiance even
 // inside a texel, and is positive wherever the radiance is.
 //
 // MIS compensation (Karlik et al. 2019): w becomes max(luminance - mean, 0) x sin(theta), leaving
@@ -27,9 +27,9 @@ class Importance : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
-  // The same in terms of two numbers in [0, 1), for tests. Black probes give density 0.
+  // The same in terms of two numbers in [0, 1), for tests. Black probes give pdf 0.
   DirectionSample sampleDirection(double u, double v) const;
-  float density(const vec3& wi) const;
+  float pdf(const vec3& wi) const;
 
  private:
   double tabulate();
@@ -38,7 +38,7 @@ class Importance : public LightingStrategy {
   LuminanceField field_;
   CdfRows rows_, columns_;
   double total_;
-  float scale_;  // density over solid angle for each unit of the field's weight
+  float scale_;  // pdf over solid angle for each unit of the field's weight
 };
 
 }  // namespace chromeball

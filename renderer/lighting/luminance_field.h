@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe's luminance as a density over its map, continuous as the radiance is.
+// The probe's luminance as a pdf over its map, continuous as the radiance is.
 #pragma once
 
 #include <limits>
@@ -10,14 +10,14 @@ namespace chromeball {
 
 // w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, and its bilinear
 // interpolant between them: with offset 0 positive wherever the radiance is. Over solid angle the
-// density that goes with w is w / (integral of w x jacobian x sin(theta)).
+// pdf that goes with w is w / (integral of w x jacobian x sin(theta)).
 class LuminanceField {
  public:
   explicit LuminanceField(const Probe& probe, float offset = 0)
       : probe_(&probe), offset_(offset), rowSine_(probe.height() + 2) {
     for (int row = 1; row <= probe.height(); ++row)
       rowSine_[row] = float(std::sin(kPiD * (row - 0.5) / probe.height()));
-    // The pole itself has no area, but must not have density 0 where it is lit.
+    // The pole itself has no area, but must not have pdf 0 where it is lit.
     rowSine_.front() = rowSine_[1] / 8;
     rowSine_.back() = rowSine_[probe.height()] / 8;
   }
@@ -29,7 +29,7 @@ class LuminanceField {
     return (double(w.w00) + w.w10 + w.w01 + w.w11) * (cap ? 0.125 : 0.25);
   }
 
-  // What is in one direction: density over solid angle = weight / (sum of integrals x jacobian).
+  // What is in one direction: pdf over solid angle = weight / (sum of integrals x jacobian).
   struct Point {
     vec3 direction;
     Rgb radiance;
@@ -70,7 +70,7 @@ class LuminanceField {
             weight(c.c11) * bottom};
   }
 
-  // A number in [0, 1) with density proportional to a (1 - x) + b x. Squares of what is not within
+  // A number in [0, 1) with pdf proportional to a (1 - x) + b x. Squares of what is not within
   // 1e+-19 leave the range of a float, so a and b count as shares of the greater.
   static float sampleLinear(float u, float a, float b) {
     const float greater = std::max(a, b);

@@ -12,7 +12,7 @@ constexpr int kSide = 16;  // bins along the octahedral map
 constexpr int kBins = kSide * kSide;
 // Added to each mean cosine: no light may be out of reach, should a normal see a block that the
 // bin's few directions and normals did not show.
-constexpr double kLeast = 1e-3;
+constexpr double kMin = 1e-3;
 
 // The octahedron |x| + |y| + |z| = 1, its lower half folded outwards, on [-1, 1]^2.
 vec2 toOctahedral(const vec3& n) {
@@ -69,7 +69,7 @@ Product::Product(const Probe& probe)
   tbb::parallel_for(0, kBins, [&](int bin) {
     const std::vector<vec3> normals = normalsOf(bin);
     std::vector<double> cosines;
-    for (const auto& block : directions) cosines.push_back(meanCosine(block, normals) + kLeast);
+    for (const auto& block : directions) cosines.push_back(meanCosine(block, normals) + kMin);
     fillBin(bin, cosines);
   });
 }
@@ -100,15 +100,15 @@ DirectionSample Product::sampleDirection(const LightPoint& point, double u, doub
   const int row = rows_.sample(bin, v);
   const int block = row * field_.columns() + columns_.sample(bin * field_.rows() + row, u);
   const LuminanceField::Point seen = field_.sample(block, u, v);
-  const float density = seen.weight * field_.scale() * lift(point, block);
-  return {seen.direction, seen.radiance / density, density};
+  const float pdf = seen.weight * field_.scale() * lift(point, block);
+  return {seen.direction, seen.radiance / pdf, pdf};
 }
 
 void Product::sample(const LightPoint& point, const PixelSampler& sampler,
                      std::vector<DirectionSample>& out) const {
   const DirectionSample sample = sampleDirection(point, sampler.bits(dimension::kLight) * 0x1p-32,
                                                  sampler.bits(dimension::kLight + 1) * 0x1p-32);
-  if (sample.density > 0) out.push_back(sample);
+  if (sample.pdf > 0) out.push_back(sample);
 }
 
 LightingStrategy::Escaped Product::escaped(const LightPoint& point, const vec3& wi) const {

@@ -12,7 +12,7 @@ namespace chromeball {
 // Normals fall into bins (squares of an octahedral map). For each bin the probe's blocks have a
 // distribution of their own, luminance x the mean cosine between block and bin, with a share
 // wherever the cosine can be positive; inside its block a direction is chosen by luminance alone.
-//   density = (luminance's own density) x lift(bin, block)
+//   pdf = (luminance's own pdf) x lift(bin, block)
 // is known for every direction, so that MIS goes on. Where the surface transmits, half of the
 // samples are for the cosine with the normal's opposite. What a specular lobe reflects is left to
 // the BSDF's samples.
@@ -26,7 +26,7 @@ class Product : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
-  // In terms of two numbers in [0, 1), for tests. Black probes give density 0.
+  // In terms of two numbers in [0, 1), for tests. Black probes give pdf 0.
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
 
  private:

@@ -54,10 +54,10 @@ class PunctualLights {
     float target = step * toUnit(uint32_t(hash(sampler.sampleKey(), kPurpose))), sum = 0;
     for (const PunctualLight& light : lights_) {
       PunctualSample s = shine(light, point.position);
-      const float share = luminance(s.irradiance);
-      sum += share;
-      s.irradiance *= step / share;
-      for (; share > 0 && sum > target; target += step) use(s);
+      const float fraction = luminance(s.irradiance);
+      sum += fraction;
+      s.irradiance *= step / fraction;
+      for (; fraction > 0 && sum > target; target += step) use(s);
     }
   }
 

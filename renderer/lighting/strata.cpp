@@ -63,8 +63,8 @@ float Strata::densityScale(int region, int depth) const {
 DirectionSample Strata::sampleCells(int region, double u, double v, float scale) const {
   const Stratum::Cell cell = strata_[region].choose(u, v);
   const LuminanceField::Point point = field_.sample(cell.column, cell.row, float(u), float(v));
-  const float density = point.weight * scale;
-  return {point.direction, point.radiance / density, density};
+  const float pdf = point.weight * scale;
+  return {point.direction, point.radiance / pdf, pdf};
 }
 
 DirectionSample Strata::sampleRegion(int region, double u, double v) const {
@@ -76,7 +76,7 @@ void Strata::sample(const LightPoint& point, const PixelSampler& sampler,
   if (!(total_ > 0)) return;
   const uint32_t u = sampler.bits(dimension::kLight), v = sampler.bits(dimension::kLight + 1);
   const auto append = [&](const DirectionSample& sample) {
-    if (sample.density > 0) out.push_back(sample);
+    if (sample.pdf > 0) out.push_back(sample);
   };
   if (point.depth > 0) {
     for (int k = 0; k < kLater; ++k) {

@@ -60,7 +60,7 @@ class Strata : public LightingStrategy {
   int regionOf(const Probe::Position& p) const {
     return partition_.label[size_t(std::max(p.row - 1, 0)) * probe_.width() + p.column];
   }
-  // Density over solid angle for each unit of the field's, at the first hit and later.
+  // Pdf over solid angle for each unit of the field's, at the first hit and later.
   float densityScale(int region, int depth) const;
   DirectionSample sampleCells(int region, double u, double v, float scale) const;
 

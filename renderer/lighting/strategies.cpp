@@ -22,8 +22,8 @@ namespace {
 using Strategy = std::unique_ptr<LightingStrategy>;
 
 struct Counts {
-  int least = 0, most = 0;  // both 0: the strategy takes none
-  int usual = 0;            // where the name comes without one
+  int minimum = 0, maximum = 0;  // both 0: the strategy takes none
+  int usual = 0;                 // where the name comes without one
 };
 
 struct Entry {
@@ -74,10 +74,10 @@ const std::vector<Entry>& strategies() {
       constellation("cube-grid", {1, 26, 10}),
       constellation("penrose", {2, 4096, 300}),
       {"irradiance-fit",
-       {1, kMostFittedLights, 16},
+       {1, kMaxFittedLights, 16},
        [](const Probe& probe, Mis, int count) { return fittedLights(probe, count, false); }},
       {"irradiance-fit-ambient",
-       {1, kMostFittedLights, 16},
+       {1, kMaxFittedLights, 16},
        [](const Probe& probe, Mis, int count) { return fittedLights(probe, count, true); }},
   };
   return kStrategies;
@@ -89,16 +89,16 @@ const Entry* findStrategy(std::string_view name) {
   return nullptr;
 }
 
-int parseCount(std::string_view text, const Entry& entry, const std::string& place) {
-  const auto& [least, most, usual] = entry.counts;
-  if (most == 0)
-    throwInput("{}: strategy `{}` takes no count; leave out `:{}`", place, entry.name, text);
+int parseCount(std::string_view text, const Entry& entry, const std::string& location) {
+  const auto& [minimum, maximum, usual] = entry.counts;
+  if (maximum == 0)
+    throwInput("{}: strategy `{}` takes no count; leave out `:{}`", location, entry.name, text);
   int count = 0;
   const char* end = text.data() + text.size();
   const auto [parsed, error] = std::from_chars(text.data(), end, count);
-  if (error != std::errc() || parsed != end || count < least || count > most)
+  if (error != std::errc() || parsed != end || count < minimum || count > maximum)
     throwInput("{}: `{}` is no count for strategy `{}`; give {}:{} to {}:{}, or no count for {}",
-               place, text, entry.name, entry.name, least, entry.name, most, usual);
+               location, text, entry.name, entry.name, minimum, entry.name, maximum, usual);
   return count;
 }
 
@@ -119,20 +119,20 @@ std::vector<std::string_view> strategyNames() {
 std::string resolveStrategy(const std::string& name) {
   if (name == "auto") return "importance";
   const Entry* entry = findStrategy(name);
-  return entry && entry->counts.most ? fmt::format("{}:{}", name, entry->counts.usual) : name;
+  return entry && entry->counts.maximum ? fmt::format("{}:{}", name, entry->counts.usual) : name;
 }
 
 std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
-                                               const std::string& place) {
+                                               const std::string& location) {
   const std::string resolved = resolveStrategy(name);
   const size_t colon = resolved.find(':');
   const Entry* entry = findStrategy(std::string_view(resolved).substr(0, colon));
   if (!entry)
-    throwInput("{}: strategy `{}` is not known; {}", place, name,
+    throwInput("{}: strategy `{}` is not known; {}", location, name,
                didYouMean(resolved.substr(0, colon), namesAndAuto()));
   int count = 0;
   if (colon != std::string::npos)
-    count = parseCount(std::string_view(resolved).substr(colon + 1), *entry, place);
+    count = parseCount(std::string_view(resolved).substr(colon + 1), *entry, location);
   return entry->make(probe, mis, count);
 }
 

@@ -26,15 +26,15 @@ struct LightPoint {
 };
 
 // One direction worth a shadow ray, as a directional light: `irradiance`, on a surface that faces
-// it, is radiance / density. `density` is the effective density over solid angle, the sum over all
+// it, is radiance / pdf. `pdf` is the effective pdf over solid angle, the sum over all
 // samples that were taken together, so that the sum over samples of
 //   f cos * irradiance
-// is the estimate, however many samples a strategy takes. A delta light has infinite density: MIS
+// is the estimate, however many samples a strategy takes. A delta light has infinite pdf: MIS
 // then leaves it whole.
 struct DirectionSample {
   vec3 wi;  // unit, from the point to the light
   Rgb irradiance;
-  float density;
+  float pdf;
 };
 
 class LightingStrategy {
@@ -45,11 +45,11 @@ class LightingStrategy {
   virtual void sample(const LightPoint& point, const PixelSampler& sampler,
                       std::vector<DirectionSample>& out) const = 0;
 
-  // What a ray that left `point` by the BSDF's choice and met nothing adds, and the density with
+  // What a ray that left `point` by the BSDF's choice and met nothing adds, and the pdf with
   // which sample() would have found that direction; 0 where it never does.
   struct Escaped {
     Rgb radiance;
-    float density;
+    float pdf;
   };
   virtual Escaped escaped(const LightPoint& point, const vec3& wi) const = 0;
 
@@ -68,10 +68,10 @@ class LightingStrategy {
 enum class Mis { Off, Balance, Power };
 
 // Builds a strategy from its name on the command line, "NAME" or "NAME:COUNT"; "auto" is the
-// unbiased strategy best for the probe. `place` (an option, or FILE:LINE) begins the InputError
+// unbiased strategy best for the probe. `location` (an option, or FILE:LINE) begins the InputError
 // thrown for an unknown name. The probe must outlive the strategy.
 std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
-                                               const std::string& place);
+                                               const std::string& location);
 
 // The name in full: what "auto" stands for, and the count where one was left out.
 std::string resolveStrategy(const std::string& name);

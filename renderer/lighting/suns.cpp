@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-constexpr size_t kMostSampledEach = 2;
+constexpr size_t kMaxSampledEach = 2;
 
 // About +Y, as Probe does.
 vec3 rotated(const dvec3& d, double degrees) {
@@ -28,7 +28,7 @@ Suns::Suns(const SunExtraction& extraction, float rotationDegrees, bool compensa
     powers.push_back(luminance(Rgb(sun.irradiance)));
     power += powers.back();
   }
-  const bool chooses = powers.size() > kMostSampledEach;
+  const bool chooses = powers.size() > kMaxSampledEach;
   if (chooses) choice_.emplace(1, int(powers.size())).setRow(0, powers);
   for (size_t i = 0; i < powers.size(); ++i) {
     Sun sun = extraction.suns[i];
@@ -53,10 +53,10 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
   const uint32_t u = sampler.bits(dimension::kLight), v = sampler.bits(dimension::kLight + 1);
   const auto add = [&](const vec3& wi) {
     const Escaped light = escaped(point, wi);
-    if (light.density > 0) out.push_back({wi, light.radiance / light.density, light.density});
+    if (light.pdf > 0) out.push_back({wi, light.radiance / light.pdf, light.pdf});
   };
   const DirectionSample rest = importance_.sampleDirection(u * 0x1p-32, v * 0x1p-32);
-  if (rest.density > 0) add(rest.wi);
+  if (rest.pdf > 0) add(rest.wi);
 
   // The same point for each disc, moved by a digital shift of its own, which keeps its strata.
   if (choice_) {
@@ -76,7 +76,7 @@ LightingStrategy::Escaped Suns::escaped(const LightPoint& point, const vec3& wi)
   for (const Disc& disc : discs_)
     if (disc.contains(wi)) {
       light.radiance += disc.radiance;
-      light.density += disc.density;
+      light.pdf += disc.pdf;
     }
   return light;
 }

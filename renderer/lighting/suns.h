@@ -20,7 +20,7 @@ namespace chromeball {
 // at a pole, where interpolation between texels adds light, discs have up to 8% less.)
 //
 // All samples are weighted together by the balance heuristic: in a direction that several of the
-// techniques can find, density is the sum of theirs, and radiance that of remainder and discs.
+// techniques can find, pdf is the sum of theirs, and radiance that of remainder and discs.
 class Suns : public LightingStrategy {
  public:
   // `compensated`: of the remainder's table (Importance). `angle`: diameter of all suns in degrees,
@@ -43,7 +43,7 @@ class Suns : public LightingStrategy {
     Frame frame;  // z: towards the centre
     float squaredChord;
     Rgb radiance;
-    float density;  // of all samples of discs that are taken together, inside this one
+    float pdf;  // of all samples of discs that are taken together, inside this one
 
     bool contains(const vec3& wi) const {
       const vec3 to = wi - frame.z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `uniform`: directions uniform over the hemisphere of the normal, density 1 / 2 pi.
+// `uniform`: directions uniform over the hemisphere of the normal, pdf 1 / 2 pi.
 #pragma once
 
 #include "lighting/strategy.h"

@@ -30,7 +30,7 @@ inline vec3 squareToUniformHemisphere(vec2 u) { return unitVector(1 - u.y, u.x);
 inline float squareToUniformHemispherePdf(const vec3& v) { return v.z >= 0 ? 0.5f * kInvPi : 0; }
 inline vec2 uniformHemisphereToSquare(const vec3& v) { return {azimuthTurns(v), 1 - v.z}; }
 
-// Density cos(theta)/pi: the height over the disc of radius sqrt(u.y) (Malley's method).
+// Pdf cos(theta)/pi: the height over the disc of radius sqrt(u.y) (Malley's method).
 inline vec3 squareToCosineHemisphere(vec2 u) {
   float sine, cosine;
   sinCosTurns(u.x, sine, cosine);
@@ -43,7 +43,7 @@ inline vec2 cosineHemisphereToSquare(const vec3& v) {
 }
 
 // Barycentric coordinates (of the second and third vertex), uniform over the triangle's area
-// (density 1/area). Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+// (pdf 1/area). Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
 inline vec2 squareToTriangle(vec2 u) {
   if (u.y > u.x) return {u.x / 2, u.y - u.x / 2};
   return {u.x - u.y / 2, u.y / 2};

@@ -35,8 +35,8 @@ double pValueOf(const Moments& a, const Moments& b) {
 
 // The two-sided normal deviate of chance `p`, of the sign of `difference`.
 double deviate(double p, double difference) {
-  constexpr double kLeast = 1e-300;  // a chance of 0 would be infinitely far
-  const double z = quantile(complement(boost::math::normal(), std::max(p, kLeast) / 2));
+  constexpr double kMin = 1e-300;  // a chance of 0 would be infinitely far
+  const double z = quantile(complement(boost::math::normal(), std::max(p, kMin) / 2));
   return std::copysign(z, difference);
 }
 
@@ -48,18 +48,18 @@ Agreement agreement(std::span<const Image> a, std::span<const Image> b) {
   result.z = Image(columns, rows, 1);
   result.tiles = result.z.texels.size();
   const double significance = sidak(0.05, int(result.tiles));
-  double least = 1;
+  double minimum = 1;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x) {
       const Moments ma = tileMoments(a, x * kTile, y * kTile);
       const Moments mb = tileMoments(b, x * kTile, y * kTile);
       const double p = pValueOf(ma, mb);
       *result.z.at(x, y) = float(deviate(p, ma.mean - mb.mean));
-      result.share += (p < significance) / double(result.tiles);
-      least = std::min(least, p);
+      result.fraction += (p < significance) / double(result.tiles);
+      minimum = std::min(minimum, p);
     }
   // The chance that the least of so many p-values is this small.
-  result.pValue = -std::expm1(double(result.tiles) * std::log1p(-least));
+  result.pValue = -std::expm1(double(result.tiles) * std::log1p(-minimum));
   return result;
 }
 

@@ -9,14 +9,14 @@
 namespace chromeball {
 
 // Of Welch's t-tests on the mean luminance of every tile. Where both pictures are the same but for
-// noise, `share` is 0 in 19 of 20 comparisons, and pValue is uniform in [0, 1].
+// noise, `fraction` is 0 in 19 of 20 comparisons, and pValue is uniform in [0, 1].
 struct Agreement {
   static constexpr int kTile = 8;  // pixels a side; over a tile, errors are nearly normal
 
   Image z;  // one channel, one texel a tile: the normal deviate as improbable as the test
   size_t tiles = 0;
-  double share = 0;   // of tiles that differ at 5% for all tests together (Sidak)
-  double pValue = 1;  // of the tile that differs most, for as many tests (Sidak)
+  double fraction = 0;  // of tiles that differ at 5% for all tests together (Sidak)
+  double pValue = 1;    // of the tile that differs most, for as many tests (Sidak)
 };
 
 // Both: two or more independent RGB images of one size, and independent of the others.

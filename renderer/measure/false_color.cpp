@@ -11,11 +11,11 @@ template <size_t N>
 Color8 interpolate(const std::array<Color8, N>& anchors, double t) {
   const double position = std::clamp(std::isnan(t) ? 0 : t, 0.0, 1.0) * double(N - 1);
   const size_t below = std::min(size_t(position), N - 2);
-  const double share = position - double(below);
+  const double fraction = position - double(below);
   Color8 color;
   for (size_t c = 0; c < 3; ++c)
     color[c] =
-        uint8_t(std::lround((1 - share) * anchors[below][c] + share * anchors[below + 1][c]));
+        uint8_t(std::lround((1 - fraction) * anchors[below][c] + fraction * anchors[below + 1][c]));
   return color;
 }
 
@@ -39,9 +39,9 @@ Color8 signedColor(double t) {
   return interpolate(kAnchors, (t + 1) / 2);
 }
 
-double logLevel(double number, double most, double decades) {
+double logLevel(double number, double maximum, double decades) {
   if (!(number > 0)) return 0;
-  return std::clamp(1 + std::log10(number / most) / decades, 0.0, 1.0);
+  return std::clamp(1 + std::log10(number / maximum) / decades, 0.0, 1.0);
 }
 
 double roundUp(double number) {
@@ -52,10 +52,10 @@ double roundUp(double number) {
   return 10 * decade;
 }
 
-double percentile(std::vector<float> numbers, double share) {
+double percentile(std::vector<float> numbers, double fraction) {
   std::erase_if(numbers, [](float x) { return std::isnan(x); });
   if (numbers.empty()) return 0;
-  const auto nth = numbers.begin() + std::ptrdiff_t(share * double(numbers.size() - 1));
+  const auto nth = numbers.begin() + std::ptrdiff_t(fraction * double(numbers.size() - 1));
   std::nth_element(numbers.begin(), nth, numbers.end());
   return *nth;
 }

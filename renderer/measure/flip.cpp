@@ -163,10 +163,10 @@ Percept perceive(const Image& image, double pixelsPerDegree) {
 // Compresses differences of colour to [0, 1]: what lies below 0.4 of the largest one takes 0.95.
 double colorError(const dvec3& a, const dvec3& b) {
   constexpr double kPower = 0.7, kKnee = 0.4, kAtKnee = 0.95;
-  static const double kMost = std::pow(hyab(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})), kPower);
-  const double difference = std::pow(hyab(a, b), kPower), knee = kKnee * kMost;
+  static const double kMax = std::pow(hyab(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})), kPower);
+  const double difference = std::pow(hyab(a, b), kPower), knee = kKnee * kMax;
   if (difference < knee) return kAtKnee / knee * difference;
-  return kAtKnee + (difference - knee) / (kMost - knee) * (1 - kAtKnee);
+  return kAtKnee + (difference - knee) / (kMax - knee) * (1 - kAtKnee);
 }
 
 // Luminance L in a picture through the curve (a L^2 + b L) / (c L^2 + d L + e) of a tone mapper.
@@ -219,14 +219,14 @@ Image hdrFlip(const Image& reference, const Image& test, double pixelsPerDegree)
   const double stop = std::log2(bright / luminances[(luminances.size() - 1) / 2]);
   const int exposures = std::max(2, int(std::ceil(stop - start)));
 
-  Image most(reference.width, reference.height, 1);
+  Image maximum(reference.width, reference.height, 1);
   for (int i = 0; i < exposures; ++i) {
     const double stops = start + (stop - start) * i / (exposures - 1);
     const Image error = flip(exposed(reference, stops), exposed(test, stops), pixelsPerDegree);
-    for (size_t p = 0; p < most.texels.size(); ++p)
-      most.texels[p] = std::max(most.texels[p], error.texels[p]);
+    for (size_t p = 0; p < maximum.texels.size(); ++p)
+      maximum.texels[p] = std::max(maximum.texels[p], error.texels[p]);
   }
-  return most;
+  return maximum;
 }
 
 }  // namespace chromeball

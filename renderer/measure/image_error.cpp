@@ -43,9 +43,9 @@ ZScores zScores(const Image& a, const Image& b, const Image* varianceA, const Im
   const double n = double(scores.count);
   scores.mean = sum / n;
   scores.standardDeviation = std::sqrt(std::max(0.0, sumOfSquares / n - scores.mean * scores.mean));
-  scores.shareBeyond3 = double(beyond) / n;
-  const double least = 2 * cdf(complement(boost::math::normal(), scores.largest));
-  scores.pValue = -std::expm1(n * std::log1p(-least));
+  scores.fractionBeyond3 = double(beyond) / n;
+  const double minimum = 2 * cdf(complement(boost::math::normal(), scores.largest));
+  scores.pValue = -std::expm1(n * std::log1p(-minimum));
   return scores;
 }
 

@@ -13,7 +13,7 @@ namespace chromeball {
 // so that a few pixels lie farther out than normal deviates would.
 struct ZScores {
   size_t count = 0;
-  double mean = 0, standardDeviation = 0, shareBeyond3 = 0;
+  double mean = 0, standardDeviation = 0, fractionBeyond3 = 0;
   double largest = 0;  // |z|
   double pValue = 1;   // chance of one as large among so many (Sidak), were they normal
 };

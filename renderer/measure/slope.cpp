@@ -8,7 +8,7 @@ namespace chromeball {
 namespace {
 
 // No error is known better than this, relatively: keeps one lucky point from deciding alone.
-constexpr double kLeastRelativeError = 1e-3;
+constexpr double kMinRelativeError = 1e-3;
 
 struct LogPoint {
   double x, y, weight;
@@ -19,7 +19,7 @@ std::vector<LogPoint> logarithms(std::span<const ConvergencePoint> points) {
   for (const ConvergencePoint& point : points) {
     if (!(point.error.mean > 0) || !(point.samples > 0)) continue;
     const double relative =
-        std::max(point.error.standardError / point.error.mean, kLeastRelativeError);
+        std::max(point.error.standardError / point.error.mean, kMinRelativeError);
     logs.push_back(
         {std::log(point.samples), std::log(point.error.mean), 1 / (relative * relative)});
   }

@@ -20,7 +20,7 @@ double twoSided(double t, double degreesOfFreedom) {
 }  // namespace
 
 ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
-                        double least) {
+                        double minimum) {
   assert(observed.size() == expected.size());
   ChiSquare result;
   int cells = 0;
@@ -30,16 +30,16 @@ ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double
     ++cells;
   };
   for (size_t i = 0; i < observed.size(); ++i) {
-    if (expected[i] >= least) {
+    if (expected[i] >= minimum) {
       add(observed[i], expected[i]);
     } else {
       pooledObserved += observed[i];
       pooledExpected += expected[i];
     }
   }
-  if (pooledExpected >= least) {
+  if (pooledExpected >= minimum) {
     add(pooledObserved, pooledExpected);
-  } else if (pooledObserved > pooledExpected + 8 * std::sqrt(least)) {
+  } else if (pooledObserved > pooledExpected + 8 * std::sqrt(minimum)) {
     result.statistic = std::numeric_limits<double>::infinity();  // samples where none can be
   }
   result.degreesOfFreedom = std::max(cells - 1, 0);

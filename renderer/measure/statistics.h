@@ -6,14 +6,15 @@
 
 namespace chromeball {
 
-// Pearson's test of counts against expected ones. Cells that expect fewer than `least` are pooled.
+// Pearson's test of counts against expected ones. Cells that expect fewer than `minimum` are
+// pooled.
 struct ChiSquare {
   double statistic = 0;
   int degreesOfFreedom = 0;
   double pValue = 1;  // chance of a statistic as large where the distribution is right
 };
 ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
-                        double least = 5);
+                        double minimum = 5);
 
 // Mean and variance of independent repeats.
 struct Moments {

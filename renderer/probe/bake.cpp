@@ -67,7 +67,7 @@ Image bake(Mapping mapping, const ImageSize& size, int samplesPerSide,
         const dvec2 uv((x + (i + 0.5) / samplesPerSide) / size.width,
                        (y + (j + 0.5) / samplesPerSide) / size.height);
         if (const std::optional<dvec3> direction = uvToDirection(mapping, uv))
-          mean.add(solidAngleDensity(mapping, uv), radiance(*direction));
+          mean.add(solidAnglePdf(mapping, uv), radiance(*direction));
       }
     return mean;
   };

@@ -27,8 +27,8 @@ class PatchSource {
     if (isDisc()) {
       // Half a texel inside the rim, where one of the four texels around is sure to be inside.
       const dvec2 fromCentre = uv - 0.5;
-      const double radius = glm::length(fromCentre), most = 0.5 - 0.5 / image_.width;
-      if (radius > most) uv = 0.5 + fromCentre * (most / radius);
+      const double radius = glm::length(fromCentre), maximum = 0.5 - 0.5 / image_.width;
+      if (radius > maximum) uv = 0.5 + fromCentre * (maximum / radius);
     }
     const double x = uv.x * image_.width, y = uv.y * image_.height;
     const int left = std::min(int(x) / faceWidth_ * faceWidth_, image_.width - faceWidth_);

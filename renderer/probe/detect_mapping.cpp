@@ -38,16 +38,16 @@ MappingGuess guessMapping(const Image& image) {
   if (w == 6 * h) return {Mapping::HorizontalStrip, "its shape is 6:1", true};
   if (h == 6 * w) return {Mapping::VerticalStrip, "its shape is 1:6", true};
   // Too small for a disc or a cross to show.
-  constexpr int kLeast = 12;
-  if (h >= kLeast && w == h)
+  constexpr int kMin = 12;
+  if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)
                ? MappingGuess{Mapping::AngularMap, "it is square, and black outside the disc", true}
                : MappingGuess{Mapping::MirrorBall, "it is square, and not black outside the disc",
                               false};
-  if (h >= kLeast && h % 4 == 0 && 3 * h == 4 * w)
+  if (h >= kMin && h % 4 == 0 && 3 * h == 4 * w)
     return {Mapping::VerticalCross, "its shape is 3:4",
             isBlackOutside(image, Mapping::VerticalCross)};
-  if (h >= kLeast && h % 3 == 0 && 4 * h == 3 * w)
+  if (h >= kMin && h % 3 == 0 && 4 * h == 3 * w)
     return {Mapping::HorizontalCross, "its shape is 4:3",
             isBlackOutside(image, Mapping::HorizontalCross)};
   return {Mapping::LatLong, "no other mapping has its shape", false};

@@ -12,7 +12,7 @@ namespace chromeball {
 
 struct BrightestShare {
   size_t texels;
-  double share;  // of the integral of luminance over the sphere; 0 for a black probe
+  double fraction;  // of the integral of luminance over the sphere; 0 for a black probe
 };
 
 struct ProbeInfo {

@@ -48,13 +48,13 @@ void measureMaximum(const Image& image, LoadedProbe& probe) {
       alike += texel == first;
     }
   const size_t all = size_t(image.width) * image.height;
-  if (alike < all) probe.shareAtMaximum = double(count) / double(all);
+  if (alike < all) probe.fractionAtMaximum = double(count) / double(all);
 }
 
 }  // namespace
 
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
-                      std::string_view mappingPlace) {
+                      std::string_view mappingLocation) {
   ImageFile file = readImageFile(path);
   const std::optional<Mapping> stated = statedMapping(file);
   LoadedProbe probe;
@@ -62,7 +62,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   Image image = colorOf(std::move(file), path);
   probe.fileWidth = image.width;
   probe.fileHeight = image.height;
-  if (const auto given = parseMapping(mapping, image.width, image.height, mappingPlace)) {
+  if (const auto given = parseMapping(mapping, image.width, image.height, mappingLocation)) {
     probe.mapping = *given;
   } else if (stated) {
     probe.mapping = *stated;
@@ -117,7 +117,7 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
 std::vector<std::string> lightWarnings(const LoadedProbe& probe,
                                        const std::filesystem::path& path) {
   // Shares of the texels. An even map, but for a few texels, is not a picture that was cut off.
-  constexpr double kLeastPlateau = 1e-3, kMostPlateau = 0.9;
+  constexpr double kMinPlateau = 1e-3, kMaxPlateau = 0.9;
   constexpr float kGreatestHalf = 65504;
   if (probe.maximum == 0) return {fmt::format("{}: is black: it lights nothing", path.string())};
   if (probe.isScreenImage)
@@ -126,11 +126,11 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
                     "an .exr or .hdr keeps it",
                     path.string())};
   const bool atLimit = probe.maximum == 1 || probe.maximum == kGreatestHalf;
-  if (atLimit && probe.shareAtMaximum >= kLeastPlateau && probe.shareAtMaximum <= kMostPlateau)
+  if (atLimit && probe.fractionAtMaximum >= kMinPlateau && probe.fractionAtMaximum <= kMaxPlateau)
     return {
         fmt::format("{}: {:.2g}% of its texels have the greatest value, {}: what was brighter "
                     "was cut off",
-                    path.string(), 100 * probe.shareAtMaximum, probe.maximum)};
+                    path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
 }
 

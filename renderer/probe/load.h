@@ -21,9 +21,9 @@ struct LoadedProbe {
   std::string reason;                    // of the guess: "its shape is 2:1"
   bool turned = false;  // the file said that its centre looks along +Z (OpenEXR's lat-long maps)
   RepairReport repair;
-  bool isScreenImage = false;  // texels of 8 or 16 bits
-  float maximum = 0;           // the greatest channel of a texel
-  double shareAtMaximum = 0;   // of the texels; 0 where all are alike
+  bool isScreenImage = false;    // texels of 8 or 16 bits
+  float maximum = 0;             // the greatest channel of a texel
+  double fractionAtMaximum = 0;  // of the texels; 0 where all are alike
 };
 
 // `mapping` is a name as on the command line; "auto" guesses, unless the file is an EXR whose
@@ -33,7 +33,7 @@ struct LoadedProbe {
 // its texels; others are converted at latLongSize (convert.h). Throws InputError, begun by
 // `mappingPlace` where the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
-                      std::string_view mappingPlace = "--probe-mapping");
+                      std::string_view mappingLocation = "--probe-mapping");
 
 // What is worth telling the user on standard error, "FILE: ..." each; often nothing.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);

@@ -183,7 +183,7 @@ std::string_view mappingName(Mapping mapping) {
 }
 
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
-                                    std::string_view place) {
+                                    std::string_view location) {
   struct Named {
     std::string_view name, shape;
     std::vector<Mapping> candidates;
@@ -205,10 +205,10 @@ std::optional<Mapping> parseMapping(std::string_view name, int width, int height
     if (named.name != name) continue;
     for (const Mapping mapping : named.candidates)
       if (fits(mapping, width, height)) return mapping;
-    throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", place, width, height,
+    throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", location, width, height,
                name, named.shape);
   }
-  throwInput("{}: unknown mapping `{}`; {}", place, name, didYouMean(name, known));
+  throwInput("{}: unknown mapping `{}`; {}", location, name, didYouMean(name, known));
 }
 
 }  // namespace chromeball

@@ -50,8 +50,8 @@ std::string_view mappingName(Mapping mapping);
 
 // The mapping that lat-long, angular, mirror-ball, cube-cross or cube-strip means for an image of
 // this size (the shape decides which cross or strip), nullopt for auto. Throws InputError where the
-// name is unknown or cannot fit the size; `place` begins the message.
+// name is unknown or cannot fit the size; `location` begins the message.
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
-                                    std::string_view place);
+                                    std::string_view location);
 
 }  // namespace chromeball

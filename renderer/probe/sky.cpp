@@ -117,14 +117,14 @@ void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
   // The share of each texel that the disc covers, as far as the samples see it.
   struct Covered {
     int x, y;
-    double share;
+    double fraction;
   };
   std::vector<Covered> covered;
   double facing = 0;  // sum of share x solid angle x cosine
-  const auto add = [&](int x, int y, double share) {
+  const auto add = [&](int x, int y, double fraction) {
     const dvec3 centre = *uvToDirection(Mapping::LatLong, {(x + 0.5) / w, (y + 0.5) / h});
-    covered.push_back({x, y, share});
-    facing += share * texelSolidAngle(y, w, h) * std::max(glm::dot(centre, direction), 1e-3);
+    covered.push_back({x, y, fraction});
+    facing += fraction * texelSolidAngle(y, w, h) * std::max(glm::dot(centre, direction), 1e-3);
   };
   const double centreU = directionToUv(Mapping::LatLong, direction).x;
   for (int y = top; y <= bottom; ++y) {
@@ -148,8 +148,9 @@ void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
     add(std::clamp(int(centreU * w), 0, w - 1), std::clamp(int(theta / kPiD * h), 0, h - 1), 1);
 
   for (const Covered& texel : covered)
-    latLong.setRgb(texel.x, texel.y,
-                   Rgb(dvec3(latLong.rgb(texel.x, texel.y)) + irradiance * (texel.share / facing)));
+    latLong.setRgb(
+        texel.x, texel.y,
+        Rgb(dvec3(latLong.rgb(texel.x, texel.y)) + irradiance * (texel.fraction / facing)));
 }
 
 Image clearSkyProbe(const ImageSize& size, const ClearSky& sky, bool withSun) {

@@ -11,7 +11,7 @@ double texelSolidAngle(int row, int width, int height) {
   return 2 * kPiD / width * 2 * std::sin(middle) * std::sin(half);
 }
 
-double solidAngleDensity(Mapping mapping, const dvec2& uv) {
+double solidAnglePdf(Mapping mapping, const dvec2& uv) {
   if (mapping == Mapping::LatLong) return 2 * kPiD * kPiD * std::sin(kPiD * uv.y);
   if (mapping == Mapping::MirrorBall) return 16;  // an equal-area mapping: 4 pi over a disc of pi/4
   if (mapping == Mapping::AngularMap) {

@@ -12,7 +12,7 @@ namespace chromeball {
 double texelSolidAngle(int row, int width, int height);
 
 // d(solid angle) / d(u v) at a valid point of a mapping.
-double solidAngleDensity(Mapping mapping, const dvec2& uv);
+double solidAnglePdf(Mapping mapping, const dvec2& uv);
 
 // Mean over the sphere of a lat-long map whose texels are constant: sum of radiance times solid
 // angle, over 4 pi.

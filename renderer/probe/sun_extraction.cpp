@@ -10,8 +10,8 @@
 namespace chromeball {
 namespace {
 
-constexpr double kContrast = 2000, kLeastContrast = 10;  // times the mean luminance
-constexpr double kLeastShare = 0.01;                     // of the flux
+constexpr double kContrast = 2000, kMinContrast = 10;  // times the mean luminance
+constexpr double kMinShare = 0.01;                     // of the flux
 constexpr double kGlowContrast = 20;
 constexpr double kDegree = kPiD / 180;
 constexpr double kWidestCore = 3 * kDegree, kWidestGlow = 6 * kDegree;  // radii
@@ -224,7 +224,7 @@ SunExtraction extractSuns(const Image& latLong) {
   const double mean = luminance(Rgb(meanRadiance(latLong)));
   const double sunRadius = 0.5 * kSunDiameter * kDegree;
   const double diluted = kPiD * sunRadius * sunRadius / (2 * kPiD / w * kPiD / h);
-  const double threshold = mean * std::clamp(kContrast * diluted, kLeastContrast, kContrast);
+  const double threshold = mean * std::clamp(kContrast * diluted, kMinContrast, kContrast);
   for (const Core& core : findCores(remainder, threshold)) {
     // A part of a sun that was removed with another part of it is dark by now.
     if (luminance(remainder.rgb(core.brightest.x, core.brightest.y)) <= threshold) continue;
@@ -232,7 +232,7 @@ SunExtraction extractSuns(const Image& latLong) {
     double flux = 0;
     for (const Removed& r : removed)
       flux += luminance(Rgb(r.radiance)) * texelSolidAngle(r.texel.y, w, h);
-    if (flux < kLeastShare * 4 * kPiD * mean) continue;
+    if (flux < kMinShare * 4 * kPiD * mean) continue;
     result.suns.push_back(discOf(removed, w, h));
     for (const Removed& r : removed) remainder.setRgb(r.texel.x, r.texel.y, r.kept);
   }

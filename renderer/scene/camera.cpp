@@ -35,8 +35,8 @@ Beam beamOf(const Camera& camera, int height, double samples) {
   const double side = 2 * halfHeight / height;
   // Of overlaps of 1, 2, 4 and 8, this one makes the least error of 16 samples of a checkerboard.
   constexpr double kOverlap = 4;
-  const float share = float(side * side * std::min(kOverlap / samples, 1.0));
-  return camera.orthographic ? Beam{share, 0} : Beam{0, share};
+  const float fraction = float(side * side * std::min(kOverlap / samples, 1.0));
+  return camera.orthographic ? Beam{fraction, 0} : Beam{0, fraction};
 }
 
 Camera Camera::lookAt(vec3 position, vec3 target, vec3 up, float fovRadians) {

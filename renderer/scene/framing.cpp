@@ -47,9 +47,9 @@ bool isFlat(const Bounds& box) {
 
 bool reachesBeyond(const Bounds& box, const Bounds& others) {
   const vec3 size = others.max - others.min;
-  const float most = std::max(size.x, size.z);
-  return box.min.x < others.min.x - most || box.max.x > others.max.x + most ||
-         box.min.z < others.min.z - most || box.max.z > others.max.z + most;
+  const float maximum = std::max(size.x, size.z);
+  return box.min.x < others.min.x - maximum || box.max.x > others.max.x + maximum ||
+         box.min.z < others.min.z - maximum || box.max.z > others.max.z + maximum;
 }
 
 // The instances to be framed: all but grounds.

@@ -91,14 +91,14 @@ class TwoSides {
 };
 
 bool showsItsBack(const Scene& scene, const std::vector<int>& instances, const Box& box) {
-  constexpr double kShare = 0.6;
+  constexpr double kFraction = 0.6;
   std::array<TwoSides, 3> axes{TwoSides(box, 0), TwoSides(box, 1), TwoSides(box, 2)};
   forEachTriangle(scene, instances, [&](const Corners& c) {
     for (TwoSides& sides : axes) sides.add(c);
   });
   double behind = 0, all = 0;
   for (const TwoSides& sides : axes) sides.count(behind, all);
-  return behind > kShare * all;
+  return behind > kFraction * all;
 }
 
 // A horizontal section: where something is in the way of a view at this height, and which way its
@@ -189,17 +189,17 @@ using Panorama = std::array<double, kDirections>;
 // A person's room with furniture: what a cup is not, whose walls also surround the place within.
 bool isFurnishedRoom(const Box& box, const std::vector<int>& instances) {
   constexpr double kLowest = 2, kHighest = 10, kShortest = 2.5;  // metres
-  constexpr size_t kFewest = 5;
+  constexpr size_t kMin = 5;
   const dvec3 size = box.size();
   return size.y >= kLowest && size.y <= kHighest && std::min(size.x, size.z) >= kShortest &&
-         instances.size() >= kFewest;
+         instances.size() >= kMin;
 }
 
 // Walls all around, but for a window or a door: of a box without a front, the opening takes at
 // least 53 degrees.
 bool isEnclosed(const Panorama& seen) {
-  constexpr int kMostOpen = 3;  // of 32 directions: 34 degrees
-  return std::count_if(seen.begin(), seen.end(), [](double s) { return s < 0; }) <= kMostOpen;
+  constexpr int kMaxOpen = 3;  // of 32 directions: 34 degrees
+  return std::count_if(seen.begin(), seen.end(), [](double s) { return s < 0; }) <= kMaxOpen;
 }
 
 }  // namespace

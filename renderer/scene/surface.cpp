@@ -26,8 +26,8 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Mesh& mesh, const
 // The beam around a ray meets the surface in an ellipse; textures are filtered by a circle as
 // large, so that the beams of a pixel cover as much of it at any slant.
 float footprintOf(float crossSection, float cosine, float doubleArea) {
-  constexpr float kLeastCosine = 1e-3f;
-  const float area = crossSection / std::max(std::fabs(cosine), kLeastCosine);
+  constexpr float kMinCosine = 1e-3f;
+  const float area = crossSection / std::max(std::fabs(cosine), kMinCosine);
   return doubleArea > 0 ? area / doubleArea : 0;
 }
 

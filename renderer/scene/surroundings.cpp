@@ -32,10 +32,10 @@ void Surroundings::move(const vec3& by) {
   for (vec3* point : {&min, &max, &center, &capture}) *point += by;
 }
 
-void Surroundings::grow(float share) {
-  const vec3 margin = share * (max - min);
+void Surroundings::grow(float fraction) {
+  const vec3 margin = fraction * (max - min);
   min -= margin, max += margin;
-  radius += share * radius;
+  radius += fraction * radius;
 }
 
 bool Surroundings::contains(const vec3& p) const {

@@ -29,7 +29,7 @@ struct Surroundings {
 
   bool contains(const vec3& point) const;
   void move(const vec3& by);
-  void grow(float share);  // of its size, to all sides
+  void grow(float fraction);  // of its size, to all sides
 };
 
 // Surroundings of any shape (trace/room.h).

@@ -19,8 +19,8 @@ float node(int d, int i) { return float(i) / float(kNodes[size_t(d)] - 1); }
 }  // namespace
 
 vec2 anisotropicAlpha(float roughness, float strength) {
-  constexpr float kLeast = 1e-3f;  // a groove narrower than this is as good as a scratch's line
-  const float alpha = std::max(roughness * roughness, kLeast);
+  constexpr float kMin = 1e-3f;  // a groove narrower than this is as good as a scratch's line
+  const float alpha = std::max(roughness * roughness, kMin);
   return {glm::mix(alpha, 1.0f, strength * strength), alpha};
 }
 

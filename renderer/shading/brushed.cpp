@@ -28,7 +28,7 @@ Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
   diffuse_ = diffuse * (1 - surfaceAlbedo_);
   const float specular = luminance((f0_ * once.a + f90_ * once.b) * gain_);
   albedo_ = specular + luminance(diffuse_);
-  specularShare_ = albedo_ > 0 ? specular / albedo_ : 1;
+  specularFraction_ = albedo_ > 0 ? specular / albedo_ : 1;
 }
 
 Rgb Brushed::fresnel(float cosine) const {
@@ -41,18 +41,18 @@ Bsdf::Value Brushed::evaluate(const vec3& wi, Lobes lobes) const {
   if (local.z <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
   Bsdf::Value v{Rgb(0), 0};
   if (lobes == Lobes::Broad)
-    v = {diffuse_ * (local.z * kInvPi), (1 - specularShare_) * local.z * kInvPi};
+    v = {diffuse_ * (local.z * kInvPi), (1 - specularFraction_) * local.z * kInvPi};
   if (narrow_ != (lobes == Lobes::Narrow)) return v;
   const vec3 h = glm::normalize(wo_ + local);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   v.fCos += fresnel(glm::dot(wo_, h)) * (d / (1 + lambdaO_ + ggx::lambda(local, alpha_)));
-  v.pdf += specularShare_ * d / (1 + lambdaO_);
+  v.pdf += specularFraction_ * d / (1 + lambdaO_);
   return v;
 }
 
 bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
   out.lobes = Lobes::Broad;
-  if (lobe < specularShare_) {
+  if (lobe < specularFraction_) {
     if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;

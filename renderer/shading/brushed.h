@@ -20,7 +20,7 @@ class Brushed {
   Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
   bool has(Lobes lobes) const {
-    return lobes == Lobes::Narrow ? narrow_ : !narrow_ || specularShare_ < 1;
+    return lobes == Lobes::Narrow ? narrow_ : !narrow_ || specularFraction_ < 1;
   }
   const vec3& normal() const { return frame_.z; }
   float albedo() const { return albedo_; }
@@ -38,7 +38,7 @@ class Brushed {
   Rgb f0_, f90_;
   Rgb gain_;     // on the specular lobe, for what it scatters again
   Rgb diffuse_;  // times what passes the surface
-  float specularShare_, albedo_, surfaceAlbedo_;
+  float specularFraction_, albedo_, surfaceAlbedo_;
 };
 
 }  // namespace chromeball

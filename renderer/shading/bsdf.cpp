@@ -73,8 +73,8 @@ void Bsdf::initSpecular(const MaterialPoint& m, const Rgb& metalF0, const vec3& 
   const float specular = luminance(f0_ * toViewer.a + f90_ * toViewer.b);
   const float rest = luminance(diffuseAlbedo + againAlbedo);
   albedo_ = specular + rest;
-  specularShare_ = albedo_ > 0 ? specular / albedo_ : 1;
-  hasBroad_ = !narrow_ || specularShare_ < 1;
+  specularFraction_ = albedo_ > 0 ? specular / albedo_ : 1;
+  hasBroad_ = !narrow_ || specularFraction_ < 1;
   hasNarrow_ = narrow_ && !smooth_;
 }
 
@@ -100,7 +100,7 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi, Lobes lobes) const {
     const SpecularAlbedo toLight = energy_.at(cosine);
     v.fCos = (diffuse_ * (1 - coating_.albedo(toLight)) + again_ * (1 - toLight.a - toLight.b)) *
              (cosine * kInvPi);
-    v.pdf = (1 - specularShare_) * cosine * kInvPi;
+    v.pdf = (1 - specularFraction_) * cosine * kInvPi;
   }
   if (smooth_ || narrow_ != (lobes == Lobes::Narrow)) return v;
 
@@ -109,7 +109,7 @@ Bsdf::Value Bsdf::evaluateLobes(const vec3& wi, Lobes lobes) const {
   const float lambdaO = ggx::lambda(wo_.z, alpha_);
   v.fCos +=
       fresnel(std::min(glm::dot(wo_, h), 1.0f)) * (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
-  v.pdf += specularShare_ * d / (1 + lambdaO);
+  v.pdf += specularFraction_ * d / (1 + lambdaO);
   return v;
 }
 
@@ -117,7 +117,7 @@ bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
   if (extended_) [[unlikely]]
     return extended_->sample(u, lobe, out);
   out.lobes = Lobes::Broad;
-  if (specular_ && lobe < specularShare_) {
+  if (specular_ && lobe < specularFraction_) {
     if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
@@ -125,7 +125,7 @@ bool Bsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
     out.wi = frame_.toWorld(local);
     if (glm::dot(geometricNormal_, out.wi) <= 0) return false;
     if (smooth_) {
-      out.weight = fresnel(std::min(wo_.z, 1.0f)) / specularShare_;
+      out.weight = fresnel(std::min(wo_.z, 1.0f)) / specularFraction_;
       out.pdf = 0;
       return true;
     }

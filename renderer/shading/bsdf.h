@@ -13,7 +13,7 @@ void prepareBsdfs(const Scene& scene);
 
 // Lights in the probe's place would show one by one in narrow lobes, which therefore see the probe
 // itself (LightingStrategy::mirrorAlpha). A BSDF is the sum of its lobes of either kind, and each
-// sum has samples, a density and MIS weights of its own.
+// sum has samples, a pdf and MIS weights of its own.
 enum class Lobes {
   Broad,
   Narrow,  // of GGX's alpha below the limit; perfect mirrors too, which evaluate() does not show
@@ -93,11 +93,11 @@ class Bsdf {
   vec3 normal_, geometricNormal_;
   Rgb diffuse_;  // albedo; with a coating, times (1 - S(wo)) / (1 - S_mean)
   bool hasBroad_ = true, hasNarrow_ = false, transmits_ = false;
-  bool specular_;            // the members below hold only where this is set
-  bool smooth_ = false;      // the specular lobe is a delta
-  bool narrow_ = false;      // it is one, or narrower than the limit
-  float specularShare_ = 0;  // probability of sampling the specular lobe
-  vec3 wo_;                  // in the frame of the normal
+  bool specular_;               // the members below hold only where this is set
+  bool smooth_ = false;         // the specular lobe is a delta
+  bool narrow_ = false;         // it is one, or narrower than the limit
+  float specularFraction_ = 0;  // probability of sampling the specular lobe
+  vec3 wo_;                     // in the frame of the normal
   Frame frame_;
   float alpha_;
   Rgb f0_, f90_;

@@ -67,9 +67,9 @@ ExtendedBsdf::ExtendedBsdf(const MaterialPoint& m, const ExtendedPoint& e,
   addBase(base, metalF0, e, index, surface, wo, mirrorAlpha, through);
 
   float total = 0;
-  forEachPart(*this, [&](auto& part) { total += part.share; });
+  forEachPart(*this, [&](auto& part) { total += part.fraction; });
   forEachPart(*this, [&](auto& part) {
-    part.share = total > 0 ? part.share / total : 0;
+    part.fraction = total > 0 ? part.fraction / total : 0;
     hasBroad_ = hasBroad_ || part.lobe.has(Lobes::Broad);
     hasNarrow_ = hasNarrow_ || part.lobe.has(Lobes::Narrow);
   });
@@ -119,9 +119,10 @@ void ExtendedBsdf::addBase(const MaterialPoint& m, const Rgb& metalF0, const Ext
                                                metalF0, e, surface, wo, mirrorAlpha, factor);
     if (transmission == 0) return;
     const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha && e.iridescence == 0;
-    const Rgb share = smooth ? sheetTransmittance(m, e.transmission, glm::dot(surface.normal, wo))
+    const Rgb fraction = smooth
+                             ? sheetTransmittance(m, e.transmission, glm::dot(surface.normal, wo))
                              : m.baseColor * transmission * (1.0f - reflected);
-    const Sheet sheet(share, m.roughness, surface, wo, mirrorAlpha);
+    const Sheet sheet(fraction, m.roughness, surface, wo, mirrorAlpha);
     sheet_ = {sheet, factor, factor * sheet.albedo()};
     return;
   }
@@ -143,7 +144,7 @@ Bsdf::Value ExtendedBsdf::evaluate(const vec3& wi, Lobes lobes) const {
   forEachPart(*this, [&](const auto& part) {
     const Bsdf::Value v = part.lobe.evaluate(wi, lobes);
     sum.fCos += part.factor * v.fCos;
-    sum.pdf += part.share * v.pdf;
+    sum.pdf += part.fraction * v.pdf;
   });
   return sum;
 }
@@ -152,7 +153,7 @@ template <class Lobe>
 bool ExtendedBsdf::samplePart(const Part<Lobe>& part, vec2 u, float lobe, BsdfSample& out) const {
   if (!part.lobe.sample(u, lobe, out)) return false;
   if (out.pdf == 0) {
-    out.weight *= part.factor / part.share;
+    out.weight *= part.factor / part.fraction;
     return true;
   }
   return completeSample(evaluate(out.wi, out.lobes), out);
@@ -162,11 +163,11 @@ bool ExtendedBsdf::sample(vec2 u, float lobe, BsdfSample& out) const {
   bool chosen = false, passed = false;
   forEachPart(*this, [&](const auto& part) {
     if (chosen) return;
-    if (lobe < part.share) {
+    if (lobe < part.fraction) {
       chosen = true;
-      passed = samplePart(part, u, lobe / part.share, out);
+      passed = samplePart(part, u, lobe / part.fraction, out);
     }
-    lobe -= part.share;
+    lobe -= part.fraction;
   });
   return passed;
 }

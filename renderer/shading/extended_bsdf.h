@@ -45,7 +45,7 @@ class ExtendedBsdf {
   template <class Lobe>
   struct Part {
     Lobe lobe;
-    float factor, share;
+    float factor, fraction;
   };
   template <class Self, class Function>
   static void forEachPart(Self& self, Function&& function);

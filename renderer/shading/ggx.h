@@ -9,7 +9,7 @@ namespace chromeball::ggx {
 // Below this width the highlight is narrower than the sun by a factor of 50: a mirror.
 inline constexpr float kSmoothAlpha = 1e-4f;
 
-// D(h): density of microfacet normals per solid angle and projected area. `alpha` is the width,
+// D(h): pdf of microfacet normals per solid angle and projected area. `alpha` is the width,
 // the square of glTF's perceptual roughness. Written so that it holds for alpha down to 1e-4.
 inline float distribution(const vec3& h, float alpha) {
   const float e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
@@ -28,7 +28,7 @@ inline float g2(float zo, float zi, float alpha) {
 }
 inline float g1(float z, float alpha) { return 1 / (1 + lambda(z, alpha)); }
 
-// A normal visible from wo, with density G1(wo) D(h) max(0, wo.h) / wo.z over solid angle.
+// A normal visible from wo, with pdf G1(wo) D(h) max(0, wo.h) / wo.z over solid angle.
 // Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
 inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, vec2 u) {
   const vec3 stretched = glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
@@ -37,7 +37,7 @@ inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, vec2 u) {
   return glm::normalize(vec3(alpha * h.x, alpha * h.y, std::max(0.0f, h.z)));
 }
 
-// Density over solid angle of the direction that mirrors wo about such a normal h.
+// Pdf over solid angle of the direction that mirrors wo about such a normal h.
 inline float reflectedPdf(const vec3& wo, const vec3& h, float alpha) {
   return distribution(h, alpha) * g1(wo.z, alpha) / (4 * wo.z);
 }

@@ -92,7 +92,7 @@ Bsdf::Value Glass::reflect(const vec3& wi) const {
   const Rgb reflectance = fresnel(std::min(glm::dot(wo_, h), 1.0f));
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   return {reflectance * (gain_ * d / (1 + lambdaO_ + ggx::lambda(wi.z, alpha_))),
-          reflectShare(reflectance) * d / (1 + lambdaO_)};
+          reflectFraction(reflectance) * d / (1 + lambdaO_)};
 }
 
 // Walter et al. 2007, eq. 16, 17 and 21: h = -(wo + eta wi), and
@@ -108,14 +108,14 @@ Bsdf::Value Glass::refract(const vec3& wi, int c) const {
   const Rgb reflectance = fresnel(std::min(woH, 1.0f));
   const float g2 = 1 / (1 + lambdaO_ + ggx::lambda(-wi.z, alpha_));
   return {tint_ * (1.0f - reflectance) * (gain_ * d * g2),
-          (1 - reflectShare(reflectance)) * d / (1 + lambdaO_)};
+          (1 - reflectFraction(reflectance)) * d / (1 + lambdaO_)};
 }
 
 bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
   const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
   const float woH = glm::dot(wo_, h);
   const Rgb reflectance = fresnel(std::min(woH, 1.0f));
-  const float reflected = reflectShare(reflectance);
+  const float reflected = reflectFraction(reflectance);
   vec3 local;
   Rgb weight;
   if (lobe < reflected) {

@@ -37,11 +37,11 @@ class Glass {
   Rgb fresnel(float cosine) const;  // by channel
   float fresnel(float cosine, int channel) const;
   Bsdf::Value reflect(const vec3& wi) const;
-  // One channel's refraction, as if the others took the same way; the density counts those facets
+  // One channel's refraction, as if the others took the same way; the pdf counts those facets
   // that sample() lets through.
   Bsdf::Value refract(const vec3& wi, int channel) const;
   // Of sampling reflection, at a facet.
-  float reflectShare(const Rgb& reflectance) const {
+  float reflectFraction(const Rgb& reflectance) const {
     return (reflectance.x + reflectance.y + reflectance.z) / 3;
   }
 

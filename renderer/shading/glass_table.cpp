@@ -33,8 +33,8 @@ std::array<GlassAlbedo, kEtas> integrate(float mu, float alpha, std::span<const 
   std::array<float, kEtas> etas;
   for (int e = 0; e < kEtas; ++e) etas[e] = etaNode(e);
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
-  const float masked = ggx::g1(mu, alpha), share = 1 / (masked * float(points.size()));
-  const auto passed = [&](float z) { return z > 0 ? share * ggx::g2(mu, z, alpha) : 0; };
+  const float masked = ggx::g1(mu, alpha), fraction = 1 / (masked * float(points.size()));
+  const auto passed = [&](float z) { return z > 0 ? fraction * ggx::g2(mu, z, alpha) : 0; };
   std::array<GlassAlbedo, kEtas> sums{};
   for (const vec2& u : points) {
     const vec3 h = ggx::sampleVisibleNormal(wo, alpha, u);
@@ -74,11 +74,12 @@ struct Place {
 
 GlassTable::GlassTable() : cells_(kEtas * kRoughnesses * kAngles) {
   const std::vector<vec2> points = quadraturePoints(1024);
-  tbb::parallel_for(0, kRoughnesses * kAngles, [&](int place) {
-    const float roughness = roughnessNode(place / kAngles, kRoughnesses);
+  tbb::parallel_for(0, kRoughnesses * kAngles, [&](int location) {
+    const float roughness = roughnessNode(location / kAngles, kRoughnesses);
     const auto albedos =
-        integrate(angleNode(place % kAngles, kAngles), roughness * roughness, points);
-    for (int e = 0; e < kEtas; ++e) cells_[size_t(e * kRoughnesses * kAngles + place)] = albedos[e];
+        integrate(angleNode(location % kAngles, kAngles), roughness * roughness, points);
+    for (int e = 0; e < kEtas; ++e)
+      cells_[size_t(e * kRoughnesses * kAngles + location)] = albedos[e];
   });
 }
 

@@ -12,9 +12,9 @@ namespace chromeball {
 inline vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, const vec3& wo) {
   const vec3 mirrored = 2 * glm::dot(normal, wo) * normal - wo;
   const float height = glm::dot(mirrored, geometricNormal);
-  const float least = 0.1f * std::min(glm::dot(wo, geometricNormal), 1.0f);
-  if (height >= least) return normal;
-  const vec3 lifted = glm::normalize(mirrored + (least - height) * geometricNormal);
+  const float minimum = 0.1f * std::min(glm::dot(wo, geometricNormal), 1.0f);
+  if (height >= minimum) return normal;
+  const vec3 lifted = glm::normalize(mirrored + (minimum - height) * geometricNormal);
   return glm::normalize(lifted + wo);
 }
 

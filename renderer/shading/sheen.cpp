@@ -19,7 +19,7 @@ float angleNode(int i) {
   return std::max(t * t, 1e-4f);
 }
 
-// Density of fibres' normals: peaks at right angles to the surface's.
+// Pdf of fibres' normals: peaks at right angles to the surface's.
 float distribution(float z, float alpha) {
   const float sine = std::sqrt(std::max(0.0f, 1 - z * z));
   return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) * (0.5f * kInvPi);

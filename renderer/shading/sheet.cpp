@@ -5,13 +5,13 @@
 
 namespace chromeball {
 
-Sheet::Sheet(const Rgb& share, float roughness, const Surface& surface, const vec3& wo,
+Sheet::Sheet(const Rgb& fraction, float roughness, const Surface& surface, const vec3& wo,
              float mirrorAlpha)
     : frame_(surface.normal),
       geometricNormal_(surface.geometricNormal),
       wo_(wo),
       localWo_(frame_.toLocal(wo)),
-      share_(share),
+      fraction_(fraction),
       alpha_(roughness * roughness),
       smooth_(alpha_ < ggx::kSmoothAlpha),
       lobes_(smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad),
@@ -29,12 +29,13 @@ Bsdf::Value Sheet::evaluate(const vec3& wi, Lobes lobes) const {
   local.z = -local.z;
   const vec3 h = glm::normalize(localWo_ + local);
   const float d = ggx::distribution(h, alpha_) / (4 * localWo_.z);
-  return {share_ * (gain_ * d / (1 + lambdaO_ + ggx::lambda(local.z, alpha_))), d / (1 + lambdaO_)};
+  return {fraction_ * (gain_ * d / (1 + lambdaO_ + ggx::lambda(local.z, alpha_))),
+          d / (1 + lambdaO_)};
 }
 
 bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
   if (smooth_) {
-    out = {-wo_, share_, 0, lobes_};
+    out = {-wo_, fraction_, 0, lobes_};
     return true;
   }
   const vec3 h = ggx::sampleVisibleNormal(localWo_, alpha_, u);

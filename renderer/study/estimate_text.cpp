@@ -11,10 +11,10 @@ namespace {
 constexpr double kLargestPlain = 1e7, kSmallestPlain = 1e-4;
 
 // `x` to a multiple of 10^place, as a multiple of 10^exponent.
-std::string toPlace(double x, int place, int exponent) {
-  const double unit = std::pow(10.0, place), rounded = std::round(x / unit) * unit + 0.0;
+std::string toPlace(double x, int location, int exponent) {
+  const double unit = std::pow(10.0, location), rounded = std::round(x / unit) * unit + 0.0;
   const std::string digits =
-      fmt::format("{:.{}f}", rounded / std::pow(10.0, exponent), std::max(0, exponent - place));
+      fmt::format("{:.{}f}", rounded / std::pow(10.0, exponent), std::max(0, exponent - location));
   return exponent ? fmt::format("{}e{}", digits, exponent) : digits;
 }
 
@@ -26,11 +26,11 @@ EstimateText estimateText(const Estimate& e) {
   if (half == 0) return {shortNumber(e.mean), "0", e.mean != 0};
   const auto exponentOf = [](double x) { return int(std::floor(std::log10(x))); };
   const bool startsWithOne = half < 1.95 * std::pow(10.0, exponentOf(half));
-  const int place = exponentOf(half) - (startsWithOne ? 1 : 0);
+  const int location = exponentOf(half) - (startsWithOne ? 1 : 0);
   const double size = std::max(std::fabs(e.mean), half);
   const bool isPlain = size < kLargestPlain && size >= kSmallestPlain;
   const int exponent = isPlain ? 0 : exponentOf(size);
-  return {toPlace(e.mean, place, exponent), toPlace(half, place, exponent),
+  return {toPlace(e.mean, location, exponent), toPlace(half, location, exponent),
           std::fabs(e.mean) > half};
 }
 

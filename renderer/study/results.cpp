@@ -11,7 +11,7 @@ namespace chromeball {
 namespace {
 
 // The reference's own variance should be below this share of what is measured with it.
-constexpr double kSmallShare = 0.1;
+constexpr double kSmallFraction = 0.1;
 
 Estimate estimateOf(const std::vector<double>& numbers) {
   double mean = 0, scatter = 0;
@@ -33,7 +33,7 @@ std::vector<StoredRender> loadRepeats(const RenderStore& store, const std::strin
   std::vector<StoredRender> renders;
   while (std::optional<StoredRender> render = store.find({strategy, budget, int(renders.size())}))
     renders.push_back(*std::move(render));
-  if (renders.size() < size_t(Study::kFewestRepeats)) return {};
+  if (renders.size() < size_t(Study::kMinRepeats)) return {};
   return renders;
 }
 
@@ -113,7 +113,7 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   std::vector<std::pair<std::string, std::vector<Image>>> sets;
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr;
-        cell && cell->error.relMse.mean < kMostNoiseOfPairs)
+        cell && cell->error.relMse.mean < kMaxNoiseOfPairs)
       sets.emplace_back(strategy.name, images(loadRepeats(store, strategy.name, *budget)));
   for (size_t i = 0; i < sets.size(); ++i)
     for (size_t j = i + 1; j < sets.size(); ++j)
@@ -147,12 +147,12 @@ std::vector<std::string> warningsOf(const Study& study, const StudyResults& resu
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       invalid += cell.invalidSamples;
-      const double share = cell.error.reference / cell.error.relMse.mean;
-      if (share <= worst) continue;
-      worst = share;
+      const double fraction = cell.error.reference / cell.error.relMse.mean;
+      if (fraction <= worst) continue;
+      worst = fraction;
       where = fmt::format("{} at {}", strategy.name, cell.budget.label());
     }
-  if (worst > kSmallShare)
+  if (worst > kSmallFraction)
     warnings.push_back(fmt::format(
         "The reference's own error is not small: its variance is {:.0f}% of the relMSE of {}. It "
         "was removed, but intervals of small numbers are wide; give --reference-samples more.",

@@ -46,7 +46,7 @@ struct PairResult {
 
 // Unbiased strategies are compared on the largest budget that all have. One whose relMSE is above
 // this has not met all the light: its repeats agree on what they have not seen.
-inline constexpr double kMostNoiseOfPairs = 0.25;
+inline constexpr double kMaxNoiseOfPairs = 0.25;
 
 struct StudyResults {
   Reference reference;

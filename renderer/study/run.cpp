@@ -22,10 +22,11 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
       settings_(settings),
       accel_(loaded.scene),
       renders_(study.renders()) {
-  const auto build = [&](const std::string& name, const std::string& strategy, const char* place) {
+  const auto build = [&](const std::string& name, const std::string& strategy,
+                         const char* location) {
     const double start = now();
     Built& built = built_[name];
-    built.strategy = makeLighting({strategy, place}, settings.mis, loaded);
+    built.strategy = makeLighting({strategy, location}, settings.mis, loaded);
     built.prepareSeconds = now() - start;
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
@@ -41,7 +42,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
   RenderSettings settings = settings_;
   settings.seed = seedOf(key, study_.seed);
-  settings.samples = key.budget.timed ? kMostSamples : uint32_t(key.budget.amount);
+  settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
   return chromeball::render(loaded_.scene, accel_, loaded_.camera, strategy(key.strategy), settings,
@@ -107,7 +108,9 @@ bool StudyRun::run(const Progress& progress, const std::function<void()>& finish
       const double start = now();
       renderOne(
           key,
-          [&](double share) { progress((spent + share * expected) / (spent + expected + left)); },
+          [&](double fraction) {
+            progress((spent + fraction * expected) / (spent + expected + left));
+          },
           stop);
       if (stop) return false;
       spent += now() - start;

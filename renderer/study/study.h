@@ -45,7 +45,7 @@ struct Study {
   std::string referenceStrategy;
   int referenceSamples = 0;
   static constexpr int kReferenceParts = 8;  // independent; how they scatter tells the error
-  static constexpr int kFewestRepeats = 3;   // that show how a strategy scatters
+  static constexpr int kMinRepeats = 3;      // that show how a strategy scatters
 
   uint64_t seed = 0;
   // What all its renders have in common; those of another study cannot be used.

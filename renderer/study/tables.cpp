@@ -99,7 +99,7 @@ Json resultsJson(const Study& study, const StudyResults& results, const Machine&
                                     {"b", pair.b},
                                     {"budget", pair.budget.label()},
                                     {"tiles", pair.agreement.tiles},
-                                    {"share_failing", pair.agreement.share},
+                                    {"share_failing", pair.agreement.fraction},
                                     {"p_value", pair.agreement.pValue}});
   return json;
 }

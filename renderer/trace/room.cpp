@@ -6,13 +6,13 @@
 
 namespace chromeball {
 
-Room::Room(Scene model, const vec3& capture, const std::string& place)
+Room::Room(Scene model, const vec3& capture, const std::string& location)
     : scene_(std::move(model)), accel_(scene_), box_(bounds(scene_)) {
   constexpr float kMargin = 1e-4f;
-  if (box_.empty()) throwInput("{}: the room has no triangles", place);
+  if (box_.empty()) throwInput("{}: the room has no triangles", location);
   margin_ = kMargin * glm::length(box_.max - box_.min);
   if (!glm::all(glm::lessThan(box_.min, capture)) || !glm::all(glm::lessThan(capture, box_.max)))
-    throwInput("{}: `capture`, where the probe was taken, lies outside the room", place);
+    throwInput("{}: `capture`, where the probe was taken, lies outside the room", location);
 }
 
 Surroundings::Point Room::behind(const vec3& origin, const vec3& direction) const {

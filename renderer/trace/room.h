@@ -11,9 +11,9 @@ namespace chromeball {
 // through an opening a ray meets a sphere so far away that it is the distant probe.
 class Room : public Walls {
  public:
-  // `capture`: where the probe was taken. Throws InputError (beginning with `place`) for a model
+  // `capture`: where the probe was taken. Throws InputError (beginning with `location`) for a model
   // without triangles, or one whose bounds do not hold `capture`.
-  Room(Scene model, const vec3& capture, const std::string& place);
+  Room(Scene model, const vec3& capture, const std::string& location);
 
   // A wall that is nearer than 1e-4 of the room's size is passed: points
   // of the scene lie on it, and on either side by a rounding error.

@@ -23,12 +23,12 @@ constexpr float kRough = 0.7f;
 const std::atomic<bool> kGoOn = false;
 const auto kQuiet = [](double) {};
 
-Scene load(demo::Terrace what, float leastRoughness = kRough) {
+Scene load(demo::Terrace what, float minRoughness = kRough) {
   const auto file = std::filesystem::temp_directory_path() / "chromeball-terrace.glb";
   demo::writeTerrace(file, what);
   Scene scene = loadGltf(file, {}, [](const std::string&) {});
   std::filesystem::remove(file);
-  for (Material& m : scene.materials) m.roughness = std::max(m.roughness, leastRoughness);
+  for (Material& m : scene.materials) m.roughness = std::max(m.roughness, minRoughness);
   return scene;
 }
 
@@ -146,9 +146,9 @@ MISTAKE(no interreflection, {.maxDepth = 1});
 // How many times less the variance of the difference is from one pass than from two renders: in all
 // pixels that see the local scene, and in those that the objects change. Where they take all light,
 // in the core of a shadow, there is nothing to cancel.
-void compositeNoise(benchmark::State& state, float leastRoughness) {
+void compositeNoise(benchmark::State& state, float minRoughness) {
   const Truth& truth = Truth::get();
-  const Scene scene = load(demo::Terrace::Whole, leastRoughness);
+  const Scene scene = load(demo::Terrace::Whole, minRoughness);
   const ObjectMask isObject = objectsOf(scene);
   const Probe probe(truth.probe);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");

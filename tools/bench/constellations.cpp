@@ -38,32 +38,34 @@ void importanceTable(benchmark::State& state) { build<ImportanceTable>(state); }
 void coarseTable(benchmark::State& state) { build<TexelTable>(state, kCoarseCells); }
 
 template <class Table, class Make>
-void place(benchmark::State& state, const Table& table, Make make) {
+void location(benchmark::State& state, const Table& table, Make make) {
   size_t lights = 0;
   for (auto _ : state) lights = make(table).size();
   state.counters["lights"] = double(lights);
 }
 
 void medianCut300(benchmark::State& state) {
-  place(state, RegionTable(map()), [](const auto& table) { return medianCut(table, kLights); });
+  location(state, RegionTable(map()), [](const auto& table) { return medianCut(table, kLights); });
 }
 void varianceCut300(benchmark::State& state) {
-  place(state, RegionTable(map()), [](const auto& table) { return varianceCut(table, kLights); });
+  location(state, RegionTable(map()),
+           [](const auto& table) { return varianceCut(table, kLights); });
 }
 void penrose300(benchmark::State& state) {
-  place(state, ImportanceTable(map()),
-        [](const auto& table) { return penrose(table, kLights, 1); });
+  location(state, ImportanceTable(map()),
+           [](const auto& table) { return penrose(table, kLights, 1); });
 }
 void lightGen300(benchmark::State& state) {
-  place(state, TexelTable(map(), kCoarseCells),
-        [](const auto& table) { return lightGen(table, kLights, 1); });
+  location(state, TexelTable(map(), kCoarseCells),
+           [](const auto& table) { return lightGen(table, kLights, 1); });
 }
 void kolligKeller300(benchmark::State& state) {
-  place(state, TexelTable(map(), kCoarseCells),
-        [](const auto& table) { return kolligKeller(table, kLights); });
+  location(state, TexelTable(map(), kCoarseCells),
+           [](const auto& table) { return kolligKeller(table, kLights); });
 }
 void cubeGrid294(benchmark::State& state) {
-  place(state, TexelTable(map(), kFineCells), [](const auto& table) { return cubeGrid(table, 7); });
+  location(state, TexelTable(map(), kFineCells),
+           [](const auto& table) { return cubeGrid(table, 7); });
 }
 
 BENCHMARK(regionTable)->Unit(benchmark::kMillisecond);

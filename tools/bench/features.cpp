@@ -58,7 +58,7 @@ Rgb leanRadiance(const LeanScene& lean, Ray ray, PixelSampler& sampler) {
       if (depth == 0) return lean.probe.radiance(ray.direction);
       const auto escaped = lean.importance.escaped({}, ray.direction);
       return radiance +
-             throughput * escaped.radiance * bsdfSampleWeight(Mis::Balance, pdf, escaped.density);
+             throughput * escaped.radiance * bsdfSampleWeight(Mis::Balance, pdf, escaped.pdf);
     }
     if (depth == kDepth) return radiance;
 
@@ -68,10 +68,10 @@ Rgb leanRadiance(const LeanScene& lean, Ray ray, PixelSampler& sampler) {
     const DirectionSample light = lean.importance.sampleDirection(
         sampler.bits(dimension::kLight) * 0x1p-32, sampler.bits(dimension::kLight + 1) * 0x1p-32);
     const float cosine = glm::dot(s.normal, light.wi) * kInvPi;
-    if (light.density > 0 && cosine > 0 && glm::dot(s.geometricNormal, light.wi) > 0 &&
+    if (light.pdf > 0 && cosine > 0 && glm::dot(s.geometricNormal, light.wi) > 0 &&
         !isBlack(lean.accel.transmittance({s.origin(light.wi), light.wi})))
       radiance += throughput * albedo * light.irradiance *
-                  (cosine * misWeight(Mis::Balance, light.density, cosine));
+                  (cosine * misWeight(Mis::Balance, light.pdf, cosine));
 
     const vec3 wi =
         Frame(s.normal).toWorld(squareToCosineHemisphere(sampler.get2(dimension::kBsdf)));

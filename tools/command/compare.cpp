@@ -75,13 +75,14 @@ std::vector<Budget> planBudgets(const Arguments& a) {
 // Enough for the reference's variance to be small beside that of any strategy half as good as its
 // own; nobody knows how many samples a budget of seconds will hold.
 int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
-  constexpr int kTimes = 16, kLeast = 1024;
+  constexpr int kTimes = 16, kMin = 1024;
   if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
     throwInput("--reference-samples: {} is not {} or more", *a.referenceSamples,
                Study::kReferenceParts);
-  double most = 0;
-  for (const Budget& budget : budgets) most = std::max(most, budget.timed ? kLeast : budget.amount);
-  return a.referenceSamples.value_or(std::max(kLeast, int(std::min(kTimes * most, 1e6))));
+  double maximum = 0;
+  for (const Budget& budget : budgets)
+    maximum = std::max(maximum, budget.timed ? kMin : budget.amount);
+  return a.referenceSamples.value_or(std::max(kMin, int(std::min(kTimes * maximum, 1e6))));
 }
 
 Study planStudy(const Arguments& a) {
@@ -89,8 +90,8 @@ Study planStudy(const Arguments& a) {
   study.folder = a.folder;
   study.strategies = resolveStrategies(a.strategies);
   study.budgets = planBudgets(a);
-  if (a.repeats < Study::kFewestRepeats)
-    throwInput("--repeats: {} is not {} or more", a.repeats, Study::kFewestRepeats);
+  if (a.repeats < Study::kMinRepeats)
+    throwInput("--repeats: {} is not {} or more", a.repeats, Study::kMinRepeats);
   study.repeats = a.repeats;
   study.baseline = a.baseline.empty() ? study.strategies.front() : resolveStrategy(a.baseline);
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
@@ -190,7 +191,7 @@ void compare(const Arguments& a) {
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const bool whole = [&] {
     ProgressBar bar(a.scene.progress || (ProgressBar::isTerminal() && !a.scene.quiet));
-    return run.run([&](double share) { bar.update(share); }, [&] { write(results()); },
+    return run.run([&](double fraction) { bar.update(fraction); }, [&] { write(results()); },
                    interrupted);
   }();
   if (!whole)

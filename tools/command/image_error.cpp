@@ -43,7 +43,7 @@ Json toJson(const Findings& findings) {
     json["z"] = {{"count", z->count},
                  {"mean", number(z->mean)},
                  {"sd", number(z->standardDeviation)},
-                 {"beyond_3_sigma", number(z->shareBeyond3)},
+                 {"beyond_3_sigma", number(z->fractionBeyond3)},
                  {"largest", number(z->largest)},
                  {"p_value", number(z->pValue)}};
   if (findings.flip) json["flip"] = *findings.flip;
@@ -63,7 +63,7 @@ void print(const Findings& findings) {
     fmt::print(
         "z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (0.27% by noise), of {} "
         "numbers; the largest {:.3g}, by noise with a chance of {:.2g}\n",
-        z->mean, z->standardDeviation, 100 * z->shareBeyond3, z->count, z->largest, z->pValue);
+        z->mean, z->standardDeviation, 100 * z->fractionBeyond3, z->count, z->largest, z->pValue);
 }
 
 struct Side {
@@ -94,24 +94,24 @@ Image flipOf(const Arguments& arguments, const Side& a, const Side& b) {
 
 // A false-colour picture, and what its colours mean.
 void writeMap(const Arguments& arguments, const Image& map) {
-  constexpr double kDecades = 3, kMostZ = 5;
+  constexpr double kDecades = 3, kMaxZ = 5;
   const bool logarithmic = arguments.map == "relative";
-  const double most = arguments.map == "flip" ? 1
-                      : arguments.map == "z"  ? kMostZ
-                                              : roundUp(percentile(map.texels, 0.99));
+  const double maximum = arguments.map == "flip" ? 1
+                         : arguments.map == "z"  ? kMaxZ
+                                                 : roundUp(percentile(map.texels, 0.99));
   Image picture(map.width, map.height, 3);
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) {
       const double number = *map.at(x, y);
       const Color8 color =
-          heatColor(logarithmic ? logLevel(number, most, kDecades) : number / most);
+          heatColor(logarithmic ? logLevel(number, maximum, kDecades) : number / maximum);
       for (int c = 0; c < 3; ++c) picture.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
     }
   writeImage(arguments.output, picture);
   if (!arguments.json)
     fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
                logarithmic ? "logarithmic" : "linear",
-               logarithmic ? most * std::pow(10, -kDecades) : 0, most);
+               logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
 }
 
 void run(const Arguments& arguments) {

@@ -29,19 +29,19 @@ std::string printable(std::string text) {
 
 // Which colour stands for what.
 void printLegend(const Image& ids, const std::map<int, std::string>& names) {
-  constexpr size_t kMost = 64;
+  constexpr size_t kMax = 64;
   std::set<int> present;
   for (const float id : ids.texels)
     if (id >= 1 && id < 1e9f) present.insert(int(id));
   size_t shown = 0;
   for (const int id : present) {
-    if (++shown > kMost) break;
+    if (++shown > kMax) break;
     const auto name = names.find(id);
     const Color8 c = idColor(id);
     fmt::print("#{:02x}{:02x}{:02x}  {}  {}\n", c[0], c[1], c[2], id,
                name == names.end() ? "" : printable(name->second));
   }
-  if (present.size() > kMost) fmt::print("and {} more\n", present.size() - kMost);
+  if (present.size() > kMax) fmt::print("and {} more\n", present.size() - kMax);
 }
 
 Image colorOf(const std::string& path) {

@@ -27,10 +27,10 @@ Image colored(const Image& layer, const Color& color) {
 }
 
 float mostFinite(const Image& layer, int channel) {
-  float most = 0;
+  float maximum = 0;
   for (size_t i = channel; i < layer.texels.size(); i += layer.channels)
-    if (std::isfinite(layer.texels[i])) most = std::max(most, layer.texels[i]);
-  return most > 0 ? most : 1;
+    if (std::isfinite(layer.texels[i])) maximum = std::max(maximum, layer.texels[i]);
+  return maximum > 0 ? maximum : 1;
 }
 
 Image depthView(Image depth) {
@@ -51,23 +51,24 @@ Image varianceView(const Image& variance) {
   std::vector<float> errors;
   for (size_t i = 0; i < variance.texels.size(); i += variance.channels)
     if (const float e = error(&variance.texels[i]); std::isfinite(e)) errors.push_back(e);
-  const double most = roundUp(percentile(std::move(errors), 0.99));
+  const double maximum = roundUp(percentile(std::move(errors), 0.99));
   return colored(variance, [&](const float* v) {
     const float e = error(v);
     if (!std::isfinite(e)) return Rgb(1);  // nothing is known
-    return toLinear(heatColor(logLevel(e, most, kDecades)));
+    return toLinear(heatColor(logLevel(e, maximum, kDecades)));
   });
 }
 
 Image samplesView(const Image& samples) {
-  const float most = mostFinite(samples, 0);
-  return colored(samples, [&](const float* n) { return toLinear(heatColor(*n / most)); });
+  const float maximum = mostFinite(samples, 0);
+  return colored(samples, [&](const float* n) { return toLinear(heatColor(*n / maximum)); });
 }
 
 Image invalidView(Image invalid) {
   for (int c = 0; c < invalid.channels; ++c) {
-    const float most = mostFinite(invalid, c);
-    for (size_t i = c; i < invalid.texels.size(); i += invalid.channels) invalid.texels[i] /= most;
+    const float maximum = mostFinite(invalid, c);
+    for (size_t i = c; i < invalid.texels.size(); i += invalid.channels)
+      invalid.texels[i] /= maximum;
   }
   return invalid;
 }

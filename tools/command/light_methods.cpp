@@ -23,17 +23,17 @@ std::vector<std::string_view> methodNames() {
 }
 
 int fitCount(int count) {
-  if (count < 1 || count > kMostFittedLights)
-    throwInput("{}: a count of {} is out of range; give 1 to {}", kFit, count, kMostFittedLights);
+  if (count < 1 || count > kMaxFittedLights)
+    throwInput("{}: a count of {} is out of range; give 1 to {}", kFit, count, kMaxFittedLights);
   return count;
 }
 
-Constellation sunLights(const Image& latLong, const std::optional<int>& most) {
-  if (most && *most < 1)
-    throwInput("{}: a count of {} is out of range; give 1 or more", kSuns, *most);
+Constellation sunLights(const Image& latLong, const std::optional<int>& maximum) {
+  if (maximum && *maximum < 1)
+    throwInput("{}: a count of {} is out of range; give 1 or more", kSuns, *maximum);
   Constellation lights;
   for (const Sun& sun : extractSuns(latLong).suns)
-    if (!most || lights.size() < size_t(*most))
+    if (!maximum || lights.size() < size_t(*maximum))
       lights.push_back({vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)});
   return lights;
 }
@@ -47,10 +47,10 @@ std::string lightMethodList() {
   return list;
 }
 
-void checkLightMethod(const std::string& name, std::string_view place) {
+void checkLightMethod(const std::string& name, std::string_view location) {
   const std::vector<std::string_view> names = methodNames();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throwInput("{}: unknown method `{}`; {}", place, name, didYouMean(name, names));
+    throwInput("{}: unknown method `{}`; {}", location, name, didYouMean(name, names));
 }
 
 void checkLightOptions(const LightOptions& options) {

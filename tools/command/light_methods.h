@@ -23,8 +23,8 @@ struct LightOptions {
 
 std::string lightMethodList();  // "median-cut, ...", for help
 
-// Throws InputError, begun by `place`, where there is no such method.
-void checkLightMethod(const std::string& name, std::string_view place);
+// Throws InputError, begun by `location`, where there is no such method.
+void checkLightMethod(const std::string& name, std::string_view location);
 
 // Throws InputError where an option is not for the method, or a count is missing.
 void checkLightOptions(const LightOptions& options);

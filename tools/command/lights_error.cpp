@@ -34,8 +34,8 @@ struct Row {
 };
 
 int subdivisionsFor(int normals) {
-  constexpr int kMost = 8;
-  for (int i = 0, faces = 20; i <= kMost; ++i, faces *= 4)
+  constexpr int kMax = 8;
+  for (int i = 0, faces = 20; i <= kMax; ++i, faces *= 4)
     if (faces == normals) return i;
   throwInput("--normals: {} should be 20 times a power of 4: 20, 80, 320, 1280, 5120, 20480, ...",
              normals);

@@ -24,8 +24,8 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
     suns.push_back({{"direction", toJson(sun.direction)},
                     {"irradiance", toJson(sun.irradiance)},
                     {"angle", sun.angle}});
-  for (const auto& [texels, share] : info.brightestShares)
-    shares.push_back({{"texels", texels}, {"share", share}});
+  for (const auto& [texels, fraction] : info.brightestShares)
+    shares.push_back({{"texels", texels}, {"share", fraction}});
   return {{"file", file},
           {"width", probe.fileWidth},
           {"height", probe.fileHeight},
@@ -37,7 +37,7 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"min", toJson(info.min)},
           {"mean", toJson(info.mean)},
           {"max", toJson(info.max)},
-          {"share_at_max", probe.shareAtMaximum},
+          {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"invalid_texels",
            {{"nan", probe.repair.nan},
@@ -69,15 +69,15 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
                probe.latLong.height);
   fmt::print("min RGB          {}\nmean RGB         {}\nmax RGB          {}\n", triple(info.min),
              triple(info.mean), triple(info.max));
-  fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.shareAtMaximum);
+  fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.fractionAtMaximum);
   fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
   fmt::print("invalid texels   {}\n",
              probe.repair.total() > 0 ? describe(probe.repair) + ", repaired" : "none");
   fmt::print("mean radiance    {} over the sphere\n", triple(info.meanRadiance));
   fmt::print("brightest        {} from direction {}\n", triple(info.brightest),
              triple(info.brightestDirection));
-  for (const auto& [texels, share] : info.brightestShares)
-    fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", texels, 100 * share);
+  for (const auto& [texels, fraction] : info.brightestShares)
+    fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", texels, 100 * fraction);
   if (info.suns.empty()) fmt::print("suns             none\n");
   for (const Sun& sun : info.suns)
     fmt::print("sun              direction {}, irradiance {}, {:.3g} degrees wide\n",

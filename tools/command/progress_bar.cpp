@@ -27,19 +27,19 @@ ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
 }
 
-void ProgressBar::update(double share) {
+void ProgressBar::update(double fraction) {
   const Clock::time_point now = Clock::now();
   if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
   const double gone = std::chrono::duration<double>(now - start_).count();
-  if (std::isnan(share)) {
+  if (std::isnan(fraction)) {
     fmt::print(stderr, "\rrendering  {} gone\x1b[K", clockTime(gone));
   } else {
-    const int full = int(share * kWidth);
+    const int full = int(fraction * kWidth);
     fmt::print(stderr, "\rrendering  [{}{}] {:3.0f}%  {} gone, {} left\x1b[K",
-               std::string(full, '#'), std::string(kWidth - full, '.'), 100 * share,
-               clockTime(gone), share > 0 ? clockTime(gone * (1 - share) / share) : "?");
+               std::string(full, '#'), std::string(kWidth - full, '.'), 100 * fraction,
+               clockTime(gone), fraction > 0 ? clockTime(gone * (1 - fraction) / fraction) : "?");
   }
   std::fflush(stderr);
 }

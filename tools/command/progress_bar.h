@@ -12,8 +12,8 @@ class ProgressBar {
   explicit ProgressBar(bool shown);
   ~ProgressBar();  // clears the line
 
-  // `share` of the work done, in [0, 1]; NaN where only the time gone is known.
-  void update(double share);
+  // `fraction` of the work done, in [0, 1]; NaN where only the time gone is known.
+  void update(double fraction);
 
   static bool isTerminal();  // is standard error one?
 

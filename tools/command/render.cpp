@@ -87,10 +87,10 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Loaded
         {"infinite", result.invalid.of(Defect::Infinite)},
         {"negative", result.invalid.of(Defect::Negative)}}},
       {"clamped",
-       {{"samples", result.clamped.count}, {"light_removed", result.clamped.shareRemoved()}}},
+       {{"samples", result.clamped.count}, {"light_removed", result.clamped.fractionRemoved()}}},
       {"depth_cut",
-       {{"max_depth", cut.share(cut.byDepth)},
-        {"max_transmission_depth", cut.share(cut.byTransmission)}}},
+       {{"max_depth", cut.fraction(cut.byDepth)},
+        {"max_transmission_depth", cut.fraction(cut.byTransmission)}}},
       {"noise", noise.noise},  // NaN becomes null
       {"noise_median", noise.median},
       {"noise_p95", noise.p95},
@@ -109,7 +109,8 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Loaded
   r.metadata["noise"] = float(noise.noise);
   r.metadata["noise_median"] = float(noise.median);
   r.metadata["noise_p95"] = float(noise.p95);
-  if (job.settings.clamp) r.metadata["clamp_light_removed"] = float(result.clamped.shareRemoved());
+  if (job.settings.clamp)
+    r.metadata["clamp_light_removed"] = float(result.clamped.fractionRemoved());
   return r;
 }
 
@@ -170,11 +171,11 @@ void writeStats(const std::string& path, const nlohmann::json& json) {
   writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
-void sayDepthCut(const char* option, int depth, double share) {
+void sayDepthCut(const char* option, int depth, double fraction) {
   constexpr double kWorthSaying = 0.01;
-  if (share > kWorthSaying)
+  if (fraction > kWorthSaying)
     warn(fmt::format("{} {} cut about {:.2g}% of the light; a higher one finds it", option, depth,
-                     100 * share));
+                     100 * fraction));
 }
 
 // Light that the picture lacks is never passed over in silence.
@@ -187,11 +188,11 @@ void sayWhatIsMissing(const RenderResult& result, const RenderSettings& settings
         invalid.of(Defect::Negative), invalid.x, invalid.y));
   if (result.clamped.count)
     warn(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the picture's light",
-                     result.clamped.count, 100 * result.clamped.shareRemoved()));
+                     result.clamped.count, 100 * result.clamped.fractionRemoved()));
   const DepthCut& cut = result.rays.depthCut;
-  sayDepthCut("--max-depth", settings.maxDepth, cut.share(cut.byDepth));
+  sayDepthCut("--max-depth", settings.maxDepth, cut.fraction(cut.byDepth));
   sayDepthCut("--max-transmission-depth", settings.maxTransmissionDepth,
-              cut.share(cut.byTransmission));
+              cut.fraction(cut.byTransmission));
 }
 
 void render(const RenderOptions& options) {
@@ -221,7 +222,7 @@ void render(const RenderOptions& options) {
   std::signal(SIGTERM, [](int) { interrupted = true; });
   Rendered rendered = [&] {
     ProgressBar bar(options.progress || (ProgressBar::isTerminal() && !options.quiet));
-    const auto progress = [&](double share) { bar.update(share); };
+    const auto progress = [&](double fraction) { bar.update(fraction); };
     return composite
                ? renderComposite(*composite, job, loaded, accel, *lighting, progress, interrupted)
                : renderPlain(job, loaded, accel, *lighting, progress);

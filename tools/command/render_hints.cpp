@@ -45,11 +45,11 @@ Seen lookAround(const LoadedScene& loaded, const Accel& accel, const Image& mean
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
                                     const RenderResult& result) {
   constexpr float kDark = 1e-4f;  // of the probe's mean
-  constexpr double kMost = 0.8, kNearlyAll = 0.95;
+  constexpr double kMax = 0.8, kNearlyAll = 0.95;
   const Image mean = result.film.mean(), probe = loaded.probe.latLong();
   const float dark = kDark * luminance(Rgb(meanRadiance(probe)));
   const Seen seen = lookAround(loaded, accel, mean, dark);
-  if (result.interrupted || seen.black == 0 || seen.black < kMost * seen.surfaces)
+  if (result.interrupted || seen.black == 0 || seen.black < kMax * seen.surfaces)
     return std::nullopt;
   const std::string what =
       fmt::format("{:.0f}% of what the camera sees is black: ", 100.0 * seen.black / seen.surfaces);

@@ -47,7 +47,7 @@ void checkSize(int width, int height, int channels, const char* reader, size_t f
                height, channels, kMaxImageSide, kMaxImageSide);
   // A PNG's texel has at least a bit.
   if (reader == std::string_view("png") &&
-      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMostDeflated)
+      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMaxDeflated)
     throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name, width,
                height, fileBytes);
 }

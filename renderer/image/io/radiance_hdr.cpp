@@ -83,10 +83,10 @@ class Reader {
   // is set.
   void checkPlausible() const {
     const uint64_t left = bytes_.size() - position_;
-    const uint64_t least = atRunLengthRow()
-                               ? uint64_t(height_) * (4 + 8 * uint64_t((width_ + 126) / 127))
-                               : uint64_t(width_) * height_ * 4 / 1000;
-    if (left < least) fail(fmt::format("too short for {} x {} texels", width_, height_));
+    const uint64_t minimum = atRunLengthRow()
+                                 ? uint64_t(height_) * (4 + 8 * uint64_t((width_ + 126) / 127))
+                                 : uint64_t(width_) * height_ * 4 / 1000;
+    if (left < minimum) fail(fmt::format("too short for {} x {} texels", width_, height_));
   }
 
   uint8_t byte() {

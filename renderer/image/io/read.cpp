@@ -64,11 +64,11 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
 // Throws where the file is too short for what its header says. Of OpenEXR's and TIFF's encodings
 // only a guess is known, which small images need not keep. JPEG's frames are judged in bareJpeg().
 void checkPlausible(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMostPacked = 100'000;
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxPacked = 100'000;
   const uint64_t decoded = spec.image_bytes(true), bytes = fs::file_size(path);
-  const uint64_t most =
-      std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMostDeflated : kMostPacked));
-  if (decoded > most)
+  const uint64_t maximum =
+      std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMaxDeflated : kMaxPacked));
+  if (decoded > maximum)
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 

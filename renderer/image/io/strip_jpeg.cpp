@@ -60,8 +60,8 @@ size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
 void checkScans(std::span<const uint8_t> file, size_t at, const std::string& name) {
   int count = 0;
   for (uint8_t marker; (marker = nextMarker(file, at)) && marker != kEoi;) {
-    if (marker == kSos && ++count > kMostJpegScans)
-      throwInput("{}: more than {} scans: hostile", name, kMostJpegScans);
+    if (marker == kSos && ++count > kMaxJpegScans)
+      throwInput("{}: more than {} scans: hostile", name, kMaxJpegScans);
     at = endOfSegment(file, at, marker);
   }
 }
@@ -72,7 +72,7 @@ void readFrame(std::span<const uint8_t> segment, size_t fileBytes, const std::st
   jpeg.height = bigEndian16(&segment[3]);
   jpeg.width = bigEndian16(&segment[5]);
   jpeg.components = segment[7];
-  if (uint64_t(jpeg.width) * uint64_t(jpeg.height) > fileBytes * kMostTexelsPerJpegByte)
+  if (uint64_t(jpeg.width) * uint64_t(jpeg.height) > fileBytes * kMaxTexelsPerJpegByte)
     throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
                jpeg.width, jpeg.height, fileBytes);
 }

@@ -19,12 +19,12 @@ struct BareJpeg {
 };
 
 // Other damage is left for the library to find. Throws InputError ("NAME: ...") where there is no
-// frame, where it has more texels than the bytes can hold, and for more than kMostJpegScans scans.
+// frame, where it has more texels than the bytes can hold, and for more than kMaxJpegScans scans.
 BareJpeg bareJpeg(std::span<const uint8_t> file, const std::string& name);
 
 // Each scan of a progressive JPEG visits every block, for as few as a dozen bytes. Encoders write
 // about ten.
-inline constexpr int kMostJpegScans = 100;
+inline constexpr int kMaxJpegScans = 100;
 
 // Of a PNG remain the critical chunks and the transparency of a palette or key.
 std::vector<uint8_t> barePng(std::span<const uint8_t> file);

@@ -15,7 +15,7 @@ namespace {
 
 struct Method {
   const char* name;
-  int least, most;  // count
+  int minimum, maximum;  // count
   Constellation (*make)(const Image& latLong, int count, uint64_t seed);
 };
 
@@ -53,9 +53,9 @@ Constellation makeConstellation(const std::string& method, const Image& latLong,
                                 uint64_t seed) {
   for (const Method& known : kMethods) {
     if (method != known.name) continue;
-    if (count < known.least || count > known.most)
-      throwInput("{}: a count of {} is out of range; give {} to {}", method, count, known.least,
-                 known.most);
+    if (count < known.minimum || count > known.maximum)
+      throwInput("{}: a count of {} is out of range; give {} to {}", method, count, known.minimum,
+                 known.maximum);
     return known.make(latLong, count, seed);
   }
   throwInput("constellation `{}` is not known; {}", method,

@@ -33,14 +33,14 @@ std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t ke
 Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
   const SphericalKMeans empty(table);
   Constellation best;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int start = 0; start < kStarts; ++start) {
     SphericalKMeans kMeans = empty;
     for (int cell : drawCells(kMeans, std::min(count, kMeans.litCells()), hash(seed, start)))
       kMeans.addCentre(cell);
     kMeans.converge(0);
-    if (kMeans.objective() >= least) continue;
-    least = kMeans.objective();
+    if (kMeans.objective() >= minimum) continue;
+    minimum = kMeans.objective();
     best = kMeans.lights();
   }
   return best;

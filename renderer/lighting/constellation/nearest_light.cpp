@@ -54,7 +54,7 @@ BlockPyramid::Block BlockPyramid::block(int level, int x, int y) const {
   return at.blocks[size_t(y) * at.size.x + x];
 }
 
-std::vector<dvec3> BlockPyramid::share(const std::vector<dvec3>& directions) const {
+std::vector<dvec3> BlockPyramid::fraction(const std::vector<dvec3>& directions) const {
   const int top = int(levels_.size());
   Sharing sharing{directions, {}, std::vector<dvec3>(directions.size(), dvec3(0)), {}};
   for (const dvec3& direction : directions)
@@ -62,33 +62,33 @@ std::vector<dvec3> BlockPyramid::share(const std::vector<dvec3>& directions) con
   sharing.candidates.resize(top + 2);
   sharing.candidates[top + 1].resize(directions.size());
   std::iota(sharing.candidates[top + 1].begin(), sharing.candidates[top + 1].end(), 0);
-  share(sharing, top, 0, 0);
+  fraction(sharing, top, 0, 0);
   return std::move(sharing.powers);
 }
 
 // None but the lights that are no farther from the block's middle than the nearest and twice the
 // radius can be nearest to a point of it. A block that is small for its distance to all of them
 // goes whole to the light nearest to its middle.
-void BlockPyramid::share(Sharing& sharing, int level, int x, int y) const {
+void BlockPyramid::fraction(Sharing& sharing, int level, int x, int y) const {
   const Block here = block(level, x, y);
   if (here.power == dvec3(0)) return;
   const auto distance = [&](int i) { return glm::distance(here.middle, sharing.directions[i]); };
-  double least = 4;
+  double minimum = 4;
   int nearest = -1;
   for (int i : sharing.candidates[level + 1])
-    if (const double d = distance(i); d < least) least = d, nearest = i;
+    if (const double d = distance(i); d < minimum) minimum = d, nearest = i;
   std::vector<int>& candidates = sharing.candidates[level];
   candidates.clear();
   for (int i : sharing.candidates[level + 1])
-    if (distance(i) <= least + 2 * here.radius) candidates.push_back(i);
+    if (distance(i) <= minimum + 2 * here.radius) candidates.push_back(i);
 
-  if (candidates.size() == 1 || here.radius < kSmall * least) {
+  if (candidates.size() == 1 || here.radius < kSmall * minimum) {
     sharing.powers[nearest] += here.power;
   } else if (level > 0) {
     const glm::ivec2 below =
         level > 1 ? levels_[level - 2].size : glm::ivec2(table_.width(), table_.height());
     for (int j = 2 * y; j < std::min(2 * y + 2, below.y); ++j)
-      for (int i = 2 * x; i < std::min(2 * x + 2, below.x); ++i) share(sharing, level - 1, i, j);
+      for (int i = 2 * x; i < std::min(2 * x + 2, below.x); ++i) fraction(sharing, level - 1, i, j);
   } else {
     const auto inside = [&](int i) { return sharing.cells[i] == glm::ivec2(x, y); };
     const auto lights = std::count_if(candidates.begin(), candidates.end(), inside);

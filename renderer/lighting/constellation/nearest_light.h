@@ -17,7 +17,7 @@ class BlockPyramid {
   // distance to all lights goes whole to the one nearest to its middle. The power of a cell that
   // holds lights is shared equally among these, so that lights in lit cells are never black.
   // `directions` are unit, at least one.
-  std::vector<dvec3> share(const std::vector<dvec3>& directions) const;
+  std::vector<dvec3> fraction(const std::vector<dvec3>& directions) const;
 
  private:
   // A patch of the sphere: no point of it is farther from the middle than `radius`, as a chord.
@@ -33,7 +33,7 @@ class BlockPyramid {
 
   Block makeBlock(const dvec3& power, int size, int x, int y) const;  // size: in cells
   Block block(int level, int x, int y) const;
-  void share(Sharing& sharing, int level, int x, int y) const;
+  void fraction(Sharing& sharing, int level, int x, int y) const;
 
   const TexelTable& table_;
   std::vector<Level> levels_;  // levels_[k - 1] is level k, blocks of 2^k cells a side

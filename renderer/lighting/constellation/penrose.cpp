@@ -114,8 +114,8 @@ class Search {
 
   void add(const Triangle& t) {
     const dvec2 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
-    const double most = table_.bound(low, high);
-    if (most > 0) triangles_.push({std::pow(kPhi, 2 * t.level) / most, t});
+    const double maximum = table_.bound(low, high);
+    if (maximum > 0) triangles_.push({std::pow(kPhi, 2 * t.level) / maximum, t});
   }
   void add(const Corner& c) {
     const double importance = table_.at(c.position);
@@ -164,11 +164,11 @@ double ImportanceTable::bound(const dvec2& low, const dvec2& high) const {
   size_t k = 0;
   for (; last.x - first.x > 1 || last.y - first.y > 1; ++k) first /= 2, last /= 2;
   const Level& level = levels_[k];
-  double most = 0;
+  double maximum = 0;
   for (int y = first.y; y <= last.y; ++y)
     for (int x = first.x; x <= last.x; ++x)
-      most = std::max(most, level.greatest[size_t(y) * level.width + x]);
-  return most;
+      maximum = std::max(maximum, level.greatest[size_t(y) * level.width + x]);
+  return maximum;
 }
 
 Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
@@ -177,7 +177,7 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
   std::vector<dvec3> directions;
   for (int i = 0; i < count; ++i)
     directions.push_back(*uvToDirection(Mapping::LatLong, toUv(search.next())));
-  const std::vector<dvec3> irradiance = table.blocks().share(directions);
+  const std::vector<dvec3> irradiance = table.blocks().fraction(directions);
   Constellation lights;
   for (int i = 0; i < count; ++i) lights.push_back(makeLight(directions[i], irradiance[i]));
   return lights;

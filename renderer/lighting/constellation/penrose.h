@@ -39,7 +39,7 @@ class ImportanceTable {
 
 // The corners that appear when the tiling's triangles are subdivided for the k-th time share the
 // ranks from phi^2k to phi^2k+2, evenly over any neighbourhood. Those `count` corners with the
-// least rank / importance become lights: their density is proportional to the importance, and they
+// least rank / importance become lights: their pdf is proportional to the importance, and they
 // keep their distance from each other. The light of each cell goes to the nearest of them: given
 // equal shares, as the paper has it, 300 lights miss the irradiance by 2% on average, so by 0.4%.
 // The seed places the tiling on the map. The published tables that move points for a better

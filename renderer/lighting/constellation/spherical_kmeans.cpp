@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-constexpr int kMostSteps = 200;
+constexpr int kMaxSteps = 200;
 
 // cos(2 a) of cos(a), for half the angle up to 90 degrees; beyond that no cosine is less.
 double cosOfTwice(double cosine) { return cosine > 0 ? 2 * cosine * cosine - 1 : -2; }
@@ -55,9 +55,9 @@ void SphericalKMeans::updateCosines() {
 // one that has not either.
 std::vector<SphericalKMeans::Rival> SphericalKMeans::rivals(int centre,
                                                             const std::vector<int>& moved,
-                                                            double leastCosine) const {
+                                                            double minCosine) const {
   std::vector<Rival> found;
-  const double reach = cosOfTwice(leastCosine);
+  const double reach = cosOfTwice(minCosine);
   const auto consider = [&](int other) {
     const double cosine = glm::dot(centres_[centre], centres_[other]);
     if (other != centre && cosine >= reach) found.push_back({cosine, other});
@@ -76,14 +76,14 @@ std::vector<SphericalKMeans::Rival> SphericalKMeans::rivals(int centre,
 // its own centre as the cell is (Hamerly 2010).
 void SphericalKMeans::assign() {
   updateCosines();
-  std::vector<double> least(centres_.size(), 1);
+  std::vector<double> minimum(centres_.size(), 1);
   for (size_t i = 0; i < points_.size(); ++i)
-    least[label_[i]] = std::min(least[label_[i]], cosine_[i]);
+    minimum[label_[i]] = std::min(minimum[label_[i]], cosine_[i]);
   std::vector<int> moved;
   for (int i = 0; i < centres(); ++i)
     if (moved_[i]) moved.push_back(i);
   std::vector<std::vector<Rival>> rivalsOf(centres_.size());
-  for (int i = 0; i < centres(); ++i) rivalsOf[i] = rivals(i, moved, least[i]);
+  for (int i = 0; i < centres(); ++i) rivalsOf[i] = rivals(i, moved, minimum[i]);
 
   for (size_t i = 0; i < points_.size(); ++i) {
     const int before = label_[i];
@@ -122,7 +122,7 @@ bool SphericalKMeans::step() {
 
 void SphericalKMeans::converge(double tolerance) {
   double before = objective();
-  for (int i = 0; i < kMostSteps && step(); ++i) {
+  for (int i = 0; i < kMaxSteps && step(); ++i) {
     const double now = objective();
     if (before - now <= tolerance * before) break;
     before = now;

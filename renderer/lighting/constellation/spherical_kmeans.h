@@ -50,7 +50,7 @@ class SphericalKMeans {
 
   void claim(int litCell, int centre);
   void updateCosines();
-  std::vector<Rival> rivals(int centre, const std::vector<int>& moved, double leastCosine) const;
+  std::vector<Rival> rivals(int centre, const std::vector<int>& moved, double minCosine) const;
   void assign();
   bool moveCentres();
   int worst() const;

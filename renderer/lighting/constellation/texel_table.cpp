@@ -15,9 +15,9 @@ namespace {
 
 int ceilDivide(int a, int b) { return a / b + (a % b != 0); }
 
-int blockFor(int width, int height, size_t mostCells) {
+int blockFor(int width, int height, size_t maxCells) {
   int block = 1;
-  while (size_t(ceilDivide(width, block)) * ceilDivide(height, block) > mostCells) ++block;
+  while (size_t(ceilDivide(width, block)) * ceilDivide(height, block) > maxCells) ++block;
   return block;
 }
 
@@ -47,10 +47,10 @@ DirectionalLight lightAt(const TexelSum& sum, const dvec3& fallback) {
   return makeLight(length > 1e-6 * sum.weight ? sum.moment / length : fallback, sum.power);
 }
 
-TexelTable::TexelTable(const Image& latLong, size_t mostCells)
+TexelTable::TexelTable(const Image& latLong, size_t maxCells)
     : mapWidth_(checked(latLong).width),
       mapHeight_(latLong.height),
-      block_(blockFor(mapWidth_, mapHeight_, mostCells)),
+      block_(blockFor(mapWidth_, mapHeight_, maxCells)),
       width_(ceilDivide(mapWidth_, block_)),
       height_(ceilDivide(mapHeight_, block_)),
       cells_(size_t(width_) * height_) {

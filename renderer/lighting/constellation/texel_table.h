@@ -37,7 +37,7 @@ class TexelTable {
  public:
   // Throws InputError for an empty map, one with fewer than three channels, a texel that is
   // negative or not finite, and for radiance whose sum no float holds.
-  TexelTable(const Image& latLong, size_t mostCells);
+  TexelTable(const Image& latLong, size_t maxCells);
 
   int width() const { return width_; }
   int height() const { return height_; }

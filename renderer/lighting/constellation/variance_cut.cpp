@@ -14,11 +14,11 @@ double variance(const dvec4& moment) {
 std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
   const dvec4 whole = table.moment(r);
   std::pair<Region, Region> best;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   const auto attempt = [&](const std::pair<Region, Region>& parts) {
     const dvec4 first = table.moment(parts.first);
     const double left = variance(first) + variance(whole - first);
-    if (left < least) least = left, best = parts;
+    if (left < minimum) minimum = left, best = parts;
   };
   for (int x = r.x0 + 1; x < r.x1; ++x) attempt(cutAtColumn(r, x));
   for (int y = r.y0 + 1; y < r.y1; ++y) attempt(cutAtRow(r, y));

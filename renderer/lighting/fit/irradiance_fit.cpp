@@ -104,9 +104,9 @@ class Search {
     if (!few) best_.resize(1);
     std::vector<FittedLights> tried;
     for (const FittedLights& lights : best_)
-      for (const dvec3& place : places_.best(lights, few ? kPlaces : 1)) {
+      for (const dvec3& location : places_.best(lights, few ? kPlaces : 1)) {
         tried.push_back(lights);
-        tried.back().directions.push_back(place);
+        tried.back().directions.push_back(location);
         tried.back().irradiances.emplace_back(0);
       }
     if (tried.empty()) return;

@@ -15,7 +15,7 @@ struct IrradianceFit {
   double meanError = 0, maxError = 0;  // percent, of 20480 normals (light_error.h)
 };
 
-inline constexpr int kMostFittedLights = 256;
+inline constexpr int kMaxFittedLights = 256;
 
 struct FitOptions {
   int count = 8;
@@ -23,7 +23,7 @@ struct FitOptions {
   // Instead of `count`: the fewest lights, up to maxCount, whose mean error is not above this.
   // Where maxCount lights do not reach it, they are the result.
   std::optional<double> maxErrorPercent;
-  int maxCount = kMostFittedLights;
+  int maxCount = kMaxFittedLights;
 };
 
 // The lights that minimise the squared difference in irradiance over all orientations (Madsen et

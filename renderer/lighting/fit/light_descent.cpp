@@ -154,8 +154,8 @@ QuadraticModel modelAround(const FittedLights& lights, bool ambient, const Matri
 VectorXd stepOf(const QuadraticModel& model, double damping) {
   MatrixXd damped = model.hessian;  // its lower half counts
   // A dark light feels nothing and stays; any positive number keeps the matrix definite.
-  const double least = std::max(kRidge * model.damping.maxCoeff(), 1e-300);
-  damped.diagonal() += damping * model.damping.cwiseMax(least);
+  const double minimum = std::max(kRidge * model.damping.maxCoeff(), 1e-300);
+  damped.diagonal() += damping * model.damping.cwiseMax(minimum);
   return damped.llt().solve(-model.gradient);
 }
 

@@ -19,14 +19,14 @@ std::string nameOf(const std::vector<Animation>& animations, size_t i) {
 // The one named, by its name or, where it has none, its index; the first where none is named.
 size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
   const auto& animations = file.model.animations;
-  if (animations.empty()) file.fail("has no animation ({} asks for one)", when.place);
+  if (animations.empty()) file.fail("has no animation ({} asks for one)", when.location);
   if (when.name.empty()) return 0;
   std::vector<std::string> names;
   for (size_t i = 0; i < animations.size(); ++i) {
     names.push_back(nameOf(animations, i));
     if (names.back() == when.name) return i;
   }
-  file.fail("has no animation `{}` ({}); {}", when.name, when.place,
+  file.fail("has no animation `{}` ({}); {}", when.name, when.location,
             didYouMean(when.name, {names.begin(), names.end()}));
 }
 
@@ -91,13 +91,13 @@ Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int c
 glm::dquat quaternion(const double* q) { return {q[3], q[0], q[1], q[2]}; }
 
 // The shorter way around at constant speed, or the cubic's value made unit (appendix C).
-std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_t i, double share,
-                                 const std::vector<double>& interpolated,
+std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_t i,
+                                 double fraction, const std::vector<double>& interpolated,
                                  const std::string& where) {
   glm::dquat q = quaternion(interpolated.data());
-  if (track.interpolation == Interpolation::Linear && share > 0)
+  if (track.interpolation == Interpolation::Linear && fraction > 0)
     q = glm::slerp(glm::normalize(quaternion(track.value(i))),
-                   glm::normalize(quaternion(track.value(i + 1))), share);
+                   glm::normalize(quaternion(track.value(i + 1))), fraction);
   const double length = glm::length(q);
   if (!(length > 0) || !std::isfinite(length))
     file.fail("{}.output: is a quaternion of length 0", where);
@@ -111,16 +111,16 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
   const auto after = std::upper_bound(times.begin(), times.end(), seconds,
                                       [](double t, float key) { return t < key; });
   const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
-  double share = 0;  // of the way from key i to the next
+  double fraction = 0;  // of the way from key i to the next
   if (after != times.begin() && after != times.end())
-    share = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
+    fraction = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
 
   std::vector<double> result(track.value(i), track.value(i) + track.width);
-  if (share > 0 && track.interpolation == Interpolation::Linear)
+  if (fraction > 0 && track.interpolation == Interpolation::Linear)
     for (size_t k = 0; k < track.width; ++k)
-      result[k] += share * (track.value(i + 1)[k] - track.value(i)[k]);
-  if (share > 0 && track.interpolation == Interpolation::CubicSpline) {
-    const double t = share, t2 = t * t, t3 = t2 * t;
+      result[k] += fraction * (track.value(i + 1)[k] - track.value(i)[k]);
+  if (fraction > 0 && track.interpolation == Interpolation::CubicSpline) {
+    const double t = fraction, t2 = t * t, t3 = t2 * t;
     const double duration = double(times[i + 1]) - times[i];
     for (size_t k = 0; k < track.width; ++k)  // Hermite; tangents are per second
       result[k] = (2 * t3 - 3 * t2 + 1) * track.value(i)[k] +
@@ -128,18 +128,18 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
                   (3 * t2 - 2 * t3) * track.value(i + 1)[k] +
                   (t3 - t2) * duration * track.inTangent(i + 1)[k];
   }
-  return isRotation ? unitRotation(file, track, i, share, result, where) : result;
+  return isRotation ? unitRotation(file, track, i, fraction, result, where) : result;
 }
 
 }  // namespace
 
 std::string animationNames(const GltfFile& file) {
-  constexpr size_t kMost = 6;
+  constexpr size_t kMax = 6;
   const auto& animations = file.model.animations;
   std::string text;
-  for (size_t i = 0; i < std::min(kMost, animations.size()); ++i)
+  for (size_t i = 0; i < std::min(kMax, animations.size()); ++i)
     text += fmt::format("{}`{}`", i ? ", " : "", oneLine(nameOf(animations, i)));
-  if (animations.size() > kMost) text += fmt::format(" and {} more", animations.size() - kMost);
+  if (animations.size() > kMax) text += fmt::format(" and {} more", animations.size() - kMax);
   return text;
 }
 

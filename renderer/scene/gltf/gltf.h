@@ -19,15 +19,15 @@ enum class ExternalFiles { Refuse, Allow };
 
 // An animation of the file and the time to show it at.
 struct AnimationTime {
-  std::string name;   // or its index where it has none; empty: the first
-  std::string place;  // where it was asked for, for the error where it does not exist
+  std::string name;      // or its index where it has none; empty: the first
+  std::string location;  // where it was asked for, for the error where it does not exist
   double seconds = 0;
 };
 
 // A variant of the file's materials (KHR_materials_variants).
 struct VariantChoice {
   std::string name;
-  std::string place;  // where it was asked for, for the error where it does not exist
+  std::string location;  // where it was asked for, for the error where it does not exist
 };
 
 // What of a file to show, and what it may ask for.

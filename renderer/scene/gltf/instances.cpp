@@ -24,7 +24,7 @@ class InstanceReader {
 
   Scene read() {
     for (int node : tree_.inScene) planNode(node);
-    for (const Plan& plan : plans_) place(plan);
+    for (const Plan& plan : plans_) location(plan);
     materials_.moveInto(scene_);
     return std::move(scene_);
   }
@@ -68,7 +68,7 @@ class InstanceReader {
     }
   }
 
-  void place(const Plan& plan) {
+  void location(const Plan& plan) {
     const bool shared = plan.geometry && plan.geometry->users > 1;
     int mesh = shared ? plan.geometry->mesh : -1;
     if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
@@ -102,9 +102,9 @@ class InstanceReader {
   std::vector<dmat4> placesOf(int index, const std::string& where) {
     std::vector<dmat4> places =
         readInstanceTransforms(file_, file_.model.nodes[size_t(index)], where);
-    for (dmat4& place : places) place = tree_.toWorld[size_t(index)] * place;
+    for (dmat4& location : places) location = tree_.toWorld[size_t(index)] * location;
     const size_t all = places.size();
-    std::erase_if(places, [](const dmat4& place) { return !isInvertible(place); });
+    std::erase_if(places, [](const dmat4& location) { return !isInvertible(location); });
     if (places.size() < all)
       file_.warnOnce("nodes without an invertible transform (\"" + tree_.names[size_t(index)] +
                      "\", say) are left out");

@@ -62,9 +62,9 @@ void warnOfDangling(GltfFile& file, const Mapping& mapping, size_t variantCount)
 void applyVariant(GltfFile& file, const VariantChoice& choice) {
   const std::vector<std::string> names = variantNames(file);
   const auto found = std::find(names.begin(), names.end(), choice.name);
-  if (names.empty()) file.fail("has no variants ({} asks for one)", choice.place);
+  if (names.empty()) file.fail("has no variants ({} asks for one)", choice.location);
   if (found == names.end())
-    file.fail("has no variant `{}` ({}); {}", choice.name, choice.place,
+    file.fail("has no variant `{}` ({}); {}", choice.name, choice.location,
               didYouMean(choice.name, {names.begin(), names.end()}));
   const int variant = int(found - names.begin());
   bool isUsed = false;

@@ -32,39 +32,41 @@ bool canShow(const PlotPoint& point) {
 
 // A logarithmic axis over [least, most], on `length` pixels.
 struct Axis {
-  double least = std::numeric_limits<double>::max(), most = 0, length;
+  double minimum = std::numeric_limits<double>::max(), maximum = 0, length;
 
   void cover(double number) {
-    least = std::min(least, number);
-    most = std::max(most, number);
+    minimum = std::min(minimum, number);
+    maximum = std::max(maximum, number);
   }
   // Room for a mark at both ends; an axis that shows nothing, or one number, gets a decade or more.
   void finish() {
-    constexpr double kShare = 0.06;  // of the axis, at each end
-    if (most == 0) least = most = 1;
-    const double room = most > 2 * least ? std::pow(most / least, kShare / (1 - 2 * kShare)) : 3.2;
-    least /= room;
-    most *= room;
+    constexpr double kFraction = 0.06;  // of the axis, at each end
+    if (maximum == 0) minimum = maximum = 1;
+    const double room =
+        maximum > 2 * minimum ? std::pow(maximum / minimum, kFraction / (1 - 2 * kFraction)) : 3.2;
+    minimum /= room;
+    maximum *= room;
   }
   double operator()(double number) const {
-    return length * std::log(number / least) / std::log(most / least);
+    return length * std::log(number / minimum) / std::log(maximum / minimum);
   }
   // Powers of two.
   std::vector<double> binaryTicks() const {
     std::vector<double> ticks;
-    for (double tick = std::exp2(std::ceil(std::log2(least))); tick <= most; tick *= 2)
+    for (double tick = std::exp2(std::ceil(std::log2(minimum))); tick <= maximum; tick *= 2)
       ticks.push_back(tick);
     return ticks;
   }
   // 1, 2 and 5 times powers of ten; where these crowd, powers of ten alone.
   std::vector<double> decimalTicks() const {
     std::vector<double> ticks;
-    const bool crowded = most > 2e3 * least;
-    const int first = int(std::floor(std::log10(least))), last = int(std::ceil(std::log10(most)));
+    const bool crowded = maximum > 2e3 * minimum;
+    const int first = int(std::floor(std::log10(minimum))),
+              last = int(std::ceil(std::log10(maximum)));
     for (int exponent = first; exponent <= last; ++exponent)
       for (const double factor : {1.0, 2.0, 5.0}) {
         const double tick = factor * std::pow(10, exponent);
-        if (tick >= least && tick <= most && (factor == 1 || !crowded)) ticks.push_back(tick);
+        if (tick >= minimum && tick <= maximum && (factor == 1 || !crowded)) ticks.push_back(tick);
       }
     return ticks;
   }
@@ -123,8 +125,8 @@ std::string lineOf(const PlotSeries& series, const Style& style, const Axis& x, 
     const double px = x(point.x), py = kPanelHeight - y(point.y);
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', px, py);
     if (point.low < point.high) {
-      const double top = kPanelHeight - y(std::min(point.high, y.most));
-      const double bottom = kPanelHeight - y(std::max(point.low, y.least));
+      const double top = kPanelHeight - y(std::min(point.high, y.maximum));
+      const double bottom = kPanelHeight - y(std::max(point.low, y.minimum));
       intervals += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, top, bottom);
     }
     marks += mark(style, px, py);

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDecades = 3;  // of the scale of errors
-constexpr double kMostZ = 5;
+constexpr double kMaxZ = 5;
 
 std::string base64(std::span<const uint8_t> bytes) {
   static constexpr const char* kDigits =
@@ -37,9 +37,9 @@ Json radianceUris(const Image& image) {
     for (int x = 0; x < image.width; ++x) {
       const Rgb color = glm::max(image.rgb(x, y), Rgb(0));
       int exponent = 0;
-      const float most = maxComponent(color);
-      const float fraction = most > 1e-32f ? std::frexp(most, &exponent) : 0;
-      const float scale = fraction > 0 ? fraction * 256 / most : 0;
+      const float maximum = maxComponent(color);
+      const float fraction = maximum > 1e-32f ? std::frexp(maximum, &exponent) : 0;
+      const float scale = fraction > 0 ? fraction * 256 / maximum : 0;
       for (int c = 0; c < 3; ++c) mantissas.push_back(uint8_t(std::min(255.0f, color[c] * scale)));
       exponents.push_back(uint8_t(fraction > 0 ? std::clamp(exponent + 128, 0, 255) : 0));
     }
@@ -100,8 +100,8 @@ std::string mapUri(const Image& map, const Level& level) {
   return pngUri(map.width, map.height, 1, bytes);
 }
 
-auto signedLevel(double most) {
-  return [most](float number) { return 128 + 127 * std::clamp(number / most, -1.0, 1.0); };
+auto signedLevel(double maximum) {
+  return [maximum](float number) { return 128 + 127 * std::clamp(number / maximum, -1.0, 1.0); };
 }
 
 template <class Color>
@@ -136,11 +136,11 @@ void addPictures(Json& json, const RenderStore& store, const StudyResults& resul
     picture.update(radianceUris(repeats[0]));
     json["pictures"].push_back(std::move(picture));
   }
-  const double most = commonScale(errors);
-  json["errorScale"] = {{"most", most}, {"decades", kDecades}};
+  const double maximum = commonScale(errors);
+  json["errorScale"] = {{"most", maximum}, {"decades", kDecades}};
   for (size_t i = 0; i < errors.size(); ++i)
     json["pictures"][i]["error"] =
-        mapUri(errors[i], [&](float number) { return 255 * logLevel(number, most, kDecades); });
+        mapUri(errors[i], [&](float number) { return 255 * logLevel(number, maximum, kDecades); });
 }
 
 void addBias(Json& json, const RenderStore& store, const StudyResults& results) {
@@ -152,10 +152,10 @@ void addBias(Json& json, const RenderStore& store, const StudyResults& results) 
     maps.push_back(sureBias(loadImages(store, cell), results.reference));
     json["bias"].push_back({{"name", strategy.name}, {"budget", cell.budget.label()}});
   }
-  const double most = commonScale(maps);
-  json["biasScale"] = {{"most", most}};
+  const double maximum = commonScale(maps);
+  json["biasScale"] = {{"most", maximum}};
   for (size_t i = 0; i < maps.size(); ++i)
-    json["bias"][i]["map"] = mapUri(maps[i], signedLevel(most));
+    json["bias"][i]["map"] = mapUri(maps[i], signedLevel(maximum));
 }
 
 }  // namespace
@@ -191,7 +191,7 @@ Json reportPictures(const RenderStore& store, const StudyResults& results) {
                {"reference", radianceUris(reference)}};
   addPictures(json, store, results);
   addBias(json, store, results);
-  json["zScale"] = kMostZ;
+  json["zScale"] = kMaxZ;
   json["pairs"] = Json::array();
   for (const PairResult& pair : results.pairs) {
     const Image& z = pair.agreement.z;
@@ -199,7 +199,7 @@ Json reportPictures(const RenderStore& store, const StudyResults& results) {
                              {"b", pair.b},
                              {"width", z.width},
                              {"height", z.height},
-                             {"map", mapUri(z, signedLevel(kMostZ))}});
+                             {"map", mapUri(z, signedLevel(kMaxZ))}});
   }
   return json;
 }

@@ -106,7 +106,7 @@ std::string pairsTable(const StudyResults& results) {
     html += fmt::format("<tr><td>{} and {}</td><td{}>{:.2g}</td><td>{:.2g}%</td></tr>\n",
                         escaped(pair.a), escaped(pair.b),
                         pair.agreement.pValue < 0.05 ? " class=\"fails\"" : "",
-                        pair.agreement.pValue, 100 * pair.agreement.share);
+                        pair.agreement.pValue, 100 * pair.agreement.fraction);
   return html + "</tbody></table>\n";
 }
 
@@ -152,13 +152,13 @@ std::string verdictList(const Study& study, const StudyResults& results) {
 }
 
 std::string repeatsText(const StudyResults& results) {
-  size_t fewest = SIZE_MAX, most = 0;
+  size_t fewest = SIZE_MAX, maximum = 0;
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       fewest = std::min(fewest, cell.repeatSeconds.size());
-      most = std::max(most, cell.repeatSeconds.size());
+      maximum = std::max(maximum, cell.repeatSeconds.size());
     }
-  return fewest < most ? fmt::format("{} to {}", fewest, most) : fmt::format("{}", most);
+  return fewest < maximum ? fmt::format("{} to {}", fewest, maximum) : fmt::format("{}", maximum);
 }
 
 std::string referenceText(const Study& study, const StudyResults& results) {
@@ -212,7 +212,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
            "accident, corrected for the number of tiles (Sidak). Of twenty such pairs one falls "
            "below 0.05 by chance. Strategies of a relMSE above {2:g} are left out: they have not "
            "met all the light yet.",
-           Agreement::kTile, at, kMostNoiseOfPairs)));
+           Agreement::kTile, at, kMaxNoiseOfPairs)));
   fill(page, "pairs", pairsTable(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
