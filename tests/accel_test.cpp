@@ -394,23 +394,31 @@ TEST(Accel, PacketsFindWhatSingleRaysFind) {
   }
 }
 
-// What is left out is as if it were not there, and the others keep their indices.
-TEST(Accel, ShowsOnlySomeInstances) {
+// Instances outside a ray's mask do not exist for it; the others keep their indices.
+TEST(Accel, MasksHideInstances) {
   Scene scene;
   for (float height : {3.0f, 2.0f, 1.0f})
     addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-1, height, 1}, {2, 0, 0}, {0, 0, -2});
   const Ray down{{0.2f, 4, 0.1f}, {0, -1, 0}};
-  for (uint32_t left = 0; left < 3; ++left) {
-    std::vector<bool> shown(3, false);
-    shown[left] = true;
-    const Accel accel(scene, shown);
+  scene.instances[2].toWorld = Transform{};  // an instance of its own for Embree
+  const Accel accel(scene, {1, 2, 4});
+  const Ray up{{0.2f, 2.5f, 0.1f}, {0, 1, 0}}, farther{{0.2f, 2.5f, 0.1f}, {0, -1, 0}};
+  for (uint32_t i = 0; i < 3; ++i) {
+    const RayMask mask = 1u << i;
+    EXPECT_EQ(accel.mask(i), mask);
     Hit hit;
-    ASSERT_TRUE(accel.intersect(down, 0, hit));
-    EXPECT_EQ(hit.instance, left);
-    EXPECT_EQ(accel.transmittance({{0.2f, 2.5f, 0.1f}, {0, -1, 0}}), Rgb(left == 0 ? 1 : 0));
+    ASSERT_TRUE(accel.intersect(down, 0, hit, mask));
+    EXPECT_EQ(hit.instance, i);
+    const auto packet = accel.intersect({&down, 1}, std::array{0u}, mask);
+    ASSERT_TRUE(packet[0]);
+    EXPECT_EQ(packet[0]->instance, i);
+    EXPECT_EQ(accel.transmittance(up, mask), Rgb(i == 0 ? 0 : 1));
+    EXPECT_EQ(accel.transmittance(farther, mask), Rgb(i == 0 ? 1 : 0));
   }
   Hit hit;
-  EXPECT_FALSE(Accel(scene, {false, false, false}).intersect(down, 0, hit));
+  EXPECT_FALSE(accel.intersect(down, 0, hit, 8));
+  EXPECT_TRUE(accel.intersect(down, 0, hit, 6));
+  EXPECT_EQ(hit.instance, 1u);
 }
 
 }  // namespace

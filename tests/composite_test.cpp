@@ -25,12 +25,11 @@ struct Worlds {
 CompositeRender composite(const Worlds& w, const Probe& probe, const std::string& strategy,
                           const RenderSettings& settings, const Image& plate,
                           Passes passes = Passes::One) {
-  const Accel accel(w.scene);
+  const World world(w.scene, rayMasks(w.isObject));
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
   return renderComposite(
-      w.scene, accel, w.isObject, w.camera, *lighting, plate, settings, passes, true, [](double) {},
-      stop);
+      world, w.camera, *lighting, plate, settings, passes, true, [](double) {}, stop);
 }
 
 // Numbers that no arithmetic leaves alone by accident.
@@ -142,8 +141,9 @@ TEST(Composite, InvalidSamplesAreCountedByCause) {
                                         noisyPlate(16, 16), passes);
     EXPECT_GT(r.result.invalid.of(Defect::Infinite), 0u);
     EXPECT_EQ(r.result.invalid.of(Defect::Nan), 0u);
-    for (const DifferentialPixel& pixel : r.film.pixels)
-      EXPECT_TRUE(std::isfinite(pixel.objects.x + pixel.difference.x));
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x)
+        EXPECT_TRUE(std::isfinite(r.film.at(x, y).objects.x + r.film.at(x, y).difference.x));
   }
 }
 
@@ -182,12 +182,14 @@ TEST(Composite, BothWorldsArePlainRenders) {
 
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
-  ObjectMask isLocal = w.isObject;
-  isLocal.flip();
   for (Aov aov : {Aov::WithObjects, Aov::WithoutObjects}) {
-    const Accel accel(w.scene, aov == Aov::WithObjects ? ObjectMask() : isLocal);
+    Worlds alone = stillLife();
+    alone.scene.materials.back().emission = Rgb(0);
+    if (aov == Aov::WithoutObjects)
+      alone.scene.instances.resize(size_t(std::ranges::count(w.isObject, false)));
+    const World world(alone.scene);
     const Image plain = render(
-                            w.scene, accel, w.camera, *lighting, settings, [](double) {}, stop)
+                            world, w.camera, *lighting, settings, [](double) {}, stop)
                             .film.mean();
     const Image ours = ingredient(r.film, aov);
     for (size_t i = 0; i < plain.texels.size(); ++i)
@@ -358,12 +360,11 @@ TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
   const std::atomic<bool> stop = false;
   Scene local = stillLife().scene;  // without the objects, and their lamps
   local.instances.resize(2);
-  const Accel localAccel(local), wholeAccel(w.scene);
+  const World localWorld(local), wholeWorld(w.scene);
   const auto quiet = [](double) {};
-  const Film photograph =
-      render(local, localAccel, w.camera, *lighting, settings, quiet, stop).film;
+  const Film photograph = render(localWorld, w.camera, *lighting, settings, quiet, stop).film;
   settings.seed = 8;
-  const Film truth = render(w.scene, wholeAccel, w.camera, *lighting, settings, quiet, stop).film;
+  const Film truth = render(wholeWorld, w.camera, *lighting, settings, quiet, stop).film;
   const CompositeRender r =
       composite(w, probe, "importance", smallRender(kSize, kSize, 256, 5, 9), photograph.mean());
   const Image truthMean = truth.mean(), truthError = varianceImage(truth.errors()),
@@ -386,9 +387,17 @@ TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
 }
 
 DifferentialFilm onePixel(const DifferentialPixel& pixel) {
-  DifferentialFilm film(2, 1);
-  film.pixels = {pixel, {1, 0, {}, {}, glm::dvec3(1), {}}};  // and one of L_noobj = 1
-  return film;
+  LayerFilm film(2, 1, DifferentialFilm::layers());
+  const auto add = [&](int x, const DifferentialPixel& p) {
+    const std::vector<Rgb> none(DifferentialFilm::kLayers, Rgb(0));
+    film.add(x, 0,
+             std::vector<Rgb>{Rgb(float(p.covered)), Rgb(p.objects), Rgb(p.behind), Rgb(p.local),
+                              Rgb(p.difference)});
+    for (int i = 1; i < int(p.count); ++i) film.add(x, 0, none);
+  };
+  add(0, pixel);
+  add(1, {1, 0, {}, {}, glm::dvec3(1), {}});  // and one of L_noobj = 1
+  return DifferentialFilm(std::move(film));
 }
 
 // alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or the plate times L_obj / L_noobj.

@@ -80,13 +80,13 @@ TEST(DeltaLights, ambientLightIsSeenFromEveryPointOfAPlane) {
   const DeltaLights lighting(probe, {{glm::normalize(vec3(1, 1, 0)), Rgb(2, 0, 1)}},
                              Rgb(0.5f, 0.25f, 0));
   const Scene scene = mattePlane(Rgb(1));
-  const Accel accel(scene);
+  const World world(scene);
   const std::atomic<bool> stop = false;
   for (Mis mis : {Mis::Off, Mis::Balance, Mis::Power}) {
     RenderSettings settings = smallRender(4, 4, 16, 1);
     settings.mis = mis;
     const RenderResult r = render(
-        scene, accel, topCamera(3, 40), lighting, settings, [](double) {}, stop);
+        world, topCamera(3, 40), lighting, settings, [](double) {}, stop);
     const double cosine = std::sqrt(0.5);
     expectNear(meanColor(r.film.mean()), dvec3(0.5 + 2 * cosine / kPiD, 0.25, cosine / kPiD), 1e-5);
   }
@@ -203,7 +203,7 @@ class ExtendedLightPoint {
     const MaterialPoint tinted{Rgb(0.8f, 0.7f, 0.6f), 0, roughness, Rgb(0.04f), 1};
     lobes_.emplace(tinted, extended, RefractiveIndex{Rgb(1.5f), 1.5f}, surface, wo, 0);
     bsdf_.emplace(*lobes_);
-    point_ = {vec3(0), bsdf_->normal(), wo, &*bsdf_, 0, bsdf_->transmits()};
+    point_ = {vec3(0), bsdf_->normal(), &*bsdf_, 0, bsdf_->transmits()};
   }
   ExtendedLightPoint(const ExtendedLightPoint&) = delete;
 

@@ -56,7 +56,7 @@ TEST(Depth, GlassHasALimitOfItsOwn) {
   settings.maxTransmissionDepth = 2;
   const RenderResult r = look(vase(0), settings);
   EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
-  const DepthCut& cut = r.rays.depthCut;
+  const DepthCut& cut = r.depthCut;
   EXPECT_EQ(cut.byDepth, 0);
   EXPECT_NEAR(cut.fraction(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
 }
@@ -99,7 +99,7 @@ TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
   addSphere(scene, addMaterial(scene, wall), vec3(0), -5, 16, false);
   for (const int depth : {1, 3}) {
     const RenderResult r = look(scene, smallRender(16, 16, 512, depth));
-    const DepthCut& cut = r.rays.depthCut;
+    const DepthCut& cut = r.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
     EXPECT_NEAR(cut.fraction(cut.byDepth) / expected, 1, 0.12) << depth;
     EXPECT_EQ(cut.byTransmission, 0);
@@ -110,7 +110,7 @@ TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
 TEST(Depth, NothingIsCutOfAnOpenScene) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
-  const DepthCut cut = look(scene, smallRender(16, 16, 64, 1)).rays.depthCut;
+  const DepthCut cut = look(scene, smallRender(16, 16, 64, 1)).depthCut;
   EXPECT_EQ(cut.byDepth, 0);
   EXPECT_GT(cut.found, 0);
 }
@@ -129,15 +129,14 @@ TEST(Depth, AVaseInAPhotographIsWhiteToo) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
   const ObjectMask isObject{true, true, false};
   const Probe probe = whiteProbe();
-  const Accel accel(scene);
+  const World world(scene, rayMasks(isObject));
   const RenderSettings settings = smallRender(8, 8, 64, 8);
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
   const Camera rim = Camera::lookAt({0, 0.9f, 4}, {0, 0.9f, 0}, {0, 1, 0}, 0.07f);
   for (const Passes passes : {Passes::One, Passes::Two}) {
     const CompositeRender r = renderComposite(
-        scene, accel, isObject, rim, *lighting, Image(8, 8, 3), settings, passes, false,
-        [](double) {}, stop);
+        world, rim, *lighting, Image(8, 8, 3), settings, passes, false, [](double) {}, stop);
     glm::dvec3 objects(0);
     double covered = 0;
     for (int y = 0; y < 8; ++y)

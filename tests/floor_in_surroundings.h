@@ -33,16 +33,15 @@ inline Moments floorRadiance(const LightingStrategy& lighting, float x, float z,
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},
           {0, 0, -3.8f});
-  const Accel accel(scene);
+  const World world(scene);
   const Camera camera = Camera::lookAt({x, 1.5f, z}, {x, 0, z}, {0, 0, -1}, 0.02f);
   const std::atomic<bool> stop = false;
   std::vector<double> means;
   for (int i = 0; i < repeats; ++i) {
     const RenderSettings settings = smallRender(4, 4, 512, 1, uint64_t(i));
-    means.push_back(
-        luminance(meanColor(render(
-                                scene, accel, camera, lighting, settings, [](double) {}, stop)
-                                .film.mean())));
+    means.push_back(luminance(meanColor(render(
+                                            world, camera, lighting, settings, [](double) {}, stop)
+                                            .film.mean())));
   }
   return Moments::of(means);
 }

@@ -26,7 +26,7 @@ class Counter {
 // Every pixel's radiance is 1, but for each second sample of some.
 class Faulty : public Integrator {
  public:
-  Sample sample(const CameraSample& camera, PathMemory&, FirstHit*) const override {
+  Sample sample(const CameraSample& camera, PathContext&) const override {
     const bool second = counter_.next(camera) % 2 == 1;
     const auto at = [&](int x, int y) { return camera.x == x && camera.y == y && second; };
     if (at(5, 2)) return Rgb(1, kNan, kInf);
@@ -42,10 +42,10 @@ class Faulty : public Integrator {
 
 RenderResult renderWith(const Integrator& integrator, RenderSettings settings) {
   const Scene scene;
-  const Accel accel(scene);
+  const World world(scene);
   const std::atomic<bool> stop = false;
   return render(
-      integrator, accel, Camera(), settings, [](double) {}, stop);
+      integrator, world, Camera(), settings, [](double) {}, stop);
 }
 
 TEST(InvalidSamples, AreCountedByCauseAndPixelAndLeftOut) {
@@ -77,8 +77,8 @@ TEST(InvalidSamples, AreCountedByCauseAndPixelAndLeftOut) {
 
 class Firefly : public Integrator {
  public:
-  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit*) const override {
-    return memory.clamp(counter_.next(camera) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1));
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    return context.clamp(counter_.next(camera) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1));
   }
 
  private:

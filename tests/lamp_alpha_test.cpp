@@ -113,14 +113,14 @@ TEST(LampAlpha, CompositesCountIt) {
   const auto change = [](const Material& lamp) {
     const Scene scene = floorUnder(lamp);
     const ObjectMask isObject{false, true};
-    const Accel accel(scene);
+    const World world(scene, rayMasks(isObject));
     const RenderSettings settings = smallRender(8, 8, 1024, 1);
     const auto lighting = makeStrategy("importance", blackProbe(), settings.mis, "test");
     const std::atomic<bool> stop = false;
     const Camera camera = Camera::lookAt({0, 0.5f, 1.2f}, {0, 0, 0}, {0, 1, 0}, 0.2f);
     const CompositeRender r = renderComposite(
-        scene, accel, isObject, camera, *lighting, Image(8, 8, 3), settings, Passes::One, false,
-        [](double) {}, stop);
+        world, camera, *lighting, Image(8, 8, 3), settings, Passes::One, false, [](double) {},
+        stop);
     return meanColor(ingredient(r.film, Aov::Difference)).y;
   };
   const float whole = change(lampOfAlpha(AlphaMode::Opaque, 1));

@@ -58,11 +58,11 @@ TEST(SlowModels, EveryModelUnderEveryProbeHasNoInvalidSample) {
     }
     if (scene.instances.empty()) continue;
     ++rendered;
-    const Accel accel(scene);
+    const World world(scene);
     const Camera camera = scene.cameras.empty() ? framingCamera(scene, 1) : scene.cameras.front();
     for (const LitBy& by : lit) {
       const RenderResult r = render(
-          scene, accel, camera, *by.lighting, settings, [](double) {}, stop);
+          world, camera, *by.lighting, settings, [](double) {}, stop);
       EXPECT_EQ(r.invalid.total(), 0u)
           << file << " under " << by.file << ": " << r.invalid.of(Defect::Nan) << " NaN, "
           << r.invalid.of(Defect::Infinite) << " infinite, " << r.invalid.of(Defect::Negative)

@@ -210,8 +210,8 @@ TEST(SlowNoise, IsTrueWhereItStopsTheRender) {
 class RareLight : public Integrator {
  public:
   explicit RareLight(uint64_t period) : period_(period) {}
-  Sample sample(const CameraSample&, PathMemory& memory, FirstHit*) const override {
-    const bool meets = period_ > 0 && hash(memory.sampler.sampleKey(), 1) % period_ == 0;
+  Sample sample(const CameraSample&, PathContext& context) const override {
+    const bool meets = period_ > 0 && hash(context.sampler.sampleKey(), 1) % period_ == 0;
     return Rgb(meets ? float(period_) : 0);
   }
 
@@ -221,10 +221,10 @@ class RareLight : public Integrator {
 
 RenderResult renderRareLight(uint64_t period, RenderSettings settings) {
   const Scene scene;
-  const Accel accel(scene);
+  const World world(scene);
   const std::atomic<bool> stop = false;
   return render(
-      RareLight(period), accel, Camera(), settings, [](double) {}, stop);
+      RareLight(period), world, Camera(), settings, [](double) {}, stop);
 }
 
 TEST(Noise, DoesNotStopARenderThatHasSeenNoLight) {

@@ -162,15 +162,15 @@ TEST(Punctual, ShineOnBothWorldsOfAComposite) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.9f))), {-1, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
   const ObjectMask isObject{false, true};
   const Probe black(Image(2, 1, 3));
-  const Accel accel(scene);
+  const World world(scene, rayMasks(isObject));
   constexpr int kSize = 33;
   const RenderSettings settings = smallRender(kSize, kSize, 16, 1);
   const auto lighting = makeStrategy("importance", black, settings.mis, "test");
   const std::atomic<bool> stop = false;
   for (const Passes passes : {Passes::One, Passes::Two}) {
     const CompositeRender r = renderComposite(
-        scene, accel, isObject, above(), *lighting, Image(kSize, kSize, 3), settings, passes, true,
-        [](double) {}, stop);
+        world, above(), *lighting, Image(kSize, kSize, 3), settings, passes, true, [](double) {},
+        stop);
     const Image with = ingredient(r.film, Aov::WithObjects);
     const Image without = ingredient(r.film, Aov::WithoutObjects);
     const Image whole = picture(scene, 64, 1, kSize);

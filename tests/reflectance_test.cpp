@@ -49,9 +49,9 @@ struct Local {
                             bool projected = true) {
     if (projected) makeProjected(scene, isObject, projection);
     const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
-    return solveReflectance({scene, isObject, camera, *lighting, plate},
-                            smallRender(kSize, kSize, 512, 8, 2), iterations, projection, kQuiet,
-                            kGoOn);
+    const World world(scene, rayMasks(isObject));
+    return solveReflectance({world, camera, *lighting, plate}, smallRender(kSize, kSize, 512, 8, 2),
+                            iterations, projection, kQuiet, kGoOn);
   }
 };
 
@@ -85,8 +85,9 @@ TEST(Reflectance, OfAFlatGroundBothWays) {
   EXPECT_EQ(*normal, vec3(0, 1, 0));
   const Rgb irradiance(exactIrradiance(local.probe.latLong(), {&*normal, 1})[0]);
   const auto lighting = makeStrategy("importance", local.probe, Mis::Balance, "test");
-  solveFlatReflectance({local.scene, local.isObject, local.camera, *lighting, plate},
-                       smallRender(kSize, kSize, 1, 8), irradiance, exact, kGoOn);
+  const World world(local.scene, rayMasks(local.isObject));
+  solveFlatReflectance({world, local.camera, *lighting, plate}, smallRender(kSize, kSize, 1, 8),
+                       irradiance, exact, kGoOn);
   expectNear(meanOf(exact.colors(), true), truth, 0.006f);
   expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
 }

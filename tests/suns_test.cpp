@@ -2,6 +2,7 @@
 // The strategy `suns`: its pdfs, its light, and the shadows of its discs.
 #include <gtest/gtest.h>
 
+#include "integrate/mis.h"
 #include "lighting/suns.h"
 #include "probe/irradiance.h"
 #include "probe/sky.h"
@@ -26,7 +27,7 @@ Image sunnySky(int suns) {
 class Samples {
  public:
   Samples(const LightingStrategy& strategy, const vec3& normal)
-      : strategy_(strategy), point_{{}, normal, normal, nullptr, 0} {}
+      : strategy_(strategy), point_{{}, normal, nullptr, 0} {}
 
   const std::vector<DirectionSample>& take(int i) {
     sampler_.startPixel(uint32_t(i), 0, 0);
@@ -159,7 +160,7 @@ TEST(Suns, PenumbraOfAStraightEdge) {
   const int white = addMaterial(scene, lambert(Rgb(1)));
   addQuad(scene, white, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
   addQuad(scene, white, {-50, kHeight, 50}, {50, 0, 0}, {0, 0, -100});
-  const Accel accel(scene);
+  const World world(scene);
   const std::atomic<bool> stop = false;
   const float fov = 2 * std::atan(0.5f * kView) * 180 / kPi;  // seen from 1 m, below the edge
   const Camera camera = topCamera(1, fov);
@@ -167,7 +168,7 @@ TEST(Suns, PenumbraOfAStraightEdge) {
     const Suns suns(probe, false, angle);
     const RenderSettings settings = smallRender(kWidth, kWidth, 16, 1);
     const Image image = render(
-                            scene, accel, camera, suns, settings, [](double) {}, stop)
+                            world, camera, suns, settings, [](double) {}, stop)
                             .film.mean();
     const double halfWidth = kHeight * std::tan(angle * kPiD / 360);
     std::vector<double> profile(kWidth);
@@ -207,15 +208,14 @@ TEST(SlowSuns, PictureIsThatOfImportance) {
   const Probe probe(sunnySky(2), 25);
   const Suns suns(probe, true);
   const Importance importance(probe, true);
-  const Accel accel(scene);
+  const World world(scene);
   const std::atomic<bool> stop = false;
   const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
   const auto brightness = [&](const LightingStrategy& strategy, uint64_t seed) {
     const RenderSettings settings = smallRender(48, 48, 64, 5, seed);
-    return double(
-        luminance(meanColor(render(
-                                scene, accel, camera, strategy, settings, [](double) {}, stop)
-                                .film.mean())));
+    return double(luminance(meanColor(render(
+                                          world, camera, strategy, settings, [](double) {}, stop)
+                                          .film.mean())));
   };
   double separate = 0, together = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {

@@ -104,7 +104,7 @@ TEST(Surroundings, DensitiesAgree) {
         sampler.startPixel(i / 64, 3, 0);
         sampler.startSample(i % 64);
         sampler.startVertex(0);
-        const LightPoint point{{-1, 0.5f, 0.7f}, {0, 1, 0}, {0, 1, 0}, nullptr, 0};
+        const LightPoint point{{-1, 0.5f, 0.7f}, {0, 1, 0}, nullptr, 0};
         std::vector<DirectionSample> samples;
         lighting->sample(point, sampler, samples);
         for (const DirectionSample& sample : samples) {
@@ -130,7 +130,7 @@ TEST(Surroundings, SunsAreNotSeen) {
   mirror.roughness = 0;
   mirror.doubleSided = true;
   addSphere(scene, addMaterial(scene, mirror), {0.8f, 0.6f, -1}, 0.4f, 24);
-  const Accel accel(scene);
+  const World world(scene);
   const vec3 eye(0, 1.2f, 0.5f);
   vec3 brightest(0, -1, 0);
   for (uint64_t i = 0; i < 20000; ++i)
@@ -144,8 +144,8 @@ TEST(Surroundings, SunsAreNotSeen) {
       const vec3 to = s.behind(s.capture, brightest).position;
       const Camera camera = Camera::lookAt(eye, to, {0, 1, 0}, 1.6f);
       return render(
-                 scene, accel, camera, *inside(s, name, probe), smallRender(32, 32, 4, 2),
-                 [](double) {}, stop)
+                 world, camera, *inside(s, name, probe), smallRender(32, 32, 4, 2), [](double) {},
+                 stop)
           .film.mean();
     };
     const Image seen = picture("suns"), expected = picture("importance");

@@ -66,11 +66,11 @@ inline Camera topCamera(float height, float fovDegrees) {
 
 inline RenderResult renderScene(const Scene& scene, const Camera& camera, const Probe& probe,
                                 const std::string& strategy, const RenderSettings& settings) {
-  const Accel accel(scene);
+  const World world(scene);
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
   return render(
-      scene, accel, camera, *lighting, settings, [](double) {}, stop);
+      world, camera, *lighting, settings, [](double) {}, stop);
 }
 
 inline RenderSettings smallRender(int width, int height, uint32_t samples, int maxDepth,

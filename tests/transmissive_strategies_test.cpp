@@ -60,14 +60,14 @@ struct View {
   // Mean of the picture by channel, for seeds from `firstSeed` on.
   std::array<std::vector<double>, 3> means(const LightingStrategy& lighting, Mis mis,
                                            uint64_t firstSeed, int samples = 16) const {
-    const Accel accel(scene);
+    const World world(scene);
     const std::atomic<bool> stop = false;
     std::array<std::vector<double>, 3> all;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       RenderSettings settings = smallRender(6, 6, samples, 6, firstSeed + uint64_t(repeat));
       settings.mis = mis;
       const RenderResult r = render(
-          scene, accel, camera, lighting, settings, [](double) {}, stop);
+          world, camera, lighting, settings, [](double) {}, stop);
       EXPECT_EQ(r.invalid.total(), 0u);
       const Rgb mean = meanColor(r.film.mean());
       for (int c = 0; c < 3; ++c) all[size_t(c)].push_back(mean[c]);

@@ -6,27 +6,27 @@ namespace {
 
 using glm::dvec3;
 
-// Share of the picture's mean L_noobj below which the ratio is not formed.
+// Fraction of the picture's mean L_noobj below which the ratio is not formed.
 constexpr double kMinForRatio = 1e-3;
 
 bool isNegative(const Rgb& c) { return c.x < 0 || c.y < 0 || c.z < 0; }
 
-double alphaOf(const DifferentialPixel& p) {
-  return p.count ? double(p.covered) / double(p.count) : 0;
-}
+double alphaOf(const DifferentialPixel& p) { return p.count > 0 ? p.covered / p.count : 0; }
 
 // L_noobj where no object is seen; 0 where one covers all.
 dvec3 localRadiance(const DifferentialPixel& p) {
-  return p.count > p.covered ? p.local / double(p.count - p.covered) : dvec3(0);
+  return p.count > p.covered ? p.local / (p.count - p.covered) : dvec3(0);
 }
 
 dvec3 meanLocalRadiance(const DifferentialFilm& film) {
   dvec3 sum(0);
   double weight = 0;
-  for (const DifferentialPixel& p : film.pixels) {
-    sum += p.local;
-    weight += double(p.count - p.covered);
-  }
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel p = film.at(x, y);
+      sum += p.local;
+      weight += p.count - p.covered;
+    }
   return weight > 0 ? sum / weight : sum;
 }
 
@@ -46,17 +46,17 @@ Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
 
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode) {
-  Composite result{Image(film.width, film.height, 3), Image(film.width, film.height, 3)};
+  Composite result{Image(film.width(), film.height(), 3), Image(film.width(), film.height(), 3)};
   const dvec3 meanLocal = meanLocalRadiance(film);
-  for (int y = 0; y < film.height; ++y)
-    for (int x = 0; x < film.width; ++x) {
-      const DifferentialPixel& p = film.at(x, y);
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel p = film.at(x, y);
       const Rgb behind = plate.rgb(x, y);
       Rgb gain(1), color = behind;  // a render may stop before a pixel's first sample
-      if (p.count && mode == CompositeMode::Difference) color = mean.rgb(x, y);
-      if (p.count && mode == CompositeMode::Ratio) {
+      if (p.count > 0 && mode == CompositeMode::Difference) color = mean.rgb(x, y);
+      if (p.count > 0 && mode == CompositeMode::Ratio) {
         gain = ratioGain(behind, localRadiance(p), meanLocal);
-        color = Rgb((p.objects + dvec3(gain) * p.difference) / double(p.count) +
+        color = Rgb((p.objects + dvec3(gain) * p.difference) / p.count +
                     (1 - alphaOf(p)) * dvec3(behind));
       }
       if (isNegative(color) && !isNegative(behind)) {  // a plate's own negatives are kept
@@ -71,10 +71,10 @@ Composite compose(const DifferentialFilm& film, const Image& mean, const Image& 
 
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors) {
-  for (size_t i = 0; i < film.pixels.size(); ++i) {
-    const int x = int(i % size_t(film.width)), y = int(i / size_t(film.width));
+  for (size_t i = 0; i < errors.luminances.size(); ++i) {
+    const int x = int(i % size_t(film.width())), y = int(i / size_t(film.width()));
     errors.luminances[i] = luminance(dvec3(composite.color.rgb(x, y)));
-    const float alpha = float(alphaOf(film.pixels[i]));
+    const float alpha = float(alphaOf(film.at(x, y)));
     const Rgb gain = alpha + (1 - alpha) * composite.gain.rgb(x, y);
     const glm::dvec4 squared(gain * gain, luminance(gain) * luminance(gain));
     errors.halves[i] *= squared;
@@ -84,11 +84,11 @@ PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& compo
 }
 
 Image ingredient(const DifferentialFilm& film, Aov aov) {
-  Image image(film.width, film.height, aov == Aov::Alpha ? 1 : 3);
-  for (int y = 0; y < film.height; ++y)
-    for (int x = 0; x < film.width; ++x) {
-      const DifferentialPixel& p = film.at(x, y);
-      const double count = std::max(p.count, 1u);
+  Image image(film.width(), film.height(), aov == Aov::Alpha ? 1 : 3);
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel p = film.at(x, y);
+      const double count = std::max(p.count, 1.0);
       switch (aov) {
         case Aov::WithObjects:
           image.setRgb(x, y, Rgb((p.objects + p.local + p.difference) / count));

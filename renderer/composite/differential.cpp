@@ -1,28 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/differential.h"
 
+#include <utility>
+
 namespace chromeball {
 
-Sample DifferentialIntegrator::sample(const CameraSample& camera, PathMemory& memory,
-                                      FirstHit* first) const {
-  const DifferentialSample s = differentialRadiance(scene_, camera, memory, first);
+DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
+                                        bool behindObjects, PathContext& context) {
+  const auto& [whole, local, shared] = worlds;
+  DifferentialSample sample;
+  PathState state = camera.path();
+  ++context.counts.camera;
+  context.sampler.startVertex(0);
+  for (std::optional<Hit> hit = camera.hit;;) {
+    if (hit && worlds.isObject(*hit) && !whole.isHiddenBack(state, *hit)) {
+      // An object: the two worlds follow paths of their own from here on.
+      sample.objectFirst = state.depth == 0;
+      sample.withObjects += whole.follow(state, hit, context);
+      if (sample.objectFirst && !behindObjects) return sample;
+      state.first = nullptr;
+      context.sampler.startVertex(state.depth);
+      hit = local.closestHit(state.ray, context);
+      sample.without += local.follow(state, hit, context);
+      return sample;
+    }
+    whole.estimateDepthCut(state, hit, context);
+    PathState without = state;
+    without.first = nullptr;
+    context.shadowsDiffer = false;
+    const bool goesOn = shared.vertex(state, hit, context);
+    const Rgb found = std::exchange(state.radiance, Rgb(0));
+    if (context.shadowsDiffer) {  // an object's shadow or light: the vertex again without it
+      sample.withObjects += found;
+      local.vertex(without, hit, context);
+      sample.without += without.radiance;
+    } else {
+      sample.both += found;
+    }
+    if (!goesOn) return sample;
+    context.sampler.startVertex(state.depth);
+    hit = whole.closestHit(state.ray, context);
+  }
+}
+
+Sample DifferentialIntegrator::sample(const CameraSample& camera, PathContext& context) const {
+  const DifferentialSample s = differentialRadiance(worlds_, camera, behindObjects_, context);
   const Rgb withObjects = s.both + s.withObjects, without = s.both + s.without;
-  memory.rays.depthCut.addFound(withObjects);
+  context.depthCut.addFound(withObjects);
   for (const Rgb& radiance : {withObjects, without})
     if (const auto defect = defectOf(radiance, false)) return {radiance, defect};
 
-  DifferentialPixel& pixel = film_.at(camera.x, camera.y);
-  ++pixel.count;
+  std::vector<Rgb>& layers = context.layers;
   if (s.objectFirst) {
-    ++pixel.covered;
-    const Rgb seen = memory.clamp(withObjects);
-    pixel.objects += glm::dvec3(seen);
-    pixel.behind += glm::dvec3(without);
+    const Rgb seen = context.clamp(withObjects);
+    layers[DifferentialFilm::kCoverage] = Rgb(1);
+    layers[DifferentialFilm::kObjects] = seen;
+    layers[DifferentialFilm::kBehind] = without;
     return seen;
   }
-  const Rgb difference = memory.clamp(s.difference());
-  pixel.local += glm::dvec3(without);
-  pixel.difference += glm::dvec3(difference);
+  const Rgb difference = context.clamp(s.difference());
+  layers[DifferentialFilm::kLocal] = without;
+  layers[DifferentialFilm::kDifference] = difference;
   return {plate_.rgb(camera.x, camera.y) + difference, std::nullopt};
 }
 

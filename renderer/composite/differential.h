@@ -1,46 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integrator of a composite: what the objects look like, and what they change of the plate.
+// Differential rendering (HDRI book, 9.7.1) in one pass: radiance with the synthetic objects and
+// without them, along paths that are shared until an object matters.
 #pragma once
 
-#include "composite/differential_path.h"
+#include "composite/differential_film.h"
+#include "composite/worlds.h"
+#include "image/image.h"
+#include "integrate/integrator.h"
 
 namespace chromeball {
 
-// What the samples of a pixel found. `covered` of `count` samples saw an object first.
-struct DifferentialPixel {
-  uint32_t count = 0, covered = 0;
-  glm::dvec3 objects{0};  // sum of L_obj where an object is seen
-  glm::dvec3 behind{0};   // sum of L_noobj there, where that was asked for
-  glm::dvec3 local{0};    // sum of L_noobj elsewhere
-  // Sum of L_obj - L_noobj elsewhere; exactly 0 where objects change nothing.
-  glm::dvec3 difference{0};
+struct DifferentialSample {
+  Rgb both{0};                     // found with the objects and without them
+  Rgb withObjects{0}, without{0};  // found only so
+  bool objectFirst = false;        // the camera sees an object
+
+  Rgb difference() const { return withObjects - without; }
 };
 
-// An image of such pixels.
-struct DifferentialFilm {
-  int width = 0, height = 0;
-  std::vector<DifferentialPixel> pixels;
-
-  DifferentialFilm(int w, int h) : width(w), height(h), pixels(size_t(w) * h) {}
-  DifferentialPixel& at(int x, int y) { return pixels[size_t(y) * width + x]; }
-  const DifferentialPixel& at(int x, int y) const { return pixels[size_t(y) * width + x]; }
-};
+// `camera.hit` is that of the whole scene. Random numbers are the same in both worlds, and
+// everything before an object is met or shades something is computed once, so that `difference()`
+// is exactly 0 where objects change nothing. `behindObjects`: L_noobj is wanted also where the
+// camera sees an object.
+DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
+                                        bool behindObjects, PathContext& context);
 
 // A sample's radiance is that of the composite by the difference formula: the object's where the
-// camera sees one, else plate + L_obj - L_noobj, which may be negative. A limit (clamp.h) applies
-// to objects and differences, never to the plate.
+// camera sees one, else plate + L_obj - L_noobj, which may be negative. A clamp applies to objects
+// and differences, never to the plate. Fills the layers of DifferentialFilm.
 class DifferentialIntegrator : public Integrator {
  public:
-  // All of them must outlive this; `film` is of the plate's size.
-  DifferentialIntegrator(const DifferentialScene& scene, const Image& plate, DifferentialFilm& film)
-      : scene_(scene), plate_(plate), film_(film) {}
+  // All must outlive this; the plate is of the picture's size.
+  DifferentialIntegrator(const CompositeWorlds& worlds, const Image& plate, bool behindObjects)
+      : worlds_(worlds), plate_(plate), behindObjects_(behindObjects) {}
 
-  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override;
+  Sample sample(const CameraSample& camera, PathContext& context) const override;
+  std::vector<Accumulation> layers() const override { return DifferentialFilm::layers(); }
 
  private:
-  const DifferentialScene& scene_;
+  const CompositeWorlds& worlds_;
   const Image& plate_;
-  DifferentialFilm& film_;
+  bool behindObjects_;
 };
 
 }  // namespace chromeball

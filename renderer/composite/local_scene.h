@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of a model stand for real things.
+// Tells the local scene, which stands for real things, from the synthetic objects.
 #pragma once
 
 #include <vector>
 
 #include "base/named_setting.h"
-#include "composite/differential_path.h"
+#include "composite/objects.h"
+#include "scene/scene.h"
 
 namespace chromeball {
 

@@ -2,85 +2,98 @@
 #include "composite/reflectance.h"
 
 #include <map>
+#include <utility>
 
 namespace chromeball {
 namespace {
 
-constexpr Rgb kFirstGuess(0.25f);       // typical of real surfaces
-constexpr uint32_t kSightSamples = 16;  // a pixel, to find what the camera sees
+constexpr Rgb kFirstEstimate(0.25f);    // typical of real surfaces
+constexpr uint32_t kSightSamples = 16;  // per pixel, to find what the camera sees
 constexpr uint32_t kMaxSamples = 1024;
 
-// What is seen of the local scene: how far away, and the model's own base colour.
+PathSettings localSettings(const RenderSettings& settings) {
+  PathSettings local = settings.path();
+  local.hideProbe = true;
+  local.estimateDepthCut = false;
+  local.visible = local.compared = kLocalScene;
+  return local;
+}
+
+// What the camera sees of the local scene: the farthest depth of each pixel, and the mean of the
+// model's own base colour; 0 where it sees none of it.
 struct Sight {
-  Image farthest, baseColor;  // 0 where nothing is seen
+  Image farthest, baseColor;
 };
 
 class SightIntegrator : public Integrator {
  public:
-  SightIntegrator(const Accel& rays, const CameraRays& camera, Sight& sight)
-      : scene_(rays.scene()), rays_(rays), camera_(camera), sight_(sight) {}
+  enum Layer { kDepth, kCoverage, kBaseColor };
 
-  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit*) const override {
-    memory.sampler.startVertex(0);
+  SightIntegrator(const PathTracer& tracer, const CameraRays& camera)
+      : tracer_(tracer), camera_(camera) {}
+
+  std::vector<Accumulation> layers() const override {
+    return {Accumulation::Maximum, Accumulation::Sum, Accumulation::Sum};
+  }
+  RayMask visible() const override { return kLocalScene; }
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    context.sampler.startVertex(0);
     PathState state = camera.path();
-    const auto hit = passUnseen(scene_, rays_, state, camera.hit, memory.sampler);
+    const auto hit = tracer_.skipHiddenBacks(state, camera.hit, context);
     if (!hit) return Rgb(0);
+    const Scene& scene = tracer_.world().scene;
     const vec3& direction = state.ray.direction;
-    const Surface surface = surfaceAt(scene_, scene_.instances[hit->instance], hit->triangle,
+    const Surface surface = surfaceAt(scene, scene.instances[hit->instance], hit->triangle,
                                       hit->barycentric, -direction);
-    float& farthest = *sight_.farthest.at(camera.x, camera.y);
     const float distance = glm::length(surface.position - camera.ray.origin);
-    farthest = std::max(farthest, camera_.depth(direction, distance));
-    sight_.baseColor.setRgb(camera.x, camera.y, materialAt(scene_, surface).baseColor);
+    context.layers[kDepth] = Rgb(camera_.depth(direction, distance));
+    context.layers[kCoverage] = Rgb(1);
+    context.layers[kBaseColor] = materialAt(scene, surface).baseColor;
     return Rgb(0);
   }
 
  private:
-  const Scene& scene_;
-  const Accel& rays_;
+  const PathTracer& tracer_;
   const CameraRays& camera_;
-  Sight& sight_;
 };
 
-// Radiance of the local scene, of which the surface that the camera sees has another base colour.
+// Radiance of the local scene where the surface that the camera sees has another base colour.
 class RepaintedIntegrator : public Integrator {
  public:
-  RepaintedIntegrator(const PathScene<LocalRays>& path, const Rgb& baseColor)
-      : path_(path), baseColor_(baseColor) {}
+  RepaintedIntegrator(const PathTracer& tracer, const Rgb& baseColor)
+      : tracer_(tracer), baseColor_(baseColor) {}
 
-  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
-    ++memory.rays.camera;
-    memory.sampler.startVertex(0);
+  RayMask visible() const override { return kLocalScene; }
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    ++context.counts.camera;
+    context.sampler.startVertex(0);
     PathState state = camera.path();
-    const auto hit = passUnseen(path_.scene, path_.rays, state, camera.hit, memory.sampler);
+    const auto hit = tracer_.skipHiddenBacks(state, camera.hit, context);
     if (!hit) return Rgb(0);
-    const Instance& instance = path_.scene.instances[hit->instance];
+    const Scene& scene = tracer_.world().scene;
+    const Instance& instance = scene.instances[hit->instance];
     state.length += hit->distance;
     const Surface surface =
-        surfaceAt(path_.scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
-    Rgb found(0);
-    if (surface.material->emits()) found += foundEmission(path_, state, surface, instance);
-    MaterialPoint material = materialAt(path_.scene, surface);
+        surfaceAt(scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
+    if (surface.material->emits())
+      state.radiance += tracer_.foundEmission(state, surface, instance);
+    MaterialPoint material = materialAt(scene, surface);
     material.baseColor = baseColor_;
-    if (first) first->hit = true;
-    const Bsdf bsdf(material, surface, -state.ray.direction, path_.mirrorAlpha);
-    if (!scatter<false>(path_, state, surface, bsdf, memory.sampler, memory.samples, memory.rays,
-                        found))
-      return found;
-    memory.sampler.startVertex(state.depth);
-    return found + followPath(path_, state, closestHit(path_.rays, state.ray, memory.sampler),
-                              memory.sampler, memory.samples, memory.rays, nullptr);
+    if (state.first) state.first->hit = true;
+    const Bsdf bsdf(material, surface, -state.ray.direction, tracer_.mirrorAlpha());
+    if (!tracer_.scatter(state, surface, bsdf, context)) return state.radiance;
+    context.sampler.startVertex(state.depth);
+    const Rgb direct = std::exchange(state.radiance, Rgb(0));
+    state.first = nullptr;
+    return direct + tracer_.follow(state, tracer_.closestHit(state.ray, context), context);
   }
 
  private:
-  const PathScene<LocalRays>& path_;
+  const PathTracer& tracer_;
   Rgb baseColor_;
 };
-
-ObjectMask inverse(ObjectMask mask) {
-  mask.flip();
-  return mask;
-}
 
 // Applies `change` to the materials of the local scene, after making them its own.
 template <class Change>
@@ -98,26 +111,36 @@ void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change
   }
 }
 
-Sight look(const ReflectanceProblem& problem, const Accel& local, const RenderSettings& settings,
+Sight look(const ReflectanceProblem& problem, const RenderSettings& settings,
            const std::atomic<bool>& stop) {
-  Sight sight{Image(settings.width, settings.height, 1), Image(settings.width, settings.height, 3)};
   RenderSettings quick;
   quick.width = settings.width, quick.height = settings.height;
   quick.samples = kSightSamples;
   quick.maxDepth = 0;
   quick.seed = settings.seed;
   const CameraRays camera(problem.camera, float(settings.width) / float(settings.height));
-  render(
-      SightIntegrator(local, camera, sight), local, problem.camera, quick, [](double) {}, stop);
+  const PathTracer tracer(problem.world, problem.lighting, localSettings(quick));
+  const RenderResult result = render(
+      SightIntegrator(tracer, camera), problem.world, problem.camera, quick, [](double) {}, stop);
+  Sight sight{Image(settings.width, settings.height, 1), Image(settings.width, settings.height, 3)};
+  for (int y = 0; y < settings.height; ++y)
+    for (int x = 0; x < settings.width; ++x) {
+      const auto layer = [&](SightIntegrator::Layer l) { return result.layers.value(x, y, l); };
+      const double seen = layer(SightIntegrator::kCoverage).x;
+      if (seen == 0) continue;
+      *sight.farthest.at(x, y) = float(layer(SightIntegrator::kDepth).x);
+      sight.baseColor.setRgb(x, y, Rgb(layer(SightIntegrator::kBaseColor) / seen));
+    }
   return sight;
 }
 
-// Mean radiance of what is seen of the local scene where that has the base colour given.
-Image repainted(const PathScene<LocalRays>& path, const Rgb& baseColor, const Camera& camera,
+// Mean radiance of the visible local scene with the base colour given.
+Image repainted(const ReflectanceProblem& problem, const Rgb& baseColor,
                 const RenderSettings& settings, const Progress& progress,
                 const std::atomic<bool>& stop) {
-  const RenderResult result = render(RepaintedIntegrator(path, baseColor), path.rays.local, camera,
-                                     settings, progress, stop);
+  const PathTracer tracer(problem.world, problem.lighting, localSettings(settings));
+  const RenderResult result = render(RepaintedIntegrator(tracer, baseColor), problem.world,
+                                     problem.camera, settings, progress, stop);
   Image image = result.film.mean();
   const Image alpha = result.aovs.finished(Aov::Alpha);
   for (int y = 0; y < image.height; ++y)
@@ -162,12 +185,12 @@ ReflectanceSolution explain(const Image& plate, const Image& black, const Image&
   return solution;
 }
 
-void startFrom(const Sight& sight, const Rgb& guess, Projection& projection) {
+void startFrom(const Sight& sight, Projection& projection) {
   projection.setDepth(sight.farthest);
   Image& colors = projection.colors();
   for (int y = 0; y < colors.height; ++y)
     for (int x = 0; x < colors.width; ++x)
-      colors.setRgb(x, y, *sight.farthest.at(x, y) > 0 ? guess : Rgb(0));
+      colors.setRgb(x, y, *sight.farthest.at(x, y) > 0 ? kFirstEstimate : Rgb(0));
 }
 
 }  // namespace
@@ -197,35 +220,27 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
                                      const RenderSettings& settings, int iterations,
                                      Projection& projection, const Progress& progress,
                                      const std::atomic<bool>& stop) {
-  const Accel local(problem.scene, inverse(problem.isObject));
-  const Sight sight = look(problem, local, settings, stop);
-  startFrom(sight, kFirstGuess, projection);
+  const Sight sight = look(problem, settings, stop);
+  startFrom(sight, projection);
 
   RenderSettings step = settings;
   step.aovs = {Aov::Alpha};
   step.samples = std::min(settings.samples, kMaxSamples);
   step.timeLimit.reset();
   step.noiseLimit.reset();
-  const std::unique_ptr<Emitters> emitters = Emitters::make(problem.scene);
-  const LocalRays rays{local, problem.isObject};
-  const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(problem.scene);
-  PathScene<LocalRays> path{problem.scene,     rays, problem.lighting, emitters.get(), settings.mis,
-                            settings.maxDepth, true, punctual.get()};
-  path.maxTransmissionDepth = settings.maxTransmissionDepth;
-  path.measuresCut = false;
-  prepareBsdfs(problem.scene);
-  bool shines = false;  // also where it is black
-  for (size_t i = 0; i < problem.isObject.size(); ++i) {
-    const Material& m = problem.scene.materials[problem.scene.instances[i].material];
-    shines |= !problem.isObject[i] && (m.emits() || m.specular > 0);
+  const Scene& scene = problem.world.scene;
+  bool shines = false;  // even where its base colour is black
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Material& m = scene.materials[size_t(scene.instances[i].material)];
+    shines |= problem.world.accel.mask(i) == kLocalScene && (m.emits() || m.specular > 0);
   }
 
   ReflectanceSolution solution;
   for (int i = 0; i < iterations && !stop; ++i) {
     const auto report = [&](double fraction) { progress((i + fraction) / iterations); };
     Image black(settings.width, settings.height, 3);
-    if (shines) black = repainted(path, Rgb(0), problem.camera, step, report, stop);
-    const Image white = repainted(path, Rgb(1), problem.camera, step, report, stop);
+    if (shines) black = repainted(problem, Rgb(0), step, report, stop);
+    const Image white = repainted(problem, Rgb(1), step, report, stop);
     solution = explain(problem.plate, black, white, sight, projection);
   }
   return solution;
@@ -234,9 +249,8 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
                                          const RenderSettings& settings, const Rgb& irradiance,
                                          Projection& projection, const std::atomic<bool>& stop) {
-  const Accel local(problem.scene, inverse(problem.isObject));
-  const Sight sight = look(problem, local, settings, stop);
-  startFrom(sight, kFirstGuess, projection);
+  const Sight sight = look(problem, settings, stop);
+  startFrom(sight, projection);
   Image black(settings.width, settings.height, 3), white = black;
   for (int y = 0; y < white.height; ++y)
     for (int x = 0; x < white.width; ++x) white.setRgb(x, y, irradiance * kInvPi);

@@ -8,8 +8,8 @@
 namespace chromeball {
 
 enum class Passes {
-  One,  // both worlds along the same paths (differential_path.h)
-  Two,  // two plain renders with seeds of their own, subtracted: slow, noisy and obviously right
+  One,  // both worlds along shared paths (differential.h)
+  Two,  // two plain renders with seeds of their own, subtracted: the slow reference
 };
 
 struct CompositeRender {
@@ -19,12 +19,17 @@ struct CompositeRender {
   PixelErrors errors;  // of the mean
 };
 
-// `accel` holds the whole scene; the plate is of the picture's size. `looksBehind`: L_noobj is
-// wanted also where an object hides it.
-CompositeRender renderComposite(const Scene& scene, const Accel& accel, const ObjectMask& isObject,
-                                const Camera& camera, const LightingStrategy& lighting,
-                                const Image& plate, const RenderSettings& settings, Passes passes,
-                                bool looksBehind, const Progress& progress,
-                                const std::atomic<bool>& stop);
+// `world` has the masks of composite/objects.h; the plate is of the picture's size.
+// `behindObjects`: L_noobj is wanted also where an object hides it.
+CompositeRender renderComposite(const World& world, const Camera& camera,
+                                const LightingStrategy& lighting, const Image& plate,
+                                const RenderSettings& settings, Passes passes, bool behindObjects,
+                                const Progress& progress, const std::atomic<bool>& stop);
+
+// Memory that a composite takes beside a plain render.
+inline size_t compositeBytesPerPixel() {
+  constexpr size_t kImages = 60;  // plate, mean, variance, ...
+  return LayerFilm::bytesPerPixel(DifferentialFilm::kLayers) + kImages;
+}
 
 }  // namespace chromeball

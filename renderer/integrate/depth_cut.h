@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much light the limits of depth keep from a picture.
+// The light that the limits of depth cut from a render.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,9 @@
 
 namespace chromeball {
 
-// Enough for every way through a few vessels, one behind another.
-inline constexpr int kUsualTransmissionDepth = 64;
-
-// Sums of luminance over paths. `byDepth` and `byTransmission` are estimates, without bias, of what
-// paths would find beyond the limit that they reach first; light that takes more than the bounces
-// of measureCut() (path.h) to find is not among it.
+// Sums of luminance over paths. `byDepth` and `byTransmission` are unbiased estimates of what paths
+// would find beyond the limit that they reach first, within the bounces that
+// PathTracer::estimateDepthCut() adds.
 struct DepthCut {
   double found = 0, byDepth = 0, byTransmission = 0;
 
@@ -27,7 +24,7 @@ struct DepthCut {
     found += other.found, byDepth += other.byDepth, byTransmission += other.byTransmission;
   }
 
-  // Share of all light, found or not.
+  // Fraction of all light, found or not.
   double fraction(double cut) const {
     return cut > 0 ? cut / (found + byDepth + byTransmission) : 0;
   }

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render estimates: light that comes along rays from the camera.
+// What a render estimates: light that arrives along camera rays.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "film/invalid.h"
-#include "integrate/clamp.h"
+#include "film/layer_film.h"
 #include "integrate/path.h"
-#include "trace/accel.h"
 
 namespace chromeball {
 
-// A ray through pixel (x, y), and what it meets first.
+// A camera ray through pixel (x, y), and the first surface that it meets.
 struct CameraSample {
   int x, y;
   Ray ray;
   std::optional<Hit> hit;
-  Beam beam{};  // around the ray, where the scene has textures to filter
+  Beam beam{};                // around the ray, where the scene has textures to filter
+  FirstHit* first = nullptr;  // to be filled; null: not wanted
 
-  PathState path() const { return {.ray = ray, .beam = beam}; }
+  PathState path() const { return {.ray = ray, .beam = beam, .first = first}; }
 };
 
-// What a sample adds to its pixel: radiance, or the reason why it is left out.
+// A sample of a pixel: radiance, or the defect that excludes it.
 struct Sample {
   Rgb radiance{0};
   std::optional<Defect> defect;
@@ -28,34 +31,32 @@ struct Sample {
   Sample(const Rgb& found, std::optional<Defect> cause) : radiance(found), defect(cause) {}
 };
 
-// What a thread needs of its own.
-struct PathMemory {
-  PixelSampler sampler;  // at the sample that is asked for
-  std::vector<DirectionSample> samples;
-  RayCounts rays;
-  Clamp clamp;  // for the integrator to apply to what it traced
-};
-
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // One sample of a pixel. Concurrently for different pixels. `first` may be null.
-  virtual Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const = 0;
+  // One sample of a pixel; called concurrently. Fills context.layers, one value for each of
+  // layers(), which are 0 at the start.
+  virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
+
+  // The layers of its samples, which the film gathers (RenderResult::layers).
+  virtual std::vector<Accumulation> layers() const { return {}; }
+
+  // The instances that camera rays see.
+  virtual RayMask visible() const { return kAllInstances; }
 };
 
 // Path tracing of the whole scene.
 class PathIntegrator : public Integrator {
  public:
-  explicit PathIntegrator(const PathScene<Accel>& path) : path_(path) {}
+  explicit PathIntegrator(const PathTracer& tracer) : tracer_(tracer) {}
 
-  Sample sample(const CameraSample& camera, PathMemory& memory, FirstHit* first) const override {
-    return memory.clamp(pathRadiance(path_, camera.path(), camera.hit, memory.sampler,
-                                     memory.samples, memory.rays, first));
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
   }
 
  private:
-  const PathScene<Accel>& path_;
+  PathTracer tracer_;
 };
 
 }  // namespace chromeball

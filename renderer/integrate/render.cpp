@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
-#include <cmath>
 #include <mutex>
+
+#include "integrate/schedule.h"
 
 namespace chromeball {
 namespace {
@@ -20,83 +20,23 @@ constexpr int kTile = 16;
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
 // Deeper vertices carry too little for stratification to show; they take plain random numbers.
 constexpr int kTabulatedVertices = 6;
-constexpr uint32_t kFirstPass = 4;        // samples a pixel
-constexpr uint32_t kMinForNoise = 16;     // samples a pixel before an estimate of noise is believed
-constexpr uint32_t kMaxInTheDark = 4096;  // samples a pixel without any light: there is none
 
-double now() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
-// How many of a pixel's first `samples` belong to a half.
+// The number of a pixel's first `samples` that belong to a half.
 uint32_t samplesOf(int half, uint32_t samples) {
   return samples / 2 + (half == 0 ? samples % 2 : 0);
 }
 
-// Decides how many samples a pixel has after each pass.
-class Schedule {
- public:
-  explicit Schedule(const RenderSettings& settings) : settings_(settings), start_(now()) {}
-
-  // After the pass that follows `done` samples; at most `done` where the render ends.
-  uint32_t next(uint32_t done, const Film& film) {
-    if (done == 0) return std::min(kFirstPass, settings_.samples);
-    double wanted = std::min(2.0 * done, double(settings_.samples));
-    if (settings_.timeLimit) wanted = std::min(wanted, untilTime(done));
-    if (settings_.noiseLimit && done >= kMinForNoise)
-      wanted = std::min(wanted, untilNoise(done, film));
-    return uint32_t(wanted);
-  }
-
-  // Share of the work done after `samples`; NaN where only the noise tells.
-  double progress(double samples) const {
-    if (settings_.timeLimit) return std::min(1.0, (now() - start_) / *settings_.timeLimit);
-    if (settings_.noiseLimit) return std::nan("");
-    return samples / settings_.samples;
-  }
-
- private:
-  // A pass has at least this share of the samples before it.
-  static constexpr double kMinGrowth = 1.0 / 16;
-
-  double untilTime(uint32_t done) const {
-    const double affordable = done * *settings_.timeLimit / (now() - start_);
-    return affordable < done * (1 + kMinGrowth) ? 0 : affordable;
-  }
-
-  // Noise falls as samples^-rate: 1/2 for independent samples, up to 1 for quasi-random ones.
-  double untilNoise(uint32_t done, const Film& film) {
-    const Noise noise = film.noise();
-    if (std::isnan(noise.noise)) return done < kMaxInTheDark ? INFINITY : 0;
-    const double excess = noise.upper / *settings_.noiseLimit;
-    if (excess <= 1) return 0;
-    double rate = 0.5;
-    if (last_.samples > 0 && noise.noise < last_.noise)
-      rate = std::log(last_.noise / noise.noise) / std::log(double(done) / last_.samples);
-    last_ = {done, noise.noise};
-    return done * std::max(std::pow(excess, 1 / std::clamp(rate, 0.5, 1.0)), 1 + kMinGrowth);
-  }
-
-  const RenderSettings& settings_;
-  double start_;
-  struct {
-    uint32_t samples = 0;
-    double noise = 0;
-  } last_;  // estimate
-};
-
 struct Worker {
-  PathMemory memory;
+  PathContext context;
   InvalidSamples invalid;
 };
 
 class Renderer {
  public:
-  Renderer(const Integrator& integrator, const Accel& accel, const Camera& camera,
+  Renderer(const Integrator& integrator, const World& world, const Camera& camera,
            const RenderSettings& settings, RenderResult& result)
       : integrator_(integrator),
-        accel_(accel),
+        world_(world),
         camera_(camera),
         cameraRays_(camera, float(settings.width) / float(settings.height)),
         settings_(settings),
@@ -106,10 +46,12 @@ class Renderer {
                                         (std::min(settings.maxDepth, kTabulatedVertices - 1) + 1),
                settings.seed),
         workers_([this] {
-          return Worker{{PixelSampler(table_, settings_.seed), {}, {}, Clamp(settings_.clamp)}, {}};
+          return Worker{{.sampler = PixelSampler(table_, settings_.seed),
+                         .clamp = Clamp(settings_.clamp),
+                         .layers = std::vector<Rgb>(integrator_.layers().size())}};
         }) {}
 
-  // Gives every pixel its samples [done, wanted). `progress` is told the share of the pass.
+  // Takes samples [done, wanted) of every pixel. `progress` receives the fraction of the pass.
   void pass(uint32_t done, uint32_t wanted, const Progress& progress,
             const std::atomic<bool>& stop) {
     const Beam beam = beamOfPass(wanted);
@@ -136,17 +78,18 @@ class Renderer {
 
   void gather() {
     for (const Worker& worker : workers_) {
-      result_.rays.add(worker.memory.rays);
+      result_.rays.add(worker.context.counts);
+      result_.depthCut.add(worker.context.depthCut);
       result_.invalid.add(worker.invalid);
-      result_.clamped.add(worker.memory.clamp.clamped());
+      result_.clamped.add(worker.context.clamp.clamped());
     }
   }
 
  private:
-  // Textures are filtered for the number of samples that a pixel will have; where that is open, has
-  // had after the pass, so that they grow sharp with the samples.
+  // Textures are filtered for the pixel's final number of samples; where that is open, for the
+  // number after this pass, so that textures sharpen with the samples.
   Beam beamOfPass(uint32_t wanted) const {
-    if (accel_.scene().textures.empty()) return {};
+    if (world_.scene.textures.empty()) return {};
     const bool open = settings_.timeLimit || settings_.noiseLimit;
     return beamOf(camera_, settings_.height, open ? wanted : settings_.samples);
   }
@@ -174,7 +117,8 @@ class Renderer {
         cameraRays_.ray(u, v, ray.origin, ray.direction);
       keys[lane] = sampler.sampleKey();
     }
-    return accel_.intersect(std::span(rays).first(count), std::span(keys).first(count));
+    return world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
+                                  integrator_.visible());
   }
 
   // The samples of one half among the pixel's [done, wanted). A half that outgrows the table goes
@@ -185,8 +129,8 @@ class Renderer {
     for (uint32_t begin = samplesOf(half, done); begin < end;) {
       const uint32_t table = begin / table_.size(), first = begin % table_.size();
       const uint32_t count = std::min(end - begin, table_.size() - first);
-      worker.memory.sampler.startPixel(uint32_t(x), uint32_t(y),
-                                       Film::kHalves * uint64_t(table) + uint64_t(half));
+      worker.context.sampler.startPixel(uint32_t(x), uint32_t(y),
+                                        Film::kHalves * uint64_t(table) + uint64_t(half));
       result_.film.add(x, y, half, renderSamples(worker, x, y, first, first + count, beam));
       begin += count;
     }
@@ -196,9 +140,9 @@ class Renderer {
   SampleSums renderSamples(Worker& worker, int x, int y, uint32_t begin, uint32_t end,
                            const Beam& beam) {
     FirstHit first;
-    FirstHit* wantsFirst = result_.aovs.empty() ? nullptr : &first;
+    const bool wantsFirst = !result_.aovs.empty(), hasLayers = !result_.layers.empty();
     SampleSums sums;
-    PixelSampler& sampler = worker.memory.sampler;
+    PixelSampler& sampler = worker.context.sampler;
     std::array<Ray, Accel::kPacket> rays;
     Accel::Packet hits;
     for (uint32_t i = begin; i < end; ++i) {
@@ -206,13 +150,15 @@ class Renderer {
       if (lane == 0) hits = cameraHits(sampler, x, y, i, end, rays);
       sampler.startSample(i);
       first = {};
-      const CameraSample camera{x, y, rays[lane], hits[lane], beam};
-      const Sample sample = integrator_.sample(camera, worker.memory, wantsFirst);
+      if (hasLayers) std::fill(worker.context.layers.begin(), worker.context.layers.end(), Rgb(0));
+      const CameraSample camera{x, y, rays[lane], hits[lane], beam, wantsFirst ? &first : nullptr};
+      const Sample sample = integrator_.sample(camera, worker.context);
       if (sample.defect) {
         worker.invalid.add(*sample.defect, x, y);
         result_.aovs.add(x, y, *sample.defect);
       } else {
         sums.add(sample.radiance);
+        if (hasLayers) result_.layers.add(x, y, worker.context.layers);
       }
       if (wantsFirst) {
         first.depth = cameraRays_.depth(camera.ray.direction, first.depth);
@@ -223,7 +169,7 @@ class Renderer {
   }
 
   const Integrator& integrator_;
-  const Accel& accel_;
+  const World& world_;
   const Camera& camera_;
   CameraRays cameraRays_;
   const RenderSettings& settings_;
@@ -234,37 +180,21 @@ class Renderer {
 
 }  // namespace
 
-RenderResult render(const Scene& scene, const Accel& accel, const Camera& camera,
-                    const LightingStrategy& lighting, const RenderSettings& settings,
-                    const Progress& progress, const std::atomic<bool>& stop) {
-  const std::unique_ptr<Emitters> emitters = Emitters::make(scene);
-  const std::unique_ptr<PunctualLights> punctual = PunctualLights::make(scene);
-  const PathScene<Accel> path{scene,
-                              accel,
-                              lighting,
-                              emitters.get(),
-                              settings.mis,
-                              settings.maxDepth,
-                              settings.hideProbe,
-                              punctual.get(),
-                              lighting.mirrorAlpha(),
-                              settings.maxTransmissionDepth};
-  prepareBsdfs(scene);
-  return render(PathIntegrator(path), accel, camera, settings, progress, stop);
-}
-
-RenderResult render(const Integrator& integrator, const Accel& accel, const Camera& camera,
+RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop) {
-  RenderResult result{Film(settings.width, settings.height),
-                      AovFilm(settings.width, settings.height, settings.aovs),
-                      {},
-                      {},
-                      {},
-                      0,
-                      false};
+  return render(PathIntegrator(PathTracer(world, lighting, settings.path())), world, camera,
+                settings, progress, stop);
+}
+
+RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop) {
+  RenderResult result{.film = Film(settings.width, settings.height),
+                      .aovs = AovFilm(settings.width, settings.height, settings.aovs),
+                      .layers = LayerFilm(settings.width, settings.height, integrator.layers())};
   Schedule schedule(settings);
-  Renderer renderer(integrator, accel, camera, settings, result);
+  Renderer renderer(integrator, world, camera, settings, result);
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {

@@ -39,12 +39,12 @@ Rgb flatIrradiance(const CompositeJob& job, const LoadedScene& loaded) {
 
 // Finds the local scene's reflectance, and says what it came to.
 void solve(CompositeJob& job, const RenderJob& render, const LoadedScene& loaded,
-           const LightingStrategy& lighting, const Progress& progress,
+           const World& world, const LightingStrategy& lighting, const Progress& progress,
            const std::atomic<bool>& stop, nlohmann::json& details,
            std::vector<std::string>& notes) {
   constexpr int kIterations = 2;
   constexpr double kClampedToMention = 0.01;
-  const ReflectanceProblem problem{loaded.scene, job.isObject, loaded.camera, lighting, job.plate};
+  const ReflectanceProblem problem{world, loaded.camera, lighting, job.plate};
   const ReflectanceSolution solution =
       job.reflectance == CompositeJob::Reflectance::Flat
           ? solveFlatReflectance(problem, render.settings, flatIrradiance(job, loaded),
@@ -87,7 +87,11 @@ Layer layerOf(Aov aov, const CompositeJob& job, const CompositeRender& render,
 
 double meanAlpha(const DifferentialFilm& film) {
   double covered = 0, count = 0;
-  for (const DifferentialPixel& pixel : film.pixels) covered += pixel.covered, count += pixel.count;
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel pixel = film.at(x, y);
+      covered += pixel.covered, count += pixel.count;
+    }
   return covered / std::max(count, 1.0);
 }
 
@@ -147,20 +151,19 @@ void sayPlateNotes(const CompositeEntry& entry) {
 }
 
 Rendered renderComposite(CompositeJob& job, const RenderJob& render, const LoadedScene& loaded,
-                         const Accel& accel, const LightingStrategy& lighting,
+                         const World& world, const LightingStrategy& lighting,
                          const Progress& progress, const std::atomic<bool>& stop) {
   const bool solves = job.projection != nullptr;
   nlohmann::json details;
   std::vector<std::string> notes;
   if (solves)
     solve(
-        job, render, loaded, lighting, [&](double fraction) { progress(fraction / 2); }, stop,
-        details, notes);
+        job, render, loaded, world, lighting, [&](double fraction) { progress(fraction / 2); },
+        stop, details, notes);
   const bool looksBehind =
       std::count(job.layers.begin(), job.layers.end(), Aov::WithoutObjects) > 0;
   CompositeRender rendered = renderComposite(
-      loaded.scene, accel, job.isObject, loaded.camera, lighting, job.plate, render.settings,
-      job.passes, looksBehind,
+      world, loaded.camera, lighting, job.plate, render.settings, job.passes, looksBehind,
       [&](double fraction) { progress(solves ? (1 + fraction) / 2 : fraction); }, stop);
   const Composite composite = compose(rendered.film, rendered.mean, job.plate, job.mode);
 

@@ -44,7 +44,7 @@ struct Rendered {
 };
 
 Rendered renderComposite(CompositeJob& composite, const RenderJob& job, const LoadedScene& loaded,
-                         const Accel& accel, const LightingStrategy& lighting,
+                         const World& world, const LightingStrategy& lighting,
                          const Progress& progress, const std::atomic<bool>& stop);
 
 }  // namespace chromeball

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "composite/differential.h"
+#include "composite/render_composite.h"
 #include "job/picture_memory.h"
 #include "lighting/finite_surroundings.h"
 #include "scene/framing.h"
@@ -119,9 +119,8 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
-  constexpr double kCompositeBytes = sizeof(DifferentialPixel) + 60;  // plate, mean, variance, ...
-  const double needed = pictureBytes(settings) + (job.file.composite ? kCompositeBytes : 0) *
-                                                     settings.width * settings.height;
+  const double composite = job.file.composite ? double(compositeBytesPerPixel()) : 0;
+  const double needed = pictureBytes(settings) + composite * settings.width * settings.height;
   const double budget = job.memory.value_or(memoryBudget());
   if (needed > budget)
     throwInput(

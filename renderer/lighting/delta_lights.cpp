@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/delta_lights.h"
 
-#include <limits>
-
 #include "shading/bsdf.h"
 
 namespace chromeball {
 namespace {
 
-constexpr float kDelta = std::numeric_limits<float>::infinity();  // pdf of a direction alone
-
-// In proportion to the light of a Lambertian surface, which is positive wherever a plain BSDF is;
-// where light may come from behind the normal, in proportion to what the BSDF makes of it.
+// Luminance that a Lambertian surface reflects of the light, which is positive wherever a plain
+// BSDF reflects any; for layered BSDFs, which may transmit light, the luminance that they scatter.
 float importance(const DirectionSample& light, const LightPoint& point) {
   if (point.bsdf && point.bsdf->isExtended()) [[unlikely]]
     return luminance(light.irradiance * point.bsdf->evaluate(light.wi).fCos);
@@ -25,7 +21,7 @@ DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const 
   const glm::quat turn = glm::angleAxis(glm::radians(probe.rotationDegrees()), vec3(0, 1, 0));
   for (const DirectionalLight& light : lights)
     if (!isBlack(light.irradiance))
-      lights_.push_back({glm::normalize(turn * light.direction), light.irradiance, kDelta});
+      lights_.push_back({glm::normalize(turn * light.direction), light.irradiance, 0, true});
 }
 
 void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
@@ -34,24 +30,24 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
     out.insert(out.end(), lights_.begin(), lights_.end());
     return;
   }
-  // First the lights that shine here, with their importance in the pdf's place; then, of these,
-  // the chosen ones.
+  // Systematic resampling by importance. Candidates go to `out` first, with their importance in
+  // `pdf`; those which are chosen then replace them.
   const size_t first = out.size();
   float total = 0;
   for (const DirectionSample& light : lights_)
-    if (const float fraction = importance(light, point); fraction > 0) {
-      total += fraction;
-      out.push_back({light.wi, light.irradiance, fraction});
+    if (const float weight = importance(light, point); weight > 0) {
+      total += weight;
+      out.push_back({light.wi, light.irradiance, weight, true});
     }
   const float step = total / kLater;
   float target = step * sampler.get1(dimension::kLight), sum = 0;
   size_t kept = first;
   for (size_t i = first; i < out.size(); ++i) {
-    const float fraction = out[i].pdf;
+    const float weight = out[i].pdf;
     int times = 0;
-    for (sum += fraction; sum > target; target += step) ++times;
+    for (sum += weight; sum > target; target += step) ++times;
     if (times > 0)
-      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / fraction), kDelta};
+      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / weight), 0, true};
   }
   out.resize(kept);
 }

@@ -23,7 +23,7 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
     // The point may lie on the surface itself.
     if (!(larger > 0) || !isSeen(y, point.position)) continue;
     out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * larger,
-                   out[i].pdf / larger};
+                   out[i].pdf / larger, out[i].isDelta};
   }
   out.resize(kept);
 }

@@ -15,26 +15,25 @@ namespace chromeball {
 
 class Bsdf;
 
-// Where light is wanted.
+// A point that receives light.
 struct LightPoint {
   vec3 position;
-  vec3 normal;  // shading normal, on the viewer's side
-  vec3 wo;      // unit, towards the viewer
-  const Bsdf* bsdf;
+  vec3 normal;             // shading normal, on the viewer's side
+  const Bsdf* bsdf;        // null in escaped()
   int depth;               // 0 at the first hit: a strategy may do less on later bounces
   bool transmits = false;  // light from behind counts as well
 };
 
-// One direction worth a shadow ray, as a directional light: `irradiance`, on a surface that faces
-// it, is radiance / pdf. `pdf` is the effective pdf over solid angle, the sum over all
-// samples that were taken together, so that the sum over samples of
+// One direction for a shadow ray, as a directional light: `irradiance`, on a surface that faces it,
+// is radiance / pdf. `pdf` is the effective pdf over solid angle, the sum over all samples taken
+// together, so that the estimate is the sum over samples of
 //   f cos * irradiance
-// is the estimate, however many samples a strategy takes. A delta light has infinite pdf: MIS
-// then leaves it whole.
+// however many samples a strategy takes.
 struct DirectionSample {
   vec3 wi;  // unit, from the point to the light
   Rgb irradiance;
-  float pdf;
+  float pdf;             // unless isDelta
+  bool isDelta = false;  // of a delta light: no BSDF sample can find it, so MIS leaves it whole
 };
 
 class LightingStrategy {

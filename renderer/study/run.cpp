@@ -20,7 +20,7 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
       store_(store),
       loaded_(loaded),
       settings_(settings),
-      accel_(loaded.scene),
+      world_(loaded.scene),
       renders_(study.renders()) {
   const auto build = [&](const std::string& name, const std::string& strategy,
                          const char* location) {
@@ -45,8 +45,8 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
   settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
-  return chromeball::render(loaded_.scene, accel_, loaded_.camera, strategy(key.strategy), settings,
-                            progress, stop);
+  return chromeball::render(world_, loaded_.camera, strategy(key.strategy), settings, progress,
+                            stop);
 }
 
 double StudyRun::guess(const RenderKey& key) const {

@@ -52,7 +52,7 @@ class StudyRun {
   const RenderStore& store_;
   const LoadedScene& loaded_;
   const RenderSettings& settings_;
-  Accel accel_;
+  World world_;
   std::map<std::string, Built> built_;
   std::vector<RenderKey> renders_;
   std::vector<bool> present_;

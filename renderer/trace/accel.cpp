@@ -69,9 +69,9 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   if (!isBlack(query.transmittance)) arguments->valid[0] = 0;
 }
 
-RTCRay embreeRay(const Ray& ray) {
+RTCRay embreeRay(const Ray& ray, RayMask mask) {
   const vec3 &o = ray.origin, &d = ray.direction;
-  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.tMax, ~0u, 0, 0};
+  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.tMax, mask, 0, 0};
 }
 
 // Embree knows no coordinates beyond 1.8e18, and as Debian builds it ends the program at a ray
@@ -91,7 +91,8 @@ RTCScene newScene(RTCDevice device, bool hasFilter) {
   return scene;
 }
 
-void attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
+void attach(RTCScene scene, RTCGeometry geometry, uint32_t id, RayMask mask) {
+  rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
@@ -106,11 +107,15 @@ void throwOnError(RTCDevice device) {
 
 }  // namespace
 
-Accel::Accel(const Scene& scene, const std::vector<bool>& shown) : described_(scene) {
+Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks)
+    : described_(scene), masks_(masks) {
+  assert(masks.empty() || masks.size() == scene.instances.size());
   device_ = rtcNewDevice(nullptr);
   if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   try {
-    build(scene, shown);
+    if (!masks.empty() && !rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED))
+      throwRun("this build of Embree has no ray masks (EMBREE_RAY_MASK), which composites need");
+    build(scene);
   } catch (...) {
     release();
     throw;
@@ -146,14 +151,13 @@ RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
 RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
   if (!meshScenes_[mesh]) {
     meshScenes_[mesh] = newScene(device_, hasFilter_);
-    attach(meshScenes_[mesh], meshGeometry(scene, mesh), 0);
+    attach(meshScenes_[mesh], meshGeometry(scene, mesh), 0, kAllInstances);
     rtcCommitScene(meshScenes_[mesh]);
   }
   return meshScenes_[mesh];
 }
 
-void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
-  const auto isShown = [&](size_t instance) { return shown.empty() || shown[instance]; };
+void Accel::build(const Scene& scene) {
   std::vector<int> uses(scene.meshes.size());
   needsFilter_.resize(scene.meshes.size());
   for (size_t i = 0; i < scene.instances.size(); ++i) {
@@ -161,8 +165,7 @@ void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
     ++uses[instance.mesh];
     const Material& material = scene.materials[instance.material];
     const bool alpha = material.alphaMode != AlphaMode::Opaque;
-    if (!isShown(i) || !(alpha || passesStraight(material) || material.backLetsLightThrough()))
-      continue;
+    if (!alpha && !passesStraight(material) && !material.backLetsLightThrough()) continue;
     needsFilter_[instance.mesh] = hasFilter_ = true;
     hasAlpha_ = hasAlpha_ || alpha;
   }
@@ -171,7 +174,6 @@ void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
   scene_ = newScene(device_, hasFilter_);
   // Geometry i of the top scene is instance i of ours.
   for (size_t i = 0; i < scene.instances.size(); ++i) {
-    if (!isShown(i)) continue;
     const Instance& instance = scene.instances[i];
     RTCGeometry geometry;
     if (uses[instance.mesh] == 1 && !instance.toWorld) {
@@ -185,19 +187,19 @@ void Accel::build(const Scene& scene, const std::vector<bool>& shown) {
       std::memcpy(columns + 9, &t.translation, sizeof t.translation);
       rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     }
-    attach(scene_, geometry, uint32_t(i));
+    attach(scene_, geometry, uint32_t(i), mask(uint32_t(i)));
   }
   rtcCommitScene(scene_);
   throwOnError(device_);
 }
 
-bool Accel::closest(const Ray& ray, uint32_t key, Hit& hit) const {
+bool Accel::closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const {
   if (!isTraceable(ray)) return false;
   Query query;
   initQueryContext(query.embree);
   query.key = key;
   RTCRayHit r;
-  r.ray = embreeRay(ray);
+  r.ray = embreeRay(ray, mask);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
@@ -206,14 +208,14 @@ bool Accel::closest(const Ray& ray, uint32_t key, Hit& hit) const {
   return true;
 }
 
-// What stands before the triangle of `hit` at an edge that the ray grazes (trace/edge.h); and
-// before that, at a corner: three triangles are enough. Whatever shares an edge is about as far
-// away; anything else that the turned ray meets is not asked for.
-void Accel::settleEdge(Ray ray, uint32_t key, Hit& hit) const {
+// Finds the triangle in front of that of `hit` at an edge that the ray grazes (trace/edge.h), up to
+// three triangles at a corner. Triangles that share an edge are about equally far away; other hits
+// of the turned ray are ignored.
+void Accel::settleEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const {
   for (int i = 0; i < 3 && isBesideEdge(hit); ++i) {
     const auto turned = aimedInside(described_, ray, hit);
     Hit before;
-    if (!turned || !closest(*turned, key, before) ||
+    if (!turned || !closest(*turned, key, mask, before) ||
         (before.triangle == hit.triangle && before.instance == hit.instance) ||
         std::fabs(before.distance - hit.distance) > 0.5f * hit.distance)
       return;
@@ -222,18 +224,19 @@ void Accel::settleEdge(Ray ray, uint32_t key, Hit& hit) const {
   }
 }
 
-bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit) const {
-  if (!closest(ray, key, hit)) return false;
-  settleEdge(ray, key, hit);
+bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask) const {
+  if (!closest(ray, key, mask, hit)) return false;
+  settleEdge(ray, key, mask, hit);
   return true;
 }
 
-Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys) const {
+Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
+                               RayMask mask) const {
   assert(rays.size() <= kPacket && keys.size() == rays.size());
   Packet hits;
   if (hasAlpha_) {  // the filters answer one ray at a time
     for (size_t i = 0; i < rays.size(); ++i)
-      if (Hit hit; intersect(rays[i], keys[i], hit)) hits[i] = hit;
+      if (Hit hit; intersect(rays[i], keys[i], hit, mask)) hits[i] = hit;
     return hits;
   }
   alignas(32) int valid[kPacket] = {};
@@ -247,7 +250,7 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
     r.ray.dir_z[i] = ray.direction.z;
     r.ray.tnear[i] = r.ray.time[i] = 0;
     r.ray.tfar[i] = ray.tMax;
-    r.ray.mask[i] = ~0u;
+    r.ray.mask[i] = mask;
     r.ray.id[i] = r.ray.flags[i] = 0;
     r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
@@ -260,17 +263,17 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
                r.hit.primID[i],
                {r.hit.u[i], r.hit.v[i]},
                r.ray.tfar[i]};
-    settleEdge(rays[i], keys[i], *hits[i]);
+    settleEdge(rays[i], keys[i], mask, *hits[i]);
   }
   return hits;
 }
 
-Rgb Accel::transmittance(const Ray& ray) const {
+Rgb Accel::transmittance(const Ray& ray, RayMask mask) const {
   if (!isTraceable(ray)) return Rgb(1);
   Query query;
   initQueryContext(query.embree);
   query.direction = ray.direction;
-  RTCRay r = embreeRay(ray);
+  RTCRay r = embreeRay(ray, mask);
   rtcOccluded(scene_, r, query.embree);
   return r.tfar < 0 ? Rgb(0) : query.transmittance;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays, and what they hit.
+// Rays and hits.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,11 @@
 #include "math/vec.h"
 
 namespace chromeball {
+
+// A set of classes of instances. Every instance has a mask of the classes that it belongs to; a ray
+// with a mask meets the instances that share a class with it.
+using RayMask = uint32_t;
+inline constexpr RayMask kAllInstances = ~0u;
 
 struct Ray {
   vec3 origin;

@@ -3,7 +3,7 @@
 // and in turn: the still life on its table, the table being the local scene.
 #include <benchmark/benchmark.h>
 
-#include "composite/differential_path.h"
+#include "composite/differential.h"
 #include "scene.h"
 
 namespace chromeball {
@@ -12,38 +12,26 @@ namespace {
 void differential(benchmark::State& state, demo::Finish finish) {
   constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);
-  ObjectMask isObject, isLocal;
+  ObjectMask isObject;
   for (const Instance& instance : s.scene.instances)
     isObject.push_back(s.scene.nodeNames[size_t(instance.node)] != "table");
-  isLocal = isObject;
-  isLocal.flip();
-  const Accel local(s.scene, isLocal);
-  const LocalRays rays{local, isObject};
-  const DifferentialScene worlds{
-      {s.scene, s.accel, *s.lighting, s.emitters.get(), Mis::Balance, kDepth, true},
-      {s.scene, rays, *s.lighting, s.emitters.get(), Mis::Balance, kDepth, true},
-      isObject,
-      false};
+  const World world(s.scene, rayMasks(isObject));
+  const CompositeWorlds worlds(world, *s.lighting, {.maxDepth = kDepth});
   const Camera& camera = s.scene.cameras.front();
 
-  std::vector<DirectionSample> scratch;
-  RayCounts counts;
-  const SobolTable unused(1, 4, 0);
-  PathMemory memory{PixelSampler(unused, 0), {}, {}, {}};
   double plain = 0, both = 0;
   Rgb plainSum(0), withObjects(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    plainSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return pathRadiance(worlds.whole, PathState{ray}, closestHit(s.accel, ray, sampler), sampler,
-                          scratch, counts, nullptr);
+    plainSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+      const auto hit = worlds.whole.closestHit(ray, context);
+      return worlds.whole.radiance(PathState{ray}, hit, context);
     });
     const double middle = cpuSeconds();
-    withObjects = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      memory.sampler = sampler;
-      const DifferentialSample sample = differentialRadiance(
-          worlds, {0, 0, ray, closestHit(s.accel, ray, sampler)}, memory, nullptr);
-      return sample.both + sample.withObjects;
+    withObjects = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+      const CameraSample sample{0, 0, ray, worlds.whole.closestHit(ray, context)};
+      const DifferentialSample found = differentialRadiance(worlds, sample, false, context);
+      return found.both + found.withObjects;
     });
     plain += middle - start;
     both += cpuSeconds() - middle;

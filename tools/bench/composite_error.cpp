@@ -42,8 +42,8 @@ RenderSettings settingsOf(int samples, uint64_t seed) {
 Image picture(demo::Terrace what, const Probe& probe, uint64_t seed) {
   const Scene scene = load(what);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
-  return render(scene, Accel(scene), scene.cameras.front(), *lighting,
-                settingsOf(kTruthSamples, seed), kQuiet, kGoOn)
+  return render(World(scene), scene.cameras.front(), *lighting, settingsOf(kTruthSamples, seed),
+                kQuiet, kGoOn)
       .film.mean();
 }
 
@@ -111,13 +111,13 @@ void compositeError(benchmark::State& state, const Mistake& mistake) {
 
   Projection projection(camera, kColumns, kRows);
   if (mistake.reflectance == Reflectance::Solved) makeProjected(scene, isObject, projection);
+  const World world(scene, rayMasks(isObject));
   for (auto _ : state) {
     if (mistake.reflectance == Reflectance::Solved)
-      solveReflectance({scene, isObject, camera, *lighting, truth.plate}, settings, 2, projection,
-                       kQuiet, kGoOn);
-    const CompositeRender r =
-        renderComposite(scene, Accel(scene), isObject, camera, *lighting, truth.plate, settings,
-                        Passes::One, false, kQuiet, kGoOn);
+      solveReflectance({world, camera, *lighting, truth.plate}, settings, 2, projection, kQuiet,
+                       kGoOn);
+    const CompositeRender r = renderComposite(world, camera, *lighting, truth.plate, settings,
+                                              Passes::One, false, kQuiet, kGoOn);
     for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
       errorOf(compose(r.film, r.mean, truth.plate, mode).color, r.film,
               mode == CompositeMode::Difference ? "difference" : "ratio", state);
@@ -149,13 +149,12 @@ MISTAKE(no interreflection, {.maxDepth = 1});
 void compositeNoise(benchmark::State& state, float minRoughness) {
   const Truth& truth = Truth::get();
   const Scene scene = load(demo::Terrace::Whole, minRoughness);
-  const ObjectMask isObject = objectsOf(scene);
+  const World world(scene, rayMasks(objectsOf(scene)));
   const Probe probe(truth.probe);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
   const auto renderIn = [&](Passes passes) {
-    return renderComposite(scene, Accel(scene), isObject, scene.cameras.front(), *lighting,
-                           truth.plate, settingsOf(kCompositeSamples, 3), passes, false, kQuiet,
-                           kGoOn);
+    return renderComposite(world, scene.cameras.front(), *lighting, truth.plate,
+                           settingsOf(kCompositeSamples, 3), passes, false, kQuiet, kGoOn);
   };
   for (auto _ : state) {
     const CompositeRender one = renderIn(Passes::One), two = renderIn(Passes::Two);

@@ -4,6 +4,7 @@
 // strategy than `importance`. Both take the same random decisions, so both make the same picture.
 #include <benchmark/benchmark.h>
 
+#include "integrate/mis.h"
 #include "lighting/importance.h"
 #include "math/frame.h"
 #include "math/warp.h"
@@ -87,23 +88,19 @@ void unusedFeatures(benchmark::State& state) {
   constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(demo::Finish::Lambertian);
   const Importance importance(s.probe, true);
-  const LeanScene lean{s.scene, s.accel, importance, s.probe};
-  const PathScene<Accel> full{s.scene,          s.accel,      *s.lighting,
-                              s.emitters.get(), Mis::Balance, kDepth};
-  std::vector<DirectionSample> scratch;
-  RayCounts counts;
+  const LeanScene lean{s.scene, s.world.accel, importance, s.probe};
+  const PathTracer full = s.tracer();
   const Camera& camera = s.scene.cameras.front();
   double fullSeconds = 0, leanSeconds = 0;
   Rgb fullSum(0), leanSum(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    fullSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return pathRadiance(full, PathState{ray}, closestHit(s.accel, ray, sampler), sampler, scratch,
-                          counts, nullptr);
+    fullSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+      return full.radiance(PathState{ray}, full.closestHit(ray, context), context);
     });
     const double middle = cpuSeconds();
-    leanSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PixelSampler& sampler) {
-      return leanRadiance(lean, ray, sampler);
+    leanSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+      return leanRadiance(lean, ray, context.sampler);
     });
     fullSeconds += middle - start;
     leanSeconds += cpuSeconds() - middle;

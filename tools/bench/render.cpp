@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render costs beside its rays: samples and rays a second, and the time of the same rays
+// The cost of a render beside its rays: samples and rays per second, and the time of the same rays
 // replayed by Embree alone. CHROMEBALL_PROBE names another probe than the project's own studio.
 #include <benchmark/benchmark.h>
 
@@ -11,36 +11,15 @@ BENCHMARK_MAIN();
 namespace chromeball {
 namespace {
 
-// Answers as Accel does, and remembers what it was asked.
-struct Recorder {
-  struct Query {
-    Ray ray;
-    bool shadow;
-  };
-  const Accel& accel;
-  mutable std::vector<Query> queries;
-
-  bool intersect(const Ray& ray, uint32_t key, Hit& hit) const {
-    queries.push_back({ray, false});
-    return accel.intersect(ray, key, hit);
-  }
-  Rgb transmittance(const Ray& ray) const {
-    queries.push_back({ray, true});
-    return accel.transmittance(ray);
-  }
-};
-
-// One thread's paths over the picture, `samples` a pixel.
-template <class Rays>
-Rgb tracePicture(const BenchmarkScene& s, const Rays& rays, int samples) {
-  const PathScene<Rays> path{s.scene, rays, *s.lighting, s.emitters.get(), Mis::Balance, kDepth};
-  std::vector<DirectionSample> scratch;
-  RayCounts counts;
-  return sumOverPicture(s.scene.cameras.front(), samples,
-                        [&](const Ray& ray, PixelSampler& sampler) {
-                          return pathRadiance(path, PathState{ray}, closestHit(rays, ray, sampler),
-                                              sampler, scratch, counts, nullptr);
-                        });
+// One thread's paths over the picture, `samples` per pixel; `log` may be null.
+Rgb tracePicture(const BenchmarkScene& s, int samples, RayLog* log) {
+  const PathTracer tracer = s.tracer();
+  return sumOverPicture(
+      s.scene.cameras.front(), samples,
+      [&](const Ray& ray, PathContext& context) {
+        return tracer.radiance(PathState{ray}, tracer.closestHit(ray, context), context);
+      },
+      log);
 }
 
 void render(benchmark::State& state, demo::Finish finish) {
@@ -52,7 +31,7 @@ void render(benchmark::State& state, demo::Finish finish) {
   double samples = 0, rays = 0;
   for (auto _ : state) {
     const RenderResult r = chromeball::render(
-        s.scene, s.accel, s.scene.cameras.front(), *s.lighting, settings, [](double) {}, stop);
+        s.world, s.scene.cameras.front(), *s.lighting, settings, [](double) {}, stop);
     samples += double(r.rays.camera);
     rays += double(r.rays.camera + r.rays.shadow + r.rays.bounce);
     settings.seed++;
@@ -67,19 +46,19 @@ void render(benchmark::State& state, demo::Finish finish) {
 void overhead(benchmark::State& state, demo::Finish finish) {
   constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);
-  const Recorder recorder{s.accel, {}};
-  benchmark::DoNotOptimize(tracePicture(s, recorder, kTraced));
+  RayLog log;
+  benchmark::DoNotOptimize(tracePicture(s, kTraced, &log));
   double whole = 0, alone = 0;
   for (auto _ : state) {
     const double start = cpuSeconds();
-    benchmark::DoNotOptimize(tracePicture(s, s.accel, kTraced));
+    benchmark::DoNotOptimize(tracePicture(s, kTraced, nullptr));
     const double middle = cpuSeconds();
-    for (const Recorder::Query& query : recorder.queries) {
+    for (const auto& [ray, isShadow] : log.rays) {
       Hit hit;
-      if (query.shadow)
-        benchmark::DoNotOptimize(s.accel.transmittance(query.ray));
+      if (isShadow)
+        benchmark::DoNotOptimize(s.world.accel.transmittance(ray));
       else
-        benchmark::DoNotOptimize(s.accel.intersect(query.ray, 0, hit));
+        benchmark::DoNotOptimize(s.world.accel.intersect(ray, 0, hit));
     }
     const double end = cpuSeconds();
     whole += middle - start;

@@ -12,7 +12,6 @@
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/gltf.h"
-#include "trace/accel.h"
 
 namespace chromeball {
 
@@ -25,19 +24,17 @@ inline Image benchmarkProbe() {
 
 struct BenchmarkScene {
   Scene scene;
-  Accel accel;
+  World world;
   Probe probe;
   std::unique_ptr<LightingStrategy> lighting;
-  std::unique_ptr<Emitters> emitters;
 
   explicit BenchmarkScene(Scene s)
       : scene(std::move(s)),
-        accel(scene),
+        world(scene),
         probe(benchmarkProbe()),
-        lighting(makeStrategy("importance", probe, Mis::Balance, "benchmark")),
-        emitters(Emitters::make(scene)) {
-    prepareBsdfs(scene);
-  }
+        lighting(makeStrategy("importance", probe, Mis::Balance, "benchmark")) {}
+
+  PathTracer tracer() const { return {world, *lighting, {.maxDepth = kDepth}}; }
 
   static const BenchmarkScene& get(demo::Finish finish) {
     static const BenchmarkScene lambertian(load(demo::Finish::Lambertian));
@@ -55,12 +52,13 @@ struct BenchmarkScene {
   }
 };
 
-// Calls radiance(ray, sampler) for every sample of every pixel, on this thread.
+// Calls radiance(ray, context) for every sample of every pixel, on this thread; `log` may be null.
 template <class Radiance>
-Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance) {
+Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
   const CameraRays rays(camera, float(kWidth) / kHeight);
   const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * (kDepth + 1), 1);
-  PixelSampler sampler(table, 1);
+  PathContext context{.sampler = PixelSampler(table, 1), .log = log};
+  PixelSampler& sampler = context.sampler;
   Rgb sum(0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -71,7 +69,7 @@ Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance) {
         Ray ray;
         rays.ray((float(x) + offset.x) / kWidth, (float(y) + offset.y) / kHeight, ray.origin,
                  ray.direction);
-        sum += radiance(ray, sampler);
+        sum += radiance(ray, context);
       }
     }
   return sum;

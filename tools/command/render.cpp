@@ -56,7 +56,7 @@ Report describe(const RenderJob& job, const RenderOptions& options, const Loaded
   getrusage(RUSAGE_SELF, &usage);
   const uint64_t rays = result.rays.camera + result.rays.shadow + result.rays.bounce;
   const std::string strategy = resolveStrategy(job.strategy.name);
-  const DepthCut& cut = result.rays.depthCut;
+  const DepthCut& cut = result.depthCut;
   Report r;
   r.json = {
       {"version", CHROMEBALL_VERSION},
@@ -142,10 +142,9 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   return output;
 }
 
-Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const Accel& accel,
+Rendered renderPlain(const RenderJob& job, const LoadedScene& loaded, const World& world,
                      const LightingStrategy& lighting, const Progress& progress) {
-  RenderResult result =
-      render(loaded.scene, accel, loaded.camera, lighting, job.settings, progress, interrupted);
+  RenderResult result = render(world, loaded.camera, lighting, job.settings, progress, interrupted);
   PictureNoise noise(result.film.errors());
   OutputImage output = assemble(result, job.settings, noise.variance);
   return {std::move(result), std::move(output), std::move(noise)};
@@ -189,7 +188,7 @@ void sayWhatIsMissing(const RenderResult& result, const RenderSettings& settings
   if (result.clamped.count)
     warn(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the picture's light",
                      result.clamped.count, 100 * result.clamped.fractionRemoved()));
-  const DepthCut& cut = result.rays.depthCut;
+  const DepthCut& cut = result.depthCut;
   sayDepthCut("--max-depth", settings.maxDepth, cut.fraction(cut.byDepth));
   sayDepthCut("--max-transmission-depth", settings.maxTransmissionDepth,
               cut.fraction(cut.byTransmission));
@@ -210,7 +209,7 @@ void render(const RenderOptions& options) {
   const Scene& scene = loaded.scene;
   if (composite) prepareLocalScene(*composite, job, loaded);
   seconds.load = watch.lap();
-  const Accel accel(scene);
+  const World world(scene, composite ? rayMasks(composite->isObject) : std::vector<RayMask>());
   seconds.build = watch.lap();
   const auto lighting = makeLighting(job.strategy, job.settings.mis, loaded);
   prepareOutputs(job, options, loaded.files);
@@ -224,8 +223,8 @@ void render(const RenderOptions& options) {
     ProgressBar bar(options.progress || (ProgressBar::isTerminal() && !options.quiet));
     const auto progress = [&](double fraction) { bar.update(fraction); };
     return composite
-               ? renderComposite(*composite, job, loaded, accel, *lighting, progress, interrupted)
-               : renderPlain(job, loaded, accel, *lighting, progress);
+               ? renderComposite(*composite, job, loaded, world, *lighting, progress, interrupted)
+               : renderPlain(job, loaded, world, *lighting, progress);
   }();
   const RenderResult& result = rendered.result;
   seconds.render = watch.lap();
@@ -243,7 +242,7 @@ void render(const RenderOptions& options) {
   sayWhatIsMissing(result, job.settings);
   for (const std::string& note : rendered.notes) warn(note);
   if (!composite) {
-    if (const auto why = whyBlack(loaded, accel, result)) warn(*why);
+    if (const auto why = whyBlack(loaded, world.accel, result)) warn(*why);
     if (const auto hint = whyWhite(job, loaded, result); hint && !options.quiet) note(*hint);
   }
   if (result.interrupted && result.samples == 0)

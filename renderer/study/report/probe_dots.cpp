@@ -15,7 +15,7 @@ std::vector<vec3> sampledDirections(const LightingStrategy& strategy) {
   for (uint32_t i = 0; i < kSamples; ++i) {
     sampler.startSample(i);
     sampler.startVertex(0);
-    strategy.sample({vec3(0), vec3(0, 1, 0), vec3(0, 1, 0), nullptr, 0}, sampler, samples);
+    strategy.sample({vec3(0), vec3(0, 1, 0), nullptr, 0}, sampler, samples);
   }
   std::set<std::tuple<float, float, float>> seen;
   std::vector<vec3> directions;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a thread that traces paths needs of its own.
+#pragma once
+
+#include <vector>
+
+#include "film/aov.h"
+#include "integrate/clamp.h"
+#include "integrate/depth_cut.h"
+#include "lighting/strategy.h"
+#include "math/sampler.h"
+#include "trace/ray.h"
+
+namespace chromeball {
+
+struct RayCounts {
+  uint64_t camera = 0, shadow = 0, bounce = 0;
+
+  void add(const RayCounts& other) {
+    camera += other.camera, shadow += other.shadow, bounce += other.bounce;
+  }
+};
+
+// The rays of a thread's paths in order, for benchmarks that trace the same rays again.
+struct RayLog {
+  struct Entry {
+    Ray ray;
+    bool isShadow;
+  };
+  std::vector<Entry> rays;
+};
+
+struct PathContext {
+  PixelSampler sampler;                       // at the current sample
+  std::vector<DirectionSample> lightSamples;  // scratch; keeps its capacity
+  RayCounts counts;
+  DepthCut depthCut;
+  Clamp clamp;                 // applied by integrators to what they return
+  std::vector<Rgb> layers;     // of the current sample (Integrator::layers)
+  bool shadowsDiffer = false;  // a shadow ray found another transmittance in PathSettings::compared
+  RayLog* log = nullptr;       // null: no log
+};
+
+}  // namespace chromeball

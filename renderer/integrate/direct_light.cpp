@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/direct_light.h"
+
+#include "integrate/mis.h"
+
+namespace chromeball {
+namespace {
+
+// Lamps of the scene light narrow lobes too; the probe does not (LightingStrategy::mirrorAlpha).
+Bsdf::Value narrowLobes(const Bsdf& bsdf, const vec3& wi) {
+  if (!bsdf.has(Lobes::Narrow)) return {Rgb(0), 0};
+  return bsdf.evaluate(wi, Lobes::Narrow);
+}
+
+}  // namespace
+
+Rgb DirectLight::visibility(const Ray& ray, RayMask mask, std::optional<uint32_t> lamp) const {
+  if (lamp && !(world_.accel.mask(*lamp) & mask)) return Rgb(0);  // the lamp does not exist there
+  return world_.accel.transmittance(ray, mask);
+}
+
+Rgb DirectLight::visibility(const Ray& ray, PathContext& context,
+                            std::optional<uint32_t> lamp) const {
+  ++context.counts.shadow;
+  if (context.log) context.log->rays.push_back({ray, true});
+  const Rgb passed = visibility(ray, settings_.visible, lamp);
+  const bool differs = settings_.compared != settings_.visible;
+  const bool lampIsHidden = lamp && !(world_.accel.mask(*lamp) & settings_.compared);
+  // A ray that passes all instances whole also passes some of them whole.
+  if (differs && (passed != Rgb(1) || lampIsHidden)) [[unlikely]] {
+    // Blended surfaces met in another order make a product that is rounded otherwise.
+    constexpr float kRounding = 1e-6f;
+    const Rgb other = visibility(ray, settings_.compared, lamp);
+    context.shadowsDiffer |= maxComponent(glm::abs(other - passed)) > kRounding;
+  }
+  return passed;
+}
+
+Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
+                               std::optional<uint32_t> lamp) const {
+  Rgb passed = visibility(ray, context, lamp);
+  if (vertex.media.inside() || vertex.surface.material->extended)
+    passed *= Media(vertex.media).follow(vertex.surface, ray.direction).transmittance(ray.tMax);
+  return passed;
+}
+
+Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
+  std::vector<DirectionSample>& samples = context.lightSamples;
+  samples.clear();
+  lighting_.sample(vertex.point, context.sampler, samples);
+  Rgb light(0);
+  for (const DirectionSample& s : samples) {
+    const Bsdf::Value bsdf = vertex.bsdf.evaluate(s.wi);
+    if (isBlack(bsdf.fCos)) continue;
+    // Nothing absorbs over an infinite distance, so the medium does not count.
+    const Rgb passed = visibility({vertex.surface.rayOrigin(s.wi), s.wi}, context, {});
+    if (isBlack(passed)) continue;
+    const float weight = s.isDelta ? 1 : lightSampleWeight(settings_.mis, s.pdf, bsdf.pdf);
+    light += bsdf.fCos * s.irradiance * passed * weight;
+  }
+  return light;
+}
+
+Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
+  const Surface& surface = vertex.surface;
+  const Emitters::Point emitter = world_.emitters->sample(
+      context.sampler.getFine1(dimension::kEmitter), context.sampler.get1(dimension::kEmitter + 1));
+  const vec3 to = emitter.position - surface.position;
+  const float distance = glm::length(to);
+  if (!(distance > surface.rayOffset)) return Rgb(0);
+  const vec3 wi = to / distance;
+  const Bsdf::Value broad = vertex.bsdf.evaluate(wi);
+  const Bsdf::Value narrow = narrowLobes(vertex.bsdf, wi);
+  if (isBlack(broad.fCos) && isBlack(narrow.fCos)) return Rgb(0);
+
+  const Instance& instance = world_.scene.instances[emitter.instance];
+  const Surface source =
+      surfaceAt(world_.scene, instance, emitter.triangle, emitter.barycentric, -wi);
+  // A ray sampled from the BSDF meets the lamp with probability alpha.
+  const Rgb radiance = emittedRadiance(world_.scene, instance, source, -wi) *
+                       surfaceAlpha(world_.scene, instance, emitter.triangle, emitter.barycentric);
+  const float cosine = glm::dot(source.geometricNormal, -wi);
+  if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
+
+  // From one offset point to the other, so that neither surface shadows itself.
+  const vec3 origin = surface.rayOrigin(wi), target = source.rayOrigin(-wi);
+  const float length = glm::length(target - origin);
+  const Rgb passed = transmittance(vertex, {origin, (target - origin) / length, length}, context,
+                                   emitter.instance);
+  const float pdf = world_.emitters->pdf(instance.material, distance, cosine);
+  const Rgb fCos = broad.fCos * lightSampleWeight(settings_.mis, pdf, broad.pdf) +
+                   narrow.fCos * lightSampleWeight(settings_.mis, pdf, narrow.pdf);
+  return fCos * radiance * passed / pdf;
+}
+
+Rgb DirectLight::punctual(const Vertex& vertex, PathContext& context) const {
+  Rgb light(0);
+  world_.punctual->sample(vertex.point, context.sampler, [&](const PunctualSample& s) {
+    const Rgb fCos = vertex.bsdf.evaluate(s.wi).fCos + narrowLobes(vertex.bsdf, s.wi).fCos;
+    if (isBlack(fCos)) return;
+    const Rgb passed =
+        transmittance(vertex, {vertex.surface.rayOrigin(s.wi), s.wi, s.distance}, context);
+    light += fCos * s.irradiance * passed;
+  });
+  return light;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/path.h"
+
+#include <climits>
+#include <cmath>
+
+#include "integrate/mis.h"
+#include "scene/thin_wall.h"
+#include "shading/extended_bsdf.h"
+
+namespace chromeball {
+namespace {
+
+bool isDelta(const BsdfSample& sample) { return sample.pdf == 0; }
+
+// Whether a bounce carries light through a solid: all but reflection from the outside of a rough
+// surface.
+bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
+  return surface.material->isBody() && (isDelta(bounce) || !surface.frontFace ||
+                                        glm::dot(surface.geometricNormal, bounce.wi) < 0);
+}
+
+// Whether the path passes the surface as if it were not there: a single-sided back, for the camera
+// and in mirrors.
+bool isHiddenFrom(const PathState& state, const Surface& surface) {
+  return state.isDelta && !surface.frontFace && surface.material->hidesBack();
+}
+
+// A single-sided surface adds light that arrives at its back to what its front reflects. The path
+// follows one of the two at random, with twice the throughput; true: what lies behind the front.
+// Shadow rays pass the front as well, so light samples keep competing with the ray.
+bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
+                   const PixelSampler& sampler) {
+  if (state.isDelta || !surface.frontFace || !surface.material->backLetsLightThrough())
+    return false;
+  constexpr uint64_t kPurpose = 0x6f6e6577;  // a stream of its own
+  state.throughput *= 2;
+  return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
+}
+
+// Takes the path straight through a smooth thin wall. Shadow rays from `state.from` pass it too, so
+// light samples taken there keep competing with the ray.
+void passStraight(PathState& state, const Surface& surface) {
+  state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
+  ++state.straight;
+}
+
+// For a path without bounces left: what passes straight through a surface still belongs to the
+// vertex before. False where nothing does.
+bool passAtLimit(const Scene& scene, PathState& state, const Instance& instance,
+                 const Surface& surface) {
+  if (!surface.material->extended) return false;
+  state.throughput *= straightTransmittance(scene, instance, surface, state.ray.direction);
+  if (isBlack(state.throughput)) return false;
+  ++state.depth;
+  passStraight(state, surface);
+  return true;
+}
+
+}  // namespace
+
+PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
+                       const PathSettings& settings)
+    : world_(world),
+      lighting_(lighting),
+      settings_(settings),
+      mirrorAlpha_(lighting.mirrorAlpha()),
+      direct_(world, lighting, settings) {}
+
+std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) const {
+  if (context.log) context.log->rays.push_back({ray, false});
+  Hit hit;
+  if (!world_.accel.intersect(ray, context.sampler.sampleKey(), hit, settings_.visible))
+    return std::nullopt;
+  return hit;
+}
+
+Rgb PathTracer::escapedRadiance(const PathState& state) const {
+  const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
+  if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
+  if (state.lobes == Lobes::Narrow)
+    return state.throughput * lighting_.background(origin, direction);
+  const auto escaped = lighting_.escaped(state.from, direction);
+  const float weight = state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, escaped.pdf);
+  return state.throughput * escaped.radiance * weight;
+}
+
+Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
+                              const Instance& instance) const {
+  float weight = 1;
+  if (world_.emitters && !surface.material->unlit && !state.isDelta) {
+    const float cosine = std::max(-glm::dot(surface.geometricNormal, state.ray.direction), 1e-12f);
+    const float distance = glm::length(surface.position - state.from.position);
+    weight = bsdfSampleWeight(settings_.mis, state.pdf,
+                              world_.emitters->pdf(instance.material, distance, cosine));
+  }
+  return state.throughput * emittedRadiance(world_.scene, instance, surface, -state.ray.direction) *
+         weight;
+}
+
+template <bool kLayered>
+bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
+                           PathContext& context) const {
+  const PixelSampler& sampler = context.sampler;
+  // At the limit only a smooth solid passes light on; no light sample could find that.
+  const bool atLimit = state.bounces() == settings_.maxDepth;
+  const LightPoint before = state.from;
+  state.from = {surface.position, bsdf.normal(), &bsdf, state.depth, bsdf.transmits()};
+  if (!atLimit) {
+    const Vertex vertex{state.from, surface, bsdf, state.media};
+    const bool broad = bsdf.has(Lobes::Broad);
+    if (broad) state.radiance += state.throughput * direct_.probe(vertex, context);
+    if (broad || bsdf.has(Lobes::Narrow)) {
+      if (world_.emitters) state.radiance += state.throughput * direct_.emitter(vertex, context);
+      if (world_.punctual) state.radiance += state.throughput * direct_.punctual(vertex, context);
+    }
+  }
+  state.from.bsdf = nullptr;  // it does not outlive the vertex
+
+  BsdfSample next;
+  if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
+    return false;
+  if constexpr (kLayered) {
+    const bool transmission = isTransmission(surface, next);
+    const bool ends = transmission ? state.transmissions == settings_.maxTransmissionDepth ||
+                                         (atLimit && !isDelta(next))
+                                   : atLimit;
+    if (ends) return false;
+    state.transmissions += transmission;
+  }
+  state.throughput *= next.weight;
+  if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
+  ++state.depth;
+  ++context.counts.bounce;
+  if constexpr (kLayered) {
+    if (next.wi == state.ray.direction && passesStraight(*surface.material)) {
+      state.from = before;
+      passStraight(state, surface);
+      return true;
+    }
+    state.media.follow(surface, next.wi);
+  }
+  state.pdf = next.pdf;
+  state.isDelta = isDelta(next);
+  state.lobes = next.lobes;
+  state.ray = {surface.rayOrigin(next.wi), next.wi};
+  return true;
+}
+
+bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& bsdf,
+                         PathContext& context) const {
+  return scatterAs<false>(state, surface, bsdf, context);
+}
+
+// Out of line, so that plain materials do not pay for layered ones.
+[[gnu::noinline]] bool PathTracer::scatterLayered(PathState& state, const Instance& instance,
+                                                  const Surface& surface,
+                                                  const MaterialPoint& material,
+                                                  PathContext& context) const {
+  const ExtendedBsdf extended(material, extendedMaterialAt(world_.scene, instance, surface),
+                              state.media.refractiveIndex(surface, state.throughput), surface,
+                              -state.ray.direction, mirrorAlpha_);
+  return scatterAs<true>(state, surface, Bsdf(extended), context);
+}
+
+bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
+                        PathContext& context) const {
+  if (!hit) {
+    state.radiance += escapedRadiance(state);
+    return false;
+  }
+  const Scene& scene = world_.scene;
+  const Instance& instance = scene.instances[hit->instance];
+  state.length += hit->distance;
+  // The beam does not widen at rough surfaces, so that textures seen by reflection stay sharp.
+  const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
+  const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
+                                    -state.ray.direction, crossSection);
+  if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
+  if (isHiddenFrom(state, surface) || choosesBehind(state, surface, *hit, context.sampler))
+      [[unlikely]] {
+    state.ray.origin = surface.rayOrigin(state.ray.direction);
+    return true;
+  }
+  if (surface.material->emits()) state.radiance += foundEmission(state, surface, instance);
+  const bool ends = surface.material->unlit ||
+                    (state.bounces() == settings_.maxDepth && !surface.material->isBody());
+  const bool isFirst = state.first && state.depth == 0;
+  if (ends && !isFirst) return passAtLimit(scene, state, instance, surface);
+
+  const MaterialPoint material = materialAt(scene, surface);
+  if (isFirst)
+    *state.first = {true,           state.length,      material.baseColor,
+                    surface.normal, instance.material, instance.node};
+  if (ends) return passAtLimit(scene, state, instance, surface);
+  if (surface.material->extended) [[unlikely]]
+    return scatterLayered(state, instance, surface, material, context);
+  return scatterAs<false>(state, surface,
+                          Bsdf(material, surface, -state.ray.direction, mirrorAlpha_), context);
+}
+
+bool PathTracer::isHiddenBack(const PathState& state, const Hit& hit) const {
+  const Instance& instance = world_.scene.instances[hit.instance];
+  return world_.scene.materials[size_t(instance.material)].hidesBack() &&
+         isHiddenFrom(state, surfaceAt(world_.scene, instance, hit.triangle, hit.barycentric,
+                                       -state.ray.direction));
+}
+
+std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,
+                                               PathContext& context) const {
+  while (hit && isHiddenBack(state, *hit)) {
+    const Surface back = surfaceAt(world_.scene, world_.scene.instances[hit->instance],
+                                   hit->triangle, hit->barycentric, -state.ray.direction);
+    state.length += hit->distance;
+    state.ray.origin = back.rayOrigin(state.ray.direction);
+    hit = closestHit(state.ray, context);
+  }
+  return hit;
+}
+
+// Of the paths that reach a limit, one in kEvery is followed from there twice with the same random
+// numbers: with the limits as they are, and with kFarther more bounces.
+[[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit,
+                                               PathContext& context) const {
+  constexpr uint32_t kEvery = 64;
+  constexpr int kFarther = 256;
+  constexpr uint64_t kPurpose = 0x637574;  // a stream of its own
+  state.cutIsEstimated = true;
+  if (hash(context.sampler.sampleKey(), kPurpose) % kEvery != 0) return;
+  PathSettings limited = settings_;
+  limited.estimateDepthCut = false;
+  PathSettings farther = limited;
+  farther.maxDepth = std::min(settings_.maxDepth, INT_MAX - kFarther) + kFarther;
+  farther.maxTransmissionDepth =
+      std::min(settings_.maxTransmissionDepth, INT_MAX - kFarther) + kFarther;
+
+  PathState rest = state;
+  rest.radiance = Rgb(0);
+  rest.first = nullptr;
+  const RayCounts counted = context.counts;
+  const auto found = [&](const PathSettings& settings) {
+    return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));
+  };
+  const float cut = found(farther) - found(limited);
+  context.counts = counted;
+  context.sampler.startVertex(state.depth);
+  if (std::isfinite(cut)) context.depthCut.add(state.bounces() == settings_.maxDepth, kEvery * cut);
+}
+
+void PathTracer::estimateDepthCut(PathState& state, const std::optional<Hit>& hit,
+                                  PathContext& context) const {
+  if (!settings_.estimateDepthCut || !hit || state.cutIsEstimated) return;
+  if (state.bounces() == settings_.maxDepth ||
+      state.transmissions == settings_.maxTransmissionDepth)
+    followTwice(state, *hit, context);
+}
+
+Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& context) const {
+  context.sampler.startVertex(state.depth);
+  for (;;) {
+    estimateDepthCut(state, hit, context);
+    if (!vertex(state, hit, context)) return state.radiance;
+    context.sampler.startVertex(state.depth);
+    hit = closestHit(state.ray, context);
+  }
+}
+
+Rgb PathTracer::radiance(const PathState& start, const std::optional<Hit>& hit,
+                         PathContext& context) const {
+  ++context.counts.camera;
+  const Rgb found = follow(start, hit, context);
+  context.depthCut.addFound(found);
+  return found;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a picture is sampled, whatever the scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "film/aov.h"
+#include "integrate/path_settings.h"
+
+namespace chromeball {
+
+struct RenderSettings {
+  int width = 800, height = 600;
+  uint32_t samples = 256;            // per pixel, >= 1; the maximum where a limit below is set
+  std::optional<double> timeLimit;   // seconds
+  std::optional<double> noiseLimit;  // fraction (film/noise.h)
+  int maxDepth = 8;                  // this and the next: as in PathSettings
+  int maxTransmissionDepth = kDefaultTransmissionDepth;
+  Mis mis = Mis::Balance;
+  uint64_t seed = 0;
+  bool hideProbe = false;      // from the camera
+  std::optional<float> clamp;  // largest value of a channel of a sample; nullopt: no limit
+  std::vector<Aov> aovs;
+
+  PathSettings path() const {
+    return {.mis = mis,
+            .maxDepth = maxDepth,
+            .maxTransmissionDepth = maxTransmissionDepth,
+            .hideProbe = hideProbe};
+  }
+};
+
+}  // namespace chromeball
