@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps to place lights in, for the tests of constellations.
+// Maps and lights by method, for the tests of constellations.
 #pragma once
 
 #include <algorithm>
@@ -7,11 +7,19 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "lighting/constellation/constellations.h"
+#include "lighting/methods.h"
 #include "probe/load.h"
 #include "shared_data.h"
 
 namespace chromeball {
+
+// The methods whose lights keep the energy of the map.
+inline std::vector<std::string_view> constellationNames() {
+  std::vector<std::string_view> names;
+  for (const LightingMethod& method : lightingMethods())
+    if (method.lights.keepsEnergy) names.push_back(method.name);
+  return names;
+}
 
 // Lights by name; cube-grid gets the grid of at most `lights`.
 inline int countFor(std::string_view method, int lights) {
@@ -20,7 +28,7 @@ inline int countFor(std::string_view method, int lights) {
 
 inline Constellation make(std::string_view method, const Image& map, int lights,
                           uint64_t seed = 1) {
-  return makeConstellation(std::string(method), map, countFor(method, lights), seed);
+  return makeLights(method, map, {.count = countFor(method, lights), .seed = seed}).lights;
 }
 
 // Positive noise: no symmetry, no ties.

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "base/error.h"
-#include "lighting/constellation/constellations.h"
 #include "lighting/fit/irradiance_fit.h"
+#include "lighting/methods.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
@@ -51,7 +51,7 @@ TEST(DeltaLights, aMattePlaneHasTheIrradianceOfTheLights) {
   const Image map = studioProbe({64, 32});
   const Rgb albedo(0.8f, 0.5f, 0.2f);
   dvec3 irradiance(0);
-  for (const DirectionalLight& light : makeConstellation("median-cut", map, 16, 0))
+  for (const DirectionalLight& light : makeLights("median-cut", map, {.count = 16}).lights)
     irradiance += dvec3(light.irradiance) * double(std::max(light.direction.y, 0.0f));
   const RenderResult r = renderScene(mattePlane(albedo), topCamera(3, 40), Probe(map),
                                      "median-cut:16", smallRender(4, 4, 4, 1));
@@ -153,7 +153,8 @@ TEST(DeltaLights, aWhiteFurnaceKeepsItsEnergy) {
 // Chosen in proportion to irradiance x cosine and raised by as much: the same light on average.
 TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
   const Probe probe(studioProbe({64, 32}), 70);
-  const Constellation lights = makeConstellation("lightgen", probe.latLong(), 40, 1);
+  const Constellation lights =
+      makeLights("lightgen", probe.latLong(), {.count = 40, .seed = 1}).lights;
   const DeltaLights lighting(probe, lights);
   LightPoint point{};
   point.normal = glm::normalize(vec3(0.5f, 0.3f, -0.4f));
@@ -310,6 +311,17 @@ TEST(StrategyTable, refusesBadCountsInOneLine) {
   EXPECT_NE(refusal("bsdf:3").find("takes no count"), std::string::npos);
   EXPECT_NE(refusal("median-cud:3").find("did you mean `median-cut`"), std::string::npos);
   EXPECT_NE(refusal("").find("known"), std::string::npos);
+}
+
+TEST(StrategyTable, helpListsEveryStrategy) {
+  const std::string help = strategyHelp(), lights = lightMethodHelp();
+  for (const LightingMethod& method : lightingMethods()) {
+    const std::string name = "  " + std::string(method.name);
+    EXPECT_NE(help.find(name), std::string::npos) << name;
+    EXPECT_EQ(lights.find(name) != std::string::npos, bool(method.lights.make)) << name;
+  }
+  EXPECT_NE(help.find("penrose:N"), std::string::npos);
+  EXPECT_NE(help.find("(N 2 to 4096, default 300)"), std::string::npos);
 }
 
 TEST(StrategyTable, namesAreSpelledOut) {

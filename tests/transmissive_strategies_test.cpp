@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "lighting/constellation/constellations.h"
 #include "lighting/delta_lights.h"
+#include "lighting/methods.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "test_scene.h"
@@ -119,7 +119,8 @@ TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
 TEST(SlowTransmissiveStrategies, lightsInTheProbesPlaceAreTheirSum) {
   const Probe black(constantProbe({4, 2}, Rgb(0)));
   for (const int count : {5, 40}) {
-    const Constellation lights = makeConstellation("lightgen", studioProbe({64, 32}), count, 1);
+    const Constellation lights =
+        makeLights("lightgen", studioProbe({64, 32}), {.count = count, .seed = 1}).lights;
     const DeltaLights inPlace(black, lights);
     const auto none = makeStrategy("bsdf", black, Mis::Balance, "test");
     for (const auto& [name, material] : surfacings(inPlace.mirrorAlpha())) {

@@ -11,6 +11,7 @@
 #include "job/job_description.h"
 #include "job/machine.h"
 #include "job/output_file.h"
+#include "lighting/methods.h"
 #include "progress_bar.h"
 #include "scene_options.h"
 #include "study/report/probe_dots.h"
@@ -215,6 +216,7 @@ void addCompareCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "compare", "What each lighting strategy costs and gains: error, bias and time of a scene");
   addSceneOptions(*command, a.scene);
+  command->footer(strategyHelp());
   command->add_option("--strategies", a.strategies, "NAME or NAME:COUNT, with commas; or all")
       ->delimiter(',');
   command->add_option("--samples", a.samples, "Samples a pixel: 1,4,16,64")->delimiter(',');

@@ -7,16 +7,17 @@
 #include "image/io/write.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
-#include "light_methods.h"
+#include "lighting/light_file.h"
 #include "lighting/light_preview.h"
+#include "lighting/methods.h"
 #include "probe/load.h"
 
 namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string probe, mapping = "auto", output, preview, maxError, units = "photometric";
-  LightOptions options;
+  std::string probe, mapping = "auto", method, output, preview, maxError, units = "photometric";
+  LightRequest request;
 };
 
 // "5" or "5%".
@@ -27,12 +28,24 @@ double parsePercent(std::string text, std::string_view option) {
   return percent;
 }
 
+// Refuses options that the method does not take, and a missing count.
+void checkOptions(const LightingMethod& method, const LightRequest& request) {
+  const LightingMethod::Lights& lights = method.lights;
+  if (!request.count && !request.maxErrorPercent && !lights.countIsOptional)
+    throwInput("--count: should say how many lights");
+  if (request.ambient && !lights.fitsAmbient)
+    throwInput("--ambient: {} fits no ambient light; use irradiance-fit", method.name);
+  if (request.maxErrorPercent && !lights.takesMaxError)
+    throwInput("--max-error: {} cannot search for a number of lights; use irradiance-fit",
+               method.name);
+}
+
 void run(Arguments arguments) {
-  LightOptions& options = arguments.options;
-  checkLightMethod(options.method, "--method");
+  LightRequest& request = arguments.request;
+  const LightingMethod& method = lightMethod(arguments.method, "--method");
   if (!arguments.maxError.empty())
-    options.maxError = parsePercent(arguments.maxError, "--max-error");
-  checkLightOptions(options);
+    request.maxErrorPercent = parsePercent(arguments.maxError, "--max-error");
+  checkOptions(method, request);
   const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
   checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
@@ -41,17 +54,19 @@ void run(Arguments arguments) {
   const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.probe))
     fmt::print(stderr, "chromeball: {}\n", warning);
-  auto [rig, meanError] = makeLights(probe.latLong, options);
-  rig.probe = arguments.probe;
-  rig.units = units;
-  writeLights(arguments.output, rig);
+  const auto [lights, ambient, meanError] = makeLights(arguments.method, probe.latLong, request);
+  writeLights(arguments.output, {.probe = arguments.probe,
+                                 .method = arguments.method,
+                                 .ambient = ambient,
+                                 .lights = lights,
+                                 .units = units});
   if (!arguments.preview.empty())
-    writeImage(arguments.preview, lightPreview(probe.latLong, rig.lights));
-  fmt::print("lights      {}\n", rig.lights.size());
+    writeImage(arguments.preview, lightPreview(probe.latLong, lights));
+  fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
-  if (meanError && options.maxError && *meanError > *options.maxError)
-    fmt::print(stderr, "chromeball: --max-error: {} lights do not reach {}%\n", rig.lights.size(),
-               *options.maxError);
+  if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
+    fmt::print(stderr, "chromeball: --max-error: {} lights do not reach {}%\n", lights.size(),
+               *request.maxErrorPercent);
 }
 
 }  // namespace
@@ -59,12 +74,14 @@ void run(Arguments arguments) {
 void addLightsCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
-      app.add_subcommand("lights", "Stand directional lights in for a probe, for other programs.");
+      app.add_subcommand("lights", "Replace a probe by directional lights, for other programs.");
   command->add_option("PROBE", arguments->probe, "the probe's image")->required();
-  command->add_option("--method", arguments->options.method, lightMethodList())->required();
-  command->add_option("--count", arguments->options.count,
-                      "how many lights; cube-grid: points along a face's edge; suns: the most to "
-                      "keep, else all");
+  command->footer(lightMethodHelp());
+  command->add_option("--method", arguments->method, "how to find the lights; see below")
+      ->required();
+  command->add_option("--count", arguments->request.count,
+                      "number of lights; of cube-grid: of lights along a face's edge; of suns: the "
+                      "maximum");
   command
       ->add_option("-o,--output", arguments->output,
                    "the lights to write: .json, .gltf (KHR_lights_punctual) or .csv")
@@ -73,14 +90,14 @@ void addLightsCommand(CLI::App& app) {
                       "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them), or "
                       "radiometric (1 lux)");
   command->add_option("--preview", arguments->preview,
-                      "draw the lights into the probe, and write this image");
+                      "write an image of the probe with a dot at each light");
   command->add_option("--max-error", arguments->maxError,
-                      "irradiance-fit: percent of the mean irradiance; the fewest lights, at most "
-                      "--count, whose mean error is no more");
-  command->add_flag("--ambient", arguments->options.ambient,
-                    "irradiance-fit: fit a constant radiance too");
-  command->add_option("--seed", arguments->options.seed, "of the methods that throw dice");
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto guesses");
+                      "irradiance-fit: find the smallest number of lights, up to --count, whose "
+                      "mean error is no greater; percent of the mean irradiance");
+  command->add_flag("--ambient", arguments->request.ambient,
+                    "irradiance-fit: also fit a constant radiance from all directions");
+  command->add_option("--seed", arguments->request.seed, "of stochastic methods");
+  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "commands.h"
 #include "job/output_file.h"
-#include "light_methods.h"
 #include "lighting/fit/light_error.h"
+#include "lighting/methods.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
@@ -27,10 +27,10 @@ struct Arguments {
 
 struct Row {
   std::string method;
-  int count;      // asked for
-  size_t lights;  // made
+  int count;  // as requested
+  size_t lights;
   LightError error;
-  double seconds;  // that making them took
+  double seconds;  // to make the lights
 };
 
 int subdivisionsFor(int normals) {
@@ -41,14 +41,13 @@ int subdivisionsFor(int normals) {
              normals);
 }
 
-Row measure(const Image& latLong, const LightOptions& options, std::span<const vec3> normals,
-            std::span<const dvec3> irradiance) {
+Row measure(const std::string& method, const Image& latLong, const LightRequest& request,
+            std::span<const vec3> normals, std::span<const dvec3> irradiance) {
   const auto start = std::chrono::steady_clock::now();
-  const LightRig rig = makeLights(latLong, options).rig;
+  const MadeLights made = makeLights(method, latLong, request);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const auto lit = irradianceOf(rig.lights, rig.ambient.value_or(Rgb(0)), normals);
-  return {options.method, *options.count, rig.lights.size(), lightError(lit, irradiance),
-          seconds.count()};
+  const auto lit = irradianceOf(made.lights, made.ambient.value_or(Rgb(0)), normals);
+  return {method, *request.count, made.lights.size(), lightError(lit, irradiance), seconds.count()};
 }
 
 std::string formatCsv(const std::vector<Row>& rows) {
@@ -76,7 +75,7 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
 }
 
 void run(const Arguments& arguments) {
-  for (const std::string& method : arguments.methods) checkLightMethod(method, "--methods");
+  for (const std::string& method : arguments.methods) lightMethod(method, "--methods");
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
   checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
@@ -91,8 +90,9 @@ void run(const Arguments& arguments) {
              "max %", "seconds");
   for (const std::string& method : arguments.methods)
     for (const int count : arguments.counts) {
-      const LightOptions options{.method = method, .count = count, .seed = arguments.seed};
-      const Row& row = rows.emplace_back(measure(probe.latLong, options, normals, irradiance));
+      const LightRequest request{.count = count, .seed = arguments.seed};
+      const Row& row =
+          rows.emplace_back(measure(method, probe.latLong, request, normals, irradiance));
       fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
                  row.lights, row.error.mean, row.error.max, row.seconds);
       std::fflush(stdout);
@@ -108,18 +108,21 @@ void addLightsErrorCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "lights-error", "How far the irradiance of directional lights is from their probe's.");
   command->add_option("PROBE", arguments->probe, "the probe's image")->required();
-  command->add_option("--methods", arguments->methods, "some of " + lightMethodList())
+  command->footer(lightMethodHelp());
+  command->add_option("--methods", arguments->methods, "one or several; see below")
       ->required()
       ->delimiter(',');
-  command->add_option("--counts", arguments->counts, "how many lights: 2,4,8,...")
+  command->add_option("--counts", arguments->counts, "numbers of lights: 2,4,8,...")
       ->required()
       ->delimiter(',');
-  command->add_option("--normals", arguments->normals, "where to compare: 20 times a power of 4")
+  command
+      ->add_option("--normals", arguments->normals,
+                   "number of surface orientations to compare: 20 times a power of 4")
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "write the table to this file");
   command->add_option("--plot", arguments->plot, "write a plot of the table to this .svg");
-  command->add_option("--seed", arguments->seed, "of the methods that throw dice");
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto guesses");
+  command->add_option("--seed", arguments->seed, "of stochastic methods");
+  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -18,6 +18,7 @@
 #include "job/load_scene.h"
 #include "job/machine.h"
 #include "job/render_job.h"
+#include "lighting/methods.h"
 #include "progress_bar.h"
 #include "render_hints.h"
 #include "scene_options.h"
@@ -270,7 +271,9 @@ void addRenderCommand(CLI::App& app) {
         if (percent.ends_with('%')) percent.pop_back();
         return percent;
       });
-  command->add_option("--strategy", o.strategy, "How the probe is sampled: NAME or NAME:COUNT");
+  command->footer(strategyHelp());
+  command->add_option("--strategy", o.strategy,
+                      "How the probe is sampled: NAME or NAME:COUNT; see below");
   command->add_option("--aov", o.aovs, "Layers of the .exr: albedo, normal, depth, ...")
       ->delimiter(',');
   command->add_option("--clamp", o.clamp,

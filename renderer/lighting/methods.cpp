@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/methods.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "lighting/bsdf_only.h"
+#include "lighting/constellation/cube_grid.h"
+#include "lighting/constellation/kollig_keller.h"
+#include "lighting/constellation/lightgen.h"
+#include "lighting/constellation/median_cut.h"
+#include "lighting/constellation/penrose.h"
+#include "lighting/constellation/variance_cut.h"
+#include "lighting/delta_lights.h"
+#include "lighting/fit/irradiance_fit.h"
+#include "lighting/importance.h"
+#include "lighting/product.h"
+#include "lighting/strata.h"
+#include "lighting/suns.h"
+#include "lighting/uniform.h"
+#include "probe/sun_extraction.h"
+
+namespace chromeball {
+namespace {
+
+using Lights = LightingMethod::Lights;
+using MakeConstellation = Constellation (*)(const Image& latLong, int count, uint64_t seed);
+
+constexpr int kUnlimited = std::numeric_limits<int>::max();
+
+// Replaces the probe by the lights it makes (with seed 0 as a strategy).
+LightingMethod replacing(std::string_view name, std::string_view summary, Lights lights) {
+  const auto makeStrategy = [make = lights.make](const Probe& probe, Mis, int count) {
+    const MadeLights made = make(probe.latLong(), {.count = count});
+    return std::make_unique<DeltaLights>(probe, made.lights, made.ambient.value_or(Rgb(0)));
+  };
+  return {name, summary, lights.counts, makeStrategy, lights};
+}
+
+Lights constellation(CountRange counts, bool isStochastic, MakeConstellation make) {
+  return {.make =
+              [make](const Image& latLong, const LightRequest& request) {
+                return MadeLights{make(latLong, *request.count, request.seed)};
+              },
+          .counts = counts,
+          .isStochastic = isStochastic,
+          .keepsEnergy = true};
+}
+
+MadeLights fitLights(const Image& latLong, const LightRequest& request) {
+  FitOptions options{.ambient = request.ambient, .maxErrorPercent = request.maxErrorPercent};
+  if (request.count) options.count = options.maxCount = *request.count;
+  const IrradianceFit fit = fitIrradiance(latLong, options);
+  MadeLights made{fit.lights, {}, fit.meanError};
+  if (request.ambient) made.ambient = fit.ambient;
+  return made;
+}
+
+MadeLights fitLightsAndAmbient(const Image& latLong, const LightRequest& request) {
+  LightRequest withAmbient = request;
+  withAmbient.ambient = true;
+  return fitLights(latLong, withAmbient);
+}
+
+MadeLights sunLights(const Image& latLong, const LightRequest& request) {
+  MadeLights made;
+  for (const Sun& sun : extractSuns(latLong).suns)
+    if (!request.count || made.lights.size() < size_t(*request.count))
+      made.lights.push_back({vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)});
+  return made;
+}
+
+Lights fit(MadeLights (*make)(const Image&, const LightRequest&)) {
+  return {.make = make,
+          .counts = {1, kMaxFittedLights, 16},
+          .fitsAmbient = true,
+          .takesMaxError = true};
+}
+
+std::string rangeOf(const CountRange& counts) {
+  return counts.max == kUnlimited ? fmt::format("{} or more", counts.min)
+                                  : fmt::format("{} to {}", counts.min, counts.max);
+}
+
+void checkCount(std::string_view name, const Lights& lights, const LightRequest& request) {
+  if (!request.count) {
+    if (!lights.countIsOptional && !request.maxErrorPercent) throwInput("{}: needs a count", name);
+    return;
+  }
+  const CountRange& counts = lights.counts;
+  if (*request.count < counts.min || *request.count > counts.max)
+    throwInput("{}: a count of {} is out of range; give {}", name, *request.count, rangeOf(counts));
+}
+
+std::string helpLine(const std::string& name, std::string_view summary, const std::string& counts) {
+  return fmt::format("  {:<26}{}{}\n", name, summary, counts);
+}
+
+}  // namespace
+
+const std::vector<LightingMethod>& lightingMethods() {
+  constexpr CountRange kRegions{2, 4096, 64};
+  static const std::vector<LightingMethod> kMethods{
+      {.name = "bsdf",
+       .summary = "no light samples; BSDF samples find the probe",
+       .makeStrategy = [](const Probe& probe, Mis,
+                          int) { return std::make_unique<BsdfOnly>(probe); }},
+      {.name = "uniform",
+       .summary = "samples uniform over the hemisphere",
+       .makeStrategy = [](const Probe& probe, Mis,
+                          int) { return std::make_unique<Uniform>(probe); }},
+      {.name = "importance",
+       .summary = "samples proportional to luminance",
+       .makeStrategy = [](const Probe& probe, Mis mis,
+                          int) { return std::make_unique<Importance>(probe, mis != Mis::Off); }},
+      {.name = "product",
+       .summary = "samples proportional to luminance x cosine",
+       .makeStrategy = [](const Probe& probe, Mis,
+                          int) { return std::make_unique<Product>(probe); }},
+      {.name = "suns",
+       .summary = "each sun in the probe as a disc of its own",
+       .makeStrategy = [](const Probe& probe, Mis mis,
+                          int) { return std::make_unique<Suns>(probe, mis != Mis::Off); },
+       .lights = {.make = sunLights, .counts = {1, kUnlimited}, .countIsOptional = true}},
+      replacing("median-cut", "a light for each region of equal energy",
+                constellation(kRegions, false,
+                              [](const Image& map, int count, uint64_t) {
+                                return medianCut(RegionTable(map), count);
+                              })),
+      replacing("variance-cut", "a light for each region of small variance",
+                constellation(kRegions, false,
+                              [](const Image& map, int count, uint64_t) {
+                                return varianceCut(RegionTable(map), count);
+                              })),
+      replacing("lightgen", "K-means on the sphere, from random starts",
+                constellation(kRegions, true,
+                              [](const Image& map, int count, uint64_t seed) {
+                                return lightGen(TexelTable(map, kCoarseCells), count, seed);
+                              })),
+      replacing("kollig-keller", "K-means on the sphere, adding one light at a time",
+                constellation(kRegions, false,
+                              [](const Image& map, int count, uint64_t) {
+                                return kolligKeller(TexelTable(map, kCoarseCells), count);
+                              })),
+      {.name = "kollig-keller-strata",
+       .summary = "a random direction in each region of kollig-keller",
+       .counts = {2, 4096, 8},
+       .makeStrategy = [](const Probe& probe, Mis,
+                          int count) { return std::make_unique<Strata>(probe, count); },
+       .lights = constellation({2, 4096, 8}, true, kolligKellerStrata)},
+      replacing("cube-grid", "6 N^2 lights on the faces of a cube",
+                constellation({1, 26, 10}, false,
+                              [](const Image& map, int count, uint64_t) {
+                                return cubeGrid(TexelTable(map, kFineCells), count);
+                              })),
+      replacing("penrose", "blue-noise points on a Penrose tiling",
+                constellation({2, 4096, 300}, true,
+                              [](const Image& map, int count, uint64_t seed) {
+                                return penrose(ImportanceTable(map), count, seed);
+                              })),
+      replacing("irradiance-fit", "the lights that minimise the error of irradiance",
+                fit(fitLights)),
+      replacing("irradiance-fit-ambient", "the same, with constant light from all directions",
+                fit(fitLightsAndAmbient)),
+  };
+  return kMethods;
+}
+
+const LightingMethod& lightMethod(std::string_view name, std::string_view location) {
+  std::vector<std::string_view> names;
+  for (const LightingMethod& method : lightingMethods()) {
+    if (!method.lights.make) continue;
+    if (method.name == name) return method;
+    names.push_back(method.name);
+  }
+  throwInput("{}: unknown method `{}`; {}", location, name, didYouMean(name, names));
+}
+
+MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request) {
+  const Lights& lights = lightMethod(method, "lights").lights;
+  checkCount(method, lights, request);
+  return lights.make(latLong, request);
+}
+
+std::string strategyHelp() {
+  std::string help = "Strategies:\n" +
+                     helpLine("auto", "the unbiased strategy best for most scenes: importance", "");
+  for (const auto& [name, summary, counts, makeStrategy, lights] : lightingMethods())
+    help += counts.max == 0
+                ? helpLine(std::string(name), summary, "")
+                : helpLine(fmt::format("{}:N", name), summary,
+                           fmt::format(" (N {}, default {})", rangeOf(counts), counts.usual));
+  return help;
+}
+
+std::string lightMethodHelp() {
+  std::string help = "Methods (and their range of --count, N):\n";
+  for (const LightingMethod& method : lightingMethods())
+    if (method.lights.make)
+      help += helpLine(std::string(method.name), method.summary,
+                       fmt::format(" ({})", rangeOf(method.lights.counts)));
+  return help;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one table of lighting methods: those that sample a probe, and those that replace it by
+// directional lights.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/image.h"
+#include "lighting/constellation/directional_light.h"
+#include "lighting/strategy.h"
+
+namespace chromeball {
+
+struct CountRange {
+  int min = 0, max = 0;  // both 0: no count
+  int usual = 0;         // the default of a strategy
+};
+
+// What makeLights() is asked for.
+struct LightRequest {
+  std::optional<int> count;  // of lights; cube-grid: of squares along a face's edge
+  uint64_t seed = 0;         // read by stochastic methods only
+  // Read by the fits only: also fit a constant radiance from all directions; and stop at the
+  // smallest number of lights (`count` at most) whose mean error, in percent, is no greater.
+  bool ambient = false;
+  std::optional<double> maxErrorPercent;
+};
+
+struct MadeLights {
+  Constellation lights;
+  std::optional<Rgb> ambient;       // radiance from all directions, where it was fitted
+  std::optional<double> meanError;  // of a fit, in percent (fit/light_error.h)
+};
+
+struct LightingMethod {
+  std::string_view name;     // as on the command line
+  std::string_view summary;  // one line, for help
+
+  // As a strategy for rendering: NAME, or NAME:COUNT.
+  CountRange counts;
+  std::function<std::unique_ptr<LightingStrategy>(const Probe&, Mis, int count)> makeStrategy;
+
+  // As directional lights that replace a lat-long map.
+  struct Lights {
+    std::function<MadeLights(const Image& latLong, const LightRequest&)> make;  // empty: none
+    CountRange counts;
+    bool countIsOptional = false;
+    bool isStochastic = false;  // the seed changes the lights
+    bool fitsAmbient = false, takesMaxError = false;
+    // The irradiances sum to the map's radiance x solid angle, channel by channel.
+    bool keepsEnergy = false;
+  } lights;
+};
+
+const std::vector<LightingMethod>& lightingMethods();
+
+// The method that makes lights, by name. Throws InputError, which starts with `location`.
+const LightingMethod& lightMethod(std::string_view name, std::string_view location);
+
+// The lights of `latLong` (at least three channels). Directions are unit; the same arguments give
+// the same bits. Methods that keep energy make no black or negative light: `count` lights where the
+// map has as many lit texels (blocks of texels in a large map), else one for each; none of a black
+// map. cube-grid makes up to 6 count^2 lights, one for each lit square; penrose `count` lights of
+// any map that is not black; suns those it finds, `count` at most.
+// Throws InputError for an unknown method, a count that is missing or out of range, or a texel that
+// is negative or not finite.
+MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request);
+
+// For --help: one line for each strategy, or for each method that makes lights.
+std::string strategyHelp();
+std::string lightMethodHelp();
+
+}  // namespace chromeball
