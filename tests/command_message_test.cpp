@@ -121,7 +121,9 @@ TEST_F(SlowCommandMessage, QuietSilencesNotesAndKeepsWarnings) {
             std::string::npos)
       << loud.error;
   EXPECT_NE(loud.error.find("`Wave`"), std::string::npos) << "it names the animations";
-  EXPECT_NE(loud.error.find("taken for a lat-long probe"), std::string::npos) << loud.error;
+  EXPECT_NE(loud.error.find("detected as a lat-long probe because its shape is 2:1"),
+            std::string::npos)
+      << loud.error;
   EXPECT_EQ(quiet.out, "");
   ASSERT_EQ(std::count(quiet.error.begin(), quiet.error.end(), '\n'), 1) << quiet.error;
   EXPECT_TRUE(quiet.error.starts_with("chromeball: warning: ")) << quiet.error;

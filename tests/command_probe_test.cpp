@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// chromeball probe info, convert and synth; and the command line's own errors.
+// chromeball probe info, convert and synth; and errors in the command line itself.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -34,7 +34,7 @@ TEST(SlowCommand, HelpAndVersionSucceed) {
     EXPECT_FALSE(run(arguments).out.empty());
 }
 
-TEST(SlowCommand, WrongWordsAreRefusedWithTheNearest) {
+TEST(SlowCommand, UnknownWordsAreRefusedWithASuggestion) {
   expectRefused({}, "subcommand is required");
   expectRefused({"rendr"}, "`render`");
   expectRefused({"prob", "info"}, "`probe`");
@@ -59,7 +59,7 @@ TEST(SlowCommandProbe, SynthInfoAgree) {
   EXPECT_EQ(info["invalid_texels"]["nan"], 0);
   EXPECT_EQ(info["suns"].size(), 1u);
   EXPECT_EQ(info["brightest_shares"][0]["share"], 1.0);
-  EXPECT_NE(run({"probe", "info", path}).out.find("lat-long (guessed"), std::string::npos);
+  EXPECT_NE(run({"probe", "info", path}).out.find("lat-long (detected"), std::string::npos);
   EXPECT_EQ(
       json::parse(
           run({"probe", "info", path, "--json", "--mapping", "lat-long"}).out)["mapping_guessed"],

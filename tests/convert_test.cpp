@@ -30,7 +30,7 @@ Image onlyFilledWhereValid(Mapping mapping, const ImageSize& size, float inside,
   return image;
 }
 
-// What lies outside the disc or the faces (a notice, say) never leaks in.
+// Texels outside the disc or the faces (a copyright notice, for example) do not leak in.
 TEST(Convert, ConstantStaysConstant) {
   for (const Mapping from : kMappings) {
     const ImageSize size = sizeFor(from, {64, 32});
@@ -143,17 +143,17 @@ TEST(Convert, CrossAgreesWithAngularMap) {
   const auto load = [&](const std::filesystem::path& path, Mapping expected) {
     const LoadedProbe probe = loadProbe(path);
     EXPECT_EQ(probe.mapping, expected);
-    EXPECT_TRUE(probe.guessed && probe.certain);
+    EXPECT_TRUE(probe.detected && probe.certain);
     return convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, small);
   };
   const Image a = load(*cross, Mapping::VerticalCross), b = load(*angular, Mapping::AngularMap);
   EXPECT_LT(disagreement(a, b), 0.05);
   EXPECT_NEAR(luminance(Rgb(meanRadiance(a))) / luminance(Rgb(meanRadiance(b))), 1, 0.005);
-  // The check can fail: turned by 10 degrees the two are far apart.
+  // Control: a rotation by 10 degrees gives a large difference.
   EXPECT_GT(disagreement(convert(a, Mapping::LatLong, Mapping::LatLong, small, 10), b), 0.2);
 }
 
-// OpenEXR's lat-long maps look along +Z, ours along -Z: they are turned where they are read.
+// The centre of OpenEXR's lat-long maps shows +Z, here -Z: they are turned when loaded.
 TEST(Convert, StripAgreesWithOpenExrsLatLong) {
   const auto strip = sharedData("probes/openexr/StageEnvCube.exr");
   const auto latLong = sharedData("probes/openexr/StageEnvLatLong.exr");

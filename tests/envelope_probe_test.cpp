@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tests/ENVELOPE.md, the probe's rows.
+// The rows of tests/ENVELOPE.md on probes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,24 +45,24 @@ TEST(EnvelopeProbe, RadianceFrom1e_8To1e10) {
     EXPECT_NEAR(validMean(r) / radiance, 0.5 * (1 + 2.0 / 3 * 0.6), 1e-3) << radiance;
     const double found = r.film.noise().noise;
     if (noise == 0) noise = found;
-    EXPECT_NEAR(found / noise, 1, 1e-3) << radiance;  // the estimate scales along
+    EXPECT_NEAR(found / noise, 1, 1e-3) << radiance;  // the noise estimate scales with radiance
   }
 }
 
-// Scaled by a power of two, and so without rounding.
+// Scaled by a power of two, so without rounding.
 Image scaled(Image image, int exponent) {
   for (float& x : image.texels) x = std::ldexp(x, exponent);
   return image;
 }
 
-// A bright texel before a gradient.
+// A bright texel in a gradient.
 Image sunny(float sun) {
   Image image = gradientProbe({32, 16}, Rgb(1), {0.2, 0.6, 0.3});
   image.setRgb(11, 4, Rgb(sun));
   return image;
 }
 
-// The picture under a probe that is 1e30 times as bright, or as dark, is as many times as bright.
+// Scaling the probe by 1e30 or 1e-30 scales the image by the same factor.
 TEST(SlowEnvelopeProbe, RadianceFrom1e_30To1e30UnderEveryStrategy) {
   for (const std::string strategy : kEvery) {
     const double mean = validMean(litPlane(Probe(sunny(50)), strategy, 16));
@@ -74,7 +74,7 @@ TEST(SlowEnvelopeProbe, RadianceFrom1e_30To1e30UnderEveryStrategy) {
   }
 }
 
-// A sun so bright, or all else so dark, that squares would leave the range of a float.
+// A sun so bright, or a rest so dark, that squares exceed the range of a float.
 TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
   for (const float sun : {1e20f, 1e30f})
     for (const std::string strategy : {"importance", "product", "kollig-keller-strata:4", "suns"}) {
@@ -90,7 +90,7 @@ TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
       1, 5e-3);
 }
 
-// What is said of a probe, and its exact irradiance.
+// The statistics of a probe and its exact irradiance.
 TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
   const Image image = sunny(1e6f);
   const ProbeInfo info = probeInfo(image);
@@ -106,13 +106,13 @@ TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
                 1e-6);
     EXPECT_NEAR(std::ldexp(found.meanRadiance.y, -exponent) / info.meanRadiance.y, 1, 1e-12);
     EXPECT_NEAR(found.dynamicRange / info.dynamicRange, 1, 1e-6);
-    EXPECT_NEAR(found.brightestShares[0].fraction, info.brightestShares[0].fraction, 1e-6);
+    EXPECT_NEAR(found.brightestTexels[0].fraction, info.brightestTexels[0].fraction, 1e-6);
     EXPECT_NEAR(std::ldexp(exactIrradiance(other, {&normal, 1})[0].y, -exponent) / irradiance, 1,
                 1e-6);
   }
 }
 
-// Squares of radiance leave the range of a float; the film keeps them as doubles.
+// Squares of radiance exceed the range of a float; the film uses double.
 TEST(EnvelopeProbe, TheErrorEstimateHoldsFrom1e_35To1e35) {
   for (const float radiance : {1e-35f, 1e-25f, 1.0f, 1e25f, 1e35f}) {
     Film film(1, 1);
@@ -134,20 +134,20 @@ TEST(SlowEnvelopeProbe, ADynamicRangeOf1e12InOneProbe) {
   const Probe probe(image);
   const double expected = 0.5 * irradianceOverPi(probe, {0, 1, 0}, 1500);
   for (const char* strategy : {"importance", "suns"})
-    // `suns` makes a disc of the lamp, which shifts its light a little.
+    // `suns` replaces the lamp by a disc, which shifts its light a little.
     EXPECT_NEAR(validMean(litPlane(probe, strategy, 256)) / expected, 1,
                 std::string(strategy) == "suns" ? 0.02 : 5e-3)
         << strategy;
-  // What the lamp does not reach still gets its light from the rest: seen from below.
+  // Surfaces that the lamp does not light still get light from the rest: seen from below.
   Image below = constantProbe({32, 16}, Rgb(1e-2f));
   below.setRgb(11, 13, Rgb(1e10f));
   const RenderResult r = litPlane(Probe(below), "importance", 4096);
   EXPECT_NEAR(validMean(r) / 5e-3, 1, 0.02);
 }
 
-// Tables are double: after a texel 1e12 times as bright, the others of a row of 16384 keep their
-// width to 1e-3, and each can be drawn.
-TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirWidth) {
+// Tables are double: next to a texel 1e12 times as bright, the other texels of a row of 16384 keep
+// their probability to 1e-3, and each can be sampled.
+TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirProbability) {
   const int width = 16384, sun = 3;
   std::vector<double> weights(width, 1.0);
   weights[sun] = 1e12;
@@ -164,7 +164,7 @@ TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirWidth) {
   }
 }
 
-// The largest probe, for real: a plane that the sun lights, and one that only the rest does.
+// The largest probe: one plane lit by the sun, and one lit only by the rest.
 TEST(SlowEnvelopeProbe, AOneTexelSunIn16384x8192) {
   if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) < 8e9)
     GTEST_SKIP() << "takes 5 GB of memory";
@@ -207,7 +207,8 @@ TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {
       const double mean = validMean(litPlane(probe, strategy, 64));
       const bool exact = strategy == "uniform" || strategy == "importance" || strategy == "bsdf" ||
                          strategy.starts_with("kollig-keller-strata");
-      const double tolerance = exact ? 0.03 : 1;  // approximations promise less of an odd probe
+      const double tolerance =
+          exact ? 0.03 : 1;  // approximations are less accurate on unusual shapes
       EXPECT_NEAR(mean, expected, tolerance * expected) << c.name << ' ' << strategy;
     }
   }
@@ -243,14 +244,14 @@ TEST(SlowEnvelopeProbe, ASunAtThePolesAndOnTheSeam) {
       const bool coarse = std::string(strategy) == "uniform";
       const double mean = validMean(
           renderScene(scene, camera, probe, strategy, smallRender(16, 16, coarse ? 1024 : 128, 1)));
-      // `suns` makes discs of sources: its shape is its own.
+      // `suns` replaces sources by discs of another shape.
       EXPECT_NEAR(mean / expected, 1, std::string(strategy) == "importance" ? 3e-3 : 0.1)
           << c.name << ' ' << strategy;
     }
   }
 }
 
-TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndSaid) {
+TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndReported) {
   Image image = constantProbe({16, 8}, Rgb(1));
   image.setRgb(3, 2, Rgb(65504));
   image.setRgb(4, 2, Rgb(INFINITY, 1, 1));
@@ -265,7 +266,7 @@ TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndSaid) {
   validMean(litPlane(Probe(image), "importance", 16));
 }
 
-TEST(EnvelopeProbe, ScalesThatLeaveTheRangeOfFloatAreRefused) {
+TEST(EnvelopeProbe, ScalesBeyondTheRangeOfFloatAreRefused) {
   const Image bright = constantProbe({4, 2}, Rgb(1e30f));
   EXPECT_THROW(Probe(bright, 0, 1e10f), InputError);
   EXPECT_THROW(Probe(bright, NAN), InputError);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact irradiance against closed forms, a sum in double and published references; spherical
+// Exact irradiance against closed forms, a sum in double, and published references; spherical
 // harmonics against both.
 #include "probe/irradiance.h"
 
@@ -35,7 +35,7 @@ TEST(Icosphere, NormalsAreSpreadEvenly) {
     for (int j = 0; j < 3; ++j) EXPECT_NEAR(moments[i][j] / 20480, i == j ? 1. / 3 : 0, 1e-7);
 }
 
-TEST(Icosphere, NoneFarFromItsNeighbourNorTooNear) {
+TEST(Icosphere, DistancesBetweenNeighboursAreBounded) {
   const std::vector<vec3> normals = icosphereNormals(3);
   const double spacing = std::sqrt(4 * kPiD / double(normals.size()));  // a square's side
   for (const vec3& a : normals) {
@@ -47,8 +47,8 @@ TEST(Icosphere, NoneFarFromItsNeighbourNorTooNear) {
   }
 }
 
-// The horizon's texels make the sum a little small: h^2/12 of it over all orientations, three times
-// that where it halves texels all along.
+// Texels cut by the horizon make the sum too small: by h^2/12 on average over all orientations, by
+// three times that if the horizon halves a whole ring of texels.
 TEST(Irradiance, OfAConstantMap) {
   const std::vector<vec3> normals = icosphereNormals(2);
   for (const int width : {64, 128, 256, 512}) {
@@ -78,7 +78,7 @@ TEST(Irradiance, OfALitHemisphere) {
   const auto irradiance = exactIrradiance(sky, normals);
   for (size_t i = 0; i < normals.size(); ++i)
     EXPECT_NEAR(irradiance[i].x, kPiD / 2 * (1 + normals[i].y), 2e-4);
-  // No texel is cut by the horizon of these: exact on any map.
+  // The horizon of these cuts no texel: exact on any map.
   Image coarse(4, 2, 3);
   for (int x = 0; x < 4; ++x) coarse.setRgb(x, 0, Rgb(1));
   const std::vector<vec3> upAndDown{{0, 1, 0}, {0, -1, 0}};
@@ -92,7 +92,7 @@ dvec3 texelMoment(int x, int y, int width, int height) {
   const double phi0 = 2 * kPiD * x / width, phi1 = 2 * kPiD * (x + 1) / width;
   const auto sineSquared = [](double theta) { return theta / 2 - std::sin(2 * theta) / 4; };
   const double horizontal = sineSquared(theta1) - sineSquared(theta0);
-  // u = 0 looks along +Z, and u grows through -X.
+  // u = 0 shows +Z, and u grows towards -X.
   return {horizontal * (std::cos(phi1) - std::cos(phi0)),
           (phi1 - phi0) * (std::pow(std::sin(theta1), 2) - std::pow(std::sin(theta0), 2)) / 2,
           horizontal * (std::sin(phi1) - std::sin(phi0))};
@@ -120,7 +120,7 @@ Image wildProbe(const ImageSize& size) {
   return image;
 }
 
-TEST(Irradiance, RoundsLikeADoubleToAMillionth) {
+TEST(Irradiance, AgreesWithASumInDoubleToOneMillionth) {
   const ImageSize size{192, 96};
   const Image probe = wildProbe(size);
   const std::vector<vec3> normals = icosphereNormals(1);
@@ -136,7 +136,7 @@ TEST(Irradiance, RoundsLikeADoubleToAMillionth) {
   }
 }
 
-TEST(Irradiance, SameBitsForAnyThreadsAndCompany) {
+TEST(Irradiance, SameBitsForAnyThreadsAndOtherNormals) {
   const Image probe = wildProbe({64, 32});
   const std::vector<vec3> normals = icosphereNormals(3);
   const auto together = exactIrradiance(probe, normals);
@@ -177,8 +177,8 @@ TEST(Irradiance, OfThePointSourceOfOneLux) {
   EXPECT_EQ(irradiance[1].y, 0);
 }
 
-// The polynomial of Ramamoorthi and Hanrahan 2001, eq. 13, with its printed constants. Its z is
-// another's minus ours, which changes no term where L and the direction change together.
+// The polynomial of Ramamoorthi and Hanrahan 2001, eq. 13, with its printed constants. Its z axis
+// is reversed; that changes no term because coefficients and direction change together.
 TEST(ShIrradiance, IsThePublishedPolynomial) {
   const ShCoefficients l = projectSh(studioProbe({64, 32}));
   const double c1 = 0.429043, c2 = 0.511664, c3 = 0.743125, c4 = 0.886227, c5 = 0.247708;
@@ -209,7 +209,7 @@ TEST(ShIrradiance, OfAGradientIsExact) {
 }
 
 // The bands above 2 hold little of a smooth probe's irradiance, and much of a sun's.
-TEST(ShIrradiance, IsWithinAPercentOnSmoothProbesButNotUnderASun) {
+TEST(ShIrradiance, IsAccurateToOnePercentOnSmoothProbesButNotUnderASun) {
   const std::vector<vec3> normals = icosphereNormals(3);
   const ClearSky sky{.sunElevation = 30};
   EXPECT_LT(shError(overcastProbe({128, 64}, Rgb(1), 0.2), normals), 0.01);
@@ -217,8 +217,8 @@ TEST(ShIrradiance, IsWithinAPercentOnSmoothProbesButNotUnderASun) {
   EXPECT_GT(shError(clearSkyProbe({128, 64}, sky), normals), 0.03);
 }
 
-// Of a lone sun, SH makes E (1/4 + c/2 + 5 (3 c^2 - 1)/32), c the cosine to it; where c = -8/15
-// that is negative.
+// For a single sun the result is E (1/4 + c/2 + 5 (3 c^2 - 1)/32), with c the cosine to it:
+// negative at c = -8/15.
 TEST(ShIrradiance, IsNegativeNextToASun) {
   const dvec3 sun = normalize(dvec3(1, 2, 3)), side = normalize(cross(sun, dvec3(0, 1, 0)));
   Image probe = constantProbe({256, 128}, Rgb(0.01f));
@@ -231,10 +231,8 @@ TEST(ShIrradiance, IsNegativeNextToASun) {
   EXPECT_NEAR(exactIrradiance(probe, normals)[0].y, 0.01 * kPiD, 1e-4);
 }
 
-// Probulator's references: irradiance over pi, linear, 8 bits, rounded down. Its Monte Carlo is of
-// 5000 samples, the same for all normals, so within 2% or so; its spherical harmonics are of 20000.
-// What nine coefficients leave out of real probes: little energy, more than that of error.
-TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyAndErrsByPercents) {
+// On captured probes, nine coefficients lose little energy, but the error is larger.
+TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyWithAnErrorOfPercents) {
   int probes = 0;
   double minimum = 1, maximum = 0;
   const std::vector<vec3> normals = icosphereNormals(3);
@@ -261,6 +259,8 @@ TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyAndErrsByPercents) {
   EXPECT_NEAR(maximum, 0.10, 0.01);
 }
 
+// Probulator's references: irradiance / pi, linear, 8 bits, rounded down. Its Monte Carlo uses the
+// same 5000 samples for all normals (accurate to about 2%), its spherical harmonics 20000.
 TEST(SlowIrradiance, PublishedImages) {
   int compared = 0;
   for (const std::string name : {"Ennis", "Grace", "Pisa", "Uffizi", "Wells"}) {
@@ -278,7 +278,7 @@ TEST(SlowIrradiance, PublishedImages) {
       double bias = 0, difference = 0, sum = 0;
       for (size_t i = 0; i < ours.texels.size(); ++i) {
         const double expected = theirs.texels[i] + 0.5 / 255, e = ours.texels[i] / kPiD;
-        if (expected > 0.95 || e > 0.95) continue;  // the file's white
+        if (expected > 0.95 || e > 0.95) continue;  // clipped in the file
         bias += e - expected;
         difference += std::fabs(e - expected);
         sum += expected;

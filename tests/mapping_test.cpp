@@ -16,7 +16,7 @@ constexpr std::array kMappings = {Mapping::LatLong,         Mapping::AngularMap,
                                   Mapping::HorizontalCross, Mapping::HorizontalStrip,
                                   Mapping::VerticalStrip};
 
-// Directions over the whole sphere, and the awkward ones: axes, edges and corners of the cube, both
+// Directions over the whole sphere and special cases: axes, edges and corners of the cube, both
 // sides of the seam, close to the poles and to the view axis.
 std::vector<dvec3> directions() {
   std::vector<dvec3> all;
@@ -44,13 +44,13 @@ TEST(Mapping, DirectionToImageAndBack) {
     for (const dvec3& d : directions()) {
       const dvec2 uv = directionToUv(mapping, d);
       const auto back = uvToDirection(mapping, glm::clamp(uv, dvec2(0), dvec2(1)));
-      // Rounding may put a point of the rim just outside the disc.
+      // Rounding may move a position on the rim out of the disc.
       if (!back && glm::distance(uv, dvec2(0.5)) < 0.5 + 1e-12) continue;
       ASSERT_TRUE(back) << mappingName(mapping);
-      // The ball's rim is flat: an error of 1e-16 in radius is one of 1e-8 in direction.
+      // At the mirror ball's rim, an error of 1e-16 in radius is one of 1e-8 in direction.
       EXPECT_LT(glm::distance(*back, d), mapping == Mapping::MirrorBall ? 1e-7 : 1e-12)
           << mappingName(mapping) << " " << d.x << " " << d.y << " " << d.z;
-      // Scale does not matter.
+      // The length does not matter.
       EXPECT_LT(glm::distance(directionToUv(mapping, 7.0 * d), uv), 1e-12);
     }
 }
@@ -103,8 +103,8 @@ TEST(Mapping, CentresLookForwardAndUpIsUp) {
   EXPECT_FALSE(uvToDirection(Mapping::LatLong, {1.1, 0.5}));
 }
 
-// Across each edge of the vertical cross that is an edge of the cube, the picture goes on: a step
-// of the image is a step of the direction.
+// Across each edge between faces of the vertical cross the mapping is continuous: a small step in
+// the image is a small step in direction.
 TEST(Mapping, CrossIsContinuousInside) {
   const double tiny = 1e-7;
   const std::array<dvec2, 5> edges{
@@ -124,7 +124,7 @@ TEST(Mapping, SolidAnglesSumToTheSphere) {
     for (int y = 0; y < h; ++y) sum += w * texelSolidAngle(y, w, h);
     EXPECT_NEAR(sum, 4 * kPiD, 1e-11) << w << " x " << h;
   }
-  // 1 - cos(pi/H) by its series, where the plain difference has lost half its digits.
+  // 1 - cos(pi/H) by its series; the plain difference loses half the digits.
   EXPECT_NEAR(texelSolidAngle(0, 1, 1 << 20) / (kPiD * std::pow(kPiD / (1 << 20), 2)), 1, 1e-11);
 
   constexpr int kSteps = 600;
@@ -133,7 +133,7 @@ TEST(Mapping, SolidAnglesSumToTheSphere) {
     for (int j = 0; j < kSteps; ++j)
       for (int i = 0; i < kSteps; ++i) {
         const dvec2 uv((i + 0.5) / kSteps, (j + 0.5) / kSteps);
-        if (uvToDirection(mapping, uv)) sum += solidAnglePdf(mapping, uv);
+        if (uvToDirection(mapping, uv)) sum += solidAngleJacobian(mapping, uv);
       }
     EXPECT_NEAR(sum / (kSteps * kSteps), 4 * kPiD, 0.01) << mappingName(mapping);
   }
@@ -150,26 +150,26 @@ TEST(Mapping, NamesAndShapes) {
   EXPECT_THROW(parseMapping("latlong", 7, 5, "x"), InputError);
 }
 
-TEST(Mapping, Guesses) {
-  const auto guess = [](int w, int h, float corner) {
+TEST(Mapping, IsDetected) {
+  const auto detect = [](int w, int h, float corner) {
     Image image(w, h, 3);
     std::fill(image.texels.begin(), image.texels.end(), 1.0f);
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x)
         if (!uvToDirection(Mapping::AngularMap, {(x + 0.5) / w, (y + 0.5) / h}))
           image.setRgb(x, y, Rgb(corner));
-    return guessMapping(image);
+    return detectMapping(image);
   };
-  EXPECT_EQ(guess(64, 32, 1).mapping, Mapping::LatLong);
-  EXPECT_EQ(guess(64, 64, 0).mapping, Mapping::AngularMap);
-  EXPECT_EQ(guess(64, 64, 1).mapping, Mapping::MirrorBall);
-  EXPECT_EQ(guess(48, 64, 1).mapping, Mapping::VerticalCross);
-  EXPECT_EQ(guess(64, 48, 1).mapping, Mapping::HorizontalCross);
-  EXPECT_EQ(guess(96, 16, 1).mapping, Mapping::HorizontalStrip);
-  EXPECT_EQ(guess(16, 96, 1).mapping, Mapping::VerticalStrip);
+  EXPECT_EQ(detect(64, 32, 1).mapping, Mapping::LatLong);
+  EXPECT_EQ(detect(64, 64, 0).mapping, Mapping::AngularMap);
+  EXPECT_EQ(detect(64, 64, 1).mapping, Mapping::MirrorBall);
+  EXPECT_EQ(detect(48, 64, 1).mapping, Mapping::VerticalCross);
+  EXPECT_EQ(detect(64, 48, 1).mapping, Mapping::HorizontalCross);
+  EXPECT_EQ(detect(96, 16, 1).mapping, Mapping::HorizontalStrip);
+  EXPECT_EQ(detect(16, 96, 1).mapping, Mapping::VerticalStrip);
   for (const auto& [w, h] : {std::pair{1, 1}, {3, 2}, {2, 3}, {100, 70}})
-    EXPECT_EQ(guess(w, h, 1).mapping, Mapping::LatLong) << w << " x " << h;
-  EXPECT_FALSE(guess(100, 70, 1).certain);
+    EXPECT_EQ(detect(w, h, 1).mapping, Mapping::LatLong) << w << " x " << h;
+  EXPECT_FALSE(detect(100, 70, 1).certain);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Probes from files, and what can be said of them.
+// Loading probes from files, their warnings and statistics.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -24,7 +24,7 @@ TEST(ProbeFile, LatLongOfAnyShapeKeepsItsTexels) {
     writeImage(folder / "p.exr", image);
     const LoadedProbe probe = loadProbe(folder / "p.exr");
     EXPECT_EQ(probe.latLong.texels, image.texels) << w << " x " << h;
-    EXPECT_TRUE(probe.guessed);
+    EXPECT_TRUE(probe.detected);
     EXPECT_FALSE(probe.reason.empty());
   }
 }
@@ -34,7 +34,7 @@ TEST(ProbeFile, GivenMappingWins) {
   writeImage(folder / "p.exr", constantProbe({32, 32}, Rgb(1)));
   const LoadedProbe latLong = loadProbe(folder / "p.exr", "lat-long");
   EXPECT_EQ(latLong.latLong.width, 32);
-  EXPECT_FALSE(latLong.guessed);
+  EXPECT_FALSE(latLong.detected);
   const LoadedProbe ball = loadProbe(folder / "p.exr", "mirror-ball");
   EXPECT_EQ(ball.latLong.width, 2 * ball.latLong.height);
   EXPECT_THROW(loadProbe(folder / "p.exr", "cube-cross"), InputError);
@@ -60,13 +60,13 @@ void writeEnvironment(const std::string& path, const Image& image, const char* f
   writeImage(path, OutputImage{{{"", "RGB", image}}, {{"textureformat", format}}});
 }
 
-// The same place as a cube and as a lat-long map, both by OpenEXR's convention. A linear function
-// of direction tells where everything is.
+// The same environment as a cube and as a lat-long map, both by OpenEXR's convention. A linear
+// function of direction identifies every orientation.
 TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
   const TemporaryFolder folder;
   const dvec3 slope(0.3, 0.2, -0.4);
   const Image ours = gradientProbe({64, 32}, Rgb(1), slope);
-  // OpenEXR: the centre looks along +Z, the left quarter along +X.
+  // OpenEXR: the centre shows +Z, the left quarter +X.
   writeEnvironment(folder / "even.exr", gradientProbe({64, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
                    "LatLong Environment");
   writeEnvironment(folder / "odd.exr", gradientProbe({63, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
@@ -85,17 +85,17 @@ TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
          {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0.6f, 0.64f, 0.48f)})
       EXPECT_NEAR(probe.radiance(d).x, 1 + glm::dot(slope, dvec3(d)), 0.02) << name;
   }
-  // The attribute is followed where the mapping is given, too.
+  // The attribute also counts if the mapping is given.
   EXPECT_TRUE(loadProbe(folder / "even.exr", "lat-long").turned);
 }
 
 TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
   const auto folder = sharedData("probes/openexr");
-  if (!folder) GTEST_SKIP() << "../shared/data/probes/openexr is not there";
+  if (!folder) GTEST_SKIP() << "no probes/openexr";
   for (const std::string location : {"Orientation", "StageEnv"}) {
     const Probe cube(loadProbe(*folder / (location + "Cube.exr")).latLong);
     const Probe latLong(loadProbe(*folder / (location + "LatLong.exr")).latLong);
-    double agree = 0, turned = 0;  // sums of absolute differences of what a screen would show
+    double agree = 0, turned = 0;  // sums of absolute differences of clipped radiance
     for (const vec3& d : icosphereNormals(4)) {
       const auto shown = [](const Probe& probe, const vec3& to) {
         return glm::min(probe.radiance(to), Rgb(1));
@@ -108,7 +108,7 @@ TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
   }
 }
 
-TEST(ProbeFile, LightThatWasCutOffIsSaid) {
+TEST(ProbeFile, ClippedLightIsReported) {
   const TemporaryFolder folder;
   Image image = gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3});
   const auto said = [&](const char* name, const Image& probe) {
@@ -119,25 +119,25 @@ TEST(ProbeFile, LightThatWasCutOffIsSaid) {
   };
   EXPECT_EQ(said("a.exr", image), "");
   EXPECT_EQ(said("constant.exr", constantProbe({64, 32}, Rgb(1))), "");
-  EXPECT_NE(said("a.png", image).find("brighter than 1 was cut off"), std::string::npos);
+  EXPECT_NE(said("a.png", image).find("radiance above 1 was clipped"), std::string::npos);
   EXPECT_NE(said("black.exr", constantProbe({64, 32}, Rgb(0))).find("is black"), std::string::npos);
   for (float& x : image.texels) x = std::min(x, 1.0f);
-  EXPECT_NE(said("clipped.exr", image).find("have the greatest value, 1:"), std::string::npos);
+  EXPECT_NE(said("clipped.exr", image).find("have the maximum value, 1:"), std::string::npos);
   EXPECT_GT(loadProbe(folder / "clipped.exr").fractionAtMaximum, 0.2);
 }
 
-// Of texels that are equally bright, at the equator and at a pole, which have little solid angle.
-TEST(ProbeInfo, BrighterSetsHoldTheSmallerOnes) {
+// Equally bright texels at the equator and at the poles, where texels have small solid angles.
+TEST(ProbeInfo, SetsOfBrightestTexelsAreNested) {
   Image image = constantProbe({64, 32}, Rgb(1e-3f));
   for (int x = 0; x < 64; ++x) image.setRgb(x, 0, Rgb(5)), image.setRgb(x, 31, Rgb(5));
   for (const int x : {0, 63}) image.setRgb(x, 16, Rgb(5));
   const ProbeInfo info = probeInfo(image);
-  ASSERT_GE(info.brightestShares.size(), 3u);
-  for (size_t i = 1; i < info.brightestShares.size(); ++i) {
-    EXPECT_GT(info.brightestShares[i].texels, info.brightestShares[i - 1].texels);
-    EXPECT_GT(info.brightestShares[i].fraction, info.brightestShares[i - 1].fraction);
+  ASSERT_GE(info.brightestTexels.size(), 3u);
+  for (size_t i = 1; i < info.brightestTexels.size(); ++i) {
+    EXPECT_GT(info.brightestTexels[i].count, info.brightestTexels[i - 1].count);
+    EXPECT_GT(info.brightestTexels[i].fraction, info.brightestTexels[i - 1].fraction);
   }
-  EXPECT_NEAR(info.brightestShares[0].fraction,
+  EXPECT_NEAR(info.brightestTexels[0].fraction,
               5 * texelSolidAngle(16, 64, 32) / (4 * kPiD * luminance(Rgb(info.meanRadiance))),
               1e-6);
 }
@@ -149,11 +149,11 @@ TEST(ProbeInfo, OneTexel) {
   EXPECT_NEAR(info.meanRadiance.y, 2000 * solidAngle / (4 * kPiD), 1e-9);
   EXPECT_EQ(info.max, Rgb(1000, 2000, 500));
   EXPECT_EQ(info.min, Rgb(0));
-  EXPECT_EQ(info.brightestShares.front().fraction, 1);
+  EXPECT_EQ(info.brightestTexels.front().fraction, 1);
   ASSERT_EQ(info.suns.size(), 1u);
   EXPECT_NEAR(info.suns[0].irradiance.x / (1000 * solidAngle), 1, 1e-3);
   EXPECT_LT(glm::distance(info.suns[0].direction, info.brightestDirection), 1e-3);
-  // About the disc of the texel's solid angle.
+  // The disc has about the solid angle of the texel.
   EXPECT_NEAR(info.suns[0].angle / (std::sqrt(4 / kPiD * solidAngle) * 180 / kPiD), 1, 0.05);
 }
 
@@ -164,7 +164,7 @@ TEST(ProbeInfo, ConstantAndBlack) {
   EXPECT_TRUE(constant.suns.empty());
   const ProbeInfo black = probeInfo(constantProbe({30, 20}, Rgb(0)));
   EXPECT_EQ(black.dynamicRange, 0);
-  EXPECT_EQ(black.brightestShares.front().fraction, 0);
+  EXPECT_EQ(black.brightestTexels.front().fraction, 0);
   EXPECT_TRUE(black.suns.empty());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Probes made of formulas.
+// Synthetic probes.
 #include "probe/sky.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(SlowSky, SunsIrradianceIsTheSameAtEveryResolution) {
   for (const double elevation : {0.0, 30.0, 89.9, 90.0}) {
     ClearSky sky;
     sky.sunElevation = elevation;
-    sky.sunAzimuth = 179.9;  // the disc lies over the seam
+    sky.sunAzimuth = 179.9;  // the disc crosses the seam
     for (const int height : {1, 2, 8, 32, 100, 512, 2048}) {
       if (height == 2048 && elevation != 30) continue;
       Image image(2 * height, height, 3);
@@ -43,7 +43,7 @@ TEST(SlowSky, SunsIrradianceIsTheSameAtEveryResolution) {
   }
 }
 
-TEST(Sky, SunHasItsDiameterAndEvenRadiance) {
+TEST(Sky, SunHasItsDiameterAndConstantRadiance) {
   ClearSky sky;
   Image image(8192, 4096, 3);
   addSunDisc(image, sunDirection(sky), kSunDiameter, dvec3(kPiD));
@@ -58,7 +58,7 @@ TEST(Sky, SunHasItsDiameterAndEvenRadiance) {
   // A sun of 0.5323 degrees that puts radiance 1 on a white surface has radiance 46,700, to 1%.
   EXPECT_NEAR(brightest, 46700, 467);
   const double radius = kSunDiameter / 2 * kPiD / 180;
-  // Texels at the rim count in full: half a texel of 0.044 degrees more, all around.
+  // Texels at the rim count in full: the radius is up to half a texel (0.044 degrees) larger.
   EXPECT_NEAR(std::sqrt(solidAngle / kPiD) / radius, 1, 0.15);
 }
 
@@ -78,8 +78,8 @@ TEST(Sky, ClearSkyIsPlausible) {
       const Image image = clearSkyProbe({64, 32}, sky, false);
       for (const float f : image.texels) ASSERT_TRUE(std::isfinite(f) && f >= 0);
     }
-  // A clear sky at noon lights level ground with 10 to 40 klx, where 100 klx are our pi, and is
-  // blue; the sun gives several times more, and is reddish when low.
+  // A clear sky at noon is blue and gives level ground 10 to 40 klx (100 klx is an irradiance of
+  // pi); the sun gives several times more, and is reddish when low.
   const ClearSky noon{.sunElevation = 60};
   const dvec3 sky = irradiance(clearSkyProbe({256, 128}, noon, false), dvec3(0, 1, 0));
   EXPECT_GT(luminance(Rgb(sky)), 0.1 * kPiD);
@@ -89,7 +89,7 @@ TEST(Sky, ClearSkyIsPlausible) {
   EXPECT_LT(luminance(Rgb(sunIrradiance(noon))), 1.28 * kPiD);
   const dvec3 evening = sunIrradiance({.sunElevation = 5});
   EXPECT_GT(evening.x, 2 * evening.z);
-  // Twice the haze, less sun.
+  // More haze, less sun.
   EXPECT_LT(sunIrradiance({.turbidity = 6}).y, sunIrradiance({.turbidity = 3}).y);
 }
 
@@ -129,7 +129,7 @@ TEST(Synth, StudioHasLightsInADarkRoom) {
     brightest = std::max(brightest, f), darkest = std::min(darkest, f);
   EXPECT_FLOAT_EQ(brightest, 30);
   EXPECT_FLOAT_EQ(darkest, 0.02f);
-  // The key light stands on the right.
+  // The key light is on the right.
   EXPECT_GT(irradiance(image, dvec3(1, 0, 0)).x, 1.5 * irradiance(image, dvec3(-1, 0, 0)).x);
 }
 

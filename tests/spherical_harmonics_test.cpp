@@ -38,8 +38,8 @@ TEST(SphericalHarmonics, GradientHasOnlyItsOwnTerms) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(sh[i][c], (c + 1) * expected[i], 2e-3) << i;
 }
 
-// Published tables (Ramamoorthi and Hanrahan 2001; Rost's "OpenGL Shading Language"), each up to
-// one exposure. Their z points into the picture, ours out of it.
+// Published tables (Ramamoorthi and Hanrahan 2001; Rost's "OpenGL Shading Language"), each up to a
+// scale factor. Their z points into the image, ours out of it.
 TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
   const auto table = sharedData("reference/sh_coefficients_debevec.json");
   if (!table) GTEST_SKIP() << "no reference/sh_coefficients_debevec.json";
@@ -67,8 +67,8 @@ TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
       double residual = 0;
       for (const auto& [ours, published] : pairs)
         residual = std::max(residual, std::fabs(dot / square * ours - published) / largest);
-      // What a projection with directions at texel corners leaves, as the tables' authors took
-      // them, and 0.3% for our centres: half a texel of 2 pi / 1000.
+      // The residual of a projection with directions at texel corners, as used for the tables, and
+      // 0.3% for texel centres: half a texel of 2 pi / 1000.
       EXPECT_LT(residual, double(file.at("max_residual_rel")) + 0.003) << fileName;
       ++compared;
     }

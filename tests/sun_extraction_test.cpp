@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Suns found in probes, and the energy of what is taken out.
+// Sun extraction: the suns found, and the energy of suns and remainder.
 #include <gtest/gtest.h>
 
 #include "math/icosphere.h"
@@ -43,14 +43,14 @@ void addGlowingSun(Image& image, const dvec3& towards, double diameter) {
   addSunDisc(image, towards, diameter, {10, 9, 7});
 }
 
-// What was taken out of the map, its texels taken as constant: parts of texels, small enough that
-// their centres may stand for them.
+// The radiance that was removed from the map, as parts of texels small enough to use the direction
+// at their centres.
 struct Part {
   dvec3 direction, flux;
 };
 
 std::vector<Part> removedParts(const Image& map, const Image& remainder) {
-  constexpr int kParts = 5;  // a side
+  constexpr int kParts = 5;  // per side
   const int w = map.width, h = map.height;
   std::vector<Part> parts;
   for (int y = 0; y < h; ++y)
@@ -69,7 +69,8 @@ std::vector<Part> removedParts(const Image& map, const Image& remainder) {
 // The largest difference over the normals between the irradiance of suns and remainder and that of
 // the map, averaged over RGB, as a percentage of the map's mean irradiance.
 double energyError(const Image& map, const SunExtraction& extraction) {
-  // The parts by the nearest sun; where a surface sees or misses them all, their moment is enough.
+  // Parts grouped by the nearest sun. If a surface sees all or none of a group, its moment
+  // suffices.
   struct Group {
     std::vector<Part> parts;
     dvec3 moment[3] = {dvec3(0), dvec3(0), dvec3(0)};
@@ -110,7 +111,7 @@ double energyError(const Image& map, const SunExtraction& extraction) {
   return 100 * worst;
 }
 
-TEST(Sun, IrradianceOfADiscThatTheHorizonCuts) {
+TEST(Sun, IrradianceOfADiscCutByTheHorizon) {
   for (const double angle : {0.5, 20.0, 100.0}) {
     const Sun sun{glm::normalize(dvec3(1, 2, 3)), dvec3(1, 2, 3), angle};
     const dvec3 radiance = sun.radiance(), x = glm::normalize(glm::cross(sun.direction, {0, 1, 0})),
@@ -167,7 +168,7 @@ TEST(SunExtraction, MeasuresDiscs) {
       ASSERT_EQ(extraction.suns.size(), 1u);
       const Sun& sun = extraction.suns[0];
       EXPECT_LT(degreesBetween(sun.direction, towards), 0.02);
-      // Texels blur the disc; in quadrature, nearly.
+      // The texels' blur adds almost in quadrature.
       const double texel = 180.0 / 512;
       EXPECT_NEAR(sun.angle, std::sqrt(diameter * diameter + 1.3 * texel * texel), 0.1);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(sun.irradiance[c], c + 1, 1e-3 * (c + 1));
@@ -177,7 +178,7 @@ TEST(SunExtraction, MeasuresDiscs) {
     }
 }
 
-TEST(SunExtraction, TakesGlowAndNothingElse) {
+TEST(SunExtraction, RemovesTheGlowAndNothingElse) {
   Image map = gradientProbe({512, 256}, Rgb(0.3f), {0, 0.5, 0});
   const dvec3 towards = direction(25, 180);
   addGlowingSun(map, towards, 1);
@@ -216,7 +217,7 @@ TEST(SunExtraction, TwoSunsAndOneBehindABranch) {
   EXPECT_EQ(extraction.remainder.rgb(512, 170), Rgb(0.02f));
 }
 
-TEST(SunExtraction, IsQuietWithoutSuns) {
+TEST(SunExtraction, FindsNoneWithoutSuns) {
   EXPECT_TRUE(extractSuns(constantProbe({64, 32}, Rgb(3))).suns.empty());
   EXPECT_TRUE(extractSuns(constantProbe({64, 32}, Rgb(0))).suns.empty());
   EXPECT_TRUE(extractSuns(constantProbe({1, 1}, Rgb(3))).suns.empty());
@@ -234,7 +235,7 @@ TEST(SunExtraction, IsQuietWithoutSuns) {
   EXPECT_TRUE(extractSuns(clearSkyProbe({256, 128}, {.sunElevation = 20}, false)).suns.empty());
 }
 
-// Whatever the shape: one texel of any map is a disc of finite radiance, with its energy.
+// In maps of any shape, one bright texel becomes a disc of finite radiance with its energy.
 TEST(SunExtraction, OneTexelOfAnyMap) {
   for (const ImageSize size : {ImageSize{2, 1}, {3, 16}, {64, 2}, {64, 32}, {300, 20}, {512, 256}})
     for (const int y : {0, size.height / 2, size.height - 1}) {
@@ -258,9 +259,9 @@ TEST(SunExtraction, OneTexelOfAnyMap) {
     }
 }
 
-// Elevations and irradiances measured by another program, stated beside the data; its directions
-// are those of the brightest texel's centre, its irradiances of two degrees around it, sky
-// included.
+// Elevations and irradiances measured by another program, from the notes beside the data.
+// Directions are those of the brightest texel's centre; irradiances include the sky within two
+// degrees.
 TEST(SunExtraction, SunsOfRealProbes) {
   struct Known {
     const char* file;
@@ -302,7 +303,8 @@ TEST(SunExtraction, RealProbesWithoutSuns) {
   }
 }
 
-// Against the independent sums of irradiance.h, to which a texel on the horizon is a point.
+// Compares with the independent sums of irradiance.h, which treat a texel on the horizon as a
+// point.
 TEST(SlowSunExtraction, AgreesWithExactIrradiance) {
   const std::vector<vec3> someNormals = icosphereNormals(4);
   for (const double elevation : {8.0, 45.0, 75.0}) {

@@ -2,7 +2,7 @@
 // Light through bodies and sheets of glass, as pictures.
 #include <gtest/gtest.h>
 
-#include "probe/bake.h"
+#include "probe/rasterize.h"
 #include "probe/synth.h"
 #include "shading/dielectric.h"
 #include "test_scene.h"
@@ -156,7 +156,7 @@ TEST(Transmission, aPrismSplitsColoursByAbbesNumber) {
   const float rise = 18 * float(std::tan(kApex));
   addQuad(scene, material, {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
   addQuad(scene, material, {-9, -rise - 0.1f, -9}, {18, rise, 0}, {0, 0, 18});
-  const Probe probe(bake(Mapping::LatLong, {1024, 512}, 1, [&](const dvec3& d) {
+  const Probe probe(rasterize(Mapping::LatLong, {1024, 512}, 1, [&](const dvec3& d) {
     return dvec3(d.y < 0 ? kSlope * std::max(kOffset + std::atan2(d.x, -d.y), 0.0) : 0);
   }));
   Camera camera = topCamera(4, 20);

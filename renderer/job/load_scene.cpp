@@ -216,9 +216,9 @@ void sayNotes(const RenderJob& job, const LoadedScene& loaded, bool quiet) {
   const std::string& path = *job.file.probe;
   const LoadedProbe& probe = loaded.loadedProbe;
   for (const std::string& line : warnings(probe, path)) warn(line);
-  if (!probe.guessed || quiet) return;
+  if (!probe.detected || quiet) return;
   const std::string_view mapping = mappingName(probe.mapping);
-  note(fmt::format("{}: taken for {} {} probe, since {}", path,
+  note(fmt::format("{}: detected as {} {} probe because {}", path,
                    mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
 }
 

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "probe/bake.h"
 #include "probe/probe.h"
+#include "probe/rasterize.h"
 
 namespace chromeball {
 namespace {
 
 int roundUpToEven(double length) { return std::max(2, 2 * int(std::ceil(0.5 * length - 1e-9))); }
 
-// Bilinear interpolation inside the disc, or inside the face, that shows `direction`.
+// Bilinear interpolation within the disc or within one cube face.
 class PatchSource {
  public:
   PatchSource(const Image& image, Mapping mapping)
@@ -25,7 +25,7 @@ class PatchSource {
   dvec3 radiance(const dvec3& direction) const {
     dvec2 uv = directionToUv(mapping_, direction);
     if (isDisc()) {
-      // Half a texel inside the rim, where one of the four texels around is sure to be inside.
+      // At most to half a texel inside the rim, where at least one of the four texels is inside.
       const dvec2 fromCentre = uv - 0.5;
       const double radius = glm::length(fromCentre), maximum = 0.5 - 0.5 / image_.width;
       if (radius > maximum) uv = 0.5 + fromCentre * (maximum / radius);
@@ -62,7 +62,7 @@ class PatchSource {
   int faceWidth_, faceHeight_;
 };
 
-// Samples along a side of each target texel: two for each source texel it covers, at least two.
+// Samples along the side of a target texel: two per source texel that it covers, at least two.
 int samplesPerSide(const ImageSize& source, const ImageSize& target) {
   const double sourceTexels = double(source.width) * source.height;
   const double targetTexels = double(target.width) * target.height;
@@ -74,13 +74,13 @@ glm::dmat3 turnAboutY(double degrees) {
   return glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
 }
 
-// From a cube map or a disc.
+// Resamples a cube map or a disc.
 Image resample(const Image& image, Mapping from, Mapping to, const ImageSize& size,
                const glm::dmat3& rotation) {
   const int samples = samplesPerSide({image.width, image.height}, size);
   const PatchSource patches(image, from);
   const glm::dmat3 back = glm::transpose(rotation);
-  return bake(to, size, samples, [&](const dvec3& d) { return patches.radiance(back * d); });
+  return rasterize(to, size, samples, [&](const dvec3& d) { return patches.radiance(back * d); });
 }
 
 }  // namespace
@@ -105,9 +105,9 @@ ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
 
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
               float rotationDegrees) {
-  if (parseMapping(mappingName(to), size.width, size.height, "--size") != to)
-    throwInput("--size: {} x {} texels are another kind of {}", size.width, size.height,
-               mappingName(to));
+  if (parseMapping(mappingName(to), size.width, size.height, "convert") != to)
+    throwInput("convert: {} x {} is the wrong aspect ratio for this {} layout", size.width,
+               size.height, mappingName(to));
   const ImageSize source{image.width, image.height};
   if (from == to && rotationDegrees == 0 && size.width == image.width &&
       size.height == image.height)
@@ -116,7 +116,8 @@ Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& siz
   if (from == Mapping::LatLong) {
     const int samples = samplesPerSide(source, size);
     const Probe probe(image, rotationDegrees);
-    return bake(to, size, samples, [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
+    return rasterize(to, size, samples,
+                     [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
   }
   return resample(image, from, to, size, turnAboutY(double(rotationDegrees)));
 }

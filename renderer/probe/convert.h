@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From one omnidirectional mapping to another.
+// Resampling from one omnidirectional mapping to another.
 #pragma once
 
 #include "image/image.h"
@@ -7,26 +7,26 @@
 
 namespace chromeball {
 
-// The lat-long map whose texels are no coarser than those of an image in `mapping` are in its
-// centre (of a face): height D/2 for an angular map of diameter D, pi D/4 for a mirror ball, twice
-// a cube's face, each rounded up to even; 2:1. A lat-long map keeps its size.
+// Size of the 2:1 lat-long map whose texels are no coarser than those in the centre of an image in
+// `mapping` (of a face, for cube maps). Its height is D/2 for an angular map of diameter D, pi D/4
+// for a mirror ball, twice a cube's face, rounded up to even. A lat-long map keeps its size.
 ImageSize latLongSize(Mapping mapping, const ImageSize& image);
 
-// The size at which an image in `mapping` keeps what a lat-long map of `latLong` shows: the inverse
-// of latLongSize.
+// The inverse of latLongSize(): the size at which an image in `mapping` keeps the detail of a
+// lat-long map of size `latLong`.
 ImageSize sizeFor(Mapping mapping, const ImageSize& latLong);
 
-// Resamples the first three channels; the environment is turned about +Y by `rotationDegrees`,
-// counter-clockwise seen from above. Each texel becomes the mean over its solid angle of the
-// source's bilinear interpolation (a lat-long source: Probe), which never reads outside the disc or
-// the faces. So the mean radiance over the sphere is kept, to 0.1% for what both images resolve.
-// What shows no direction becomes black. With nothing to change, the image is copied. All texels
-// must be finite. Throws InputError where `size` does not fit `to`.
+// Resamples the first three channels and turns the environment about +Y by `rotationDegrees`,
+// counter-clockwise seen from above. Each texel is the mean, over its solid angle, of the source's
+// bilinear interpolation (of Probe, for a lat-long source), which never reads outside the disc or
+// the faces. So the mean radiance over the sphere is kept, to 0.1% for detail that both images
+// resolve. Texels that show no direction are black. If nothing changes, returns a copy. All texels
+// must be finite. Throws InputError if `size` does not fit `to`.
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
               float rotationDegrees = 0);
 
-// A cube map or disc as a lat-long map of latLongSize, the environment turned by `rotation` (any
-// rotation: the direction d of the source becomes rotation * d).
+// Converts a cube map or disc to a lat-long map of latLongSize(). `rotation` may be any rotation:
+// direction d of the source becomes rotation * d.
 Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation);
 
 }  // namespace chromeball

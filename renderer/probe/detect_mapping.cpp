@@ -7,8 +7,8 @@
 namespace chromeball {
 namespace {
 
-// Whether nearly nothing is seen outside the mapping's valid area: at least 9 in 10 of the texels
-// there are below 1/1000 of the mean inside. (Debevec's probes have a notice in that area.)
+// Whether the image is black outside the mapping's valid area: at least 9 in 10 of those texels are
+// below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
 bool isBlackOutside(const Image& image, Mapping mapping) {
   double sumInside = 0;
   size_t countInside = 0;
@@ -32,18 +32,19 @@ bool isBlackOutside(const Image& image, Mapping mapping) {
 
 }  // namespace
 
-MappingGuess guessMapping(const Image& image) {
+DetectedMapping detectMapping(const Image& image) {
   const int w = image.width, h = image.height;
   if (w == 2 * h) return {Mapping::LatLong, "its shape is 2:1", true};
   if (w == 6 * h) return {Mapping::HorizontalStrip, "its shape is 6:1", true};
   if (h == 6 * w) return {Mapping::VerticalStrip, "its shape is 1:6", true};
-  // Too small for a disc or a cross to show.
+  // Smaller images are too coarse to tell a disc or a cross.
   constexpr int kMin = 12;
   if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)
-               ? MappingGuess{Mapping::AngularMap, "it is square, and black outside the disc", true}
-               : MappingGuess{Mapping::MirrorBall, "it is square, and not black outside the disc",
-                              false};
+               ? DetectedMapping{Mapping::AngularMap, "it is square and black outside the disc",
+                                 true}
+               : DetectedMapping{Mapping::MirrorBall, "it is square and not black outside the disc",
+                                 false};
   if (h >= kMin && h % 4 == 0 && 3 * h == 4 * w)
     return {Mapping::VerticalCross, "its shape is 3:4",
             isBlackOutside(image, Mapping::VerticalCross)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which mapping an image most likely is in.
+// Detects the mapping of an image from its shape and its texels.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace chromeball {
 
-struct MappingGuess {
+struct DetectedMapping {
   Mapping mapping;
-  std::string reason;
-  bool certain;  // false: worth a warning
+  std::string reason;  // completes a sentence: "because its shape is 2:1"
+  bool certain;        // false: the user should be warned
 };
 
-// By shape; of a square image and of a cross, by whether it is black where the mapping shows
-// nothing.
-MappingGuess guessMapping(const Image& image);
+// The shape decides; for squares and crosses, also whether the image is black where the mapping
+// shows no direction.
+DetectedMapping detectMapping(const Image& image);
 
 }  // namespace chromeball

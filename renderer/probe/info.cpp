@@ -13,15 +13,11 @@
 namespace chromeball {
 namespace {
 
-dvec3 centreDirection(const Image& image, int x, int y) {
-  return *uvToDirection(Mapping::LatLong, {(x + 0.5) / image.width, (y + 0.5) / image.height});
-}
-
 double fluxOf(const Image& image, int x, int y) {
   return luminance(image.rgb(x, y)) * texelSolidAngle(y, image.width, image.height);
 }
 
-std::vector<BrightestShare> brightestShares(const Image& image) {
+std::vector<BrightestTexels> brightestTexels(const Image& image) {
   const size_t count = size_t(image.width) * image.height;
   std::vector<double> flux(count);
   std::vector<float> brightness(count);
@@ -30,7 +26,7 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
     flux[i] = fluxOf(image, x, y);
     brightness[i] = luminance(image.rgb(x, y));
   }
-  // Of equally bright texels the one with the most flux first: each set holds those before it.
+  // A total order, so that each set contains the smaller ones: ties go to the texel with more flux.
   std::vector<size_t> order(count);
   std::iota(order.begin(), order.end(), size_t(0));
   const auto isBrighter = [&](size_t a, size_t b) {
@@ -39,7 +35,7 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
   const double total = std::accumulate(flux.begin(), flux.end(), 0.0);
 
   const size_t percent = std::max<size_t>(1, count / 100);
-  std::vector<BrightestShare> shares;
+  std::vector<BrightestTexels> sets;
   std::vector<size_t> counts{1, 10, 100, percent};
   std::sort(counts.begin(), counts.end());
   counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
@@ -48,9 +44,9 @@ std::vector<BrightestShare> brightestShares(const Image& image) {
     std::nth_element(order.begin(), order.begin() + (brightest - 1), order.end(), isBrighter);
     double sum = 0;
     for (size_t i = 0; i < brightest; ++i) sum += flux[order[i]];
-    shares.push_back({brightest, total > 0 ? sum / total : 0});
+    sets.push_back({brightest, total > 0 ? sum / total : 0});
   }
-  return shares;
+  return sets;
 }
 
 }  // namespace
@@ -70,14 +66,14 @@ ProbeInfo probeInfo(const Image& image) {
       if (l > brightest) {
         brightest = l;
         info.brightest = c;
-        info.brightestDirection = centreDirection(image, x, y);
+        info.brightestDirection = texelDirection({image.width, image.height}, x, y);
       }
     }
   info.mean /= double(image.width) * image.height;
   info.meanRadiance = meanRadiance(image);
   info.dynamicRange = brightest > 0 ? double(brightest) / darkest : 0;
   info.suns = extractSuns(image).suns;
-  info.brightestShares = brightestShares(image);
+  info.brightestTexels = brightestTexels(image);
   return info;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a probe holds, in numbers.
+// Statistics of a probe, for `probe info`.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace chromeball {
 
-struct BrightestShare {
-  size_t texels;
+struct BrightestTexels {
+  size_t count;
   double fraction;  // of the integral of luminance over the sphere; 0 for a black probe
 };
 
@@ -22,11 +22,11 @@ struct ProbeInfo {
   double dynamicRange = 0;  // largest luminance over the smallest positive one; 0 for a black probe
   dvec3 brightestDirection{0};
   Rgb brightest{0};
-  std::vector<Sun> suns;  // sun_extraction.h: by irradiance, the greatest first
-  std::vector<BrightestShare> brightestShares;  // of 1, 10 and 100 texels, and of 1% of all
+  std::vector<Sun> suns;  // sun_extraction.h: in order of decreasing irradiance
+  std::vector<BrightestTexels> brightestTexels;  // of 1, 10 and 100 texels, and of 1% of all
 };
 
-// `latLong` is finite and not negative; its texels are taken as constant.
+// `latLong` is finite and not negative; radiance is constant over each texel.
 ProbeInfo probeInfo(const Image& latLong);
 
 }  // namespace chromeball

@@ -11,20 +11,21 @@
 namespace chromeball {
 namespace {
 
-// Eight normals in one register: GCC's and Clang's vector extension, so that the sum below is
-// vectorised without leave to reorder floating-point operations.
+// Eight normals in one register. This vector extension of GCC and Clang vectorises the sum below
+// without permission to reorder floating-point operations.
 constexpr int kLanes = 8;
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
 
 // One texel as a light.
 struct TexelLight {
-  float x, y, z;  // direction: the integral over the texel over its solid angle, so just below 1
+  float x, y, z;  // mean direction over the texel: its length is just below 1
   float r, g, b;  // radiance x solid angle
 };
 
-// The texels of some rows that are not black. Over a texel from theta0 to theta1, d wide, centred
-// at phi: integral of sin^2(theta) = (theta1 - theta0 - sin(theta1 - theta0) cos(theta1 + theta0))
-// / 2, integral of the azimuth's unit vector = 2 sin(d / 2) times that at phi.
+// The texels of rows [firstRow, endRow) that are not black. The mean direction follows from, over a
+// texel from theta0 to theta1 and of width d about the azimuth phi:
+//   integral of sin^2(theta) = (theta1 - theta0 - sin(theta1 - theta0) cos(theta1 + theta0)) / 2
+//   integral of (-sin, cos)  = 2 sin(d / 2) (-sin(phi), cos(phi))
 std::vector<TexelLight> texelLights(const Image& latLong, int firstRow, int endRow) {
   const int w = latLong.width, h = latLong.height;
   const double dTheta = kPiD / h, dPhi = 2 * kPiD / w;
@@ -51,7 +52,7 @@ std::vector<TexelLight> texelLights(const Image& latLong, int firstRow, int endR
   return lights;
 }
 
-// Normals side by side; the unused lanes of the last group face nowhere.
+// Normals as a structure of arrays; unused lanes of the last group are zero.
 struct NormalGroup {
   Lanes x[2]{}, y[2]{}, z[2]{};
   static constexpr int kSize = 2 * kLanes;
@@ -67,7 +68,8 @@ void addTo(double* sums, const Lanes (&addends)[2]) {
   for (int i = 0; i < NormalGroup::kSize; ++i) sums[i] += addends[i / kLanes][i % kLanes];
 }
 
-// Few enough for a float: the sum's rounding error stays near that of one product.
+// Number of terms summed in float before adding to a double: the rounding error stays near that of
+// one product.
 constexpr size_t kFloatSum = 256;
 
 void addIrradiance(const NormalGroup& normals, std::span<const TexelLight> lights,
@@ -88,8 +90,8 @@ void addIrradiance(const NormalGroup& normals, std::span<const TexelLight> light
   }
 }
 
-// Adds what `lights` give. A group's sums stay in registers, the lights of its turn in the
-// first-level cache (24 KiB).
+// Blocked: sums of a group of normals stay in registers, a block of lights (24 KiB) stays in the
+// first-level cache.
 void addIrradiance(std::span<const vec3> normals, std::span<const TexelLight> lights,
                    std::span<dvec3> irradiance) {
   constexpr size_t kLightsInCache = 4 * kFloatSum, kGroup = NormalGroup::kSize;
@@ -123,7 +125,7 @@ Image toImage(const ImageSize& size, const std::vector<dvec3>& colors) {
 
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals) {
   constexpr size_t kNormalsOfTask = 16 * NormalGroup::kSize;
-  constexpr int kTexelsOfBand = 1 << 20;  // bounds the memory that the largest maps take
+  constexpr int kTexelsOfBand = 1 << 20;  // bounds the memory for large maps
   const int bandRows = std::max(1, kTexelsOfBand / latLong.width);
   const size_t tasks = (normals.size() + kNormalsOfTask - 1) / kNormalsOfTask;
   std::vector<dvec3> irradiance(normals.size(), dvec3(0));
@@ -152,9 +154,7 @@ std::vector<vec3> texelDirections(const ImageSize& latLong) {
   std::vector<vec3> directions;
   directions.reserve(size_t(latLong.width) * latLong.height);
   for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      directions.emplace_back(*uvToDirection(
-          Mapping::LatLong, {(x + 0.5) / latLong.width, (y + 0.5) / latLong.height}));
+    for (int x = 0; x < latLong.width; ++x) directions.emplace_back(texelDirection(latLong, x, y));
   return directions;
 }
 

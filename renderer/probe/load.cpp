@@ -12,7 +12,7 @@
 namespace chromeball {
 namespace {
 
-// What OpenEXR's attribute `envmap` says, which OpenImageIO calls so.
+// The mapping in OpenEXR's `envmap` attribute, which OpenImageIO calls `textureformat`.
 std::optional<Mapping> statedMapping(const ImageFile& file) {
   const auto found = file.metadata.find("textureformat");
   const auto* format =
@@ -24,7 +24,7 @@ std::optional<Mapping> statedMapping(const ImageFile& file) {
   return std::nullopt;
 }
 
-// Turned by half a circle: without resampling where the width is even.
+// Turned by 180 degrees; without resampling if the width is even.
 Image turned(Image latLong) {
   if (latLong.width % 2)
     return convert(latLong, Mapping::LatLong, Mapping::LatLong, {latLong.width, latLong.height},
@@ -35,20 +35,20 @@ Image turned(Image latLong) {
   return latLong;
 }
 
-// Finds the greatest channel and how many texels have it.
+// Finds the maximum, and the fraction of texels that reach it.
 void measureMaximum(const Image& image, LoadedProbe& probe) {
-  size_t count = 0, alike = 0;
+  size_t count = 0, equalToFirst = 0;
   const Rgb first = image.rgb(0, 0);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const Rgb texel = image.rgb(x, y);
-      const float greatest = maxComponent(texel);
-      if (greatest > probe.maximum) probe.maximum = greatest, count = 0;
-      count += greatest == probe.maximum;
-      alike += texel == first;
+      const float brightness = maxComponent(texel);
+      if (brightness > probe.maximum) probe.maximum = brightness, count = 0;
+      count += brightness == probe.maximum;
+      equalToFirst += texel == first;
     }
   const size_t all = size_t(image.width) * image.height;
-  if (alike < all) probe.fractionAtMaximum = double(count) / double(all);
+  if (equalToFirst < all) probe.fractionAtMaximum = double(count) / double(all);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   ImageFile file = readImageFile(path);
   const std::optional<Mapping> stated = statedMapping(file);
   LoadedProbe probe;
-  probe.isScreenImage = file.integers;
+  probe.hasIntegerTexels = file.integers;
   Image image = colorOf(std::move(file), path);
   probe.fileWidth = image.width;
   probe.fileHeight = image.height;
@@ -66,14 +66,14 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
     probe.mapping = *given;
   } else if (stated) {
     probe.mapping = *stated;
-    probe.guessed = true;
-    probe.reason = "its attribute `envmap` says so";
+    probe.detected = true;
+    probe.reason = "its `envmap` attribute says so";
   } else {
-    MappingGuess guess = guessMapping(image);
-    probe.mapping = guess.mapping;
-    probe.guessed = true;
-    probe.certain = guess.certain;
-    probe.reason = std::move(guess.reason);
+    DetectedMapping detected = detectMapping(image);
+    probe.mapping = detected.mapping;
+    probe.detected = true;
+    probe.certain = detected.certain;
+    probe.reason = std::move(detected.reason);
   }
 
   const bool isLatLong = probe.mapping == Mapping::LatLong;
@@ -94,19 +94,18 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
   std::vector<std::string> lines;
   if (!probe.certain)
     lines.push_back(
-        fmt::format("{}: taken for a {} map of {} x {}, because {}; give the mapping if "
-                    "it is another",
-                    path.string(), mappingName(probe.mapping), probe.fileWidth, probe.fileHeight,
+        fmt::format("{}: {} x {} texels detected as {} because {}; give the mapping if this is "
+                    "wrong",
+                    path.string(), probe.fileWidth, probe.fileHeight, mappingName(probe.mapping),
                     probe.reason));
   if (probe.turned)
     lines.push_back(
-        fmt::format("{}: turned by 180 degrees, since its attribute `envmap` says that "
-                    "the centre looks along +Z",
+        fmt::format("{}: turned by 180 degrees because its `envmap` attribute puts +Z in the "
+                    "centre",
                     path.string()));
-  if (!probe.guessed && probe.mapping == Mapping::LatLong && probe.fileWidth == probe.fileHeight)
+  if (!probe.detected && probe.mapping == Mapping::LatLong && probe.fileWidth == probe.fileHeight)
     lines.push_back(fmt::format(
-        "{}: is square, and read as a lat-long map, which is twice as wide as high; is it "
-        "an angular map or a mirror ball?",
+        "{}: is square but read as a lat-long map (2:1); is it an angular map or a mirror ball?",
         path.string()));
   if (probe.repair.total() > 0)
     lines.push_back(fmt::format("{}: repaired {}", path.string(), describe(probe.repair)));
@@ -116,20 +115,21 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
 
 std::vector<std::string> lightWarnings(const LoadedProbe& probe,
                                        const std::filesystem::path& path) {
-  // Shares of the texels. An even map, but for a few texels, is not a picture that was cut off.
-  constexpr double kMinPlateau = 1e-3, kMaxPlateau = 0.9;
-  constexpr float kGreatestHalf = 65504;
+  // Fractions of the texels at the maximum. A map that is constant except for a few texels is not a
+  // clipped photograph.
+  constexpr double kMinClipped = 1e-3, kMaxClipped = 0.9;
+  constexpr float kMaxHalf = 65504;
   if (probe.maximum == 0) return {fmt::format("{}: is black: it lights nothing", path.string())};
-  if (probe.isScreenImage)
+  if (probe.hasIntegerTexels)
     return {
-        fmt::format("{}: holds integers, so light brighter than 1 was cut off when it was made; "
-                    "an .exr or .hdr keeps it",
+        fmt::format("{}: has integer texels, so radiance above 1 was clipped when it was made; "
+                    "use an .exr or .hdr",
                     path.string())};
-  const bool atLimit = probe.maximum == 1 || probe.maximum == kGreatestHalf;
-  if (atLimit && probe.fractionAtMaximum >= kMinPlateau && probe.fractionAtMaximum <= kMaxPlateau)
+  const bool atLimit = probe.maximum == 1 || probe.maximum == kMaxHalf;
+  if (atLimit && probe.fractionAtMaximum >= kMinClipped && probe.fractionAtMaximum <= kMaxClipped)
     return {
-        fmt::format("{}: {:.2g}% of its texels have the greatest value, {}: what was brighter "
-                    "was cut off",
+        fmt::format("{}: {:.2g}% of its texels have the maximum value, {}: brighter light was "
+                    "clipped",
                     path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A probe's file as a lat-long map that is fit to render with.
+// Reads a probe's file: image, mapping, repair, conversion to a lat-long map ready to render with.
 #pragma once
 
 #include <filesystem>
@@ -17,28 +17,29 @@ struct LoadedProbe {
   Image latLong;                       // three channels, finite, not negative
   Mapping mapping = Mapping::LatLong;  // of the file
   int fileWidth = 0, fileHeight = 0;
-  bool guessed = false, certain = true;  // how the mapping is known; certain: no warning needed
-  std::string reason;                    // of the guess: "its shape is 2:1"
-  bool turned = false;  // the file said that its centre looks along +Z (OpenEXR's lat-long maps)
+  bool detected = false;  // the mapping; false: given by the user
+  bool certain = true;    // false: the detected mapping deserves a warning
+  std::string reason;     // for the detected mapping: "its shape is 2:1"
+  bool turned = false;    // by 180 degrees: a lat-long map whose `envmap` attribute is set
   RepairReport repair;
-  bool isScreenImage = false;    // texels of 8 or 16 bits
-  float maximum = 0;             // the greatest channel of a texel
-  double fractionAtMaximum = 0;  // of the texels; 0 where all are alike
+  bool hasIntegerTexels = false;  // of 8 or 16 bits
+  float maximum = 0;              // over texels and channels
+  double fractionAtMaximum = 0;   // of the texels; 0 if all are equal
 };
 
-// `mapping` is a name as on the command line; "auto" guesses, unless the file is an EXR whose
-// attribute `envmap` says what it is. Of such a lat-long map the centre looks along +Z and the left
-// quarter along +X (OpenEXR's ImfEnvmap.h), and is turned by half a circle, to agree with the cube
-// map of the same place. A lat-long file of any shape keeps
-// its texels; others are converted at latLongSize (convert.h). Throws InputError, begun by
-// `mappingPlace` where the mapping is at fault.
+// `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` attribute
+// of an EXR, else detects it (detect_mapping.h). A lat-long map with that attribute has +Z in its
+// centre and +X at its left quarter (OpenEXR's ImfEnvmap.h); it is turned by 180 degrees, to agree
+// with the cube map of the same place. A lat-long file of any shape keeps its texels; others are
+// converted at latLongSize() (convert.h). Throws InputError; it starts with `mappingLocation` if
+// the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
                       std::string_view mappingLocation = "--probe-mapping");
 
-// What is worth telling the user on standard error, "FILE: ..." each; often nothing.
+// Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
 
-// The part of it that speaks of the light: none, or cut off at the greatest number of its format.
+// The warnings about the light itself: the probe is black, or clipped.
 std::vector<std::string> lightWarnings(const LoadedProbe& probe, const std::filesystem::path& path);
 
 }  // namespace chromeball

@@ -21,7 +21,7 @@ struct Face {
 
 constexpr dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
-// The front face comes first, so that it wins where a direction lies on an edge.
+// The front face comes first, so that it gets directions on its edges.
 const std::array<Face, 6> kVerticalCross{{{1, 1, -kZ, kY},
                                           {0, 1, -kX, kY},
                                           {2, 1, kX, kY},
@@ -67,8 +67,8 @@ dvec2 directionToCube(Mapping mapping, const dvec3& d) {
         return glm::dot(a.forward, d) < glm::dot(b.forward, d);
       });
   const double depth = glm::dot(face.forward, d);
-  // Neighbours in the image need not be neighbours on the cube: a direction on an edge stays inside
-  // the face that was chosen, whatever rounding does.
+  // Rounding must not move a direction on an edge out of the chosen face: faces that touch in the
+  // image need not touch on the cube.
   constexpr double kInside = 1e-14;
   const auto inFace = [&](const dvec3& axis) {
     return std::clamp(0.5 * (1 + glm::dot(axis, d) / depth), kInside, 1 - kInside);
@@ -88,7 +88,7 @@ std::optional<dvec3> cubeToDirection(Mapping mapping, const dvec2& uv) {
   return std::nullopt;
 }
 
-// Both disc mappings: the point at `radius` (1 at the rim) from the centre, on the side of (x, y).
+// For both disc mappings: the position at `radius` (1 at the rim) from the centre, towards (x, y).
 dvec2 discUv(double x, double y, double radius) {
   const double length = std::sqrt(x * x + y * y);
   if (length == 0) return {0.5 + 0.5 * radius, 0.5};
@@ -164,6 +164,10 @@ std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {
     default:
       return cubeToDirection(mapping, uv);
   }
+}
+
+dvec3 texelDirection(const ImageSize& latLong, int x, int y) {
+  return *uvToDirection(Mapping::LatLong, {(x + 0.5) / latLong.width, (y + 0.5) / latLong.height});
 }
 
 std::string_view mappingName(Mapping mapping) {

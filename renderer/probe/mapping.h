@@ -12,9 +12,9 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-// All look along -Z in the centre of the image (of the front face), +Y up. Other programs' lat-long
-// maps may look elsewhere; turn those with a rotation. (What OpenEXR marks as one is turned when it
-// is loaded, load.h.)
+// The centre of the image (of the front face, for cube maps) shows -Z, its top +Y. Lat-long maps
+// from other programs may show another direction there and need a rotation; those marked by OpenEXR
+// are turned when loaded (load.h).
 enum class Mapping {
   LatLong,          // u = (1 + atan2(Dx, -Dz)/pi)/2, v = acos(Dy)/pi
   AngularMap,       // the disc's radius is proportional to the angle from -Z
@@ -29,17 +29,20 @@ struct ImageSize {
   int width, height;
 };
 
-// The point of the image (u right, v down, both in [0, 1]) that shows `direction` (need not be
-// unit).
+// The position in the image (u right, v down, both in [0, 1]) that shows `direction` (of any
+// length).
 dvec2 directionToUv(Mapping mapping, const dvec3& direction);
 
 // The unit direction shown at `uv`; nullopt outside the disc or the faces.
 std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv);
 
-// Whether there is one.
+// Whether `uv` is inside the disc or the faces.
 bool showsDirection(Mapping mapping, const dvec2& uv);
 
-// Cube maps: how many faces lie side by side and one above another; {1, 1} for the others.
+// The unit direction at the centre of texel (x, y) of a lat-long map.
+dvec3 texelDirection(const ImageSize& latLong, int x, int y);
+
+// Numbers of cube faces side by side and one above another; {1, 1} for other mappings.
 struct Layout {
   int columns, rows;
 };
@@ -48,9 +51,9 @@ Layout faceLayout(Mapping mapping);
 // "lat-long", "angular", "mirror-ball", "vertical cube-cross", ...: for messages.
 std::string_view mappingName(Mapping mapping);
 
-// The mapping that lat-long, angular, mirror-ball, cube-cross or cube-strip means for an image of
-// this size (the shape decides which cross or strip), nullopt for auto. Throws InputError where the
-// name is unknown or cannot fit the size; `location` begins the message.
+// The mapping with this name for an image of this size: lat-long, angular, mirror-ball, cube-cross
+// or cube-strip (the shape decides which cross or strip). nullopt for auto. Throws InputError,
+// which starts with `location`, if the name is unknown or does not fit the size.
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
                                     std::string_view location);
 

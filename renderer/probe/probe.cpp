@@ -12,10 +12,9 @@ Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
       uShift_(-rotationDegrees / 360),
       grid_(size_t(width_ + 1) * (height_ + 2)) {
   if (!(scale >= 0) || !std::isfinite(scale))
-    throwInput("probe: the scale is {}, and must be finite and not negative", scale);
+    throwInput("probe: the scale {} should be finite and not negative", scale);
   if (!std::isfinite(rotationDegrees))
-    throwInput("probe: the rotation is {}, and must be a finite number of degrees",
-               rotationDegrees);
+    throwInput("probe: the rotation {} should be a finite number of degrees", rotationDegrees);
   uShift_ -= std::floor(uShift_);
 
   const auto corner = [&](int x, int cornerRow) -> Rgb& {

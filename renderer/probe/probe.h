@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light probe: one radiance function of direction, used by everything that looks at the probe.
+// The light probe: one radiance function of direction, shared by light samples, escaping rays,
+// mirrors, the camera and the irradiance.
 #pragma once
 
 #include <vector>
@@ -10,29 +11,28 @@
 
 namespace chromeball {
 
-// Bilinear interpolation of a lat-long image's texels: wraps at the seam, and reaches at each pole
-// the mean of the row beside it, so it is continuous on the whole sphere.
+// Bilinear interpolation of the texels of a lat-long image. It wraps at the seam, and at each pole
+// it is the mean of the adjacent row, so it is continuous on the whole sphere.
 //
-// Interpolation runs over cells whose corners are texel centres. Column c has its centre at
-// u = (c + 1/2)/W; row 0 is the north pole, rows 1 to H are the image's, row H + 1 is the south
-// pole. So there are H + 1 rows of W cells; the first and the last row of cells are half as high.
+// Cells have texel centres as corners. Corner column c is at u = (c + 1/2)/W. Corner row 0 is the
+// north pole, rows 1 to H are the image's rows, row H + 1 is the south pole. So there are H + 1
+// rows of W cells; the first and the last row of cells are half as high.
 class Probe {
  public:
   // `latLong` has at least three channels and no invalid texel (repair.h). `rotationDegrees` turns
-  // the environment about +Y, counter-clockwise seen from above. Throws InputError where a texel
-  // times `scale` is not finite, or scale is negative.
+  // the environment about +Y, counter-clockwise seen from above. Throws InputError if a texel times
+  // `scale` is not finite, or `scale` is negative.
   explicit Probe(const Image& latLong, float rotationDegrees = 0, float scale = 1);
 
   int width() const { return width_; }
   int height() const { return height_; }
   int cellRows() const { return height_ + 1; }
 
-  // What the probe was made of: its texels times the scale, not rotated, and the rotation.
+  // The image times the scale, not rotated; and the rotation.
   Image latLong() const;
   float rotationDegrees() const { return rotationDegrees_; }
 
-  // A point of the map: the cell, the position inside it in [0, 1], and the sine of the angle to
-  // the pole there.
+  // A position in the map: the cell, (s, t) in [0, 1]^2 inside it, and the sine of the polar angle.
   struct Position {
     int column, row;
     float s, t;
@@ -41,8 +41,7 @@ class Probe {
   Position locate(const vec3& direction) const;
   vec3 direction(Position& position) const;  // sets position.sinTheta
 
-  // Radiance at the cell's corners (00 at column, row; 10 at column + 1; 01 at row + 1; 11 at
-  // both).
+  // Radiance at the corners of a cell: c10 at column + 1, c01 at row + 1.
   struct Corners {
     Rgb c00, c10, c01, c11;
   };
@@ -79,7 +78,7 @@ inline Probe::Position Probe::locate(const vec3& d) const {
   // Column 0's centre lies at u = 0.5 / W.
   float x = u * float(width_) - 0.5f;
   if (x < 0) x += float(width_);
-  // Cells are clamped on both sides: a NaN must come out as NaN and not read past the map.
+  // Clamped on both sides: a NaN direction must give NaN and not read outside the map.
   p.column = std::clamp(int(x), 0, width_ - 1);
   p.s = x - float(p.column);
   const float y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
@@ -103,7 +102,7 @@ inline vec3 Probe::direction(Position& p) const {
   sinCosTurns(x / float(width_) + uShift_, sinPhi, cosPhi);
   sinCosTurns(0.5f * y / float(height_), p.sinTheta, cosTheta);
   p.sinTheta = std::max(p.sinTheta, 0.0f);
-  // u = 1/2 looks along -Z: phi in turns is u, so x = sin(2 pi (u - 1/2)), z = -cos(...).
+  // u = 1/2 shows -Z: x = sin(2 pi (u - 1/2)) = -sin(2 pi u), z = -cos(2 pi (u - 1/2)).
   return {-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi};
 }
 

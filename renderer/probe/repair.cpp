@@ -15,7 +15,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool hasNan(const Rgb& c) { return std::isnan(c.x) || std::isnan(c.y) || std::isnan(c.z); }
 
-// Negative and infinite channels; NaN is left.
+// Replaces negative and infinite channels; keeps NaN.
 Rgb repairChannels(Rgb c, float largest) {
   for (int i = 0; i < 3; ++i) {
     if (c[i] < 0) c[i] = 0;
@@ -57,7 +57,7 @@ RepairReport repair(Image& image, bool wrapX) {
     }
   if (report.total() == 0) return report;
 
-  // NaN texels first, from neighbours none of which is a repaired NaN; then the rest.
+  // All NaN texels are filled from the original neighbours before any is replaced.
   std::vector<std::pair<size_t, Rgb>> filled;
   for (int y = 0; y < image.height && report.nan > 0; ++y)
     for (int x = 0; x < image.width; ++x)

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "probe/bake.h"
+#include "probe/rasterize.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
@@ -15,7 +15,7 @@ constexpr double kUnit = 100 / kPiD;  // kcd/m^2
 
 double radians(double degrees) { return degrees * kPiD / 180; }
 
-// Perez's distribution; theta from the zenith, gamma from the sun.
+// Perez's distribution (the paper's eq. 3); theta from the zenith, gamma from the sun.
 double perez(const std::array<double, 5>& c, double cosTheta, double gamma) {
   const double cosGamma = std::cos(gamma);
   return (1 + c[0] * std::exp(c[1] / std::max(cosTheta, 1e-3))) *
@@ -34,8 +34,8 @@ dvec3 xyYToRec709(double x, double y, double luminance) {
   return glm::max(rgb, dvec3(0));
 }
 
-// Irradiance of the sky alone on level ground, by the midpoint rule in (sin^2 theta, phi), where
-// cos(theta) d(omega) is uniform.
+// Irradiance of the sky alone on level ground, by the midpoint rule in (sin^2 theta, phi), which
+// makes cos(theta) d(omega) uniform.
 dvec3 skyIrradiance(const SkyRadiance& radiance) {
   constexpr int kRings = 64, kSectors = 128;
   dvec3 sum(0);
@@ -114,24 +114,24 @@ void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
   };
   const int samplesX = samplesAlong(2 * kPiD / w), samplesY = samplesAlong(kPiD / h);
 
-  // The share of each texel that the disc covers, as far as the samples see it.
+  // The fraction of each texel that the disc covers, estimated from the samples.
   struct Covered {
     int x, y;
     double fraction;
   };
   std::vector<Covered> covered;
-  double facing = 0;  // sum of share x solid angle x cosine
+  double facing = 0;  // sum of fraction x solid angle x cosine
   const auto add = [&](int x, int y, double fraction) {
-    const dvec3 centre = *uvToDirection(Mapping::LatLong, {(x + 0.5) / w, (y + 0.5) / h});
+    const dvec3 centre = texelDirection({w, h}, x, y);
     covered.push_back({x, y, fraction});
     facing += fraction * texelSolidAngle(y, w, h) * std::max(glm::dot(centre, direction), 1e-3);
   };
   const double centreU = directionToUv(Mapping::LatLong, direction).x;
   for (int y = top; y <= bottom; ++y) {
-    // Half the range of u that the disc may reach in this row: everything where it holds the pole.
+    // Half the range of u that the disc may reach in this row: the whole row if it contains a pole.
     const double sinTheta = std::sin(std::clamp(theta, radius, kPiD - radius));
-    const bool holdsPole = theta < 2 * radius || theta > kPiD - 2 * radius;
-    const double reach = holdsPole ? 0.5 : std::asin(std::sin(radius) / sinTheta) / (2 * kPiD);
+    const bool containsPole = theta < 2 * radius || theta > kPiD - 2 * radius;
+    const double reach = containsPole ? 0.5 : std::asin(std::sin(radius) / sinTheta) / (2 * kPiD);
     const int first = int(std::floor((centreU - reach) * w)), last = int((centreU + reach) * w);
     for (int column = first; column <= std::min(last, first + w - 1); ++column) {
       const int x = (column % w + w) % w;
@@ -155,16 +155,16 @@ void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
 
 Image clearSkyProbe(const ImageSize& size, const ClearSky& sky, bool withSun) {
   if (!(sky.sunElevation >= 0 && sky.sunElevation <= 90))
-    throwInput("--sun-elevation: {} should be 0 to 90 degrees", sky.sunElevation);
+    throwInput("sun elevation: {} should be 0 to 90 degrees", sky.sunElevation);
   if (!(sky.turbidity >= 2 && sky.turbidity <= 10))
-    throwInput("--turbidity: {} should be 2 to 10", sky.turbidity);
+    throwInput("turbidity: {} should be 2 to 10", sky.turbidity);
 
   const SkyRadiance radiance(sky);
   const dvec3 sun = withSun ? sunIrradiance(sky) : dvec3(0), direction = sunDirection(sky);
   const dvec3 ground = sky.groundAlbedo / kPiD * (skyIrradiance(radiance) + sun * direction.y);
-  // An even number of samples a side, so that the horizon halves the texels it crosses.
-  Image image = bake(Mapping::LatLong, size, 2,
-                     [&](const dvec3& d) { return d.y < 0 ? ground : radiance(d); });
+  // An even number of samples per side, so that the horizon halves the texels that it crosses.
+  Image image = rasterize(Mapping::LatLong, size, 2,
+                          [&](const dvec3& d) { return d.y < 0 ? ground : radiance(d); });
   if (withSun) addSunDisc(image, direction, kSunDiameter, sun);
   return image;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clear sky with its sun. Preetham, Shirley and Smits, "A Practical Analytic Model for
-// Daylight", SIGGRAPH 1999.
+// Clear sky and sun (Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight",
+// SIGGRAPH 1999): the sky by its appendix A.2, the sun by A.1.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ class SkyRadiance {
   dvec3 operator()(const dvec3& direction) const;
 
  private:
-  // Of luminance and the chromaticities x and y: Perez's five coefficients, and the zenith's value
-  // over the distribution's value there.
+  // Luminance and the chromaticities x and y each have a Perez distribution: five coefficients, and
+  // the zenith's value divided by the distribution's value there.
   struct Channel {
     std::array<double, 5> perez;
     double scale;
@@ -42,17 +42,17 @@ class SkyRadiance {
 };
 
 // The sun's irradiance on a surface that faces it: 128,000 lux of white outside the atmosphere,
-// less what air (Rayleigh) and haze (Angstrom) take at 610, 550 and 465 nm. Ozone, water and mixed
-// gases, which the paper has too, are left out.
+// attenuated by air (Rayleigh) and haze (Angstrom) at 610, 550 and 465 nm. The paper's ozone, water
+// vapour and mixed gases are omitted.
 dvec3 sunIrradiance(const ClearSky& sky);
 
-// Adds a disc of even radiance to a lat-long map. However coarse the map, the sum over texels of
-// added radiance x solid angle x cosine to `direction` at the texel's centre is `irradiance`.
+// Adds a disc of constant radiance to a lat-long map. For any resolution, the sum over texels of
+// added radiance x solid angle x cosine between `direction` and the texel's centre is `irradiance`.
 void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
                 const dvec3& irradiance);
 
-// Sky, sun, and below the horizon a ground that reflects both evenly. Throws InputError where the
-// sun or the turbidity is out of range.
+// Sky, sun, and below the horizon a Lambertian ground lit by both. Throws InputError if elevation
+// or turbidity is out of range.
 Image clearSkyProbe(const ImageSize& size, const ClearSky& sky, bool withSun = true);
 
 }  // namespace chromeball

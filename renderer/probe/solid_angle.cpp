@@ -6,14 +6,14 @@
 namespace chromeball {
 
 double texelSolidAngle(int row, int width, int height) {
-  // cos a - cos b = 2 sin((a + b)/2) sin((b - a)/2), which does not cancel near the poles.
+  // cos a - cos b = 2 sin((a + b)/2) sin((b - a)/2), without cancellation near the poles.
   const double middle = kPiD * (row + 0.5) / height, half = 0.5 * kPiD / height;
   return 2 * kPiD / width * 2 * std::sin(middle) * std::sin(half);
 }
 
-double solidAnglePdf(Mapping mapping, const dvec2& uv) {
+double solidAngleJacobian(Mapping mapping, const dvec2& uv) {
   if (mapping == Mapping::LatLong) return 2 * kPiD * kPiD * std::sin(kPiD * uv.y);
-  if (mapping == Mapping::MirrorBall) return 16;  // an equal-area mapping: 4 pi over a disc of pi/4
+  if (mapping == Mapping::MirrorBall) return 16;  // equal-area: 4 pi / (pi/4), the disc's area
   if (mapping == Mapping::AngularMap) {
     const double theta = kPiD * std::hypot(2 * uv.x - 1, 2 * uv.y - 1);
     return 4 * kPiD * kPiD * (theta > 0 ? std::sin(theta) / theta : 1);

@@ -7,15 +7,15 @@
 
 namespace chromeball {
 
-// Exact, for every texel of `row` in a lat-long map: (2 pi / W)(cos(top) - cos(bottom)). The
-// texels of a map sum to 4 pi.
+// The exact solid angle of a texel in `row` of a lat-long map: (2 pi / W)(cos(top) - cos(bottom)).
+// All texels sum to 4 pi.
 double texelSolidAngle(int row, int width, int height);
 
-// d(solid angle) / d(u v) at a valid point of a mapping.
-double solidAnglePdf(Mapping mapping, const dvec2& uv);
+// d(solid angle) / d(u v) at a valid position of a mapping.
+double solidAngleJacobian(Mapping mapping, const dvec2& uv);
 
-// Mean over the sphere of a lat-long map whose texels are constant: sum of radiance times solid
-// angle, over 4 pi.
+// The mean over the sphere of a lat-long map, constant over each texel: sum of radiance x solid
+// angle / (4 pi).
 dvec3 meanRadiance(const Image& latLong);
 
 }  // namespace chromeball

@@ -25,8 +25,7 @@ ShCoefficients projectSh(const Image& latLong) {
   for (int y = 0; y < h; ++y) {
     const double solidAngle = texelSolidAngle(y, w, h);
     for (int x = 0; x < w; ++x) {
-      const auto direction = uvToDirection(Mapping::LatLong, {(x + 0.5) / w, (y + 0.5) / h});
-      const std::array<double, kShCount> basis = shBasis(*direction);
+      const std::array<double, kShCount> basis = shBasis(texelDirection({w, h}, x, y));
       const dvec3 flux = dvec3(latLong.rgb(x, y)) * solidAngle;
       for (int i = 0; i < kShCount; ++i) coefficients[i] += basis[i] * flux;
     }

@@ -16,8 +16,8 @@ dvec3 Sun::radiance() const {
   return irradiance / (kPiD * sine * sine);
 }
 
-// Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014): a spherical
-// light that the horizon cuts.
+// Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014), the function
+// illuminanceSphereOrDisk.
 dvec3 Sun::irradianceOn(const dvec3& normal) const {
   const double cosine = glm::dot(normal, direction), sinRadius = sinOfRadius(*this);
   if (cosine >= sinRadius) return irradiance * cosine;

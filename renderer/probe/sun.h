@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sun: a distant disc of even radiance.
+// A sun: a distant disc of constant radiance.
 #pragma once
 
 #include "probe/mapping.h"
@@ -13,7 +13,7 @@ struct Sun {
 
   dvec3 radiance() const;  // irradiance / (pi sin^2(angle / 2))
 
-  // On a surface with this unit normal, whose horizon may cut the disc.
+  // Irradiance on a surface with unit `normal`, whose horizon may cut the disc.
   dvec3 irradianceOn(const dvec3& normal) const;
 };
 

@@ -11,20 +11,20 @@ namespace chromeball {
 namespace {
 
 constexpr double kContrast = 2000, kMinContrast = 10;  // times the mean luminance
-constexpr double kMinShare = 0.01;                     // of the flux
+constexpr double kMinFraction = 0.01;                  // of the flux
 constexpr double kGlowContrast = 20;
 constexpr double kDegree = kPiD / 180;
-constexpr double kWidestCore = 3 * kDegree, kWidestGlow = 6 * kDegree;  // radii
+constexpr double kMaxCore = 3 * kDegree, kMaxGlow = 6 * kDegree;  // radii
 
 struct Texel {
   int x, y;
 };
 
 dvec3 centreDirection(const Image& image, Texel t) {
-  return *uvToDirection(Mapping::LatLong, {(t.x + 0.5) / image.width, (t.y + 0.5) / image.height});
+  return texelDirection({image.width, image.height}, t.x, t.y);
 }
 
-// Of two unit vectors; exact for small angles.
+// The angle between unit vectors; accurate for small angles.
 double angleBetween(const dvec3& a, const dvec3& b) {
   return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
@@ -33,9 +33,9 @@ double largestTexelSide(const Image& image) {
   return std::max(2 * kPiD / image.width, kPiD / image.height);
 }
 
-// All texels connected to `start`, over eight neighbours and the seam, that are brighter than
-// `threshold` and not yet `visited`. A source that covers a pole fills the row there, which
-// connects it.
+// The texels brighter than `threshold` and not yet `visited` that are connected to `start` by eight
+// neighbours, across the seam too. A source that covers a pole fills the row there, which connects
+// it.
 std::vector<Texel> gatherRegion(const Image& image, Texel start, double threshold,
                                 std::vector<bool>& visited) {
   std::vector<Texel> region;
@@ -56,10 +56,10 @@ std::vector<Texel> gatherRegion(const Image& image, Texel start, double threshol
   return region;
 }
 
-// Where a sun may be.
+// A candidate sun.
 struct Core {
   dvec3 centre;
-  double radius;  // to the centre of its furthest texel
+  double radius;  // radians, to the centre of its furthest texel
   double flux;
   Texel brightest;
 };
@@ -79,9 +79,9 @@ Core coreOf(const Image& image, const std::vector<Texel>& region) {
   return core;
 }
 
-// The greatest flux first, without those too wide for a sun.
+// In order of decreasing flux, without regions too wide for a sun.
 std::vector<Core> findCores(const Image& image, double threshold) {
-  const double widest = std::max(kWidestCore, largestTexelSide(image));
+  const double maxRadius = std::max(kMaxCore, largestTexelSide(image));
   std::vector<bool> visited(size_t(image.width) * image.height);
   std::vector<Core> cores;
   for (int y = 0; y < image.height; ++y)
@@ -89,23 +89,23 @@ std::vector<Core> findCores(const Image& image, double threshold) {
       const std::vector<Texel> region = gatherRegion(image, {x, y}, threshold, visited);
       if (region.empty()) continue;
       const Core core = coreOf(image, region);
-      if (core.radius <= widest) cores.push_back(core);
+      if (core.radius <= maxRadius) cores.push_back(core);
     }
   std::sort(cores.begin(), cores.end(),
             [](const Core& a, const Core& b) { return a.flux > b.flux; });
   return cores;
 }
 
-// The texels whose centres are more than `inner` and at most `outer` radians away from `centre`.
+// The texels whose centres are more than `inner` and at most `outer` radians from `centre`.
 std::vector<Texel> texelsAround(const Image& image, const dvec3& centre, double inner,
                                 double outer) {
   const int w = image.width, h = image.height;
   const double theta = std::acos(std::clamp(centre.y, -1.0, 1.0));
   const int top = std::max(0, int((theta - outer) / kPiD * h));
   const int bottom = std::min(h - 1, int((theta + outer) / kPiD * h));
-  const bool holdsPole = theta <= outer || theta + outer >= kPiD;
+  const bool containsPole = theta <= outer || theta + outer >= kPiD;
   const double reach =
-      holdsPole ? 0.5 : std::asin(std::min(1.0, std::sin(outer) / std::sin(theta))) / (2 * kPiD);
+      containsPole ? 0.5 : std::asin(std::min(1.0, std::sin(outer) / std::sin(theta))) / (2 * kPiD);
   const int first = int(std::floor((directionToUv(Mapping::LatLong, centre).x - reach) * w));
   const int count = std::min(w, int(std::ceil(2 * reach * w)) + 1);
   std::vector<Texel> texels;
@@ -135,14 +135,14 @@ Glow glowAround(const Image& image, const Core& core, double meanLuminance) {
   for (double radius = core.radius + 2 * texel;; radius *= 1.2) {
     std::vector<Texel> ring = texelsAround(image, core.centre, radius, radius + 1.5 * texel);
     const double median = medianLuminance(image, ring);
-    if (radius * 1.2 <= kWidestGlow && median > kGlowContrast * meanLuminance) continue;
-    // What else shines on the ring, another sun say, is not to fill the inside.
+    if (radius * 1.2 <= kMaxGlow && median > kGlowContrast * meanLuminance) continue;
+    // Other sources on the ring, such as another sun, must not raise the interpolated radiance.
     std::erase_if(ring, [&](Texel t) { return luminance(image.rgb(t.x, t.y)) > 4 * median; });
     return {texelsAround(image, core.centre, -1, radius), std::move(ring)};
   }
 }
 
-// What the ring says of its inside: the mean weighted by the inverse square of the distance.
+// Radiance inside a ring, interpolated from it by inverse squared distance (Shepard 1968).
 struct RingTexel {
   dvec3 direction, radiance;
 };
@@ -158,7 +158,7 @@ dvec3 interpolate(const std::vector<RingTexel>& ring, const dvec3& direction) {
   return weights > 0 ? sum / weights : sum;
 }
 
-// What a texel loses, spread evenly over it, and what it keeps.
+// The radiance that a texel loses to a sun, constant over the texel, and the radiance it keeps.
 struct Removed {
   Texel texel;
   dvec3 radiance;
@@ -178,8 +178,8 @@ std::vector<Removed> lightInside(const Glow& glow, const Image& image) {
   return removed;
 }
 
-// Calls f(direction, radiance, solid angle) for parts of the texels, of a w x h map, so small that
-// their centres may stand for them.
+// Calls f(direction, radiance, solid angle) for 4 x 4 parts of each texel of a w x h map, small
+// enough to use the direction at their centres.
 template <class F>
 void forEachPart(const std::vector<Removed>& removed, int w, int h, F f) {
   constexpr int kParts = 4;
@@ -187,8 +187,7 @@ void forEachPart(const std::vector<Removed>& removed, int w, int h, F f) {
     for (int j = 0; j < kParts; ++j)
       for (int i = 0; i < kParts; ++i) {
         const int x = r.texel.x * kParts + i, y = r.texel.y * kParts + j;
-        const dvec2 uv((x + 0.5) / (w * kParts), (y + 0.5) / (h * kParts));
-        f(*uvToDirection(Mapping::LatLong, uv), r.radiance,
+        f(texelDirection({w * kParts, h * kParts}, x, y), r.radiance,
           texelSolidAngle(y, w * kParts, h * kParts));
       }
 }
@@ -226,13 +225,13 @@ SunExtraction extractSuns(const Image& latLong) {
   const double diluted = kPiD * sunRadius * sunRadius / (2 * kPiD / w * kPiD / h);
   const double threshold = mean * std::clamp(kContrast * diluted, kMinContrast, kContrast);
   for (const Core& core : findCores(remainder, threshold)) {
-    // A part of a sun that was removed with another part of it is dark by now.
+    // This core may already have been removed as part of another sun's glow.
     if (luminance(remainder.rgb(core.brightest.x, core.brightest.y)) <= threshold) continue;
     const std::vector<Removed> removed = lightInside(glowAround(remainder, core, mean), remainder);
     double flux = 0;
     for (const Removed& r : removed)
       flux += luminance(Rgb(r.radiance)) * texelSolidAngle(r.texel.y, w, h);
-    if (flux < kMinShare * 4 * kPiD * mean) continue;
+    if (flux < kMinFraction * 4 * kPiD * mean) continue;
     result.suns.push_back(discOf(removed, w, h));
     for (const Removed& r : removed) remainder.setRgb(r.texel.x, r.texel.y, r.kept);
   }

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "probe/bake.h"
+#include "probe/rasterize.h"
 
 namespace chromeball {
 namespace {
@@ -49,13 +49,13 @@ Image oneHotProbe(const ImageSize& size, int x, int y, const Rgb& radiance) {
 }
 
 Image gradientProbe(const ImageSize& size, const Rgb& radiance, const dvec3& slope) {
-  return bake(Mapping::LatLong, size, 1,
-              [&](const dvec3& d) { return dvec3(radiance) * (1 + glm::dot(slope, d)); });
+  return rasterize(Mapping::LatLong, size, 1,
+                   [&](const dvec3& d) { return dvec3(radiance) * (1 + glm::dot(slope, d)); });
 }
 
 Image overcastProbe(const ImageSize& size, const Rgb& zenith, double groundAlbedo) {
   const dvec3 ground = dvec3(zenith) * (groundAlbedo * 7 / 9);  // albedo E / pi
-  return bake(Mapping::LatLong, size, kSamplesPerSide, [&](const dvec3& d) {
+  return rasterize(Mapping::LatLong, size, kSamplesPerSide, [&](const dvec3& d) {
     return d.y < 0 ? ground : dvec3(zenith) * ((1 + 2 * d.y) / 3);
   });
 }
@@ -64,7 +64,7 @@ Image studioProbe(const ImageSize& size) {
   const std::array boxes = {
       SoftBox(-50, 35, 0.7, 0.7, dvec3(30, 29, 27)), SoftBox(60, 20, 0.8, 1.0, dvec3(7.2, 7.6, 8)),
       SoftBox(165, 30, 0.25, 1.1, dvec3(15)), SoftBox(0, 85, 1.2, 0.8, dvec3(10))};
-  return bake(Mapping::LatLong, size, kSamplesPerSide, [&](const dvec3& d) {
+  return rasterize(Mapping::LatLong, size, kSamplesPerSide, [&](const dvec3& d) {
     for (const SoftBox& box : boxes)
       if (box.isSeenAlong(d)) return box.radiance;
     return dvec3(0.02);

@@ -24,14 +24,14 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
     suns.push_back({{"direction", toJson(sun.direction)},
                     {"irradiance", toJson(sun.irradiance)},
                     {"angle", sun.angle}});
-  for (const auto& [texels, fraction] : info.brightestShares)
-    shares.push_back({{"texels", texels}, {"share", fraction}});
+  for (const auto& [count, fraction] : info.brightestTexels)
+    shares.push_back({{"texels", count}, {"share", fraction}});
   return {{"file", file},
           {"width", probe.fileWidth},
           {"height", probe.fileHeight},
           {"mapping", mappingName(probe.mapping)},
-          {"mapping_guessed", probe.guessed},
-          {"mapping_reason", probe.guessed ? probe.reason : "given"},
+          {"mapping_guessed", probe.detected},
+          {"mapping_reason", probe.detected ? probe.reason : "given"},
           {"turned", probe.turned},
           {"lat_long", {{"width", probe.latLong.width}, {"height", probe.latLong.height}}},
           {"min", toJson(info.min)},
@@ -60,12 +60,11 @@ std::string triple(const Vector& v) {
 void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("resolution       {} x {}\n", probe.fileWidth, probe.fileHeight);
   fmt::print("mapping          {} ({})\n", mappingName(probe.mapping),
-             probe.guessed ? "guessed: " + probe.reason : "given");
+             probe.detected ? "detected: " + probe.reason : "given");
   if (probe.turned)
-    fmt::print(
-        "turned           by 180 degrees: by its attribute `envmap` the centre looks along +Z\n");
+    fmt::print("turned           by 180 degrees: its `envmap` attribute puts +Z in the centre\n");
   if (probe.mapping != Mapping::LatLong)
-    fmt::print("as lat-long      {} x {}, of which the following speaks\n", probe.latLong.width,
+    fmt::print("as lat-long      {} x {}, which the following describes\n", probe.latLong.width,
                probe.latLong.height);
   fmt::print("min RGB          {}\nmean RGB         {}\nmax RGB          {}\n", triple(info.min),
              triple(info.mean), triple(info.max));
@@ -76,8 +75,8 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("mean radiance    {} over the sphere\n", triple(info.meanRadiance));
   fmt::print("brightest        {} from direction {}\n", triple(info.brightest),
              triple(info.brightestDirection));
-  for (const auto& [texels, fraction] : info.brightestShares)
-    fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", texels, 100 * fraction);
+  for (const auto& [count, fraction] : info.brightestTexels)
+    fmt::print("brightest {:<6} {:.3g}% of the irradiance\n", count, 100 * fraction);
   if (info.suns.empty()) fmt::print("suns             none\n");
   for (const Sun& sun : info.suns)
     fmt::print("sun              direction {}, irradiance {}, {:.3g} degrees wide\n",
@@ -92,7 +91,8 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
     bool json = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = probeCommand.add_subcommand("info", "What a probe holds, in numbers.");
+  CLI::App* command =
+      probeCommand.add_subcommand("info", "Show the mapping and the statistics of a probe.");
   command->add_option("FILE", arguments->file, "the probe's image")->required();
   command->add_option("--mapping", arguments->mapping,
                       "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");

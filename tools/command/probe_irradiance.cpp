@@ -47,7 +47,7 @@ void addProbeIrradianceCommand(CLI::App& probe) {
       ->add_option("--method", arguments->method,
                    "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
       ->capture_default_str();
-  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto guesses");
+  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -32,6 +32,11 @@ Rgb parseRadiance(const Arguments& arguments) {
   return radiance;
 }
 
+void checkRange(std::string_view option, double number, double min, double max) {
+  if (!(number >= min && number <= max))
+    throwInput("{}: {} should be {} to {}", option, number, min, max);
+}
+
 Image oneHot(const Arguments& arguments, const ImageSize& size) {
   int x = size.width / 2, y = size.height / 2;
   if (!arguments.texel.empty()) {
@@ -84,8 +89,9 @@ void run(const Arguments& arguments) {
     throwInput("unknown kind of probe `{}`; {}", arguments.kind, didYouMean(arguments.kind, kinds));
   }
   checkWritable(arguments.out);
-  if (!(arguments.sky.groundAlbedo >= 0 && arguments.sky.groundAlbedo <= 1))
-    throwInput("--ground-albedo: {} should be 0 to 1", arguments.sky.groundAlbedo);
+  checkRange("--ground-albedo", arguments.sky.groundAlbedo, 0, 1);
+  checkRange("--sun-elevation", arguments.sky.sunElevation, 0, 90);
+  checkRange("--turbidity", arguments.sky.turbidity, 2, 10);
   writeImage(arguments.out, maker->second(arguments, parseSize(arguments.size)));
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "image/tonemap.h"
-#include "lighting/light_preview.h"
 #include "probe/mapping.h"
+#include "probe/preview.h"
 #include "study/estimate_text.h"
 #include "study/report/log_log_plot.h"
 #include "study/report/pictures.h"
@@ -125,7 +125,7 @@ std::string dots(const std::string& name, const std::vector<vec3>& directions) {
 }
 
 std::string probeUri(const Probe& probe) {
-  const Image picture = probePicture(probe, 512);
+  const Image picture = probePreview(probe, 512);
   std::vector<uint8_t> bytes;
   for (const float number : picture.texels)
     bytes.push_back(uint8_t(std::lround(255 * linearToSrgb(number))));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/bake.h"
+#include "probe/rasterize.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// A weighted mean; black where nothing was added.
+// A weighted mean; black if nothing was added.
 struct Mean {
   dvec3 sum{0};
   double weight = 0;
@@ -33,9 +33,10 @@ std::vector<dvec2> sinesAndCosines(int samples, double from, double to) {
   return table;
 }
 
-// As below, by tables: mapping.h's formula has the two coordinates apart.
-Image bakeLatLong(const ImageSize& size, int samplesPerSide,
-                  const std::function<dvec3(const dvec3&)>& radiance) {
+// Faster for lat-long maps: azimuth depends on x alone and polar angle on y alone, so tables serve
+// for both.
+Image rasterizeLatLong(const ImageSize& size, int samplesPerSide,
+                       const std::function<dvec3(const dvec3&)>& radiance) {
   Image out(size.width, size.height, 3);
   const int n = samplesPerSide;
   const std::vector<dvec2> phi = sinesAndCosines(n * size.width, -kPiD, kPiD);
@@ -56,9 +57,9 @@ Image bakeLatLong(const ImageSize& size, int samplesPerSide,
 
 }  // namespace
 
-Image bake(Mapping mapping, const ImageSize& size, int samplesPerSide,
-           const std::function<dvec3(const dvec3&)>& radiance) {
-  if (mapping == Mapping::LatLong) return bakeLatLong(size, samplesPerSide, radiance);
+Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
+                const std::function<dvec3(const dvec3&)>& radiance) {
+  if (mapping == Mapping::LatLong) return rasterizeLatLong(size, samplesPerSide, radiance);
   Image out(size.width, size.height, 3);
   const auto meanOverTexel = [&](int x, int y) {
     Mean mean;
@@ -67,7 +68,7 @@ Image bake(Mapping mapping, const ImageSize& size, int samplesPerSide,
         const dvec2 uv((x + (i + 0.5) / samplesPerSide) / size.width,
                        (y + (j + 0.5) / samplesPerSide) / size.height);
         if (const std::optional<dvec3> direction = uvToDirection(mapping, uv))
-          mean.add(solidAnglePdf(mapping, uv), radiance(*direction));
+          mean.add(solidAngleJacobian(mapping, uv), radiance(*direction));
       }
     return mean;
   };

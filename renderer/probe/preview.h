@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A probe tone mapped for a screen.
+#pragma once
+
+#include "image/image.h"
+#include "probe/mapping.h"
+#include "probe/probe.h"
+
+namespace chromeball {
+
+// The probe as the scene sees it, rotated: a lat-long map of width / 2 rows, in display-linear
+// colours.
+Image probePreview(const Probe& probe, int width);
+
+}  // namespace chromeball
