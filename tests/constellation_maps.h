@@ -21,7 +21,7 @@ inline std::vector<std::string_view> constellationNames() {
   return names;
 }
 
-// Lights by name; cube-grid gets the grid of at most `lights`.
+// The count for about `lights` lights: the largest grid with at most so many, for cube-grid.
 inline int countFor(std::string_view method, int lights) {
   return method == "cube-grid" ? std::clamp(int(std::sqrt(lights / 6.0)), 1, 26) : lights;
 }

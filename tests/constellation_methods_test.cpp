@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each way of placing lights promises for itself.
+// The properties of each constellation method.
 #include <gtest/gtest.h>
 
 #include "constellation_maps.h"
@@ -25,7 +25,7 @@ TEST(Constellation, MedianCutHalvesEnergy) {
   for (int n = 2; n <= 64; ++n) {
     const std::vector<Region> after = medianCutRegions(table, n);
     ASSERT_EQ(int(after.size()), n);
-    // One region of `before` is now two: the one of most energy, in its place and at the end.
+    // The region of most energy was cut; its parts are at its index and at the end.
     int cut = -1;
     for (int i = 0; i < n - 1; ++i)
       if (!same(before[i], after[i])) {
@@ -36,7 +36,7 @@ TEST(Constellation, MedianCutHalvesEnergy) {
     const Region &whole = before[cut], &first = after[cut], &second = after.back();
     for (const Region& other : before) EXPECT_GE(energy(table, whole), energy(table, other));
     EXPECT_NEAR(energy(table, first) + energy(table, second), energy(table, whole), 1e-12);
-    double line = 0;  // the greatest energy of a column or row beside the cut
+    double line = 0;  // the maximum energy of a column or row beside the cut
     if (first.x1 == second.x0)
       for (const int x : {first.x1 - 1, first.x1})
         line = std::max(line, energy(table, {x, whole.y0, x + 1, whole.y1}));
@@ -48,7 +48,7 @@ TEST(Constellation, MedianCutHalvesEnergy) {
   }
 }
 
-TEST(Constellation, VarianceCutPartsTwoSuns) {
+TEST(Constellation, VarianceCutSeparatesTwoSuns) {
   Image map = oneHotProbe({64, 32}, 10, 12, Rgb(100));
   map.setRgb(30, 20, Rgb(0, 1, 0));
   const Constellation lights = make("variance-cut", map, 2);
@@ -58,7 +58,7 @@ TEST(Constellation, VarianceCutPartsTwoSuns) {
             1);
 }
 
-// Sum of weight (1 - cos to the nearest light), what K-means minimises.
+// The objective of K-means: sum of weight (1 - cos to the nearest light).
 double objective(const TexelTable& table, const Constellation& lights) {
   double sum = 0;
   for (const TexelSum& cell : table.cells()) {
@@ -70,7 +70,7 @@ double objective(const TexelTable& table, const Constellation& lights) {
   return sum;
 }
 
-TEST(Constellation, KMeansNeverGetsWorseAndConverges) {
+TEST(Constellation, KMeansDescendsAndConverges) {
   const TexelTable table(noise(64, 32), kCoarseCells);
   SphericalKMeans kMeans(table);
   for (int i = 0; i < 40; ++i) kMeans.addCentre(17 * i);
@@ -82,7 +82,7 @@ TEST(Constellation, KMeansNeverGetsWorseAndConverges) {
     before = kMeans.objective();
   }
   EXPECT_GT(steps, 3);
-  // Pruned search or not: the cells are at their nearest centres, the centres at the centroids.
+  // The pruned search gives the same result: cells at their nearest centres, centres at centroids.
   EXPECT_NEAR(kMeans.objective(), objective(table, kMeans.lights()), 1e-6 * kMeans.objective());
 }
 
@@ -113,8 +113,8 @@ TEST(Constellation, StrataAreTheRegionsOfTheirLights) {
   }
 }
 
-// The mean over seeds of the drawn directions is the region's centroid.
-TEST(Constellation, StrataDrawByPower) {
+// The mean direction over seeds is the region's centroid.
+TEST(Constellation, StrataSampleByPower) {
   const Image map = noise(16, 8);
   const Constellation means = make("kollig-keller", map, 4);
   std::vector<dvec3> mean(4, dvec3(0));
@@ -127,7 +127,7 @@ TEST(Constellation, StrataDrawByPower) {
     EXPECT_GT(glm::dot(glm::normalize(mean[i]), dvec3(means[i].direction)), std::cos(0.06));
 }
 
-// Lights in a map of even importance fall evenly, and keep their distance.
+// Lights in a map of constant importance are evenly distributed and keep a distance.
 TEST(Constellation, PenroseIsEvenAndSpaced) {
   Image map(512, 256, 3);
   for (int y = 0; y < 256; ++y)
@@ -142,11 +142,12 @@ TEST(Constellation, PenroseIsEvenAndSpaced) {
     ++found[std::min(int(uv.y * rows), rows - 1) * columns + std::min(int(uv.x * columns), 15)];
     points.push_back({2 * uv.x, uv.y});
   }
-  // Random points would vary by 4 about their mean of 15.6.
+  // Random points would have a standard deviation of 4 around the mean of 15.6.
   double squares = 0;
   for (const int n : found) squares += std::pow(n - double(count) / (columns * rows), 2);
   EXPECT_LT(std::sqrt(squares / (columns * rows)), 2);
-  // Hexagons of area 2 / count would keep 0.034; random points 0.0005 or so.
+  // A hexagonal grid of cell area 2 / count has a minimum distance of 0.034; random points about
+  // 0.0005.
   double minimum = 1;
   for (size_t i = 0; i < points.size(); ++i)
     for (size_t j = 0; j < i; ++j) minimum = std::min(minimum, glm::distance(points[i], points[j]));
@@ -176,7 +177,7 @@ double irradianceError(const Image& map, const Constellation& lights) {
 
 TEST(SlowConstellation, VarianceCutBeatsMedianCut) {
   const std::vector<Image> maps = realProbes(8);
-  if (maps.empty()) GTEST_SKIP() << "no probes beside the project";
+  if (maps.empty()) GTEST_SKIP() << "no shared probes";
   for (const int count : {16, 32, 64}) {
     double median = 0, variance = 0;
     for (const Image& map : maps) {

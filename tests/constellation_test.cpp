@@ -69,7 +69,7 @@ TEST(Constellation, KeepsEnergyAndNumbersOfLights) {
 
 TEST(SlowConstellation, KeepsEnergyOfRealProbes) {
   const std::vector<Image> maps = realProbes(3);
-  if (maps.empty()) GTEST_SKIP() << "no probes beside the project";
+  if (maps.empty()) GTEST_SKIP() << "no shared probes";
   for (const Image& map : maps)
     for (const std::string_view method : constellationNames())
       for (const int count : {2, 64}) {
@@ -122,8 +122,8 @@ TEST(Constellation, RefusesWhatItCannotDo) {
   EXPECT_THROW(makeLights("lightgen", constantProbe({8, 4}, Rgb(3e38f)), {.count = 8}), InputError);
 }
 
-// The left half of the map looks towards -X.
-TEST(Constellation, ColoursStayOnTheirSide) {
+// The left half of the map shows -X.
+TEST(Constellation, ColoursStayInTheirHemisphere) {
   Image map(64, 32, 3);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 64; ++x) map.setRgb(x, y, x < 32 ? Rgb(4, 0, 0) : Rgb(0, 0, 4));
@@ -145,8 +145,8 @@ TEST(Constellation, SumsLargeMapsInBlocks) {
   }
 }
 
-// variance-cut leaves the sun in one region with its nearest neighbours.
-TEST(Constellation, SunLeavesTheRestOfItsRowItsShare) {
+// variance-cut may leave the sun in one region with its nearest neighbours.
+TEST(Constellation, ASunDoesNotTakeTheEnergyOfItsRow) {
   Image map = noise(16384, 16);
   const dvec3 rest = meanRadiance(map) * 4.0 * kPiD;
   map.setRgb(100, 8, Rgb(1e12f));
@@ -160,8 +160,8 @@ TEST(Constellation, SunLeavesTheRestOfItsRowItsShare) {
   }
 }
 
-// Turning the map by a quarter turn, and for K-means by any number of blocks, turns the lights.
-TEST(Constellation, TurnsWithTheMap) {
+// Rotating the map by 90 degrees rotates the lights.
+TEST(Constellation, RotatesWithTheMap) {
   const Image map = noise(64, 32);
   Image turned(64, 32, 3);
   for (int y = 0; y < 32; ++y)

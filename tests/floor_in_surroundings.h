@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A floor in surroundings at a finite distance, and what the tests of those share.
+// A floor in surroundings at a finite distance, for several tests.
 #pragma once
 
 #include "lighting/finite_surroundings.h"
@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// A box around the floor, and where the probe was taken.
+// A box around the floor, and the capture point.
 inline Surroundings box() {
   Surroundings s;
   s.shape = Surroundings::Shape::Box;
@@ -28,7 +28,7 @@ inline vec3 sphereDirection(uint64_t i) {
   return squareToUniformSphere({toUnit(uint32_t(hash(2 * i))), toUnit(uint32_t(hash(2 * i + 1)))});
 }
 
-// Radiance of a hand's breadth of the floor about (x, z), seen from above.
+// Radiance of a small area of the floor around (x, z), seen from above.
 inline Moments floorRadiance(const LightingStrategy& lighting, float x, float z, int repeats) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},

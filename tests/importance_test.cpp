@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe's radiance function, and the sampler that must follow it.
+// The probe's radiance function, and its importance sampling.
 #include <gtest/gtest.h>
 
 #include "lighting/importance.h"
@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-TEST(Probe, isTheTexelAtItsCentreAndHalfwayBetweenTwo) {
+TEST(Probe, interpolatesBetweenTexelCentres) {
   Image image(8, 4, 3);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 8; ++x) image.setRgb(x, y, Rgb(float(x + 8 * y), 1, 2));
@@ -42,7 +42,7 @@ TEST(Probe, rotationTurnsTheEnvironmentCounterClockwiseFromAbove) {
   }
 }
 
-TEST(Probe, givesBackWhatItWasMadeOf) {
+TEST(Probe, latLongReturnsTheImage) {
   const Image image = gradientProbe({16, 8}, Rgb(1, 2, 3), {0.3, 0.5, 0.1});
   const Probe probe(image, -450, 4);
   const Image copy = probe.latLong();
@@ -79,7 +79,7 @@ TEST(Probe, refusesScalesThatLeaveTheRangeOfFloat) {
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);
 }
 
-TEST(SlowImportance, samplesItsDensityOnEveryProbe) {
+TEST(SlowImportance, samplesFollowThePdfOnEveryProbe) {
   const std::vector<HardProbe> all = hardProbes();
   for (bool compensated : {false, true})
     for (const HardProbe& c : all) {
@@ -97,7 +97,7 @@ TEST(SlowImportance, samplesItsDensityOnEveryProbe) {
     }
 }
 
-TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
+TEST(Importance, pdfOfSamplesAgreesWithPdfOfDirectionsAndIsPositiveWhereThereIsLight) {
   for (const HardProbe& c : hardProbes()) {
     SCOPED_TRACE(c.name);
     const Probe probe(c.image);
@@ -114,8 +114,8 @@ TEST(Importance, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
   }
 }
 
-// The pdf follows the radiance inside texels too, so on a grey probe every sample carries
-// almost the same weight: the estimate of the mean radiance has next to no variance.
+// The pdf follows the radiance within texels too, so all samples of a grey probe have almost the
+// same weight: the estimate of the mean radiance has almost no variance.
 TEST(Importance, weightsAreConstantOnAGreyProbe) {
   Image image = constantProbe({512, 256}, Rgb(1));
   for (int i = 0; i < 512 * 256; ++i)
@@ -134,7 +134,7 @@ TEST(Importance, weightsAreConstantOnAGreyProbe) {
   EXPECT_LT(std::sqrt(sumOfSquares / kSamples - mean * mean) / mean, 0.02);
 }
 
-TEST(Importance, aSunOf1e12LeavesTheTexelsAfterItTheirWidth) {
+TEST(Importance, texelsAfterASunOf1e12KeepTheirProbability) {
   const Probe probe(spot(4096, 64, 1000, 20, 1e12f, 1));
   const Importance importance(probe, false);
   // Without the sun, the columns right of it must be as likely as those left of it.
@@ -154,7 +154,7 @@ TEST(Importance, blackProbesGiveNoSamples) {
   EXPECT_EQ(importance.pdf(vec3(0, 1, 0)), 0);
 }
 
-TEST(Importance, compensationTakesTheMeanOffAndFallsBackWhereNothingIsLeft) {
+TEST(Importance, compensationSubtractsTheMeanAndFallsBackOnAConstantProbe) {
   const Probe flat(constantProbe({32, 16}, Rgb(5)));
   EXPECT_NEAR(Importance(flat, true).pdf(vec3(0, 0, 1)), 0.25f * kInvPi, 1e-3);
   const Probe sun(spot(64, 32, 40, 9, 2000, 0.5f));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of directional lights to a probe's irradiance, and the parts it is made of.
+// The fit of directional lights to a probe's irradiance, and its parts.
 #include "lighting/fit/irradiance_fit.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ dvec3 texelDirection(int x, int y, const ImageSize& size = kSize) {
   return *uvToDirection(Mapping::LatLong, {(x + 0.5) / size.width, (y + 0.5) / size.height});
 }
 
-// Boxes of factor x factor texels averaged.
+// The mean over boxes of factor x factor texels.
 Image smaller(const Image& image, int factor) {
   Image result(image.width / factor, image.height / factor, 3);
   for (int y = 0; y < result.height; ++y)
@@ -57,8 +57,8 @@ FittedLights someLights() {
   return lights;
 }
 
-// Normals for sums over the sphere, and the solid angle each stands for. (Those of the icosphere
-// do not stand for equal ones.)
+// Normals for sums over the sphere with their solid angles. (The normals of the icosphere do not
+// have equal solid angles.)
 constexpr ImageSize kNormals{256, 128};
 
 double normalSolidAngle(size_t i) {
@@ -87,7 +87,7 @@ TEST(CosinePattern, ClosedFormsAgreeWithASumOverNormals) {
   }
 }
 
-TEST(RadiancePoints, HaveTheProbesProducts) {
+TEST(RadiancePoints, HaveTheProductsOfTheProbe) {
   const Image probe = studioProbe({128, 64});
   const std::vector<vec3> normals = texelDirections(kNormals);
   const std::vector<dvec3> irradiance = exactIrradiance(probe, normals);
@@ -103,11 +103,11 @@ TEST(RadiancePoints, HaveTheProbesProducts) {
   }
 }
 
-TEST(RadiancePoints, MergeIntoTheEnergyCentre) {
+TEST(RadiancePoints, MergeIntoTheEnergyCentroid) {
   const Image probe = oneHotProbe({128, 64}, 20, 17, Rgb(3, 2, 1));
   const PatternProduct p =
       RadiancePoints(probe, 16, 1).productWith(texelDirection(20, 17, {128, 64}));
-  // A light's product with itself is 2/3 pi times its irradiance squared.
+  // The product of a light with itself is 2/3 pi x its squared irradiance.
   EXPECT_NEAR(p.product.x, 2.0 / 3 * kPiD * 3 * texelSolidAngle(17, 128, 64), 1e-8);
 }
 
@@ -116,7 +116,7 @@ TEST(LightDescent, GradientAgreesWithFiniteDifferences) {
   FittedLights lights = someLights();
   solveColors(lights, probe, false);
   const std::vector<double> gradient = misfitGradient(lights, probe);
-  // With the best colours the misfit's total derivative is the partial one (envelope theorem).
+  // With optimal colours the total derivative of the misfit is the partial one (envelope theorem).
   constexpr double kStep = 1e-4;
   for (size_t i = 0; i < gradient.size(); ++i) {
     const Tangents t = tangentsOf(lights.directions[i / 2]);
@@ -132,7 +132,7 @@ TEST(LightDescent, GradientAgreesWithFiniteDifferences) {
   }
 }
 
-TEST(LightDescent, NeverRaisesTheMisfit) {
+TEST(LightDescent, NeverIncreasesTheMisfit) {
   const RadiancePoints probe(studioProbe(kSize), 32, 1);
   FittedLights lights = someLights();
   solveColors(lights, probe, true);
@@ -146,8 +146,8 @@ TEST(LightDescent, NeverRaisesTheMisfit) {
   EXPECT_LT(last, first);
 }
 
-TEST(Nonnegative, MeetsTheConditionsOfAMinimum) {
-  // Kuhn and Tucker: x >= 0, slope >= 0, and where x > 0 the slope is 0.
+TEST(Nonnegative, SatisfiesTheKuhnTuckerConditions) {
+  // x >= 0, slope >= 0, and the slope is 0 where x > 0.
   constexpr size_t kUnknowns = 12;
   std::vector<double> A(kUnknowns * kUnknowns), b(kUnknowns);
   for (size_t i = 0; i < kUnknowns; ++i) {
@@ -155,8 +155,8 @@ TEST(Nonnegative, MeetsTheConditionsOfAMinimum) {
     for (size_t j = 0; j < kUnknowns; ++j)
       A[i * kUnknowns + j] = std::exp(-0.3 * std::fabs(double(i) - double(j)));
   }
-  for (double guess : {0.0, 1.0}) {
-    const std::vector<double> x = solveNonnegative(A, b, std::vector<double>(kUnknowns, guess));
+  for (double start : {0.0, 1.0}) {
+    const std::vector<double> x = solveNonnegative(A, b, std::vector<double>(kUnknowns, start));
     int positive = 0;
     for (size_t i = 0; i < kUnknowns; ++i) {
       double slope = -b[i];
@@ -179,7 +179,7 @@ TEST(IrradianceFit, OneSunIsFoundExactly) {
   EXPECT_LT(distance(dvec3(fit.lights[0].direction), texelDirection(45, 9)), 1e-4);
   EXPECT_NEAR(fit.lights[0].irradiance.x, 1000 * solidAngle, 1e-4 * 1000 * solidAngle);
   EXPECT_NEAR(fit.lights[0].irradiance.z, 700 * solidAngle, 1e-4 * 700 * solidAngle);
-  EXPECT_LT(fit.meanError, 0.1);  // the exact irradiance knows how large the texel is
+  EXPECT_LT(fit.meanError, 0.1);  // not 0: the texel has an extent, the light has none
 }
 
 TEST(IrradianceFit, FewTexelsAreRecovered) {
@@ -206,7 +206,7 @@ TEST(IrradianceFit, FewTexelsAreRecovered) {
   }
 }
 
-TEST(IrradianceFit, AmbientLightTakesUpAConstantProbe) {
+TEST(IrradianceFit, AmbientLightReplacesAConstantProbe) {
   const IrradianceFit fit =
       fitIrradiance(constantProbe(kSize, Rgb(1, 2, 3)), {.count = 3, .ambient = true});
   EXPECT_EQ(fit.lights.size(), 3u);
@@ -238,7 +238,7 @@ TEST(IrradianceFit, ScalesWithTheProbe) {
   }
 }
 
-TEST(IrradianceFit, IsTheSameOnOneThread) {
+TEST(IrradianceFit, IsIndependentOfTheNumberOfThreads) {
   const Image probe = studioProbe(kSize);
   const IrradianceFit many = fitIrradiance(probe, {.count = 4});
   tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -259,7 +259,7 @@ TEST(IrradianceFit, ReportsTheErrorOfItsLights) {
   EXPECT_EQ(fit.maxError, error.max);
 }
 
-TEST(IrradianceFit, TheErrorAskedForIsMetByTheFewest) {
+TEST(IrradianceFit, MaxErrorGivesTheSmallestNumberOfLights) {
   const Image probe = studioProbe(kSize);
   FitOptions options;
   options.maxErrorPercent = 5;
@@ -302,13 +302,13 @@ TEST(SlowIrradianceFit, GalileosTombNeedsFewLights) {
   if (!path) GTEST_SKIP() << "no Galileo probe";
   const Image probe = smaller(loadProbe(*path).latLong, 8);
   expectErrorsToFall(probe, {1, 2, 4, 16, 32, 64});
-  // What an independent least-squares fit from many starts reached.
+  // Errors of an independent least-squares fit from many starts.
   const std::pair<int, double> reached[] = {{3, 10.1}, {5, 2.6}, {8, 1.4}, {12, 0.80}};
   for (const auto& [count, mean] : reached)
     EXPECT_LE(fitIrradiance(probe, {.count = count}).meanError, mean) << count << " lights";
   FitOptions options;
   options.maxErrorPercent = 5;
-  // Madsen and Laursen's optimisation needs five to six.
+  // Madsen and Laursen need five to six lights.
   EXPECT_LE(fitIrradiance(probe, options).lights.size(), 6u);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional lights as files, and Madsen and Laursen's measure of them.
+// Files of directional lights, and their error of irradiance (Madsen and Laursen 2007).
 #include "lighting/light_file.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ vec3 triple(const json& numbers) {
   return {numbers[0].get<float>(), numbers[1].get<float>(), numbers[2].get<float>()};
 }
 
-TEST(LightFile, JsonHoldsEveryDigit) {
+TEST(LightFile, JsonKeepsEveryDigit) {
   const TemporaryFolder folder;
   const LightRig rig = exampleRig();
   writeLights(folder / "a.json", rig);
@@ -52,7 +52,7 @@ TEST(LightFile, JsonHoldsEveryDigit) {
   EXPECT_EQ(empty["lights"], json::array());
 }
 
-// Turns (0, 0, -1) by the quaternion x, y, z, w.
+// Rotates (0, 0, -1) by the quaternion x, y, z, w.
 dvec3 lightGoes(const json& q) {
   return glm::dquat(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(),
                     q[2].get<double>()) *
@@ -81,8 +81,9 @@ TEST(LightFile, GltfNodesPointFromTheLightToTheScene) {
   }
 }
 
-// What is written is read again, in either units; in the others it is off by 683 lm/W.
-TEST(LightFile, GltfComesBackAsItWas) {
+// Reading with the units of the writer gives the same lights; with the other units they differ by
+// 683.
+TEST(LightFile, GltfRoundTrips) {
   const TemporaryFolder folder;
   LightRig rig = exampleRig();
   for (const LightUnits written : {LightUnits::Photometric, LightUnits::Radiometric})
@@ -111,7 +112,7 @@ TEST(LightFile, GltfHasNoEmptyLists) {
   EXPECT_EQ(fileContents(folder / "a.gltf").find("[]"), std::string::npos);
 }
 
-TEST(LightFile, CsvHasALineALight) {
+TEST(LightFile, CsvHasALinePerLight) {
   const TemporaryFolder folder;
   LightRig rig = exampleRig();
   rig.lights.resize(2);
@@ -121,7 +122,7 @@ TEST(LightFile, CsvHasALineALight) {
             "x,y,z,r,g,b,angle\n0,1,0,5,2,1,0\n0,0,-1,0,0.25,0.33333334,0.53\n");
 }
 
-TEST(LightFile, WritesNothingThatIsWrong) {
+TEST(LightFile, RefusesLightsThatAreNotFiniteAndUnknownExtensions) {
   const TemporaryFolder folder;
   LightRig rig = exampleRig();
   EXPECT_THROW(writeLights(folder / "a.txt", rig), InputError);

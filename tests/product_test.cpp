@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `product` samples what it says, and leaves a Lambertian surface little noise.
+// `product`: its pdf, and its low variance on a Lambertian surface.
 #include "lighting/product.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ LightPoint pointWith(const vec3& normal, bool transmits = false) {
   return point;
 }
 
-TEST(SlowProduct, samplesItsDensityOnEveryProbe) {
+TEST(SlowProduct, samplesFollowThePdfOnEveryProbe) {
   const std::vector<HardProbe> all = hardProbes();
   for (size_t k = 0; k < all.size(); ++k)
     for (const bool transmits : {false, true}) {
@@ -38,8 +38,8 @@ TEST(SlowProduct, samplesItsDensityOnEveryProbe) {
     }
 }
 
-// Light through a surface comes from the other side, where the normal's own bin has next to none.
-TEST(Product, transmissiveSurfacesGetAsMuchFromBothSides) {
+// Transmitted light comes from behind, where the bin of the normal has almost no probability.
+TEST(Product, transmissiveSurfacesSampleBothSidesEqually) {
   const Probe probe(constantProbe({64, 32}, Rgb(1)));
   const Product product(probe);
   const LightPoint point = pointWith(glm::normalize(vec3(0.3f, 0.8f, -0.5f)), true);
@@ -50,7 +50,7 @@ TEST(Product, transmissiveSurfacesGetAsMuchFromBothSides) {
   EXPECT_NEAR(behind, 5000, 250);
 }
 
-TEST(Product, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
+TEST(Product, pdfOfSamplesAgreesWithPdfOfDirectionsAndIsPositiveWhereThereIsLight) {
   for (const HardProbe& c : hardProbes()) {
     SCOPED_TRACE(c.name);
     const Probe probe(c.image);
@@ -69,7 +69,7 @@ TEST(Product, densityIsTheSameFromBothSidesAndPositiveWhereThereIsLight) {
   }
 }
 
-// Relative variance of the irradiance that single samples estimate.
+// Relative variance of the irradiance estimated by single samples.
 double irradianceVariance(const std::function<DirectionSample(double, double)>& draw,
                           const vec3& normal) {
   constexpr int kSamples = 100000;
@@ -84,7 +84,7 @@ double irradianceVariance(const std::function<DirectionSample(double, double)>& 
   return (sumOfSquares / kSamples - mean * mean) / (mean * mean);
 }
 
-TEST(Product, leavesATenthOfTheVarianceThatLuminanceAloneLeaves) {
+TEST(Product, hasATenthOfTheVarianceOfImportance) {
   const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, -0.7, 0.3}));
   const Product product(probe);
   const Importance importance(probe, false);

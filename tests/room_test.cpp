@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surroundings that are a model of the room.
+// Surroundings given by a model of the room.
 #include "trace/room.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(Room, AnOpeningShowsTheDistantProbe) {
   EXPECT_GT(glm::length(lighting.background(from, down) - probe.radiance(down)), 1e-3f);
 }
 
-TEST(Room, AScreenHidesWhatIsBehind) {
+TEST(Room, AScreenHidesTheWallBehind) {
   const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
   const vec3 corner(-1.99f, 0.5f, 1.5f);
   EXPECT_FALSE(walls.isSeen(corner, kCapture));
@@ -69,8 +69,9 @@ TEST(Room, AScreenHidesWhatIsBehind) {
   EXPECT_TRUE(walls.isSeen({-1, 0.5f, 1}, kCapture)) << "a point of the screen itself";
 }
 
-// The floor before and behind the screen, which is lit by what the capture point does not see as
-// well: BSDF samples, which know no visibility but their own, must agree with light samples.
+// The floor in front of and behind the screen is lit also by parts that the capture point does not
+// see. BSDF samples, which need no visibility from the capture point, must agree with light
+// samples.
 TEST(SlowRoom, StrategiesAgreeThoughWallsHideEachOther) {
   const Probe probe(spotted(), 25);
   const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
@@ -89,7 +90,7 @@ TEST(SlowRoom, StrategiesAgreeThoughWallsHideEachOther) {
   }
 }
 
-TEST(Room, RefusesWhatIsNone) {
+TEST(Room, RefusesEmptyModelsAndCapturePointsOutside) {
   EXPECT_THROW(Room(Scene(), kCapture, "test"), InputError);
   EXPECT_THROW(Room(boxModel(true, Furnishing::None), {0, 5, 0}, "test"), InputError);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a sampler of directions really have the pdf it claims? Chi-square over the sphere.
+// A chi-square test over the sphere: do samples of directions follow their pdf?
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@
 
 namespace chromeball {
 
-// Integral of f over a rectangle, halved at least `minimum` times (so that no feature falls between
-// the points) and then until a finer rule agrees.
+// Integral of f over a rectangle, subdivided at least `minimum` times (so that no feature falls
+// between the points), then until a finer rule agrees.
 inline double integrate(const std::function<double(double, double)>& f, double x0, double x1,
                         double y0, double y1, double tolerance, int minimum, int depth = 0) {
   const auto rule = [&](int n) {
@@ -37,8 +37,8 @@ struct SphereTest {
   double totalProbability;  // integral of the pdf
 };
 
-// Draws `samples` directions from `draw` (nullopt: absorbed), in bins of equal solid angle (height
-// along z times azimuth), against the integral of `pdf` over each bin.
+// Compares the numbers of `samples` directions from `draw` (nullopt: absorbed) in bins of equal
+// solid angle (height along z x azimuth) with the integral of `pdf` over each bin.
 inline SphereTest testDirections(const std::function<std::optional<vec3>(int)>& draw,
                                  const std::function<double(const vec3&)>& pdf, int samples,
                                  int minHalvings = 2, int heights = 24, int azimuths = 48) {

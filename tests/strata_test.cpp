@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One direction in each region: the pdf claimed, and the light that the probe has.
+// `kollig-keller-strata`: its pdf, and its unbiased estimates.
 #include "lighting/strata.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ float pdf(const Strata& strata, const vec3& wi, int depth) {
   return strata.escaped(at(depth), wi).pdf;
 }
 
-TEST(Strata, samplesItsDensityInEveryRegion) {
+TEST(Strata, samplesFollowThePdfInEveryRegion) {
   const std::vector<Case> all = cases();
   for (const Case& c : all) {
     SCOPED_TRACE(c.name);
@@ -59,7 +59,7 @@ TEST(Strata, samplesItsDensityInEveryRegion) {
   }
 }
 
-TEST(Strata, samplesStayInTheirRegionAndKnowTheirDensity) {
+TEST(Strata, samplesStayInTheirRegionAndHaveThePdfOfTheirDirection) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const Probe probe(c.map);
@@ -69,7 +69,7 @@ TEST(Strata, samplesStayInTheirRegionAndKnowTheirDensity) {
       const int region = i % strata.regions();
       const DirectionSample s = strata.sampleRegion(region, random1(i, 0), random1(i, 1));
       ASSERT_GT(s.pdf, 0);
-      if (strata.regionOf(s.wi) != region) {  // rounded into the cell next to its own
+      if (strata.regionOf(s.wi) != region) {  // rounded into a neighbouring cell
         ++strays;
         continue;
       }
@@ -83,9 +83,9 @@ TEST(Strata, samplesStayInTheirRegionAndKnowTheirDensity) {
   }
 }
 
-// The pdf follows the radiance, so a sample carries the light of its region, whatever direction
-// was drawn; together they carry the probe's.
-TEST(Strata, samplesOfAGreyProbeWeighTheSame) {
+// The pdf follows the radiance, so every sample has the energy of its region; the sum over all
+// regions is that of the probe.
+TEST(Strata, samplesOfAGreyProbeHaveConstantWeight) {
   Image map = constantProbe({256, 128}, Rgb(1));
   for (int i = 0; i < 256 * 128; ++i)
     map.setRgb(i % 256, i / 256, Rgb(random1(i, 0) < 0.1f ? 100 : 1));
@@ -104,7 +104,7 @@ TEST(Strata, samplesOfAGreyProbeWeighTheSame) {
   EXPECT_NEAR(all, 4 * kPiD * meanRadiance(map).y, 0.005 * all);
 }
 
-TEST(Strata, laterHitsSampleTheProbeByItsLuminance) {
+TEST(Strata, laterHitsSampleProportionallyToLuminance) {
   for (const Case& c : cases()) {
     const Probe probe(c.map, 12);
     const Strata strata(probe, 7);
@@ -117,7 +117,7 @@ TEST(Strata, laterHitsSampleTheProbeByItsLuminance) {
   }
 }
 
-// The estimate of an integral over the sphere is right on average at every depth.
+// The estimate of an integral over the sphere is unbiased at every depth.
 TEST(Strata, estimatesAreUnbiased) {
   Image map = gradientProbe({32, 16}, Rgb(1, 2, 3), {0.5, 0.4, 0.2});
   map.setRgb(9, 5, Rgb(80, 60, 40));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every unbiased strategy, with every kind of multiple importance sampling, gives the same picture:
-// Welch's t-test over independent seeds on each part of it, Sidak-corrected.
+// All unbiased strategies, with every MIS heuristic, render the same image: Welch's t-test over
+// independent seeds on each tile, Sidak-corrected.
 #include <gtest/gtest.h>
 
 #include "measure/statistics.h"
@@ -35,12 +35,12 @@ std::vector<std::vector<double>> tileMeans(const Named& named, const char* strat
   return means;
 }
 
-TEST(SlowStrategies, allUnbiasedOnesGiveTheSamePicture) {
+TEST(SlowStrategies, allUnbiasedOnesRenderTheSameImage) {
   struct Choice {
     const char* strategy;
     Mis mis;
   };
-  // "bsdf" takes no light samples, so MIS cannot change it; it is what all others are held to.
+  // The reference is "bsdf", which takes no light samples, so MIS cannot change it.
   const Choice choices[] = {{"uniform", Mis::Balance},
                             {"uniform", Mis::Off},
                             {"importance", Mis::Balance},
@@ -61,8 +61,8 @@ TEST(SlowStrategies, allUnbiasedOnesGiveTheSamePicture) {
       for (size_t i = 0; i < means.size(); ++i) {
         const Moments a = Moments::of(means[i]), b = Moments::of(expected[i]);
         EXPECT_GT(welchTest(a, b), significance)
-            << named.name << ", " << choice.strategy << ", mis " << int(choice.mis) << ", part "
-            << i << ": " << a.mean << " and " << b.mean;
+            << named.name << ", " << choice.strategy << ", mis " << int(choice.mis)
+            << ", tile and channel " << i << ": " << a.mean << " and " << b.mean;
       }
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strategy `suns`: its pdfs, its light, and the shadows of its discs.
+// `suns`: its pdfs, its radiance, and the penumbras of its discs.
 #include <gtest/gtest.h>
 
 #include "integrate/mis.h"
@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// A sky that is bright around its suns, so that samples of one technique are often found by others.
+// A sky that is bright around its suns, so that the sampling techniques overlap.
 Image sunnySky(int suns) {
   Image map = gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1});
   for (int i = 0; i < suns; ++i) {
@@ -47,7 +47,7 @@ class Samples {
   std::vector<DirectionSample> samples_;
 };
 
-TEST(Suns, DensityIsThatOfAllSamplesTogether) {
+TEST(Suns, PdfIsThatOfAllSamplesTogether) {
   for (const int count : {2, 6}) {  // of six, one is chosen
     SCOPED_TRACE(count);
     const Probe probe(sunnySky(count), 40);
@@ -71,7 +71,7 @@ TEST(Suns, DensityIsThatOfAllSamplesTogether) {
   }
 }
 
-// Irradiance of everything a strategy shows, by a fine grid.
+// The irradiance from all radiance of a strategy, by a fine grid.
 dvec3 irradianceOf(const LightingStrategy& strategy, const vec3& normal) {
   constexpr int kWidth = 1600, kHeight = 800;
   dvec3 sum(0);
@@ -97,8 +97,8 @@ TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
       std::vector<double> estimates;
       for (int i = 0; i < 20000; ++i) {
         double sum = 0;
-        // The light's samples, and those of a white surface; the balance heuristic where a
-        // compensated table leaves it to the surface to find the rest.
+        // Light samples, and BSDF samples of a white surface; combined by the balance heuristic if
+        // compensation leaves a part to the BSDF samples.
         for (const DirectionSample& s : samples.take(i)) {
           const float cosine = std::max(0.0f, glm::dot(normal, s.wi));
           const float weight = compensated ? misWeight(Mis::Balance, s.pdf, cosine / kPi) : 1;
@@ -119,8 +119,8 @@ TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
     }
 }
 
-// What it shows is the probe, but for the shape of its suns.
-TEST(Suns, ShowTheProbesLight) {
+// The background is the probe, except for the shape of its suns.
+TEST(Suns, KeepTheProbesIrradiance) {
   const Probe probe(sunnySky(2), 70);
   for (const vec3 n : {vec3(0, 1, 0), vec3(1, 3, 1), vec3(0.3f, 1, -0.2f)}) {
     const vec3 normal = glm::normalize(n);
@@ -148,10 +148,10 @@ TEST(Suns, WithoutSunsIsImportance) {
   EXPECT_TRUE(Samples(Suns(black, false), {0, 1, 0}).take(0).empty());
 }
 
-// A straight edge at height h casts, from a sun overhead, a penumbra 2 h tan(angle / 2) wide; in
-// it the share of the disc that is seen is that of a circle cut by a chord.
+// A straight edge at height h under a sun overhead casts a penumbra of width 2 h tan(angle / 2).
+// The visible fraction of the disc in it is that of a circle cut by a chord.
 TEST(Suns, PenumbraOfAStraightEdge) {
-  constexpr float kHeight = 2, kView = 1;  // metres; the width of what the picture shows
+  constexpr float kHeight = 2, kView = 1;  // metres; kView: width of the visible area
   constexpr int kWidth = 100;
   Image map = constantProbe({256, 128}, Rgb(0));
   addSunDisc(map, {0, 1, 0}, 3, {3, 2, 1});
@@ -189,15 +189,15 @@ TEST(Suns, PenumbraOfAStraightEdge) {
   }
 }
 
-// The discs give the probe's light and not its picture.
-TEST(Suns, AreUnbiasedWhereThereAreNone) {
+// With suns, discs change the shape of sources, so the strategy is biased.
+TEST(Suns, AreUnbiasedIfThereAreNone) {
   const Probe sunny(sunnySky(1)), overcast(overcastProbe({64, 32}, Rgb(1), 0.2));
   EXPECT_FALSE(Suns(sunny, true).unbiased());
   EXPECT_TRUE(Suns(overcast, true).unbiased());
 }
 
-// Full renders: what is sampled separately is the same light as what is sampled together.
-TEST(SlowSuns, PictureIsThatOfImportance) {
+// Full renders agree with those of `importance`.
+TEST(SlowSuns, RenderAgreesWithImportance) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert({0.7f, 0.6f, 0.5f})), {-3, 0, 3}, {6, 0, 0},
           {0, 0, -6});

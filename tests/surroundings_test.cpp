@@ -30,7 +30,7 @@ TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
     }
 }
 
-// With how far each may be off at a place on the floor.
+// Strategies with their tolerance at a position on the floor.
 constexpr std::pair<const char*, double> kStrategies[] = {{"bsdf", 0.03},
                                                           {"uniform", 0.03},
                                                           {"importance", 0.03},
@@ -44,7 +44,7 @@ std::unique_ptr<LightingStrategy> inside(const Surroundings& s, const char* name
                                               probe, s);
 }
 
-// In equally bright surroundings it does not matter where they are.
+// Surroundings of constant radiance look the same from every position.
 TEST(Surroundings, ConstantOnesAreTheSameEverywhere) {
   const Probe probe(constantProbe({8, 4}, Rgb(2)));
   for (const Surroundings& s : {box(), dome()})
@@ -55,7 +55,7 @@ TEST(Surroundings, ConstantOnesAreTheSameEverywhere) {
       }
 }
 
-// Irradiance of the floor by brute force: E = integral over the upper hemisphere of L cos.
+// Irradiance of the floor by quadrature: E = integral over the upper hemisphere of L cos.
 double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x) {
   constexpr int kRows = 300;
   double sum = 0;
@@ -70,9 +70,10 @@ double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x)
   return sum * 2 * kPiD / kRows / (4 * kRows);
 }
 
-// Every strategy finds the light that is there, at places that see it differently. Those that
-// replace the probe by lights have them on the walls, where one that is near shows by itself.
-TEST(SlowSurroundings, LightChangesWithThePlace) {
+// Every strategy finds the irradiance at positions that see the surroundings differently.
+// Strategies that replace the probe have their lights on the walls, so a near one has a larger
+// error.
+TEST(SlowSurroundings, LightChangesWithThePosition) {
   const Probe probe(spotted(), 25);
   double near = 0, far = 0;
   for (const Surroundings& s : {box(), dome()})
@@ -92,8 +93,8 @@ TEST(SlowSurroundings, LightChangesWithThePlace) {
     }
 }
 
-// What sample() says of a direction is what escaped() says of it.
-TEST(Surroundings, DensitiesAgree) {
+// sample() and escaped() agree on radiance and pdf of a direction.
+TEST(Surroundings, PdfsAgree) {
   const Probe probe(spotted(), 25);
   const SobolTable table(64, 16, 0);
   PixelSampler sampler(table, 0);
@@ -109,7 +110,7 @@ TEST(Surroundings, DensitiesAgree) {
         lighting->sample(point, sampler, samples);
         for (const DirectionSample& sample : samples) {
           const auto found = lighting->escaped(point, sample.wi);
-          // A sample at the rim of the one bright texel may be seen from its other side.
+          // Rounding may move a sample at the edge of the bright texel across it.
           EXPECT_NEAR(found.pdf / sample.pdf, 1, 5e-3) << name;
           const Rgb radiance = sample.irradiance * sample.pdf;
           EXPECT_LT(glm::length(found.radiance - radiance), 5e-3f * (1 + glm::length(radiance)));
@@ -118,8 +119,8 @@ TEST(Surroundings, DensitiesAgree) {
     }
 }
 
-// The lamps that `suns` makes of a probe's sources light what is matte; the camera and mirrors see
-// the probe as it was taken.
+// The lamps that `suns` makes of a probe's sources light matte surfaces only; the camera and
+// mirrors see the probe as captured.
 TEST(Surroundings, SunsAreNotSeen) {
   Image map = spotted();
   map.setRgb(12, 4, Rgb(6000, 4000, 3000));
@@ -154,8 +155,8 @@ TEST(Surroundings, SunsAreNotSeen) {
   }
 }
 
-// Far away they are the distant probe.
-TEST(Surroundings, FarAwayTheyAreTheProbe) {
+// At a large distance they equal the distant probe.
+TEST(Surroundings, AtALargeDistanceTheyAreTheProbe) {
   Surroundings s = dome();
   s.radius = 1e4f;
   s.capture = s.center;

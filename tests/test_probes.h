@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small probes on which a sampler of directions is easily wrong.
+// Small probes that are difficult for samplers of directions.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// One texel above the rest, or one texel alone.
+// One bright texel on a background, or on black.
 inline Image spot(int width, int height, int x, int y, float radiance, float rest) {
   Image image = constantProbe({width, height}, Rgb(rest));
   image.setRgb(x, y, Rgb(radiance));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every strategy on every kind of surface that lets light through: what comes from behind counts as
-// much as what comes from before it.
+// Every strategy on every kind of transmissive surface: light from behind counts as well as light
+// from the front.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -50,14 +50,14 @@ struct View {
   Scene scene;
   Camera camera = Camera::lookAt({1, 2.5f, 3}, {0, 0.1f, 0}, {0, 1, 0}, 0.75f);
 
-  // A ball on a small floor, which shades it and shines through it.
+  // A ball on a small floor, which casts a shadow and transmits light onto it.
   explicit View(const Material& material) {
     addQuad(scene, addMaterial(scene, lambert({0.5f, 0.6f, 0.7f})), {-1.2f, -1.05f, 1.2f},
             {2.4f, 0, 0}, {0, 0, -2.4f});
     addSphere(scene, addMaterial(scene, material), vec3(0), 1, 16);
   }
 
-  // Mean of the picture by channel, for seeds from `firstSeed` on.
+  // The image's mean for each channel, for consecutive seeds from `firstSeed`.
   std::array<std::vector<double>, 3> means(const LightingStrategy& lighting, Mis mis,
                                            uint64_t firstSeed, int samples = 16) const {
     const World world(scene);
@@ -115,8 +115,8 @@ TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
   }
 }
 
-// Lights in a black probe's place are the same as directional lamps.
-TEST(SlowTransmissiveStrategies, lightsInTheProbesPlaceAreTheirSum) {
+// Lights that replace a probe equal directional lamps in a black probe.
+TEST(SlowTransmissiveStrategies, lightsThatReplaceTheProbeAddUp) {
   const Probe black(constantProbe({4, 2}, Rgb(0)));
   for (const int count : {5, 40}) {
     const Constellation lights =

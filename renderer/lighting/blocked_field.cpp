@@ -12,9 +12,10 @@ constexpr int kColumns = 32, kRows = 16;  // of blocks, at most
 
 int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
-// The step of the running sums [begin, end] that holds the share `u` of what they rise by; `u`
-// becomes the position inside it, in [0, 1).
-int step(const double* sums, int begin, int end, double& u) {
+// Inverts the running sums over [begin, end]: returns the index i with sums[i] <= target <
+// sums[i + 1], where target is the fraction `u` of the way from the first sum to the last. `u`
+// becomes the position in that interval, in [0, 1).
+int invertSums(const double* sums, int begin, int end, double& u) {
   const double target = sums[begin] + u * (sums[end] - sums[begin]);
   const double* above = std::upper_bound(sums + begin + 1, sums + end, target);
   u = std::clamp((target - above[-1]) / (above[0] - above[-1]), 0.0, 0x1.fffffffffffffp-1);
@@ -67,10 +68,10 @@ double BlockedField::integral(int block) const {
 
 LuminanceField::Point BlockedField::sample(int block, double u, double v) const {
   const Span rows = rowsOf(block), columns = columnsOf(block);
-  const int row =
-      step(&down_[size_t(block % columns_) * (probe_->cellRows() + 1)], rows.begin, rows.end, v);
+  const int row = invertSums(&down_[size_t(block % columns_) * (probe_->cellRows() + 1)],
+                             rows.begin, rows.end, v);
   const int column =
-      step(&across_[size_t(row) * (probe_->width() + 1)], columns.begin, columns.end, u);
+      invertSums(&across_[size_t(row) * (probe_->width() + 1)], columns.begin, columns.end, u);
   return field_.sample(column, row, float(u), float(v));
 }
 

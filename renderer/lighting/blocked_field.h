@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The luminance field cut into blocks of cells, each to be sampled on its own.
+// The luminance field in blocks of cells, each of which can be sampled on its own.
 #pragma once
 
 #include <vector>
@@ -8,6 +8,7 @@
 
 namespace chromeball {
 
+// Sums along rows of cells and along columns of blocks serve all blocks. At most 32 x 16 blocks.
 class BlockedField {
  public:
   explicit BlockedField(const Probe& probe);
@@ -19,21 +20,21 @@ class BlockedField {
     return p.row / blockHeight_ * columns_ + p.column / blockWidth_;
   }
 
-  // The integral of the field's weight over a block, or over everything.
+  // The integral of the field's weight over a block, and over the whole field.
   double integral(int block) const;
   double total() const { return total_; }
 
-  // A point of a block with integral > 0, in proportion to the field's weight, from two numbers in
-  // [0, 1).
+  // A point of a block with integral > 0, with pdf proportional to the field's weight, from two
+  // numbers in [0, 1).
   LuminanceField::Point sample(int block, double u, double v) const;
   LuminanceField::Point at(const vec3& direction, const Probe::Position& p) const {
     return field_.at(direction, p);
   }
 
-  // Pdf over solid angle for each unit of a point's weight, over everything.
+  // Factor from a point's weight to its pdf over solid angle, when sampling the whole field.
   float scale() const { return scale_; }
 
-  // Directions spread over a block.
+  // 16 directions spread over a block.
   std::vector<vec3> directions(int block) const;
 
  private:
@@ -46,8 +47,8 @@ class BlockedField {
   const Probe* probe_;
   LuminanceField field_;
   int blockWidth_, blockHeight_, columns_, rows_;
-  std::vector<double> down_;    // by column of blocks: sums over its cells in the rows above
-  std::vector<double> across_;  // by row of cells: sums over the cells to the left
+  std::vector<double> down_;    // for each column of blocks: sums over its cells in the rows above
+  std::vector<double> across_;  // for each row of cells: sums over the cells to the left
   double total_ = 0;
   float scale_ = 0;
 };

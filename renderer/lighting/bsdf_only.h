@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bsdf`: no light samples; the BSDF finds the probe.
+// `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).
 #pragma once
 
 #include "lighting/strategy.h"

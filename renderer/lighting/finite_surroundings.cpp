@@ -3,7 +3,7 @@
 
 namespace chromeball {
 
-float FiniteSurroundings::enlargement(const vec3& x, const Surroundings::Point& y) const {
+float FiniteSurroundings::solidAngleRatio(const vec3& x, const Surroundings::Point& y) const {
   // cos / distance^2 = dot(n, to) / |to|^3
   const auto solidAngle = [&](const vec3& to) {
     const float squared = glm::dot(to, to);
@@ -19,11 +19,11 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
   size_t kept = before;
   for (size_t i = before; i < out.size(); ++i) {
     const Surroundings::Point y = behind(surroundings_.capture, out[i].wi);
-    const float larger = enlargement(point.position, y);
-    // The point may lie on the surface itself.
-    if (!(larger > 0) || !isSeen(y, point.position)) continue;
-    out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * larger,
-                   out[i].pdf / larger, out[i].isDelta};
+    const float ratio = solidAngleRatio(point.position, y);
+    // The ratio is 0 if the point lies on the surface itself.
+    if (!(ratio > 0) || !isSeen(y, point.position)) continue;
+    out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * ratio,
+                   out[i].pdf / ratio, out[i].isDelta};
   }
   out.resize(kept);
 }
@@ -33,9 +33,9 @@ LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
   const Surroundings::Point y = behind(point.position, wi);
   Escaped found = strategy_->escaped(point, glm::normalize(y.position - surroundings_.capture));
   if (found.pdf == 0) return found;
-  const float larger = enlargement(point.position, y);
-  const bool isSampled = larger > 0 && isSeen(y, surroundings_.capture);
-  found.pdf = isSampled ? found.pdf / larger : 0;
+  const float ratio = solidAngleRatio(point.position, y);
+  const bool isSampled = ratio > 0 && isSeen(y, surroundings_.capture);
+  found.pdf = isSampled ? found.pdf / ratio : 0;
   return found;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any strategy, with the probe on a surface at a finite distance.
+// Any strategy, with the probe projected onto a surface at a finite distance (HDRI book, sections
+// 9.2.3 and 9.6.1).
 #pragma once
 
 #include "lighting/strategy.h"
@@ -7,24 +8,22 @@
 
 namespace chromeball {
 
-// Every point y of the surface shines with the radiance that the probe has in the direction from
-// the capture point c to y, the same towards all sides. The wrapped strategy samples directions
-// from c; seen from a point x,
-//   density_x = density_c (|x - y|^2 / cos_x) / (|c - y|^2 / cos_c),
-// the cosines being those at y of the directions to x and c: solid angles of one patch of surface
-// (HDRI book, 9.2.3). What it samples concentrated, suns or delta lights, so becomes a lamp on the
-// surface, nearer to some points than to others.
+// Every point y of the surface emits, in all directions, the radiance that the probe has in the
+// direction from the capture point c to y. The wrapped strategy samples directions from c. Seen
+// from a point x, the pdf over solid angle is
+//   pdf_x = pdf_c (|x - y|^2 / cos_x) / (|c - y|^2 / cos_c),
+// with the cosines at y towards x and c: both solid angles belong to one patch of the surface. So
+// suns and delta lights become lamps on the surface, nearer to some points than to others.
 //
-// What of a room the capture point does not see, the strategy does not sample; a ray that ends
-// there finds what the probe shows in front of it. A sample at a wall that another hides is left
-// out.
+// The strategy does not sample those parts of a room that the capture point does not see. A ray
+// that ends there finds the radiance that the probe shows in that direction. A sample on a wall
+// that another wall hides from x is dropped.
 //
-// The camera and mirrors see the probe as it was taken: a lamp that a strategy took out of it
-// shines on matte and glossy surfaces only (RADIANCE's "illum"; HDRI book, 9.6.1).
+// The camera and mirrors see the probe as captured; lamps made from suns light only matte and
+// glossy surfaces (RADIANCE's "illum").
 class FiniteSurroundings : public LightingStrategy {
  public:
-  // `room` must outlive this; it takes the place of the box or the sphere, and is null where there
-  // is one of them.
+  // `room` replaces the box or sphere of `surroundings`, or is null; it must outlive this.
   FiniteSurroundings(std::unique_ptr<LightingStrategy> strategy, const Probe& probe,
                      const Surroundings& surroundings, const Walls* room = nullptr)
       : strategy_(std::move(strategy)), probe_(probe), surroundings_(surroundings), room_(room) {}
@@ -44,8 +43,8 @@ class FiniteSurroundings : public LightingStrategy {
     return !room_ || room_->isSeen(y.position, from);
   }
 
-  // How much larger the solid angle of a patch at y is from x than from the capture point.
-  float enlargement(const vec3& x, const Surroundings::Point& y) const;
+  // The solid angle of a patch at y seen from x, relative to that from the capture point.
+  float solidAngleRatio(const vec3& x, const Surroundings::Point& y) const;
 
   std::unique_ptr<LightingStrategy> strategy_;
   const Probe& probe_;

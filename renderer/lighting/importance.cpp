@@ -8,8 +8,8 @@
 namespace chromeball {
 namespace {
 
-// Share of the plain table's weight below which compensation is not worth having: rounding alone
-// leaves a constant probe 1e-7.
+// Fraction of the plain table's weight below which compensation is not used: for a constant probe,
+// rounding errors alone leave 1e-7.
 constexpr double kMinCompensated = 1e-3;
 
 double meanLuminance(const Probe& probe) {
@@ -44,7 +44,7 @@ Importance::Importance(const Probe& probe, bool compensated)
   scale_ = total_ > 0 ? float(1 / (total_ * field_.jacobian())) : 0;
 }
 
-// Fills both levels of the distribution and returns the sum of all cells' weights.
+// Fills both levels of the distribution; returns the sum of all cells' weights.
 double Importance::tabulate() {
   std::vector<double> rowWeights(probe_.cellRows());
   tbb::parallel_for(0, probe_.cellRows(), [&](int row) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `importance`: directions in proportion to the probe's luminance (Pharr and Humphreys; HDRI book,
-// 9.6.3), exactly as bright as the bilinear radiance function has it.
+// `importance`: directions with pdf proportional to the probe's luminance (Pharr and Humphreys,
+// "Infinite Area Light Source with Importance Sampling", 2004; HDRI book, section 9.6.3).
 #pragma once
 
 #include "lighting/luminance_field.h"
@@ -9,14 +9,15 @@
 
 namespace chromeball {
 
-// The pdf over the map is the bilinear interpolant of w = luminance x sin(theta) between texel
-// centres, as the radiance itself is; a row of cells is chosen, then a cell, then a point in it.
-// Pdf over solid angle = w / (total x jacobian x sin(theta)), which follows the radiance even
-// inside a texel, and is positive wherever the radiance is.
+// Over the map the pdf is proportional to w, the bilinear interpolant of luminance x sin(theta)
+// between texel centres (luminance_field.h). A row of cells is chosen, then a cell, then a point in
+// it. The pdf over solid angle is w / (total x jacobian x sin(theta)): it follows the radiance
+// within a texel, and is positive wherever the radiance is.
 //
-// MIS compensation (Karlik et al. 2019): w becomes max(luminance - mean, 0) x sin(theta), leaving
-// to the BSDF's samples what they find as well. Only for use with MIS; falls back to the plain
-// table where next to nothing is left.
+// MIS compensation (Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple
+// Importance Sampling", 2019): w becomes max(luminance - mean, 0) x sin(theta), because BSDF
+// samples cover the rest. For use with MIS only. Falls back to the plain w if compensation leaves
+// almost nothing.
 class Importance : public LightingStrategy {
  public:
   Importance(const Probe& probe, bool compensated);
@@ -27,7 +28,7 @@ class Importance : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
-  // The same in terms of two numbers in [0, 1), for tests. Black probes give pdf 0.
+  // The sample from two numbers in [0, 1), and its pdf over solid angle; 0 for a black probe.
   DirectionSample sampleDirection(double u, double v) const;
   float pdf(const vec3& wi) const;
 
@@ -38,7 +39,7 @@ class Importance : public LightingStrategy {
   LuminanceField field_;
   CdfRows rows_, columns_;
   double total_;
-  float scale_;  // pdf over solid angle for each unit of the field's weight
+  float scale_;  // factor from the field's weight to the pdf over solid angle
 };
 
 }  // namespace chromeball

@@ -12,7 +12,7 @@ namespace {
 
 using glm::dvec3;
 
-// With floats for numbers, so that each is written with the digits a float has, and no more.
+// JSON with float numbers, so that each is written with the digits of a float.
 using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, int64_t,
                                   uint64_t, float>;
 
@@ -22,7 +22,7 @@ std::string text(const Json& json, int indent = -1) {
 
 Json toJson(const vec3& v) { return {v.x, v.y, v.z}; }
 
-// One line a light.
+// One line per light.
 std::string formatJson(const LightRig& rig) {
   std::string result =
       fmt::format("{{\n  \"probe\": {},\n  \"method\": {},\n", text(rig.probe), text(rig.method));
@@ -39,7 +39,7 @@ std::string formatJson(const LightRig& rig) {
   return result + "\n  ]\n}\n";
 }
 
-// The quaternion (x, y, z, w) of the shortest turn from +Z to `d`; -Z then goes to -d.
+// The quaternion (x, y, z, w) of the shortest rotation that takes +Z to `d`, and so -Z to -d.
 Json rotationFromZ(const dvec3& d) {
   const double w = 1 + d.z;
   if (w < 1e-9) return {0, 1, 0, 0};
@@ -64,7 +64,7 @@ std::string formatGltf(const LightRig& rig) {
                      {"extensions", {{"KHR_lights_punctual", {{"light", index}}}}}});
     roots.push_back(index);
   }
-  // The format allows no empty list.
+  // glTF allows no empty arrays, so without lights only extras are written.
   Json gltf{{"asset", {{"version", "2.0"}, {"generator", "chromeball " CHROMEBALL_VERSION}}}};
   Json extras{{"probe", rig.probe}, {"method", rig.method}};
   if (rig.ambient) extras["ambient"] = toJson(*rig.ambient);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional lights as files, for other programs.
+// Writes directional lights to files, for other programs.
 #pragma once
 
 #include <filesystem>
@@ -11,23 +11,23 @@
 
 namespace chromeball {
 
-// What `chromeball lights` makes of a probe.
+// The lights that replace a probe, with their origin.
 struct LightRig {
-  std::string probe, method;   // the file, and the name of the method
-  std::optional<Rgb> ambient;  // radiance from everywhere, beside the lights
+  std::string probe, method;   // the probe's file, and the name of the method (methods.h)
+  std::optional<Rgb> ambient;  // radiance from all directions, beside the lights
   Constellation lights;
-  LightUnits units = LightUnits::Photometric;  // of .gltf
+  LightUnits units = LightUnits::Photometric;  // in .gltf
 };
 
-// Writes atomically; the extension decides the format. Throws InputError where it is none of these,
-// RunError where a light is not finite or writing fails.
-//   .json  {"probe", "method", "ambient": [r, g, b] where there is one, "lights": [{"direction":
-//          [x, y, z], "irradiance": [r, g, b], "angle": degrees}, ...]}
-//   .gltf  KHR_lights_punctual: for each a directional light and a node, whose -Z is the way its
-//          light goes. Intensity times colour is the irradiance, at 683 lux to the W/m^2 where the
-//          units are photometric; the colour's largest component is 1.
-//          Ambient light and angles, which the format does not have, are in extras.
-//   .csv   a line a light, under the header x,y,z,r,g,b,angle; the ambient light is left out
+// Writes atomically; the extension decides the format. Throws InputError for another extension,
+// RunError if a light is not finite or writing fails.
+//   .json  {"probe", "method", "ambient": [r, g, b] if any, "lights": [{"direction": [x, y, z],
+//          "irradiance": [r, g, b], "angle": degrees}, ...]}
+//   .gltf  KHR_lights_punctual: for each light a directional light and a node whose -Z points along
+//          its rays. Intensity x colour is the irradiance (x 683 lux per W/m^2 for photometric
+//          units); the colour's largest component is 1. Ambient light and angles, which the
+//          extension lacks, are in extras.
+//   .csv   header x,y,z,r,g,b,angle, then a line per light; without the ambient light
 void writeLights(const std::filesystem::path& path, const LightRig& rig);
 
 }  // namespace chromeball

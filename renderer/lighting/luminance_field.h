@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe's luminance as a pdf over its map, continuous as the radiance is.
+// The probe's luminance as an unnormalised pdf over its map, as continuous as the radiance.
 #pragma once
 
 #include <limits>
@@ -8,28 +8,29 @@
 
 namespace chromeball {
 
-// w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, and its bilinear
-// interpolant between them: with offset 0 positive wherever the radiance is. Over solid angle the
-// pdf that goes with w is w / (integral of w x jacobian x sin(theta)).
+// w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, interpolated
+// bilinearly between them; with offset 0 positive wherever the radiance is. The corresponding pdf
+// over solid angle is w / (integral of w over the map, in cells, x jacobian x sin(theta)).
 class LuminanceField {
  public:
   explicit LuminanceField(const Probe& probe, float offset = 0)
       : probe_(&probe), offset_(offset), rowSine_(probe.height() + 2) {
     for (int row = 1; row <= probe.height(); ++row)
       rowSine_[row] = float(std::sin(kPiD * (row - 0.5) / probe.height()));
-    // The pole itself has no area, but must not have pdf 0 where it is lit.
+    // sin(theta) is 0 at the poles, but the pdf must not be 0 there if they are lit.
     rowSine_.front() = rowSine_[1] / 8;
     rowSine_.back() = rowSine_[probe.height()] / 8;
   }
 
-  // The integral of w over a cell, in cells; those next to a pole are half as high.
+  // The integral of w over a cell, in cells of full height; those next to a pole are half as high.
   double integral(int column, int row) const {
     const Weights w = weights(probe_->corners(column, row), row);
     const bool cap = row == 0 || row == probe_->height();
     return (double(w.w00) + w.w10 + w.w01 + w.w11) * (cap ? 0.125 : 0.25);
   }
 
-  // What is in one direction: pdf over solid angle = weight / (sum of integrals x jacobian).
+  // Radiance and weight in one direction: pdf over solid angle = weight / (sum of integrals x
+  // jacobian).
   struct Point {
     vec3 direction;
     Rgb radiance;
@@ -41,7 +42,7 @@ class LuminanceField {
             weights(corners, p.row).at(p.s, p.t) / std::max(p.sinTheta, 1e-9f)};
   }
 
-  // A point of a cell with integral > 0, in proportion to w, from two numbers in [0, 1).
+  // A point of a cell with integral > 0, with pdf proportional to w, from two numbers in [0, 1).
   Point sample(int column, int row, float u, float v) const {
     const Weights w = weights(probe_->corners(column, row), row);
     Probe::Position p{column, row};
@@ -70,8 +71,8 @@ class LuminanceField {
             weight(c.c11) * bottom};
   }
 
-  // A number in [0, 1) with pdf proportional to a (1 - x) + b x. Squares of what is not within
-  // 1e+-19 leave the range of a float, so a and b count as shares of the greater.
+  // A number in [0, 1) with pdf proportional to a (1 - x) + b x. Divides by the greater of a and b
+  // because the squares of numbers outside 1e-19..1e19 exceed the range of a float.
   static float sampleLinear(float u, float a, float b) {
     const float greater = std::max(a, b);
     if (!(greater > 0)) return u;

@@ -8,13 +8,14 @@
 namespace chromeball {
 namespace {
 
-constexpr int kSide = 16;  // bins along the octahedral map
+constexpr int kSide = 16;  // bins along a side of the octahedral map
 constexpr int kBins = kSide * kSide;
-// Added to each mean cosine: no light may be out of reach, should a normal see a block that the
-// bin's few directions and normals did not show.
-constexpr double kMin = 1e-3;
+// Added to each mean cosine: a normal may see a block although none of the bin's sampled normals
+// sees any of the block's sampled directions, and every light must have a positive pdf.
+constexpr double kMinCosine = 1e-3;
 
-// The octahedron |x| + |y| + |z| = 1, its lower half folded outwards, on [-1, 1]^2.
+// The octahedral map: |x| + |y| + |z| = 1 with its lower half (y < 0) folded outwards: the square
+// [-1, 1]^2.
 vec2 toOctahedral(const vec3& n) {
   const vec3 p = n / (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
   if (p.y >= 0) return {p.x, p.z};
@@ -69,7 +70,7 @@ Product::Product(const Probe& probe)
   tbb::parallel_for(0, kBins, [&](int bin) {
     const std::vector<vec3> normals = normalsOf(bin);
     std::vector<double> cosines;
-    for (const auto& block : directions) cosines.push_back(meanCosine(block, normals) + kMin);
+    for (const auto& block : directions) cosines.push_back(meanCosine(block, normals) + kMinCosine);
     fillBin(bin, cosines);
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `product`: directions in proportion to luminance times cosine, so that for a Lambertian surface
-// little but visibility is left to chance.
+// `product`: directions with pdf proportional to luminance x cosine, which leaves mostly visibility
+// to chance on a Lambertian surface.
 #pragma once
 
 #include "lighting/blocked_field.h"
@@ -9,13 +9,12 @@
 
 namespace chromeball {
 
-// Normals fall into bins (squares of an octahedral map). For each bin the probe's blocks have a
-// distribution of their own, luminance x the mean cosine between block and bin, with a share
-// wherever the cosine can be positive; inside its block a direction is chosen by luminance alone.
-//   pdf = (luminance's own pdf) x lift(bin, block)
-// is known for every direction, so that MIS goes on. Where the surface transmits, half of the
-// samples are for the cosine with the normal's opposite. What a specular lobe reflects is left to
-// the BSDF's samples.
+// Normals are binned (squares of an octahedral map). Each bin has a distribution over the blocks of
+// the probe: luminance x the mean cosine between block and bin, positive wherever the cosine can
+// be. Within a block the pdf is proportional to luminance. So
+//   pdf = (pdf proportional to luminance) x lift(bin, block)
+// is known for every direction, as MIS needs. On a transmissive surface half of the samples use the
+// opposite normal. Specular reflection is left to BSDF samples.
 class Product : public LightingStrategy {
  public:
   explicit Product(const Probe& probe);
@@ -26,18 +25,19 @@ class Product : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
-  // In terms of two numbers in [0, 1), for tests. Black probes give pdf 0.
+  // The sample from two numbers in [0, 1). Black probes give pdf 0.
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
 
  private:
-  // From the mean cosine of each block with the bin's normals.
+  // `cosines`: for each block the mean cosine with the bin's normals.
   void fillBin(int bin, const std::vector<double>& cosines);
   float lift(int bin, int block) const { return lifts_[size_t(bin) * field_.blocks() + block]; }
   float lift(const LightPoint& point, int block) const;
 
   const Probe& probe_;
   BlockedField field_;
-  CdfRows rows_, columns_;    // of blocks: a row a bin, and a row a bin and row of blocks
+  CdfRows rows_;              // of blocks, for each bin
+  CdfRows columns_;           // of blocks, for each bin and row of blocks
   std::vector<float> lifts_;  // bins x blocks
 };
 

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-// The position of `target` in the step that leads from sum `before` to sum `after`.
+// The position of `target` in the interval from `before` to `after`, in [0, 1).
 double positionIn(double before, double after, double target) {
   return std::clamp((target - before) / (after - before), 0.0, 0x1.fffffffffffffp-1);
 }
@@ -55,7 +55,7 @@ Strata::Strata(const Probe& probe, int regions)
   total_ = choice_.setRow(0, weights);
 }
 
-float Strata::densityScale(int region, int depth) const {
+float Strata::pdfScale(int region, int depth) const {
   const double weight = depth == 0 ? strata_[region].weight() : total_ / kLater;
   return float(1 / (weight * field_.jacobian()));
 }
@@ -68,7 +68,7 @@ DirectionSample Strata::sampleCells(int region, double u, double v, float scale)
 }
 
 DirectionSample Strata::sampleRegion(int region, double u, double v) const {
-  return sampleCells(region, u, v, densityScale(region, 0));
+  return sampleCells(region, u, v, pdfScale(region, 0));
 }
 
 void Strata::sample(const LightPoint& point, const PixelSampler& sampler,
@@ -82,11 +82,11 @@ void Strata::sample(const LightPoint& point, const PixelSampler& sampler,
     for (int k = 0; k < kLater; ++k) {
       double choice = (k + u * 0x1p-32) / kLater;
       const int region = choice_.sample(0, choice);
-      append(sampleCells(region, choice, v * 0x1p-32, densityScale(region, point.depth)));
+      append(sampleCells(region, choice, v * 0x1p-32, pdfScale(region, point.depth)));
     }
     return;
   }
-  // One stratified point for all regions, moved in each by a shift of its own.
+  // All regions use one stratified point, with a different digital shift in each.
   for (int region = 0; region < regions(); ++region) {
     if (!(strata_[region].weight() > 0)) continue;
     const uint64_t shift = hash(uint64_t(region));
@@ -99,7 +99,7 @@ LightingStrategy::Escaped Strata::escaped(const LightPoint& point, const vec3& w
   const Probe::Position p = probe_.locate(wi);
   const LuminanceField::Point seen = field_.at(wi, p);
   if (!(seen.weight > 0)) return {seen.radiance, 0};
-  return {seen.radiance, seen.weight * densityScale(regionOf(p), point.depth)};
+  return {seen.radiance, seen.weight * pdfScale(regionOf(p), point.depth)};
 }
 
 }  // namespace chromeball

@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-constexpr size_t kMaxSampledEach = 2;
+constexpr size_t kMaxSampledEach = 2;  // with more suns, one is chosen
 
 // About +Y, as Probe does.
 vec3 rotated(const dvec3& d, double degrees) {
@@ -58,7 +58,7 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
   const DirectionSample rest = importance_.sampleDirection(u * 0x1p-32, v * 0x1p-32);
   if (rest.pdf > 0) add(rest.wi);
 
-  // The same point for each disc, moved by a digital shift of its own, which keeps its strata.
+  // All discs use one stratified point; a digital shift in each keeps its stratification.
   if (choice_) {
     double position = (u ^ uint32_t(hash(0))) * 0x1p-32;
     const int chosen = choice_->sample(0, position);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `suns`: concentrated sources sampled as discs of their own, the rest of the probe by importance
-// (HDRI book, 9.6.1).
+// `suns`: concentrated sources become discs that are sampled separately; the rest of the probe is
+// sampled by importance (HDRI book, section 9.6.1).
 #pragma once
 
 #include <optional>
@@ -12,20 +12,21 @@
 
 namespace chromeball {
 
-// One stratified sample of each sun and one of the remainder. Of more than two suns one is chosen
-// by power: with four, that takes 45% fewer rays to the same noise. The probe becomes the remainder
-// plus discs for every ray, mirrors' and the camera's as well, so energy is counted once. The only
-// bias is the shape of the suns, which highlights and penumbras show: each is a disc with the
-// irradiance and the spread of what it stands for (probe/sun_extraction.h). (In the row of texels
-// at a pole, where interpolation between texels adds light, discs have up to 8% less.)
+// Takes one stratified sample of each sun and one of the remainder. If there are more than two
+// suns, chooses one with probability proportional to power: with four suns this needs 45% fewer
+// rays for the same noise. All rays, also those of the camera and mirrors, see the remainder plus
+// discs, so energy counts once. The only bias is the shape of the suns, visible in highlights and
+// penumbras: a disc with the irradiance and the spread of the source it replaces
+// (probe/sun_extraction.h). (At a pole, where the interpolation of the last row adds light, discs
+// have up to 8% less.)
 //
-// All samples are weighted together by the balance heuristic: in a direction that several of the
-// techniques can find, pdf is the sum of theirs, and radiance that of remainder and discs.
+// All samples are combined by the balance heuristic: pdfs and radiances of the remainder and all
+// discs in a direction are added.
 class Suns : public LightingStrategy {
  public:
-  // `compensated`: of the remainder's table (Importance). `angle`: diameter of all suns in degrees,
-  // above 0 and at most 90, in place of the measured ones; kSunDiameter (probe/sky.h) is the true
-  // Sun's.
+  // `compensated`: MIS compensation of the remainder (importance.h). `angle`: a diameter for all
+  // suns, in degrees, above 0 and at most 90, instead of the measured ones; the Sun's is
+  // kSunDiameter (probe/sky.h).
   Suns(const Probe& probe, bool compensated, std::optional<double> angle = {});
   Suns(const Suns&) = delete;
 
@@ -33,17 +34,17 @@ class Suns : public LightingStrategy {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   Rgb background(const vec3&, const vec3& wi) const override;
-  // Where the probe has no suns there are no discs, and the probe is sampled as it is.
+  // Without suns this is `importance`.
   bool unbiased() const override { return discs_.empty(); }
 
  private:
-  // Discs are measured by chords: the one from the centre to wi has no rounding error to speak of
-  // however small the disc, and its square is uniform over the disc's solid angle, pi chord^2.
+  // Discs are measured by chords. The chord from the centre to wi is accurate for discs of any
+  // size, and its square is uniform over the disc's solid angle, pi chord^2.
   struct Disc {
     Frame frame;  // z: towards the centre
     float squaredChord;
     Rgb radiance;
-    float pdf;  // of all samples of discs that are taken together, inside this one
+    float pdf;  // over solid angle, inside this disc, of all disc samples together
 
     bool contains(const vec3& wi) const {
       const vec3 to = wi - frame.z;
@@ -57,7 +58,7 @@ class Suns : public LightingStrategy {
   Probe remainder_;
   Importance importance_;
   std::vector<Disc> discs_;
-  std::optional<CdfRows> choice_;  // by power, where one is chosen
+  std::optional<CdfRows> choice_;  // of one sun by power; empty if all are sampled
 };
 
 }  // namespace chromeball

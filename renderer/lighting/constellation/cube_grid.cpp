@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-// Face 2 axis + (negative ? 1 : 0), row by row, along the other two axes.
+// Faces are numbered 2 axis + (negative ? 1 : 0); squares row by row along the other two axes.
 int squareOf(const dvec3& d, int n) {
   const dvec3 size = glm::abs(d);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

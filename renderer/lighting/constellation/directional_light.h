@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights infinitely far away: what a constellation, a fit or an extracted sun consists of.
+// Lights infinitely far away: the elements of constellations and fits, and extracted suns.
 #pragma once
 
 #include <vector>

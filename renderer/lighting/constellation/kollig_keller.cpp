@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// Of the objective, while lights are being added: a thousandth is far less than a light is worth.
+// Relative, of the objective, while lights are being added: another light gains far more.
 constexpr double kTolerance = 1e-3;
 
 SphericalKMeans cluster(const TexelTable& table, int count) {
@@ -25,7 +25,7 @@ SphericalKMeans cluster(const TexelTable& table, int count) {
   return kMeans;
 }
 
-// Uniform over the texel's solid angle.
+// A direction in the texel, uniform over its solid angle.
 dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
   const double top = std::cos(kPiD * y / latLong.height);
   const double bottom = std::cos(kPiD * (y + 1) / latLong.height);
@@ -73,7 +73,7 @@ Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed)
     weight[region] += luminance(texelPower);
   });
 
-  // The texel in which the running sum passes a random share of the region's weight.
+  // The texel at which the running sum of a region passes a random fraction of the region's weight.
   Constellation lights(partition.regions);
   forEachTexel(latLong, partition, [&](int x, int y, int region, const dvec3& texelPower) {
     const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `lightgen` (Cohen and Debevec 2001; HDRI book, 9.6.2): K-means from random starts.
+// `lightgen` (Cohen and Debevec, HDRShop plug-in, 2001; HDRI book, section 9.6.2): K-means on the
+// sphere from random starts.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,9 @@
 
 namespace chromeball {
 
-// Lights start at `count` different cells drawn by luminance and move by Lloyd's iteration to
-// convergence; of four starts the one with the least objective (spherical_kmeans.h) is taken.
-// `table`: of kCoarseCells.
+// Lights start at `count` different cells, drawn with probability proportional to luminance, and
+// move by Lloyd's iteration to convergence. Of four starts the one with the smallest objective
+// (spherical_kmeans.h) wins. `table`: of kCoarseCells.
 Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
 
 }  // namespace chromeball

@@ -4,12 +4,12 @@
 namespace chromeball {
 namespace {
 
-// The line in (low, high) nearest to half of `whole`, where weightBelow(line) is the energy on the
-// near side. high - low >= 2.
+// The line in (low, high) that divides the energy `whole` most equally; weightBelow(line) is the
+// energy before the line. high - low >= 2.
 template <class WeightBelow>
 int halfway(int low, int high, double whole, WeightBelow weightBelow) {
   const double half = 0.5 * whole;
-  int before = low + 1, after = high - 1;  // the last known below half, and a line after it
+  int before = low + 1, after = high - 1;  // bracket the line
   while (after - before > 1) {
     const int middle = (before + after) / 2;
     (weightBelow(middle) <= half ? before : after) = middle;

@@ -15,13 +15,13 @@ dvec2 toUv(const dvec2& p) { return {0.5 * p.x, p.y}; }
 constexpr double kPhi = 1.6180339887498948482;
 constexpr double kInvPhi = kPhi - 1;  // 1 / phi; 1 / phi^2 = 2 - phi; 1 / phi^3 = 2 phi - 3
 
-// Half a rhomb of the tiling (Robinson's triangles): apex a of 36 or 108 degrees, in one of two
-// mirror images.
+// Half a rhomb of the tiling (a Robinson triangle), with an apex a of 36 or 108 degrees, in one of
+// two mirror images.
 struct Triangle {
   dvec2 a, b, c;
   bool acute, mirrored;
   int level;    // subdivisions so far
-  double code;  // in [0, 1), even over the triangles of its shape and level in any neighbourhood
+  double code;  // in [0, 1), uniform over the triangles of its shape and level in a neighbourhood
 };
 
 struct Corner {
@@ -29,8 +29,9 @@ struct Corner {
   double rank;
 };
 
-// Codes are numbers in base phi whose newest digit counts most: the shares of what a shape comes
-// from follow one another in [0, 1), and the parent's code is the place inside the share.
+// Codes are numbers in base phi whose newest digit is the most significant: each parent shape has
+// an interval of [0, 1), as long as its fraction of the children of this shape, and the parent's
+// code is the position in the interval. The lengths are
 //   acute:  1/phi^2 from acute, 1/phi from obtuse
 //   obtuse: 1/phi^3 from acute, twice 1/phi^2 from obtuse
 double acuteFromAcute(double code) { return code * (2 - kPhi); }
@@ -40,9 +41,9 @@ double obtuseFromObtuse(double code, int which) {
   return (2 * kPhi - 3) + (code + which) * (2 - kPhi);
 }
 
-// Side ab, and in an obtuse triangle bc, are cut in the golden ratio. A new corner belongs to one
-// of the two triangles on its side: across bc lies the mirror image; across ab lies the mirror
-// image, or the other shape in the same one of two.
+// Cuts side ab, and bc of an obtuse triangle, in the golden ratio. Two triangles share the new
+// corner on a side; only one of them adds it. The neighbour across bc is the mirror image; the
+// neighbour across ab is the mirror image, or the other shape with the same `mirrored`.
 template <class AddTriangle, class AddCorner>
 void split(const Triangle& t, AddTriangle addTriangle, AddCorner addCorner) {
   const int level = t.level + 1;
@@ -66,7 +67,8 @@ void split(const Triangle& t, AddTriangle addTriangle, AddCorner addCorner) {
   }
 }
 
-// Ten acute triangles round a point: a decagon of radius 4, which holds the map off its middle.
+// Ten acute triangles around a point: a decagon of radius 4 that covers the map away from its
+// middle.
 std::vector<Triangle> decagon(uint64_t seed) {
   const auto random = [&](int i) { return double(toUnit(uint32_t(hash(seed, i)))); };
   const auto polar = [](double radius, double angle) {
@@ -91,7 +93,7 @@ class Search {
     for (const Triangle& t : decagon(seed)) add(t);
   }
 
-  // Splits triangles until none can hide a corner that comes before the first known one.
+  // Splits triangles until none can contain a corner that precedes the first known one.
   dvec2 next() {
     while (corners_.empty() || triangles_.top().key <= corners_.top().key) {
       const Triangle triangle = triangles_.top().item;
@@ -109,7 +111,7 @@ class Search {
   struct Entry {
     double key;
     Item item;
-    bool operator<(const Entry& other) const { return key > other.key; }  // least on top
+    bool operator<(const Entry& other) const { return key > other.key; }  // smallest on top
   };
 
   void add(const Triangle& t) {
@@ -132,20 +134,20 @@ class Search {
 ImportanceTable::ImportanceTable(const Image& latLong)
     : texels_(latLong, kFineCells), blocks_(texels_) {
   levels_.push_back({texels_.width(), texels_.height(), {}});
-  levels_[0].greatest.reserve(texels_.cells().size());
+  levels_[0].maximum.reserve(texels_.cells().size());
   for (int y = 0; y < texels_.height(); ++y)
     for (int x = 0; x < texels_.width(); ++x) {
       const dvec2 size = texels_.uv(x + 1, y + 1) - texels_.uv(x, y);
-      levels_[0].greatest.push_back(texels_.at(x, y).weight / (size.x * size.y));
+      levels_[0].maximum.push_back(texels_.at(x, y).weight / (size.x * size.y));
     }
-  while (levels_.back().greatest.size() > 1) {
+  while (levels_.back().maximum.size() > 1) {
     const Level& fine = levels_.back();
     Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
-    coarse.greatest.resize(size_t(coarse.width) * coarse.height);
+    coarse.maximum.resize(size_t(coarse.width) * coarse.height);
     for (int y = 0; y < fine.height; ++y)
       for (int x = 0; x < fine.width; ++x) {
-        double& greatest = coarse.greatest[size_t(y / 2) * coarse.width + x / 2];
-        greatest = std::max(greatest, fine.greatest[size_t(y) * fine.width + x]);
+        double& maximum = coarse.maximum[size_t(y / 2) * coarse.width + x / 2];
+        maximum = std::max(maximum, fine.maximum[size_t(y) * fine.width + x]);
       }
     levels_.push_back(std::move(coarse));
   }
@@ -154,7 +156,7 @@ ImportanceTable::ImportanceTable(const Image& latLong)
 double ImportanceTable::at(const dvec2& p) const {
   if (p.x < 0 || p.x > 2 || p.y < 0 || p.y > 1) return 0;
   const glm::ivec2 i = texels_.cellAt(toUv(p));
-  return levels_[0].greatest[size_t(i.y) * levels_[0].width + i.x];
+  return levels_[0].maximum[size_t(i.y) * levels_[0].width + i.x];
 }
 
 // The level on which the rectangle meets at most 2 x 2 entries.
@@ -167,7 +169,7 @@ double ImportanceTable::bound(const dvec2& low, const dvec2& high) const {
   double maximum = 0;
   for (int y = first.y; y <= last.y; ++y)
     for (int x = first.x; x <= last.x; ++x)
-      maximum = std::max(maximum, level.greatest[size_t(y) * level.width + x]);
+      maximum = std::max(maximum, level.maximum[size_t(y) * level.width + x]);
   return maximum;
 }
 
@@ -177,7 +179,7 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
   std::vector<dvec3> directions;
   for (int i = 0; i < count; ++i)
     directions.push_back(*uvToDirection(Mapping::LatLong, toUv(search.next())));
-  const std::vector<dvec3> irradiance = table.blocks().fraction(directions);
+  const std::vector<dvec3> irradiance = table.blocks().assignToNearest(directions);
   Constellation lights;
   for (int i = 0; i < count; ++i) lights.push_back(makeLight(directions[i], irradiance[i]));
   return lights;

@@ -6,8 +6,8 @@
 namespace chromeball {
 namespace {
 
-// The first of low..high at which `holds`, which from some place on it does, at `high` at the
-// latest.
+// Smallest x in [low, high] for which the predicate holds, by bisection. Above it the predicate
+// holds everywhere; it holds at `high`.
 template <class Predicate>
 int firstWhere(int low, int high, Predicate holds) {
   while (low < high) {

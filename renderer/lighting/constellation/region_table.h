@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rectangles of a lat-long map, their light in constant time, and cutting them one after another.
+// Rectangles of a lat-long map: their sums in constant time, and repeated subdivision.
 #pragma once
 
 #include <functional>
@@ -24,16 +24,16 @@ class RegionTable {
 
   const TexelTable& texels() const { return texels_; }
 
-  // Sum of (direction x weight, weight). A difference of sums over the map: exact to about 1e-15 of
-  // the whole map's, so a black region may seem to have a weight.
+  // Sum of (direction x weight, weight). As a difference of sums over the map it has an error of
+  // about 1e-15 of the map's total, so a black region may have a small weight.
   dvec4 moment(const Region& r) const;
   int litCells(const Region& r) const;  // exact
 
-  // The smallest rectangle around the lit cells of `r`, of which there must be one. Any line
-  // through it leaves light on both sides.
+  // The smallest rectangle around the lit cells of `r` (at least one). Any line through it leaves
+  // light on both sides.
   Region trimmed(const Region& r) const;
 
-  // One light for each region: the sum of its cells, not of table entries, so all energy is kept.
+  // One light for each region. Sums its cells, not table entries, so energy is kept.
   Constellation lights(const std::vector<Region>& regions) const;
 
  private:
@@ -48,8 +48,9 @@ class RegionTable {
 std::pair<Region, Region> cutAtColumn(const Region& r, int x);
 std::pair<Region, Region> cutAtRow(const Region& r, int y);
 
-// Cuts the region whose `priority` is greatest, of those with two lit cells or more, until there
-// are `count` or none is left to cut. Regions are trimmed, and together hold all lit cells.
+// Starting from the whole map, repeatedly cuts the region of highest `priority` among those with
+// two or more lit cells, until there are `count` regions or none can be cut. Regions are trimmed
+// and together contain all lit cells.
 std::vector<Region> subdivide(const RegionTable& table, int count,
                               const std::function<double(const Region&)>& priority,
                               const std::function<std::pair<Region, Region>(const Region&)>& cut);

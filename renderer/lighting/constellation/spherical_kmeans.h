@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// K-means on the sphere: Lloyd's iteration over the cells of a map, with luminance as their mass.
+// K-means on the sphere: Lloyd's iteration over the cells of a map, weighted by luminance.
 #pragma once
 
 #include <vector>
@@ -8,34 +8,35 @@
 
 namespace chromeball {
 
-// Minimises the sum over cells of weight (1 - direction . centre), each cell with its nearest
-// centre: half the squared chord. The best centre of a cluster is then its normalised centroid.
+// Minimises the sum over cells of weight x (1 - direction . nearest centre), half the squared
+// chord. The optimal centre of a cluster is then its normalised centroid (Dhillon and Modha 2001).
 class SphericalKMeans {
  public:
-  // Only the lit cells of `table`, which must outlive this, take part.
+  // Uses the lit cells of `table`, which must outlive this.
   explicit SphericalKMeans(const TexelTable& table);
 
   int litCells() const { return int(points_.size()); }
   double weight(int litCell) const { return points_[litCell].weight; }
 
-  // Adds a centre at a lit cell; or in the cluster of most error, of those with two cells or more,
-  // at the cell that has most of it. There are such clusters while there are fewer centres than
-  // lit cells. The first centre goes to the brightest cell.
+  // Adds a centre at a lit cell, or at the worst cell: that with the largest error in the cluster
+  // with the largest error among those with two or more cells (which exist while there are fewer
+  // centres than lit cells). The first centre goes to the brightest cell.
   void addCentre(int litCell);
   void addCentreAtWorst() { addCentre(worst()); }
 
-  // Assigns cells to the nearest centres and moves these to the centroids; a centre left without
-  // cells moves to the worst cell. False where no centre has moved. The objective never rises.
-  // There must be no more centres than lit cells.
+  // Assigns cells to the nearest centres and moves the centres to the centroids; a centre without
+  // cells moves to the worst cell. Returns whether any centre moved. Never increases the objective.
+  // Needs at least as many lit cells as centres.
   bool step();
 
-  // Steps until none lowers the objective by more than the share `tolerance`, or 200 times.
+  // Steps until one lowers the objective by no more than the fraction `tolerance`, 200 times at
+  // most.
   void converge(double tolerance);
 
   double objective() const;  // after the last assignment
   int centres() const { return int(centres_.size()); }
   Constellation lights() const;     // one for each centre
-  std::vector<int> labels() const;  // for each cell of the table, lit or not, its centre
+  std::vector<int> labels() const;  // the centre of each cell of the table, lit or not
 
  private:
   struct Point {
@@ -44,7 +45,7 @@ class SphericalKMeans {
     int cell;  // in the table
   };
   struct Rival {
-    double cosine;  // of the angle between two centres
+    double cosine;  // of the angle to the centre whose rival it is
     int centre;
   };
 

@@ -23,7 +23,7 @@ int blockFor(int width, int height, size_t maxCells) {
 
 const Image& checked(const Image& latLong) {
   if (latLong.empty() || latLong.channels < 3)
-    throwInput("probe: has no texels, or fewer than three channels; lights want RGB");
+    throwInput("probe: has no texels or fewer than three channels; RGB is needed");
   return latLong;
 }
 
@@ -54,7 +54,7 @@ TexelTable::TexelTable(const Image& latLong, size_t maxCells)
       width_(ceilDivide(mapWidth_, block_)),
       height_(ceilDivide(mapHeight_, block_)),
       cells_(size_t(width_) * height_) {
-  std::vector<dvec2> column(mapWidth_);  // x and z of a direction on the horizon
+  std::vector<dvec2> column(mapWidth_);  // x and z of the direction on the horizon
   for (int x = 0; x < mapWidth_; ++x) {
     const double azimuth = 2 * kPiD * (x + 0.5) / mapWidth_;
     column[x] = {-std::sin(azimuth), std::cos(azimuth)};
@@ -78,7 +78,7 @@ TexelTable::TexelTable(const Image& latLong, size_t maxCells)
   for (const TexelSum& cell : cells_) total_ += cell;
   if (std::max({total_.power.x, total_.power.y, total_.power.z}) >
       std::numeric_limits<float>::max())
-    throwInput("probe: its light adds up to more than a float holds; scale the map down");
+    throwInput("probe: the sum of its radiance exceeds the range of a float; scale it down");
 }
 
 glm::ivec2 TexelTable::cellAt(const dvec2& uv) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lat-long map as a grid of weighted directions: what the light-placing methods work on.
+// A lat-long map as a grid of weighted directions: the input of the constellation methods.
 #pragma once
 
 #include <vector>
@@ -13,46 +13,46 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-// Sums over texels, in double, so that a sun of 1e12 leaves the texels around it their share.
+// Sums over texels, in double, so that the texels around a sun of 1e12 still count.
 struct TexelSum {
-  dvec3 power{0};     // radiance x solid angle, RGB: the irradiance of a light in their place
+  dvec3 power{0};     // radiance x solid angle, RGB: the irradiance of a light that replaces them
   dvec3 moment{0};    // direction x weight
   double weight = 0;  // luminance of power
 
   TexelSum& operator+=(const TexelSum& other);
 };
 
-// The light that stands for `sum`, at its centroid on the sphere; at `fallback` (unit) where the
-// centroid is next to the sphere's centre and points nowhere.
+// The light that replaces `sum`, at its centroid on the sphere; at `fallback` (unit) if the
+// centroid is so near to the sphere's centre that it has no direction.
 DirectionalLight lightAt(const TexelSum& sum, const dvec3& fallback);
 DirectionalLight makeLight(const dvec3& unitDirection, const dvec3& irradiance);
 
-// Numbers of cells that bound memory and time.
-inline constexpr size_t kFineCells = 1 << 21;    // 2048 x 1024: for tables that are looked up
-inline constexpr size_t kCoarseCells = 1 << 15;  // 256 x 128: for iterating over
+// Maximum numbers of cells, to bound memory and time.
+inline constexpr size_t kFineCells = 1 << 21;    // 2048 x 1024: for look-ups
+inline constexpr size_t kCoarseCells = 1 << 15;  // 256 x 128: for repeated loops over all cells
 
-// Cells are square blocks of texels, as small as keeps their number within `mostCells`: single
-// texels unless the map is large. Texels count as concentrated in their centre.
+// Cells are square blocks of texels, the smallest that keep their number within `maxCells`: single
+// texels unless the map is large. The light of a texel counts as concentrated at its centre.
 class TexelTable {
  public:
-  // Throws InputError for an empty map, one with fewer than three channels, a texel that is
-  // negative or not finite, and for radiance whose sum no float holds.
+  // Throws InputError for an empty map, fewer than three channels, a texel that is negative or not
+  // finite, and a sum of radiance beyond the range of a float.
   TexelTable(const Image& latLong, size_t maxCells);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int block() const { return block_; }  // texels along a cell's side; fewer in the last ones
+  int block() const { return block_; }  // texels along a cell's side; the last may have fewer
   const TexelSum& at(int x, int y) const { return cells_[size_t(y) * width_ + x]; }
   const std::vector<TexelSum>& cells() const { return cells_; }
   size_t cellOfTexel(int x, int y) const { return size_t(y / block_) * width_ + x / block_; }
   const TexelSum& total() const { return total_; }
 
-  // The position in the map, (u, v) in [0, 1], of a point given in cells; and its direction.
+  // The position (u, v) in [0, 1]^2 of a point given in cells, and its direction.
   dvec2 uv(double x, double y) const {
     return {std::fmin(x * block_ / mapWidth_, 1.0), std::fmin(y * block_ / mapHeight_, 1.0)};
   }
-  glm::ivec2 cellAt(const dvec2& uv) const;  // the cell there, or the nearest
   dvec3 direction(double x, double y) const;
+  glm::ivec2 cellAt(const dvec2& uv) const;  // the cell there, or the nearest
 
  private:
   int mapWidth_, mapHeight_, block_, width_, height_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a directional light paints on a sphere, compared with what another paints there.
+// The irradiance of a directional light over all normals, and its products with that of another.
 #pragma once
 
 #include <cmath>
@@ -8,13 +8,13 @@
 
 namespace chromeball {
 
-// A light of unit irradiance from direction d puts max(0, n . d) on a surface with normal n. The
-// integrals of products of two such patterns over all normals have closed forms (the arc-cosine
-// kernel of degree one, Cho and Saul 2009), so that no set of normals need be chosen. With
-// t the angle between a and b, and s and u tangents there (s . a = 0, u . b = 0):
+// A light of unit irradiance from direction d gives a surface with normal n the irradiance
+// max(0, n . d): its pattern. The integral of the product of two patterns over all normals has a
+// closed form (the arc-cosine kernel of degree one, Cho and Saul 2009), so no set of normals is
+// needed. With t the angle between a and b, and tangents s and u (s . a = 0, u . b = 0):
 //   integral of max(0, n.a) max(0, n.b) dn                   = 2/3 (sin t + (pi - t) cos t)
 //   its derivative along u, of b                             = 2/3 (pi - t) a.u
-//   its derivative along s, of a, and u, of b (n within both hemispheres: of n.s n.u dn)
+//   its derivative along s, of a, and u, of b (the integral of n.s n.u over both hemispheres)
 //                                        = 2/3 ((pi - t) s.u + (s.b)(u.a) / sin t)
 struct CosinePair {
   double cosine, sine, supplement;  // of t; pi - t
@@ -30,8 +30,8 @@ struct CosinePair {
   }
 };
 
-// Unit radiance from everywhere puts pi on every surface. Its product with a light's pattern, and
-// with itself.
+// Unit radiance from all directions gives every surface the irradiance pi. The products of this
+// pattern with that of a light, and with itself.
 inline constexpr double kAmbientTimesLight = kPiD * kPiD;
 inline constexpr double kAmbientTimesAmbient = 4 * kPiD * kPiD * kPiD;
 

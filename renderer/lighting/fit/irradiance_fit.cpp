@@ -17,53 +17,53 @@
 namespace chromeball {
 namespace {
 
-// Rows of the probe's merged points. Twice as many cost four times as much, and take a thirtieth
-// off the error of 64 lights and a seventh off that of 128 (Galileo's tomb). Few rows do to tell a
-// promising arrangement from a poor one.
+// Rows of the probe's merged points. Twice as many cost four times as much, and reduce the error of
+// 64 lights by 3% and of 128 lights by 14% (Galileo's tomb). Few rows suffice to rank arrangements.
 constexpr int kPointRows = 64, kRoughPointRows = 16;
 
-// Few lights get stuck in a poor arrangement more easily than many: the one for five in Galileo's
-// tomb is a fifth better than where the best for four leads. Up to kFewLights the best arrangements
-// of each number are all carried on, each with several places for the next light.
+// Few lights end in a poor local minimum more often than many: for five lights in Galileo's tomb
+// the best arrangement has a fifth less error than the best one that grows from four lights. So up
+// to kFewLights a beam search keeps the best arrangements of each number, and tries several
+// directions for the next light of each.
 constexpr int kFewLights = 16;
-constexpr int kArrangements = 16, kPlaces = 6;
-constexpr int kStepsToTry = 10, kStepsToRest = 90;
-constexpr double kSame = 1e-8;  // arrangements whose misfits differ by less, relatively, are one
+constexpr int kArrangements = 16, kCandidates = 6;
+constexpr int kStepsToTry = 10, kStepsToConverge = 90;
+constexpr double kSame = 1e-8;  // relative difference of misfit below which arrangements are equal
 
-constexpr double kApart = 0.9;        // cosine of the least angle between places that are tried
-constexpr double kNegligible = 1e-6;  // of the probe's product with a light, relative to its mean
+constexpr double kMaxCosine = 0.9;    // between candidate directions for the next light
+constexpr double kNegligible = 1e-6;  // product of a light with the residual, over mean radiance
 
-// Where lights may be added, and what a light there has in common with the probe.
-class Places {
+// Directions in which lights may be added, and the products of their patterns with the probe.
+class Candidates {
  public:
-  explicit Places(const RadiancePoints& probe) {
+  explicit Candidates(const RadiancePoints& probe) {
     for (const vec3& normal : icosphereNormals(3)) directions_.push_back(normalize(dvec3(normal)));
     products_.resize(directions_.size());
     tbb::parallel_for(size_t(0), directions_.size(),
                       [&](size_t i) { products_[i] = probe.productWith(directions_[i]).product; });
   }
 
-  // At most `count` places where one more light would help most, the best first; none where none
-  // helps, and then no further light can help but by replacing others.
+  // At most `count` directions in which one more light reduces the misfit most, the best first.
+  // None if no light reduces it.
   std::vector<dvec3> best(const FittedLights& lights, int count) const {
     std::vector<double> gains(directions_.size());
     tbb::parallel_for(size_t(0), directions_.size(), [&](size_t i) {
-      const dvec3 wanting = max(residualProduct(i, lights), dvec3(0));
-      gains[i] = dot(wanting, wanting);
+      const dvec3 missing = max(residualProduct(i, lights), dvec3(0));
+      gains[i] = dot(missing, missing);
     });
-    std::vector<dvec3> places;
-    while (int(places.size()) < count) {
+    std::vector<dvec3> best;
+    while (int(best.size()) < count) {
       const auto peak = std::max_element(gains.begin(), gains.end());
       if (*peak <= kNegligible * kNegligible) break;
-      places.push_back(directions_[peak - gains.begin()]);
+      best.push_back(directions_[peak - gains.begin()]);
       for (size_t i = 0; i < gains.size(); ++i)
-        if (dot(directions_[i], places.back()) > kApart) gains[i] = 0;
+        if (dot(directions_[i], best.back()) > kMaxCosine) gains[i] = 0;
     }
-    return places;
+    return best;
   }
 
  private:
-  // Of a light at place i with what the lights leave of the probe.
+  // The product of candidate i with the residual: the probe minus the lights.
   dvec3 residualProduct(size_t i, const FittedLights& lights) const {
     dvec3 product = products_[i] - kAmbientTimesLight * lights.ambient;
     for (size_t j = 0; j < lights.directions.size(); ++j)
@@ -82,13 +82,13 @@ void removeBlack(FittedLights& lights) {
     }
 }
 
-// One light after another, the best arrangements side by side.
+// A beam search that adds one light at a time.
 class Search {
  public:
   Search(const Image& latLong, double scale, bool ambient)
       : probe_(latLong, kPointRows, scale),
         rough_(latLong, kRoughPointRows, scale),
-        places_(probe_),
+        candidates_(probe_),
         ambient_(ambient) {
     FittedLights none;
     solveColors(none, probe_, ambient);
@@ -97,23 +97,22 @@ class Search {
 
   const std::vector<FittedLights>& best() const { return best_; }
 
-  // Gives each arrangement one more light, and keeps the best. Where no place promises anything,
-  // all stay as they are.
+  // Adds a light to each arrangement and keeps the best. Without candidates nothing changes.
   void grow() {
     const bool few = int(best_.front().directions.size()) < kFewLights;
     if (!few) best_.resize(1);
     std::vector<FittedLights> tried;
     for (const FittedLights& lights : best_)
-      for (const dvec3& location : places_.best(lights, few ? kPlaces : 1)) {
+      for (const dvec3& direction : candidates_.best(lights, few ? kCandidates : 1)) {
         tried.push_back(lights);
-        tried.back().directions.push_back(location);
+        tried.back().directions.push_back(direction);
         tried.back().irradiances.emplace_back(0);
       }
     if (tried.empty()) return;
     if (few) {
       descendAll(tried, rough_, kStepsToTry);
       keepBest(tried);
-      descendAll(tried, rough_, kStepsToRest);
+      descendAll(tried, rough_, kStepsToConverge);
     }
     descendAll(tried, probe_, kStepsToTry);
     keepBest(tried);
@@ -138,12 +137,12 @@ class Search {
   }
 
   RadiancePoints probe_, rough_;
-  Places places_;
+  Candidates candidates_;
   bool ambient_;
   std::vector<FittedLights> best_;
 };
 
-// The probe as what fits are measured by.
+// The error of fits to a probe.
 class Measure {
  public:
   explicit Measure(const Image& latLong)
@@ -173,7 +172,7 @@ IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
   const int limit = options.maxErrorPercent ? options.maxCount : options.count;
   if (limit < 0) throwInput("a fit of {} lights: the number must not be negative", limit);
   const dvec3 mean = meanRadiance(latLong);
-  // Of a black probe every scale is as good.
+  // Any scale serves a black probe.
   const double level = mean == dvec3(0) ? 1 : (mean.x + mean.y + mean.z) / 3;
   const Measure measure(latLong);
   Search search(latLong, 1 / level, options.ambient);

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 using Products = std::vector<PatternProduct>;
 
-// Relative to a diagonal: what keeps two lights at one place from a singular matrix.
+// Relative to the diagonal: keeps the matrix regular if two lights have the same direction.
 constexpr double kRidge = 1e-12;
 
 Products productsWith(const RadiancePoints& probe, const std::vector<dvec3>& directions) {
@@ -29,7 +29,7 @@ Products productsWith(const RadiancePoints& probe, const std::vector<dvec3>& dir
   return products;
 }
 
-// Products of the lights' patterns with each other; the ambient one comes last.
+// Products of the lights' patterns with each other; the ambient pattern is the last row and column.
 MatrixXd gramMatrix(const std::vector<dvec3>& directions, bool ambient) {
   const Index n = Index(directions.size());
   MatrixXd gram(n + ambient, n + ambient);
@@ -66,9 +66,9 @@ void solveColors(FittedLights& lights, const RadiancePoints& probe, bool ambient
   }
 }
 
-// For lights of unit irradiance: products of patterns (rows) with derivatives along the tangents,
-// two a light (columns), and of derivatives with each other. Those of the ambient pattern, which is
-// the last row if there is one, are zero.
+// For lights of unit irradiance: `mixed` has the products of patterns (rows) with derivatives along
+// the tangents, two per light (columns); `both` those of derivatives with each other. The ambient
+// pattern, if any, is the last row of `mixed`, which is zero.
 struct DerivativeProducts {
   MatrixXd mixed, both;
 };
@@ -93,7 +93,7 @@ DerivativeProducts derivativeProducts(const std::vector<dvec3>& d, bool ambient)
   return p;
 }
 
-// Channel c's irradiances, each twice: once for each tangent.
+// The irradiances of channel c, each twice: once per tangent.
 VectorXd twice(const FittedLights& lights, int c) {
   VectorXd colors(2 * lights.irradiances.size());
   for (size_t i = 0; i < lights.irradiances.size(); ++i)
@@ -118,8 +118,9 @@ VectorXd gradient(const FittedLights& lights, const Products& products, const Ma
   return result;
 }
 
-// The misfit around the lights' directions, two unknowns a light, once the colours have been
-// eliminated: its gradient, and the Gauss-Newton part of its Hessian (the lower half counts).
+// A quadratic model of the misfit as a function of the directions, two unknowns per light, with the
+// colours eliminated: its gradient, and the Gauss-Newton part of its Hessian (the lower triangle is
+// used).
 struct QuadraticModel {
   MatrixXd hessian;
   VectorXd gradient;
@@ -133,7 +134,7 @@ QuadraticModel modelAround(const FittedLights& lights, bool ambient, const Matri
   QuadraticModel model{MatrixXd::Zero(2 * n, 2 * n), gradient(lights, products, mixed),
                        VectorXd::Zero(2 * n)};
   for (int c = 0; c < 3; ++c) {
-    std::vector<Index> lit;  // the colours that are not held at zero
+    std::vector<Index> lit;  // the colours that are not at their bound of zero
     for (Index i = 0; i < n; ++i)
       if (lights.irradiances[i][c] > 0) lit.push_back(i);
     if (ambient && lights.ambient[c] > 0) lit.push_back(n);
@@ -152,22 +153,22 @@ QuadraticModel modelAround(const FittedLights& lights, bool ambient, const Matri
 }
 
 VectorXd stepOf(const QuadraticModel& model, double damping) {
-  MatrixXd damped = model.hessian;  // its lower half counts
-  // A dark light feels nothing and stays; any positive number keeps the matrix definite.
+  MatrixXd damped = model.hessian;  // only the lower triangle is used
+  // The row of a black light is zero; any positive diagonal keeps the matrix definite.
   const double minimum = std::max(kRidge * model.damping.maxCoeff(), 1e-300);
   damped.diagonal() += damping * model.damping.cwiseMax(minimum);
   return damped.llt().solve(-model.gradient);
 }
 
-constexpr double kLongestStep = 0.3;      // radians
-constexpr double kNegligibleGain = 1e-4;  // of a step, relative to what all have gained
+constexpr double kMaxStep = 0.3;          // radians
+constexpr double kNegligibleGain = 1e-4;  // of a step, relative to the gain of all steps
 
 std::vector<dvec3> moved(const std::vector<dvec3>& directions, const VectorXd& step) {
   std::vector<dvec3> result;
   for (size_t i = 0; i < directions.size(); ++i) {
     const Tangents t = tangentsOf(directions[i]);
     dvec3 move = step[2 * i] * t.s + step[2 * i + 1] * t.u;
-    move *= kLongestStep / std::max(length(move), kLongestStep);
+    move *= kMaxStep / std::max(length(move), kMaxStep);
     result.push_back(normalize(directions[i] + move));
   }
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional lights moved to where they best reproduce a probe's irradiance.
+// Optimises directional lights: the colours for given directions, and the directions by descent.
 #pragma once
 
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace chromeball {
 
-// Lights whose irradiance is to be like a probe's on surfaces of every orientation.
+// Lights fitted to a probe's irradiance over all surface orientations.
 struct FittedLights {
   std::vector<dvec3> directions;   // unit
   std::vector<dvec3> irradiances;  // RGB, not negative; one for each direction
-  dvec3 ambient{0};                // radiance from everywhere
-  // The integral over all normals, summed over RGB, of (E_lights - E_probe)^2 / 2, but for the term
+  dvec3 ambient{0};                // radiance from all directions
+  // The integral over all normals, summed over RGB, of (E_lights - E_probe)^2 / 2, without the term
   // that depends on the probe alone.
   double misfit = 0;
 };
 
-// The best colours for these directions (and the best ambient radiance, where it is asked for),
-// sought from those that `lights` has.
+// Sets the optimal colours for the directions (and the optimal ambient radiance, if `ambient`). The
+// current ones are the starting point.
 void solveColors(FittedLights& lights, const RadiancePoints& probe, bool ambient);
 
-// The derivatives of the misfit when directions move along the tangents of tangentsOf, two for each
-// light, with colours as they are.
+// The derivatives of the misfit along the tangents of tangentsOf(), two per light, with constant
+// colours.
 std::vector<double> misfitGradient(const FittedLights& lights, const RadiancePoints& probe);
 
 struct Tangents {
@@ -32,9 +32,9 @@ struct Tangents {
 };
 Tangents tangentsOf(const dvec3& direction);
 
-// Moves the directions by Levenberg and Marquardt's method, the colours always being the best for
-// them (variable projection: Golub and Pereyra 1973; Kaufman's approximation 1975). Never raises
-// the misfit. Stops after `maxSteps`, or where a step gains next to nothing.
+// Moves the directions by the Levenberg-Marquardt method with the colours always optimal (variable
+// projection: Golub and Pereyra 1973; Kaufman's approximation 1975). Never increases the misfit.
+// Stops after `maxSteps`, or when a step gains almost nothing.
 void descend(FittedLights& lights, const RadiancePoints& probe, bool ambient, int maxSteps);
 
 }  // namespace chromeball

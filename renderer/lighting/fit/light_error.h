@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well directional lights stand in for a probe: Madsen and Laursen 2007, section 5.
+// The error of irradiance of lights that replace a probe (Madsen and Laursen 2007, section 5).
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace chromeball {
 
-// Irradiance, W/m^2, on surfaces with these unit normals: that of the lights, as if their angles
-// were 0, and that of the radiance `ambient` from everywhere.
+// Irradiance, W/m^2, on surfaces with these unit normals, from the lights (as if their angles were
+// 0) and the radiance `ambient` from all directions.
 std::vector<dvec3> irradianceOf(const Constellation& lights, const Rgb& ambient,
                                 std::span<const vec3> normals);
 
@@ -20,9 +20,9 @@ struct LightError {
   double mean, max;
 };
 
-// Mean and maximum over the normals of |E_lights - E_probe|, a channel at a time, averaged over
-// RGB. Both lists hold one irradiance a normal. Of a black probe, the percentage is 0 where the
-// lights are black too, and otherwise infinite.
+// Mean and maximum over the normals of |E_lights - E_probe| per channel, averaged over RGB. Both
+// lists have one irradiance per normal. For a black probe the percentage is 0 if the lights are
+// black too, else infinite.
 LightError lightError(std::span<const dvec3> lights, std::span<const dvec3> probe);
 
 }  // namespace chromeball

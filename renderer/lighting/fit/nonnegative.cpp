@@ -12,11 +12,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Relative to A's diagonal: what keeps two lights at one place from a singular matrix.
+// Relative to the diagonal of A: keeps the matrix regular if two lights have the same direction.
 constexpr double kRidge = 1e-13;
 constexpr double kTolerance = 1e-11;  // of the largest |b|
 
-// The minimum over the unknowns `free`, the others being zero.
+// The minimum over the unknowns `free`, with the others at zero.
 VectorXd solveFree(const MatrixXd& A, const VectorXd& b, const std::vector<Index>& free) {
   MatrixXd block = A(free, free);
   block.diagonal() *= 1 + kRidge;
@@ -26,22 +26,22 @@ VectorXd solveFree(const MatrixXd& A, const VectorXd& b, const std::vector<Index
 }  // namespace
 
 std::vector<double> solveNonnegative(std::span<const double> A, std::span<const double> b,
-                                     std::span<const double> guess) {
+                                     std::span<const double> start) {
   const Index n = Index(b.size());
-  // Symmetric: rows or columns first is the same.
+  // A is symmetric, so the storage order does not matter.
   const MatrixXd matrix = Eigen::Map<const MatrixXd>(A.data(), n, n);
   const VectorXd right = Eigen::Map<const VectorXd>(b.data(), n);
-  VectorXd x = Eigen::Map<const VectorXd>(guess.data(), n);
+  VectorXd x = Eigen::Map<const VectorXd>(start.data(), n);
   std::vector<Index> free;
   for (Index i = 0; i < n; ++i)
     if (x[i] > 0) free.push_back(i);
 
   const double tolerance = n > 0 ? kTolerance * right.cwiseAbs().maxCoeff() : 0;
-  // Each round frees one unknown; rounding could make it cycle, near the end, for ever.
+  // Each round frees one unknown. The limit ends cycles caused by rounding near the minimum.
   for (Index round = 0; round <= 3 * n; ++round) {
     while (!free.empty()) {
       const VectorXd target = solveFree(matrix, right, free);
-      // As far as the first unknown that would turn negative, which is then held at zero.
+      // Step until the first unknown reaches zero, and fix it there.
       double step = 1;
       Index blocked = -1;
       for (size_t k = 0; k < free.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares with unknowns that may not be negative.
+// Non-negative least squares.
 #pragma once
 
 #include <span>
@@ -7,10 +7,11 @@
 
 namespace chromeball {
 
-// The x >= 0 that minimises x . A x / 2 - b . x, for A symmetric and positive (semi)definite, row
-// by row: the normal equations of a least-squares problem. Active sets (Lawson and Hanson 1974),
-// begun at `guess` >= 0; the closer the guess's zeros, the fewer steps.
+// The x >= 0 that minimises x . A x / 2 - b . x, where A (n x n) is symmetric and positive
+// (semi)definite: the normal equations of a least-squares problem. The active-set method of Lawson
+// and Hanson (1974), started from `start` >= 0; the more of its zeros are right, the fewer the
+// steps.
 std::vector<double> solveNonnegative(std::span<const double> A, std::span<const double> b,
-                                     std::span<const double> guess);
+                                     std::span<const double> start);
 
 }  // namespace chromeball

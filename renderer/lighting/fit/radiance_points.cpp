@@ -17,7 +17,7 @@ Lanes squareRoot(Lanes a) {
   return root;
 }
 
-// acos for |x| <= 1 to 2e-8: Abramowitz and Stegun 4.4.46.
+// acos for |x| <= 1 with an error of 2e-8 (Abramowitz and Stegun, eq. 4.4.46).
 Lanes arcCosine(Lanes x) {
   const Lanes a = x < 0 ? -x : x;
   const Lanes polynomial =
@@ -58,7 +58,8 @@ RadiancePoints::RadiancePoints(const Image& latLong, int maxRows, double scale) 
     for (int column = 0; column < columns; ++column) {
       const dvec3& f = flux[column];
       const double length = glm::length(moment[column]);
-      // A block's irradiance on a surface that faces it: directions within it cancel a little.
+      // The irradiance on a surface that faces the block: length / sum of fluxes is its mean
+      // cosine.
       if (length > 0) add(count++, moment[column] / length, f * (length / (f.x + f.y + f.z)));
     }
   }

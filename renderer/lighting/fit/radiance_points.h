@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A probe as points of light, few enough to be summed over again and again.
+// A probe as points of light, few enough for repeated sums over all of them.
 #pragma once
 
 #include <vector>
@@ -9,30 +9,30 @@
 
 namespace chromeball {
 
-// The product, over all normals, of the probe's irradiance with the pattern max(0, n . d) of a
-// light from d (cosine_pattern.h), and its derivative: along a unit tangent t of d the product
-// changes by dot(t, slope[c]) in channel c.
+// The integral over all normals of the probe's irradiance x the pattern max(0, n . d) of a light
+// from d (cosine_pattern.h), and its derivative: along a unit tangent t of d, channel c of the
+// product changes by dot(t, slope[c]).
 struct PatternProduct {
   dvec3 product;   // RGB
   dvec3 slope[3];  // of R, G, B
 };
 
-// Four points in one register: GCC's and Clang's vector extension.
+// Four points in one register (vector extension of GCC and Clang).
 inline constexpr int kRadianceLanes = 4;
 typedef double RadianceLanes __attribute__((vector_size(kRadianceLanes * sizeof(double))));
 
 class RadiancePoints {
  public:
-  // Blocks of texels are merged until no more than `maxRows` rows (and twice as many columns) are
-  // left, each block into its mean direction, weighted by the sum of its channels. A map that is
-  // small enough keeps its texels. `scale` multiplies all radiance.
+  // Merges blocks of texels so that at most `maxRows` rows and twice as many columns remain. The
+  // direction of a block is the mean, weighted by the sum of the channels. A smaller map keeps its
+  // texels. `scale` multiplies all radiance.
   RadiancePoints(const Image& latLong, int maxRows, double scale);
 
   PatternProduct productWith(const dvec3& direction) const;
   const dvec3& flux() const { return flux_; }  // the sum of all irradiances
 
  private:
-  // Points side by side; the last ones pad with black.
+  // A structure of arrays; the last group is padded with black points.
   struct Group {
     RadianceLanes x{}, y{}, z{};  // unit direction
     RadianceLanes rgb[3]{};       // irradiance on a surface that faces it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/constellation/nearest_light.h"
+#include "lighting/constellation/block_pyramid.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,15 +9,15 @@
 namespace chromeball {
 namespace {
 
-constexpr double kSmall = 0.2;  // radius of an undivided block / distance to a light
+constexpr double kSmall = 0.2;  // maximum radius / distance to a light of an undivided block
 
 }  // namespace
 
-struct BlockPyramid::Sharing {
+struct BlockPyramid::Assignment {
   const std::vector<dvec3>& directions;
-  std::vector<glm::ivec2> cells;  // that the lights are in
-  std::vector<dvec3> powers;
-  // Of the block in work on each level: the lights that may be nearest to some point of it.
+  std::vector<glm::ivec2> cells;  // of the lights
+  std::vector<dvec3> powers;      // of the lights
+  // By level, for the current block: the lights that may be nearest to some point of it.
   std::vector<std::vector<int>> candidates;
 };
 
@@ -43,7 +43,7 @@ BlockPyramid::Block BlockPyramid::makeBlock(const dvec3& power, int size, int x,
   const dvec2 low = table_.uv(double(x) * size, double(y) * size);
   const dvec2 high = table_.uv((x + 1.0) * size, (y + 1.0) * size);
   const dvec2 middle = 0.5 * (low + high), half = kPiD * dvec2(1, 0.5) * (high - low);
-  // chord^2 <= (greatest sin(theta) dphi)^2 + dtheta^2
+  // chord^2 <= (max sin(theta) dphi)^2 + dtheta^2
   const double sine = std::fmin(std::sin(kPiD * middle.y) + half.y, 1.0);
   return {power, *uvToDirection(Mapping::LatLong, middle), std::hypot(sine * half.x, half.y)};
 }
@@ -54,47 +54,47 @@ BlockPyramid::Block BlockPyramid::block(int level, int x, int y) const {
   return at.blocks[size_t(y) * at.size.x + x];
 }
 
-std::vector<dvec3> BlockPyramid::fraction(const std::vector<dvec3>& directions) const {
+std::vector<dvec3> BlockPyramid::assignToNearest(const std::vector<dvec3>& directions) const {
   const int top = int(levels_.size());
-  Sharing sharing{directions, {}, std::vector<dvec3>(directions.size(), dvec3(0)), {}};
+  Assignment assignment{directions, {}, std::vector<dvec3>(directions.size(), dvec3(0)), {}};
   for (const dvec3& direction : directions)
-    sharing.cells.push_back(table_.cellAt(directionToUv(Mapping::LatLong, direction)));
-  sharing.candidates.resize(top + 2);
-  sharing.candidates[top + 1].resize(directions.size());
-  std::iota(sharing.candidates[top + 1].begin(), sharing.candidates[top + 1].end(), 0);
-  fraction(sharing, top, 0, 0);
-  return std::move(sharing.powers);
+    assignment.cells.push_back(table_.cellAt(directionToUv(Mapping::LatLong, direction)));
+  assignment.candidates.resize(top + 2);
+  assignment.candidates[top + 1].resize(directions.size());
+  std::iota(assignment.candidates[top + 1].begin(), assignment.candidates[top + 1].end(), 0);
+  assign(assignment, top, 0, 0);
+  return std::move(assignment.powers);
 }
 
-// None but the lights that are no farther from the block's middle than the nearest and twice the
-// radius can be nearest to a point of it. A block that is small for its distance to all of them
-// goes whole to the light nearest to its middle.
-void BlockPyramid::fraction(Sharing& sharing, int level, int x, int y) const {
+// Let d be the distance from the block's middle to the nearest light. By the triangle inequality
+// only lights within d + 2 radius of the middle can be nearest to a point of the block.
+void BlockPyramid::assign(Assignment& assignment, int level, int x, int y) const {
   const Block here = block(level, x, y);
   if (here.power == dvec3(0)) return;
-  const auto distance = [&](int i) { return glm::distance(here.middle, sharing.directions[i]); };
+  const auto distance = [&](int i) { return glm::distance(here.middle, assignment.directions[i]); };
   double minimum = 4;
   int nearest = -1;
-  for (int i : sharing.candidates[level + 1])
+  for (int i : assignment.candidates[level + 1])
     if (const double d = distance(i); d < minimum) minimum = d, nearest = i;
-  std::vector<int>& candidates = sharing.candidates[level];
+  std::vector<int>& candidates = assignment.candidates[level];
   candidates.clear();
-  for (int i : sharing.candidates[level + 1])
+  for (int i : assignment.candidates[level + 1])
     if (distance(i) <= minimum + 2 * here.radius) candidates.push_back(i);
 
   if (candidates.size() == 1 || here.radius < kSmall * minimum) {
-    sharing.powers[nearest] += here.power;
+    assignment.powers[nearest] += here.power;
   } else if (level > 0) {
     const glm::ivec2 below =
         level > 1 ? levels_[level - 2].size : glm::ivec2(table_.width(), table_.height());
     for (int j = 2 * y; j < std::min(2 * y + 2, below.y); ++j)
-      for (int i = 2 * x; i < std::min(2 * x + 2, below.x); ++i) fraction(sharing, level - 1, i, j);
+      for (int i = 2 * x; i < std::min(2 * x + 2, below.x); ++i)
+        assign(assignment, level - 1, i, j);
   } else {
-    const auto inside = [&](int i) { return sharing.cells[i] == glm::ivec2(x, y); };
+    const auto inside = [&](int i) { return assignment.cells[i] == glm::ivec2(x, y); };
     const auto lights = std::count_if(candidates.begin(), candidates.end(), inside);
-    if (lights == 0) sharing.powers[nearest] += here.power;
+    if (lights == 0) assignment.powers[nearest] += here.power;
     for (int i : candidates)
-      if (inside(i)) sharing.powers[i] += here.power / double(lights);
+      if (inside(i)) assignment.powers[i] += here.power / double(lights);
   }
 }
 
