@@ -31,18 +31,18 @@ BlockedField::BlockedField(const Probe& probe)
       blockHeight_(ceilDivide(probe.cellRows(), kRows)),
       columns_(ceilDivide(probe.width(), blockWidth_)),
       rows_(ceilDivide(probe.cellRows(), blockHeight_)),
-      down_(size_t(columns_) * (probe.cellRows() + 1)),
-      across_(size_t(probe.cellRows()) * (probe.width() + 1)) {
+      columnSums_(size_t(columns_) * (probe.cellRows() + 1)),
+      rowSums_(size_t(probe.cellRows()) * (probe.width() + 1)) {
   const int height = probe.cellRows(), width = probe.width();
   tbb::parallel_for(0, height, [&](int row) {
-    double* sums = &across_[size_t(row) * (width + 1)];
+    double* sums = &rowSums_[size_t(row) * (width + 1)];
     for (int x = 0; x < width; ++x) sums[x + 1] = sums[x] + field_.integral(x, row);
   });
   for (int column = 0; column < columns_; ++column) {
     const Span span = columnsOf(column);
-    double* sums = &down_[size_t(column) * (height + 1)];
+    double* sums = &columnSums_[size_t(column) * (height + 1)];
     for (int row = 0; row < height; ++row) {
-      const double* left = &across_[size_t(row) * (width + 1)];
+      const double* left = &rowSums_[size_t(row) * (width + 1)];
       sums[row + 1] = sums[row] + (left[span.end] - left[span.begin]);
     }
     total_ += sums[height];
@@ -61,17 +61,17 @@ BlockedField::Span BlockedField::columnsOf(int block) const {
 }
 
 double BlockedField::integral(int block) const {
-  const double* sums = &down_[size_t(block % columns_) * (probe_->cellRows() + 1)];
+  const double* sums = &columnSums_[size_t(block % columns_) * (probe_->cellRows() + 1)];
   const Span rows = rowsOf(block);
   return sums[rows.end] - sums[rows.begin];
 }
 
 LuminanceField::Point BlockedField::sample(int block, double u, double v) const {
   const Span rows = rowsOf(block), columns = columnsOf(block);
-  const int row = invertSums(&down_[size_t(block % columns_) * (probe_->cellRows() + 1)],
+  const int row = invertSums(&columnSums_[size_t(block % columns_) * (probe_->cellRows() + 1)],
                              rows.begin, rows.end, v);
   const int column =
-      invertSums(&across_[size_t(row) * (probe_->width() + 1)], columns.begin, columns.end, u);
+      invertSums(&rowSums_[size_t(row) * (probe_->width() + 1)], columns.begin, columns.end, u);
   return field_.sample(column, row, float(u), float(v));
 }
 

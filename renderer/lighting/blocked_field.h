@@ -47,8 +47,8 @@ class BlockedField {
   const Probe* probe_;
   LuminanceField field_;
   int blockWidth_, blockHeight_, columns_, rows_;
-  std::vector<double> down_;    // for each column of blocks: sums over its cells in the rows above
-  std::vector<double> across_;  // for each row of cells: sums over the cells to the left
+  std::vector<double> columnSums_;  // for each column of blocks, over its cells in the rows above
+  std::vector<double> rowSums_;     // for each row of cells, over the cells to the left
   double total_ = 0;
   float scale_ = 0;
 };

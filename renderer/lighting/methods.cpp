@@ -27,11 +27,26 @@ namespace chromeball {
 namespace {
 
 using Lights = LightingMethod::Lights;
-using MakeConstellation = Constellation (*)(const Image& latLong, int count, uint64_t seed);
+using Strategy = std::unique_ptr<LightingStrategy>;
 
 constexpr int kUnlimited = std::numeric_limits<int>::max();
 
-// Replaces the probe by the lights it makes (with seed 0 as a strategy).
+template <class Sampler>
+Strategy sampling(const Probe& probe, Mis, int) {
+  return std::make_unique<Sampler>(probe);
+}
+
+// With MIS compensation where there is MIS.
+template <class Sampler>
+Strategy compensated(const Probe& probe, Mis mis, int) {
+  return std::make_unique<Sampler>(probe, mis != Mis::Off);
+}
+
+Strategy strata(const Probe& probe, Mis, int count) {
+  return std::make_unique<Strata>(probe, count);
+}
+
+// A method whose strategy replaces the probe by its lights, made with seed 0.
 LightingMethod replacing(std::string_view name, std::string_view summary, Lights lights) {
   const auto makeStrategy = [make = lights.make](const Probe& probe, Mis, int count) {
     const MadeLights made = make(probe.latLong(), {.count = count});
@@ -40,13 +55,24 @@ LightingMethod replacing(std::string_view name, std::string_view summary, Lights
   return {name, summary, lights.counts, makeStrategy, lights};
 }
 
-Lights constellation(CountRange counts, bool isStochastic, MakeConstellation make) {
+// A deterministic method, and one with a seed.
+Lights constellation(CountRange counts, Constellation (*make)(const Image& latLong, int count)) {
+  return {.make =
+              [make](const Image& latLong, const LightRequest& request) {
+                return MadeLights{make(latLong, *request.count)};
+              },
+          .counts = counts,
+          .keepsEnergy = true};
+}
+
+Lights constellation(CountRange counts,
+                     Constellation (*make)(const Image& latLong, int count, uint64_t seed)) {
   return {.make =
               [make](const Image& latLong, const LightRequest& request) {
                 return MadeLights{make(latLong, *request.count, request.seed)};
               },
           .counts = counts,
-          .isStochastic = isStochastic,
+          .isStochastic = true,
           .keepsEnergy = true};
 }
 
@@ -65,12 +91,16 @@ MadeLights fitLightsAndAmbient(const Image& latLong, const LightRequest& request
   return fitLights(latLong, withAmbient);
 }
 
-MadeLights sunLights(const Image& latLong, const LightRequest& request) {
+MadeLights makeSuns(const Image& latLong, const LightRequest& request) {
   MadeLights made;
   for (const Sun& sun : extractSuns(latLong).suns)
     if (!request.count || made.lights.size() < size_t(*request.count))
       made.lights.push_back({vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)});
   return made;
+}
+
+Lights sunLights() {
+  return {.make = makeSuns, .counts = {1, kUnlimited}, .countIsOptional = true};
 }
 
 Lights fit(MadeLights (*make)(const Image&, const LightRequest&)) {
@@ -102,65 +132,27 @@ std::string helpLine(const std::string& name, std::string_view summary, const st
 }  // namespace
 
 const std::vector<LightingMethod>& lightingMethods() {
-  constexpr CountRange kRegions{2, 4096, 64};
+  constexpr CountRange kRegions{2, 4096, 64}, kStrata{2, 4096, 8};
   static const std::vector<LightingMethod> kMethods{
-      {.name = "bsdf",
-       .summary = "no light samples; BSDF samples find the probe",
-       .makeStrategy = [](const Probe& probe, Mis,
-                          int) { return std::make_unique<BsdfOnly>(probe); }},
-      {.name = "uniform",
-       .summary = "samples uniform over the hemisphere",
-       .makeStrategy = [](const Probe& probe, Mis,
-                          int) { return std::make_unique<Uniform>(probe); }},
-      {.name = "importance",
-       .summary = "samples proportional to luminance",
-       .makeStrategy = [](const Probe& probe, Mis mis,
-                          int) { return std::make_unique<Importance>(probe, mis != Mis::Off); }},
-      {.name = "product",
-       .summary = "samples proportional to luminance x cosine",
-       .makeStrategy = [](const Probe& probe, Mis,
-                          int) { return std::make_unique<Product>(probe); }},
-      {.name = "suns",
-       .summary = "each sun in the probe as a disc of its own",
-       .makeStrategy = [](const Probe& probe, Mis mis,
-                          int) { return std::make_unique<Suns>(probe, mis != Mis::Off); },
-       .lights = {.make = sunLights, .counts = {1, kUnlimited}, .countIsOptional = true}},
+      {"bsdf", "no light samples; BSDF samples find the probe", {}, sampling<BsdfOnly>},
+      {"uniform", "samples uniform over the hemisphere", {}, sampling<Uniform>},
+      {"importance", "samples proportional to luminance", {}, compensated<Importance>},
+      {"product", "samples proportional to luminance x cosine", {}, sampling<Product>},
+      {"suns", "each sun in the probe as a disc of its own", {}, compensated<Suns>, sunLights()},
       replacing("median-cut", "a light for each region of equal energy",
-                constellation(kRegions, false,
-                              [](const Image& map, int count, uint64_t) {
-                                return medianCut(RegionTable(map), count);
-                              })),
+                constellation(kRegions, medianCut)),
       replacing("variance-cut", "a light for each region of small variance",
-                constellation(kRegions, false,
-                              [](const Image& map, int count, uint64_t) {
-                                return varianceCut(RegionTable(map), count);
-                              })),
+                constellation(kRegions, varianceCut)),
       replacing("lightgen", "K-means on the sphere, from random starts",
-                constellation(kRegions, true,
-                              [](const Image& map, int count, uint64_t seed) {
-                                return lightGen(TexelTable(map, kCoarseCells), count, seed);
-                              })),
+                constellation(kRegions, lightGen)),
       replacing("kollig-keller", "K-means on the sphere, adding one light at a time",
-                constellation(kRegions, false,
-                              [](const Image& map, int count, uint64_t) {
-                                return kolligKeller(TexelTable(map, kCoarseCells), count);
-                              })),
-      {.name = "kollig-keller-strata",
-       .summary = "a random direction in each region of kollig-keller",
-       .counts = {2, 4096, 8},
-       .makeStrategy = [](const Probe& probe, Mis,
-                          int count) { return std::make_unique<Strata>(probe, count); },
-       .lights = constellation({2, 4096, 8}, true, kolligKellerStrata)},
+                constellation(kRegions, kolligKeller)),
+      {"kollig-keller-strata", "a random direction in each region of kollig-keller", kStrata,
+       strata, constellation(kStrata, kolligKellerStrata)},
       replacing("cube-grid", "6 N^2 lights on the faces of a cube",
-                constellation({1, 26, 10}, false,
-                              [](const Image& map, int count, uint64_t) {
-                                return cubeGrid(TexelTable(map, kFineCells), count);
-                              })),
+                constellation({1, 26, 10}, cubeGrid)),
       replacing("penrose", "blue-noise points on a Penrose tiling",
-                constellation({2, 4096, 300}, true,
-                              [](const Image& map, int count, uint64_t seed) {
-                                return penrose(ImportanceTable(map), count, seed);
-                              })),
+                constellation({2, 4096, 300}, penrose)),
       replacing("irradiance-fit", "the lights that minimise the error of irradiance",
                 fit(fitLights)),
       replacing("irradiance-fit-ambient", "the same, with constant light from all directions",

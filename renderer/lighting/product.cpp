@@ -62,7 +62,7 @@ Product::Product(const Probe& probe)
       field_(probe),
       rows_(kBins, field_.rows()),
       columns_(kBins * field_.rows(), field_.columns()),
-      lifts_(size_t(kBins) * field_.blocks()) {
+      pdfRatios_(size_t(kBins) * field_.blocks()) {
   if (!(field_.total() > 0)) return;
   std::vector<std::vector<vec3>> directions(field_.blocks());
   for (int block = 0; block < field_.blocks(); ++block)
@@ -85,12 +85,13 @@ void Product::fillBin(int bin, const std::vector<double>& cosines) {
   }
   const double total = rows_.setRow(bin, rowWeights);
   for (int block = 0; block < field_.blocks(); ++block)
-    lifts_[size_t(bin) * field_.blocks() + block] = float(cosines[block] * field_.total() / total);
+    pdfRatios_[size_t(bin) * field_.blocks() + block] =
+        float(cosines[block] * field_.total() / total);
 }
 
-float Product::lift(const LightPoint& point, int block) const {
-  const float front = lift(binOf(point.normal), block);
-  return point.transmits ? 0.5f * (front + lift(binOf(-point.normal), block)) : front;
+float Product::pdfRatio(const LightPoint& point, int block) const {
+  const float front = pdfRatio(binOf(point.normal), block);
+  return point.transmits ? 0.5f * (front + pdfRatio(binOf(-point.normal), block)) : front;
 }
 
 DirectionSample Product::sampleDirection(const LightPoint& point, double u, double v) const {
@@ -101,7 +102,7 @@ DirectionSample Product::sampleDirection(const LightPoint& point, double u, doub
   const int row = rows_.sample(bin, v);
   const int block = row * field_.columns() + columns_.sample(bin * field_.rows() + row, u);
   const LuminanceField::Point seen = field_.sample(block, u, v);
-  const float pdf = seen.weight * field_.scale() * lift(point, block);
+  const float pdf = seen.weight * field_.scale() * pdfRatio(point, block);
   return {seen.direction, seen.radiance / pdf, pdf};
 }
 
@@ -115,7 +116,7 @@ void Product::sample(const LightPoint& point, const PixelSampler& sampler,
 LightingStrategy::Escaped Product::escaped(const LightPoint& point, const vec3& wi) const {
   const Probe::Position p = probe_.locate(wi);
   const LuminanceField::Point seen = field_.at(wi, p);
-  return {seen.radiance, seen.weight * field_.scale() * lift(point, field_.blockOf(p))};
+  return {seen.radiance, seen.weight * field_.scale() * pdfRatio(point, field_.blockOf(p))};
 }
 
 }  // namespace chromeball

@@ -12,7 +12,7 @@ namespace chromeball {
 // Normals are binned (squares of an octahedral map). Each bin has a distribution over the blocks of
 // the probe: luminance x the mean cosine between block and bin, positive wherever the cosine can
 // be. Within a block the pdf is proportional to luminance. So
-//   pdf = (pdf proportional to luminance) x lift(bin, block)
+//   pdf = (pdf proportional to luminance) x pdfRatio(bin, block)
 // is known for every direction, as MIS needs. On a transmissive surface half of the samples use the
 // opposite normal. Specular reflection is left to BSDF samples.
 class Product : public LightingStrategy {
@@ -31,14 +31,16 @@ class Product : public LightingStrategy {
  private:
   // `cosines`: for each block the mean cosine with the bin's normals.
   void fillBin(int bin, const std::vector<double>& cosines);
-  float lift(int bin, int block) const { return lifts_[size_t(bin) * field_.blocks() + block]; }
-  float lift(const LightPoint& point, int block) const;
+  float pdfRatio(int bin, int block) const {
+    return pdfRatios_[size_t(bin) * field_.blocks() + block];
+  }
+  float pdfRatio(const LightPoint& point, int block) const;
 
   const Probe& probe_;
   BlockedField field_;
-  CdfRows rows_;              // of blocks, for each bin
-  CdfRows columns_;           // of blocks, for each bin and row of blocks
-  std::vector<float> lifts_;  // bins x blocks
+  CdfRows rows_;                  // of blocks, for each bin
+  CdfRows columns_;               // of blocks, for each bin and row of blocks
+  std::vector<float> pdfRatios_;  // bins x blocks
 };
 
 }  // namespace chromeball

@@ -40,7 +40,7 @@ class Stratum {
 // regions chosen with probability proportional to their energy.
 class Strata : public LightingStrategy {
  public:
-  static constexpr int kLater = 1;
+  static constexpr int kLater = 1;  // samples
 
   // Throws InputError for a probe that TexelTable refuses.
   Strata(const Probe& probe, int regions);

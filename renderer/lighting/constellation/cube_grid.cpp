@@ -38,4 +38,8 @@ Constellation cubeGrid(const TexelTable& table, int n) {
   return lights;
 }
 
+Constellation cubeGrid(const Image& latLong, int n) {
+  return cubeGrid(TexelTable(latLong, kFineCells), n);
+}
+
 }  // namespace chromeball

@@ -8,7 +8,8 @@
 namespace chromeball {
 
 // n x n equal squares on each face, with a light in the middle of each square that is not black. It
-// has the energy of all cells whose centroid is seen through the square. `table`: of kFineCells.
+// has the energy of all cells whose centroid is seen through the square.
 Constellation cubeGrid(const TexelTable& table, int n);
+Constellation cubeGrid(const Image& latLong, int n);
 
 }  // namespace chromeball

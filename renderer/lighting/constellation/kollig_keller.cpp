@@ -51,6 +51,10 @@ Constellation kolligKeller(const TexelTable& table, int count) {
   return cluster(table, count).lights();
 }
 
+Constellation kolligKeller(const Image& latLong, int count) {
+  return kolligKeller(TexelTable(latLong, kCoarseCells), count);
+}
+
 Partition kolligKellerRegions(const Image& latLong, int count) {
   const TexelTable table(latLong, kCoarseCells);
   const SphericalKMeans kMeans = cluster(table, count);

@@ -15,9 +15,9 @@ namespace chromeball {
 // largest error, sum of weight (1 - cos to its light), at the cell with the largest error; then all
 // lights move by Lloyd's iteration until a step gains less than a thousandth, after the last light
 // to convergence. Deterministic. From about 32 lights on the error is less than lightgen's; with
-// fewer, lightgen's four random starts are sometimes better by a few percent. `table`: of
-// kCoarseCells.
+// fewer, lightgen's four random starts are sometimes better by a few percent.
 Constellation kolligKeller(const TexelTable& table, int count);
+Constellation kolligKeller(const Image& latLong, int count);
 
 // The regions of those lights: for each texel of the map, row by row, the index of its region, from
 // 0 to regions - 1. Black cells belong to the nearest light; a black map has no region.

@@ -46,4 +46,8 @@ Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
   return best;
 }
 
+Constellation lightGen(const Image& latLong, int count, uint64_t seed) {
+  return lightGen(TexelTable(latLong, kCoarseCells), count, seed);
+}
+
 }  // namespace chromeball

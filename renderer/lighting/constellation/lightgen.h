@@ -11,7 +11,8 @@ namespace chromeball {
 
 // Lights start at `count` different cells, drawn with probability proportional to luminance, and
 // move by Lloyd's iteration to convergence. Of four starts the one with the smallest objective
-// (spherical_kmeans.h) wins. `table`: of kCoarseCells.
+// (spherical_kmeans.h) wins.
 Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
+Constellation lightGen(const Image& latLong, int count, uint64_t seed);
 
 }  // namespace chromeball

@@ -47,4 +47,8 @@ Constellation medianCut(const RegionTable& table, int count) {
   return table.lights(medianCutRegions(table, count));
 }
 
+Constellation medianCut(const Image& latLong, int count) {
+  return medianCut(RegionTable(latLong), count);
+}
+
 }  // namespace chromeball

@@ -14,5 +14,6 @@ namespace chromeball {
 // the seam is.
 std::vector<Region> medianCutRegions(const RegionTable& table, int count);
 Constellation medianCut(const RegionTable& table, int count);
+Constellation medianCut(const Image& latLong, int count);
 
 }  // namespace chromeball

@@ -185,4 +185,8 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
   return lights;
 }
 
+Constellation penrose(const Image& latLong, int count, uint64_t seed) {
+  return penrose(ImportanceTable(latLong), count, seed);
+}
+
 }  // namespace chromeball

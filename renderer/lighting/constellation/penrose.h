@@ -46,5 +46,6 @@ class ImportanceTable {
 // places the tiling on the map. The paper's tables of corrections, which improve the spectrum, are
 // omitted, and lights near the seam and the poles keep no distance from those on the other side.
 Constellation penrose(const ImportanceTable& table, int count, uint64_t seed);
+Constellation penrose(const Image& latLong, int count, uint64_t seed);
 
 }  // namespace chromeball

@@ -37,4 +37,8 @@ Constellation varianceCut(const RegionTable& table, int count) {
   return table.lights(varianceCutRegions(table, count));
 }
 
+Constellation varianceCut(const Image& latLong, int count) {
+  return varianceCut(RegionTable(latLong), count);
+}
+
 }  // namespace chromeball

@@ -13,5 +13,6 @@ namespace chromeball {
 // with median-cut, no region crosses the seam of the map.
 std::vector<Region> varianceCutRegions(const RegionTable& table, int count);
 Constellation varianceCut(const RegionTable& table, int count);
+Constellation varianceCut(const Image& latLong, int count);
 
 }  // namespace chromeball
