@@ -92,9 +92,9 @@ TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
 TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
   const auto folder = sharedData("probes/openexr");
   if (!folder) GTEST_SKIP() << "no probes/openexr";
-  for (const std::string location : {"Orientation", "StageEnv"}) {
-    const Probe cube(loadProbe(*folder / (location + "Cube.exr")).latLong);
-    const Probe latLong(loadProbe(*folder / (location + "LatLong.exr")).latLong);
+  for (const std::string name : {"Orientation", "StageEnv"}) {
+    const Probe cube(loadProbe(*folder / (name + "Cube.exr")).latLong);
+    const Probe latLong(loadProbe(*folder / (name + "LatLong.exr")).latLong);
     double agree = 0, turned = 0;  // sums of absolute differences of clipped radiance
     for (const vec3& d : icosphereNormals(4)) {
       const auto shown = [](const Probe& probe, const vec3& to) {
@@ -104,7 +104,7 @@ TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
       agree += luminance(glm::abs(seen - shown(latLong, d)));
       turned += luminance(glm::abs(seen - shown(latLong, {-d.x, d.y, -d.z})));
     }
-    EXPECT_LT(agree, 0.5 * turned) << location;
+    EXPECT_LT(agree, 0.5 * turned) << name;
   }
 }
 

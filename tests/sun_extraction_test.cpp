@@ -139,16 +139,16 @@ TEST(Sun, IrradianceOfADiscCutByTheHorizon) {
 }
 
 // Elevations, the seam (azimuth 180), both poles.
-struct Place {
+struct SunPosition {
   double elevation, azimuth;
 };
-constexpr Place kPlaces[] = {{2, 180}, {30, 77}, {61, 179.8}, {89.8, 0}, {-90, 0}};
+constexpr SunPosition kSunPositions[] = {{2, 180}, {30, 77}, {61, 179.8}, {89.8, 0}, {-90, 0}};
 
 TEST(SunExtraction, KeepsEnergyForEveryNormal) {
-  for (const Place& location : kPlaces) {
-    SCOPED_TRACE(testing::Message() << location.elevation << " " << location.azimuth);
+  for (const SunPosition& position : kSunPositions) {
+    SCOPED_TRACE(testing::Message() << position.elevation << " " << position.azimuth);
     Image map = gradientProbe({1024, 512}, Rgb(0.2f, 0.25f, 0.3f), {0.1, 0.6, -0.2});
-    const dvec3 towards = direction(location.elevation, location.azimuth);
+    const dvec3 towards = direction(position.elevation, position.azimuth);
     addGlowingSun(map, towards, 0.7);
     const SunExtraction extraction = extractSuns(map);
     ASSERT_EQ(extraction.suns.size(), 1u);
@@ -158,11 +158,11 @@ TEST(SunExtraction, KeepsEnergyForEveryNormal) {
 }
 
 TEST(SunExtraction, MeasuresDiscs) {
-  for (const Place& location : kPlaces)
+  for (const SunPosition& position : kSunPositions)
     for (const double diameter : {0.5323, 4.0}) {
-      SCOPED_TRACE(testing::Message() << location.elevation << " " << diameter);
+      SCOPED_TRACE(testing::Message() << position.elevation << " " << diameter);
       Image map = constantProbe({1024, 512}, Rgb(0.01f));
-      const dvec3 towards = direction(location.elevation, location.azimuth);
+      const dvec3 towards = direction(position.elevation, position.azimuth);
       addSunDisc(map, towards, diameter, {1, 2, 3});
       const SunExtraction extraction = extractSuns(map);
       ASSERT_EQ(extraction.suns.size(), 1u);

@@ -17,8 +17,8 @@ namespace {
 Image sunnySky(int suns) {
   Image map = gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1});
   for (int i = 0; i < suns; ++i) {
-    const ClearSky location{.sunElevation = 80.0 - 15 * i, .sunAzimuth = 180.0 + 65 * i};
-    addSunDisc(map, sunDirection(location), 1.5, dvec3(2.0 + i, 2, 1.5));
+    const ClearSky sky{.sunElevation = 80.0 - 15 * i, .sunAzimuth = 180.0 + 65 * i};
+    addSunDisc(map, sunDirection(sky), 1.5, dvec3(2.0 + i, 2, 1.5));
   }
   return map;
 }

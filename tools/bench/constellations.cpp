@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What placing 300 lights costs: the tables of a 1024 x 512 map, and then the lights from them.
-// CHROMEBALL_PROBE names another map than the project's own studio.
+// The cost of constellations of 300 lights: the tables of a 1024 x 512 map, and the lights from
+// them. CHROMEBALL_PROBE may name another map.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -38,34 +38,35 @@ void importanceTable(benchmark::State& state) { build<ImportanceTable>(state); }
 void coarseTable(benchmark::State& state) { build<TexelTable>(state, kCoarseCells); }
 
 template <class Table, class Make>
-void location(benchmark::State& state, const Table& table, Make make) {
+void placeLights(benchmark::State& state, const Table& table, Make make) {
   size_t lights = 0;
   for (auto _ : state) lights = make(table).size();
   state.counters["lights"] = double(lights);
 }
 
 void medianCut300(benchmark::State& state) {
-  location(state, RegionTable(map()), [](const auto& table) { return medianCut(table, kLights); });
+  placeLights(state, RegionTable(map()),
+              [](const auto& table) { return medianCut(table, kLights); });
 }
 void varianceCut300(benchmark::State& state) {
-  location(state, RegionTable(map()),
-           [](const auto& table) { return varianceCut(table, kLights); });
+  placeLights(state, RegionTable(map()),
+              [](const auto& table) { return varianceCut(table, kLights); });
 }
 void penrose300(benchmark::State& state) {
-  location(state, ImportanceTable(map()),
-           [](const auto& table) { return penrose(table, kLights, 1); });
+  placeLights(state, ImportanceTable(map()),
+              [](const auto& table) { return penrose(table, kLights, 1); });
 }
 void lightGen300(benchmark::State& state) {
-  location(state, TexelTable(map(), kCoarseCells),
-           [](const auto& table) { return lightGen(table, kLights, 1); });
+  placeLights(state, TexelTable(map(), kCoarseCells),
+              [](const auto& table) { return lightGen(table, kLights, 1); });
 }
 void kolligKeller300(benchmark::State& state) {
-  location(state, TexelTable(map(), kCoarseCells),
-           [](const auto& table) { return kolligKeller(table, kLights); });
+  placeLights(state, TexelTable(map(), kCoarseCells),
+              [](const auto& table) { return kolligKeller(table, kLights); });
 }
 void cubeGrid294(benchmark::State& state) {
-  location(state, TexelTable(map(), kFineCells),
-           [](const auto& table) { return cubeGrid(table, 7); });
+  placeLights(state, TexelTable(map(), kFineCells),
+              [](const auto& table) { return cubeGrid(table, 7); });
 }
 
 BENCHMARK(regionTable)->Unit(benchmark::kMillisecond);
