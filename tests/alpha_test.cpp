@@ -4,9 +4,9 @@
 
 #include "base/file.h"
 #include "gltf_writer.h"
-#include "image/io/decode.h"
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/decode_image.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "image/tonemap.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "composite/plate.h"
 #include "gltf_writer.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"

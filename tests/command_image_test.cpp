@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "run_command.h"
 #include "shared_data.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

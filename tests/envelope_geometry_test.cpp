@@ -5,8 +5,8 @@
 
 #include "envelope.h"
 #include "gltf_writer.h"
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "run_command.h"
 
 namespace chromeball {

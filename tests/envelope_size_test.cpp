@@ -5,7 +5,7 @@
 
 #include "envelope.h"
 #include "gltf_writer.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "run_command.h"
 
 namespace chromeball {

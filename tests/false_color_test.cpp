@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "image/io/png.h"
-#include "image/io/read.h"
+#include "image/io/encode_png.h"
+#include "image/io/read_image.h"
 #include "run_command.h"
 
 namespace chromeball {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/io/png.h"
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/encode_png.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "probe/probe.h"
 #include "probe/synth.h"
 #include "run_command.h"

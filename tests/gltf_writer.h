@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 

@@ -55,7 +55,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 const std::map<std::string, std::string> kSeenBy = {
     {"rtcore.h", "renderer/trace/"},
     {"OpenImageIO/", "renderer/image/io/"},
-    {"webp/", "renderer/image/io/webp.cpp"},
+    {"webp/", "renderer/image/io/decode_webp.cpp"},
     {"draco/", "renderer/scene/gltf/draco.cpp"},
     {"meshoptimizer.h", "renderer/scene/gltf/meshopt.cpp"},
     {"tiny_gltf.h", "renderer/scene/gltf/"},

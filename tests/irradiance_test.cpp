@@ -8,7 +8,7 @@
 
 #include <random>
 
-#include "image/io/read.h"
+#include "image/io/read_image.h"
 #include "math/icosphere.h"
 #include "probe/load.h"
 #include "probe/sky.h"

@@ -10,7 +10,7 @@
 #include "lighting/fit/light_error.h"
 #include "math/icosphere.h"
 #include "run_command.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/hash.h"
 #include "gltf_writer.h"
-#include "image/io/png.h"
+#include "image/io/encode_png.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "probe/load.h"
 #include "scene/framing.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 #include "shared_data.h"
 #include "test_scene.h"
 

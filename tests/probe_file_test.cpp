@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "math/icosphere.h"
 #include "probe/convert.h"
 #include "probe/info.h"

@@ -4,7 +4,7 @@
 
 #include <regex>
 
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_model.h"

@@ -2,7 +2,7 @@
 // Khronos's sample models, where they are present.
 #pragma once
 
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 #include "shared_data.h"
 #include "test_scene.h"
 

@@ -7,8 +7,8 @@
 
 #include "base/file.h"
 #include "gltf_writer.h"
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "image/io/read.h"
+#include "image/io/read_image.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/limits.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {

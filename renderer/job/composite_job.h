@@ -7,7 +7,7 @@
 #include "composite/compose.h"
 #include "composite/reflectance.h"
 #include "composite/render_composite.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/load_scene.h"
 #include "job/picture_noise.h"
 

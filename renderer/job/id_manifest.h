@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "scene/scene.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "image/io/read.h"
+#include "image/io/read_image.h"
 #include "job/load_scene.h"
 
 namespace chromeball {

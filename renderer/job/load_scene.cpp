@@ -9,7 +9,7 @@
 #include "job/picture_memory.h"
 #include "lighting/finite_surroundings.h"
 #include "scene/framing.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 namespace {

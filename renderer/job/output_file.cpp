@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 
 namespace chromeball {
 

@@ -9,7 +9,7 @@
 namespace chromeball {
 
 // Throws InputError unless `path` ends in one of `extensions` (".svg"); and as checkReplaceable
-// (image/file.h) does.
+// (base/file.h) does.
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions);
 
 // Throws InputError where an output is the same file as an input or as another output, by whatever

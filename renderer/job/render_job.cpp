@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 

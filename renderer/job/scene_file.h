@@ -9,7 +9,7 @@
 
 #include "base/named_setting.h"
 #include "scene/camera.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 #include "scene/lamp.h"
 #include "scene/scene.h"
 #include "scene/surroundings.h"

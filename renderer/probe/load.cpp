@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "image/io/read.h"
+#include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/detect_mapping.h"
 

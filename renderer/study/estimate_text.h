@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "measure/cell_error.h"
+#include "measure/bias_variance.h"
 
 namespace chromeball {
 

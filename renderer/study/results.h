@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "measure/agreement.h"
-#include "measure/slope.h"
-#include "study/store.h"
+#include "measure/power_law.h"
+#include "study/render_store.h"
 
 namespace chromeball {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 #include "fuzz.h"
 #include "scene/surface.h"

@@ -2,8 +2,8 @@
 // Every image reader (the first bytes choose which) by the way of a model's textures and by that of
 // pictures, the layers of an EXR, and what makes a probe of the colour.
 #include "fuzz.h"
-#include "image/io/decode.h"
-#include "image/io/read.h"
+#include "image/io/decode_image.h"
+#include "image/io/read_image.h"
 #include "probe/load.h"
 #include "probe/probe.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fuzz.h"
-#include "image/io/read.h"
+#include "image/io/read_image.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;

@@ -13,7 +13,7 @@
 #include "composite/reflectance.h"
 #include "composite/render_composite.h"
 #include "demo/terrace.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 namespace {

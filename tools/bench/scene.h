@@ -11,7 +11,7 @@
 #include "integrate/path.h"
 #include "probe/load.h"
 #include "probe/synth.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 

@@ -14,10 +14,10 @@
 #include "lighting/methods.h"
 #include "progress_bar.h"
 #include "scene_options.h"
-#include "study/report/probe_dots.h"
 #include "study/report/report.h"
-#include "study/run.h"
-#include "study/tables.h"
+#include "study/report/sampled_directions.h"
+#include "study/result_tables.h"
+#include "study/study_run.h"
 #include "study/verdict.h"
 
 namespace chromeball {

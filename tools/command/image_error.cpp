@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/read.h"
-#include "image/io/write.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "image_commands.h"
 #include "job/output_file.h"
 #include "measure/false_color.h"

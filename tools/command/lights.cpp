@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "commands.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "lighting/light_file.h"

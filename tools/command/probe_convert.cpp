@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "probe/convert.h"

@@ -2,7 +2,7 @@
 // chromeball probe irradiance IN OUT
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "probe/irradiance.h"

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "probe/sky.h"
 #include "probe/synth.h"

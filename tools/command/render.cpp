@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "commands.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "job/composite_job.h"
 #include "job/id_manifest.h"
 #include "job/job_description.h"

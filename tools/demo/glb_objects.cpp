@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 
 namespace chromeball::demo {
 namespace {

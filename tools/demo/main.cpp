@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "dusk.h"
-#include "image/io/write.h"
+#include "image/io/write_image.h"
 #include "still_life.h"
 #include "terrace.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "image/limits.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "base/file.h"
-#include "image/limits.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {

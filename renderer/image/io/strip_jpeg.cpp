@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "image/io/strip_metadata.h"
-#include "image/limits.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

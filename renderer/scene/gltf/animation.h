@@ -2,7 +2,7 @@
 // A glTF file's animation, evaluated at one time.
 #pragma once
 
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

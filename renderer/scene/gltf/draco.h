@@ -2,7 +2,7 @@
 // KHR_draco_mesh_compression: primitives whose vertices and indices are one Draco mesh.
 #pragma once
 
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 
-#include "image/io/decode.h"
+#include "image/io/decode_image.h"
 #include "probe/convert.h"
 #include "probe/repair.h"
 #include "probe/solid_angle.h"
-#include "scene/gltf/value.h"
+#include "scene/gltf/extension_members.h"
 #include "scene/texture.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "image/image.h"
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/instancing.h"
-#include "scene/gltf/material.h"
+#include "scene/gltf/gpu_instancing.h"
+#include "scene/gltf/material_reader.h"
 #include "scene/gltf/mesh.h"
 #include "scene/mesh_attributes.h"
 

@@ -2,8 +2,8 @@
 // Which meshes a glTF file's nodes show, where, and made of what.
 #pragma once
 
-#include "scene/gltf/file.h"
-#include "scene/gltf/node.h"
+#include "scene/gltf/gltf_file.h"
+#include "scene/gltf/node_tree.h"
 #include "scene/scene.h"
 
 namespace chromeball {

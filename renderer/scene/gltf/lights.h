@@ -2,8 +2,8 @@
 // KHR_lights_punctual: the lights that nodes carry.
 #pragma once
 
-#include "scene/gltf/file.h"
-#include "scene/gltf/node.h"
+#include "scene/gltf/gltf_file.h"
+#include "scene/gltf/node_tree.h"
 #include "scene/scene.h"
 
 namespace chromeball {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 #include "scene/scene.h"
 
 namespace chromeball {

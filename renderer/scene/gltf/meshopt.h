@@ -2,7 +2,7 @@
 // EXT_meshopt_compression: buffer views whose bytes are compressed.
 #pragma once
 
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

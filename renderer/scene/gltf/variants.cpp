@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/suggest.h"
-#include "scene/gltf/value.h"
+#include "scene/gltf/extension_members.h"
 
 namespace chromeball {
 namespace {

@@ -2,7 +2,7 @@
 // KHR_materials_variants: one model in several dresses.
 #pragma once
 
-#include "scene/gltf/file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 

@@ -11,8 +11,8 @@
 #include "probe/preview.h"
 #include "study/estimate_text.h"
 #include "study/report/log_log_plot.h"
-#include "study/report/pictures.h"
-#include "study/tables.h"
+#include "study/report/report_images.h"
+#include "study/result_tables.h"
 #include "study/verdict.h"
 
 namespace chromeball {

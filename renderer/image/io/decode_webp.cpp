@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/decode_webp.h"
+
+#include <webp/decode.h>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK)
+    throwInput("{}: damaged image: not a WebP", name);
+  if (features.has_animation) throwInput("{}: is an animation; give a still picture", name);
+  DecodedImage image;  // the format allows 16383 texels a side at most
+  image.width = features.width;
+  image.height = features.height;
+  // A picture of one colour shrinks 25000 times; small ones are believed anyway.
+  const uint64_t texels = uint64_t(image.width) * uint64_t(image.height);
+  if (texels > (uint64_t(1) << 24) && texels > file.size() * 32768)
+    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
+               image.width, image.height, file.size());
+  image.texels8.resize(texels);
+  uint8_t* out = image.texels8.data()->data();
+  const size_t bytes = image.texels8.size() * 4;
+  if (!WebPDecodeRGBAInto(file.data(), file.size(), out, bytes, image.width * 4))
+    throwInput("{}: damaged image", name);
+  return image;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/read_image.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "base/file.h"
+#include "image/io/exr_header.h"
+#include "image/io/oiio_reader.h"
+#include "image/io/pfm.h"
+#include "image/io/radiance_hdr.h"
+#include "image/io/silenced_stderr.h"
+#include "image/size_limits.h"
+#include "image/tonemap.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+// OpenImageIO's message about `path`, as one line of ours. What its message says up to the path is
+// said by ours, unless the path is its end; a damaged file's names may hold anything.
+[[noreturn]] void fail(const fs::path& path, std::string reason) {
+  constexpr const char* kPunctuation = "\"'.:() \n";
+  const size_t repeated = reason.rfind(path.string());
+  if (repeated != std::string::npos) {
+    const std::string after = reason.substr(repeated + path.string().size());
+    const size_t more = after.find_first_not_of(kPunctuation);
+    reason = more != std::string::npos ? after.substr(more) : reason.substr(0, repeated);
+    if (more == std::string::npos) reason.erase(reason.find_last_not_of(kPunctuation) + 1);
+  }
+  reason.erase(reason.find_last_not_of(".: \n") + 1);
+  for (char& c : reason)
+    if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
+  throwInput("{}: cannot be read: {}", path.string(),
+             reason.empty() ? "damaged, or of an unknown format" : reason);
+}
+
+std::string firstBytes(const fs::path& path) {
+  checkReadable(path);
+  std::string bytes(4, '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), std::streamsize(bytes.size()));
+  return bytes;
+}
+
+Metadata metadataOf(const OIIO::ImageSpec& spec) {
+  Metadata metadata;
+  for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+    const std::string name = attribute.name().string();
+    if (attribute.type() == OIIO::TypeDesc::INT)
+      metadata[name] = attribute.get_int();
+    else if (attribute.type() == OIIO::TypeDesc::FLOAT)
+      metadata[name] = attribute.get_float();
+    else if (attribute.type() == OIIO::TypeDesc::STRING)
+      metadata[name] = attribute.get_string(0);
+    else if (attribute.type() == OIIO::TypeMatrix)
+      std::copy_n(static_cast<const float*>(attribute.data()), 16,
+                  std::get<Matrix44>(metadata[name] = Matrix44{}).begin());
+  }
+  return metadata;
+}
+
+// Throws where the file is too short for what its header says. Of OpenEXR's and TIFF's encodings
+// only a guess is known, which small images need not keep. JPEG's frames are judged in bareJpeg().
+void checkPlausible(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxPacked = 100'000;
+  const uint64_t decoded = spec.image_bytes(true), bytes = fs::file_size(path);
+  const uint64_t maximum =
+      std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMaxDeflated : kMaxPacked));
+  if (decoded > maximum)
+    throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
+}
+
+// Colour becomes what is seen before black, which for linear texels is a product.
+void associate(Image& image, int alphaChannel) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      float* texel = image.at(x, y);
+      for (int c = 0; c < image.channels; ++c)
+        if (c != alphaChannel) texel[c] *= texel[alphaChannel];
+    }
+}
+
+ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexels integers) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
+  ImageFile file;
+  file.channels = spec.channelnames;
+  file.metadata = metadataOf(spec);
+  file.integers = !spec.format.is_floating_point();
+  file.image = Image(spec.width, spec.height, spec.nchannels);
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
+    fail(path, input.geterror());
+
+  if (file.integers && integers == IntegerTexels::Srgb)
+    for (size_t i = 0; i < file.image.texels.size(); ++i)
+      if (int(i % spec.nchannels) != spec.alpha_channel)
+        file.image.texels[i] = srgbToLinear(file.image.texels[i]);
+  if (spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha"))
+    associate(file.image, spec.alpha_channel);
+  return file;
+}
+
+ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
+  const auto checkSize = [&](int width, int height, int channels) {
+    checkImageSize(path, width, height, channels);
+  };
+  if (reader != std::string_view("openexr")) {
+    // Associating alpha is left to us: the library does it to encoded texels.
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    MemoryInput memory(reader, readFile(path), path.string(), checkSize, config);
+    checkPlausible(path, reader, memory.input().spec());
+    return readTexels(path, memory.input(), integers);
+  }
+  checkExrHeaders(path);
+  const auto input = openImage(reader, path.string());
+  const OIIO::ImageSpec& spec = input->spec();
+  checkSize(spec.width, spec.height, spec.nchannels);
+  checkPlausible(path, reader, spec);
+  return readTexels(path, *input, integers);
+}
+
+Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
+  Image out(file.image.width, file.image.height, int(channels.size()));
+  const size_t stride = file.image.channels, texelCount = size_t(out.width) * out.height;
+  for (size_t i = 0; i < texelCount; ++i)
+    for (size_t c = 0; c < channels.size(); ++c)
+      out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
+  return out;
+}
+
+std::optional<Image> findChannels(const ImageFile& file, const std::string& prefix,
+                                  std::initializer_list<const char*> names) {
+  std::vector<size_t> indices;
+  for (const char* name : names) {
+    const auto found = std::find(file.channels.begin(), file.channels.end(), prefix + name);
+    if (found == file.channels.end()) return std::nullopt;
+    indices.push_back(found - file.channels.begin());
+  }
+  return extract(file, indices);
+}
+
+}  // namespace
+
+ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
+  const std::string magic = firstBytes(path);
+  if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
+  if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
+  if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
+  const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
+  if (!reader) fail(path, "is neither EXR, Radiance HDR, PFM, PNG, JPEG nor TIFF");
+  try {
+    const QuietStandardError quiet;
+    return readThroughLibrary(path, reader, integers);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail(path, "its header asks for more memory than there is");
+  } catch (const std::exception& error) {  // the library's own, about a damaged file
+    fail(path, error.what());
+  }
+}
+
+std::optional<Image> findColor(const ImageFile& file) {
+  if (auto color = findChannels(file, "", {"R", "G", "B"})) return color;
+  for (const std::string& layer : layerNames(file))
+    if (auto color = findChannels(file, layer + ".", {"R", "G", "B"})) return color;
+  if (auto color = findChannels(file, "", {"Y", "Y", "Y"})) return color;
+  if (file.channels.size() > 2) return std::nullopt;
+  return extract(file, {0, 0, 0});
+}
+
+std::optional<Image> findColorAndAlpha(const ImageFile& file) {
+  if (auto color = findChannels(file, "", {"R", "G", "B", "A"})) return color;
+  return findColor(file);
+}
+
+std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
+  const std::string prefix = name + ".";
+  for (const std::array letters : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
+    if (auto image = findChannels(file, prefix, {letters[0], letters[1], letters[2]})) return image;
+  if (auto image = findChannels(file, name, {""})) return image;
+  const auto belongs = [&](const std::string& channel) { return channel.starts_with(prefix); };
+  const auto first = std::find_if(file.channels.begin(), file.channels.end(), belongs);
+  if (first != file.channels.end()) return extract(file, {size_t(first - file.channels.begin())});
+  return name == "alpha" ? findChannels(file, "A", {""}) : std::nullopt;
+}
+
+std::vector<std::string> layerNames(const ImageFile& file) {
+  constexpr std::array kOfTheColor = {"R", "G", "B", "A", "X", "Y", "Z"};
+  std::vector<std::string> names;
+  for (const std::string& channel : file.channels) {
+    if (std::find(kOfTheColor.begin(), kOfTheColor.end(), channel) != kOfTheColor.end()) continue;
+    const std::string name = channel.substr(0, channel.rfind('.'));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+Image colorOf(ImageFile&& file, const fs::path& path) {
+  if (file.channels == std::vector<std::string>{"R", "G", "B"}) return std::move(file.image);
+  std::optional<Image> color = findColor(file);
+  if (!color) throwInput("{}: has no channels R, G and B, and is not grey", path.string());
+  return *std::move(color);
+}
+
+Image readImage(const fs::path& path, IntegerTexels integers) {
+  return colorOf(readImageFile(path, integers), path);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/bias_variance.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace chromeball {
+namespace {
+
+constexpr int kChannels = 3;
+
+double squared(double x) { return x * x; }
+
+// Sums over the pixels of a cell.
+struct Sums {
+  double relMse = 0, variance = 0, squaredBias = 0, difference = 0, reference = 0, mse = 0,
+         referenceVariance = 0;
+  // Of the sums above: squared standard errors.
+  double relMseError = 0, varianceError = 0, squaredBiasError = 0, differenceError = 0;
+};
+
+// Unbiased sample variance of `numbers` about their own mean, over their number: the squared
+// standard error of that mean.
+double squaredErrorOfMean(std::span<const double> numbers) {
+  double mean = 0, scatter = 0;
+  const double n = double(numbers.size());
+  for (const double x : numbers) mean += x / n;
+  for (const double x : numbers) scatter += squared(x - mean);
+  return scatter / (n - 1) / n;
+}
+
+class Pixels {
+ public:
+  Pixels(std::span<const Image> repeats, const Reference& reference)
+      : repeats_(repeats),
+        reference_(reference),
+        n_(double(repeats.size())),
+        squaredErrors_(repeats.size()),
+        deviations_(repeats.size()) {}
+
+  void add(size_t pixel) {
+    std::fill(squaredErrors_.begin(), squaredErrors_.end(), 0);
+    std::fill(deviations_.begin(), deviations_.end(), 0);
+    double biasError = 0, differenceError = 0, crossError = 0;
+    for (size_t i = pixel * kChannels; i < (pixel + 1) * kChannels; ++i) {
+      const double truth = reference_.mean.texels[i];
+      const double v = reference_.squaredError.empty() ? 0 : reference_.squaredError.texels[i];
+      const double weight = 1 / (truth * truth + 0.01);
+      double mean = 0, scatter = 0;
+      for (const Image& image : repeats_) mean += image.texels[i] / n_;
+      for (size_t r = 0; r < repeats_.size(); ++r) {
+        const double x = repeats_[r].texels[i];
+        scatter += squared(x - mean);
+        deviations_[r] += weight * squared(x - mean);
+        squaredErrors_[r] += weight * squared(x - truth);
+        sums_.mse += (squared(x - truth) - v) / n_;
+      }
+      const double s2 = scatter / (n_ - 1), d = mean - truth, w = s2 / n_ + v;
+      sums_.variance += weight * s2;
+      sums_.squaredBias += weight * (d * d - w);
+      sums_.relMse += weight * (d * d - w + s2);
+      sums_.referenceVariance += weight * v;
+      sums_.difference += d;
+      sums_.reference += truth;
+      // E[4 d^2 w] = 4 bias^2 w + 4 w^2, and E[s2^2] is (R + 1) / (R - 1) times the true square.
+      const double w2 = squared(s2 / n_) * (n_ - 1) / (n_ + 1) + v * v + 2 * v * s2 / n_;
+      biasError += weight * std::sqrt(std::max(0.0, 4 * d * d * w - 2 * w2));
+      crossError += weight * 2 * std::fabs(d) * std::sqrt(v);
+      differenceError += std::sqrt(w);
+    }
+    sums_.relMseError += squaredErrorOfMean(squaredErrors_) + squared(crossError);
+    sums_.varianceError += squared(n_ / (n_ - 2)) * squaredErrorOfMean(deviations_);
+    sums_.squaredBiasError += squared(biasError);
+    sums_.differenceError += squared(differenceError);
+  }
+
+  const Sums& sums() const { return sums_; }
+
+ private:
+  std::span<const Image> repeats_;
+  const Reference& reference_;
+  double n_;
+  std::vector<double> squaredErrors_, deviations_;  // of a pixel in each repeat
+  Sums sums_;
+};
+
+}  // namespace
+
+CellError cellError(std::span<const Image> repeats, const Reference& reference) {
+  assert(repeats.size() >= 3);
+  Pixels pixels(repeats, reference);
+  const size_t numbers = reference.mean.texels.size();
+  for (size_t pixel = 0; pixel < numbers / kChannels; ++pixel) pixels.add(pixel);
+
+  const Sums& sums = pixels.sums();
+  const double n = double(numbers);
+  CellError error;
+  error.relMse = {sums.relMse / n, std::sqrt(sums.relMseError) / n};
+  error.variance = {sums.variance / n, std::sqrt(sums.varianceError) / n};
+  error.squaredBias = {sums.squaredBias / n, std::sqrt(sums.squaredBiasError) / n};
+  error.bias = {sums.difference / sums.reference,
+                std::sqrt(sums.differenceError) / std::fabs(sums.reference)};
+  error.mse = sums.mse / n;
+  error.reference = sums.referenceVariance / n;
+  return error;
+}
+
+}  // namespace chromeball

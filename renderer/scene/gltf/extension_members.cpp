@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/extension_members.h"
+
+#include <algorithm>
+
+namespace chromeball {
+
+const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
+  const auto found = extensions.find(name);
+  return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
+}
+
+float number(GltfFile& file, double x, double low, double high, const std::string& where) {
+  if (!std::isfinite(x)) file.fail("{}: is not a finite number", where);
+  if (x < low || x > high)
+    file.warnOnce(fmt::format("{}: {} is clamped to the range {} to {}", where, x, low, high));
+  return float(std::clamp(x, low, high));
+}
+
+float member(GltfFile& file, const tinygltf::Value& object, const char* key, double fallback,
+             double low, double high, const std::string& where) {
+  const tinygltf::Value& v = object.Get(key);
+  return number(file, v.IsNumber() ? v.GetNumberAsDouble() : fallback, low, high,
+                where + "." + key);
+}
+
+}  // namespace chromeball

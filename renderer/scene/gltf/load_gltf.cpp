@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/load_gltf.h"
+
+#include "scene/gltf/animation.h"
+#include "scene/gltf/draco.h"
+#include "scene/gltf/environment.h"
+#include "scene/gltf/gltf_file.h"
+#include "scene/gltf/instances.h"
+#include "scene/gltf/lights.h"
+#include "scene/gltf/meshopt.h"
+#include "scene/gltf/node_tree.h"
+#include "scene/gltf/variants.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dmat4;
+using glm::dvec3;
+
+// The camera's frame is the node's, made orthonormal; mirroring and scale do not reach the view.
+void placeCamera(const dmat4& toWorld, Camera& camera) {
+  const dvec3 back = glm::normalize(dvec3(toWorld[2]));
+  const dvec3 right = glm::normalize(glm::cross(dvec3(toWorld[1]), back));
+  camera.position = vec3(toWorld[3]);
+  camera.back = vec3(back);
+  camera.right = vec3(right);
+  camera.up = vec3(glm::cross(back, right));
+}
+
+void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
+  for (int i : tree.inScene) {
+    const tinygltf::Node& node = file.model.nodes[size_t(i)];
+    if (node.camera == -1) continue;
+    const tinygltf::Camera& source =
+        file.at(file.model.cameras, node.camera, "cameras", fmt::format("nodes[{}].camera", i));
+    const auto& lens = source.perspective;
+    const auto& box = source.orthographic;
+    Camera camera;
+    camera.node = tree.names[size_t(i)];
+    camera.name = source.name.empty() ? camera.node : source.name;
+    camera.orthographic = source.type == "orthographic";
+    camera.fov = float(lens.yfov);
+    camera.halfHeight = float(std::fabs(box.ymag));
+    camera.aspect = float(camera.orthographic ? std::fabs(box.xmag / box.ymag) : lens.aspectRatio);
+    if (!(camera.aspect > 0) || !std::isfinite(camera.aspect)) camera.aspect = 0;
+    const bool sees = camera.orthographic
+                          ? camera.halfHeight > 0 && std::isfinite(camera.halfHeight)
+                          : lens.yfov > 0 && lens.yfov < kPiD;
+    if (!sees || !isInvertible(tree.toWorld[size_t(i)])) {
+      file.warnOnce("camera \"" + camera.name + "\" has no view and is left out");
+      continue;
+    }
+    placeCamera(tree.toWorld[size_t(i)], camera);
+    scene.cameras.push_back(camera);
+  }
+}
+
+// Distances in a medium grow with the model that `placement` enlarges.
+void scaleMedia(const Transform& placement, Scene& scene) {
+  const float scale = std::cbrt(std::fabs(glm::determinant(placement.linear)));
+  for (Material& m : scene.materials)
+    if (m.extended && scale > 0) m.extended->attenuation /= scale;
+}
+
+// A file of meshes without any node still shows them, each once.
+void standMeshesUp(tinygltf::Model& model) {
+  if (!model.nodes.empty() || !model.scenes.empty()) return;
+  for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
+}
+
+}  // namespace
+
+Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
+               const GltfChoice& choice) {
+  GltfFile file(path, warn, choice.external);
+  decodeMeshopt(file);
+  decodeDraco(file);
+  if (choice.variant) applyVariant(file, *choice.variant);
+  if (choice.animation) applyAnimation(file, *choice.animation);
+  standMeshesUp(file.model);
+  const NodeTree tree = readNodes(file, placement, choice.origin);
+  Scene scene = readInstances(file, tree);
+  readCameras(file, tree, scene);
+  scaleMedia(placement, scene);
+  scene.lights = readLights(file, tree, choice.lightUnits);
+  if (choice.environment) scene.environment = readEnvironment(file);
+  scene.nodeNames = tree.names;
+  scene.nodeParents = tree.parents;
+  scene.files = file.files();
+  if (!choice.animation && !file.model.animations.empty())
+    scene.notes.push_back(
+        fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS shows "
+                    "another: {}",
+                    path, animationNames(file)));
+  return scene;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/material_reader.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "image/io/decode_image.h"
+#include "scene/gltf/extension_members.h"
+#include "scene/mip_chain.h"
+
+namespace chromeball {
+namespace {
+
+using tinygltf::Value;
+
+constexpr int kMaxUvSet = 15;
+
+Wrap wrapOf(int code) {
+  if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::ClampToEdge;
+  if (code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::MirroredRepeat;
+  return Wrap::Repeat;
+}
+
+}  // namespace
+
+int MaterialReader::use(int index, const std::string& where) {
+  if (const auto found = materialOf_.find(index); found != materialOf_.end()) return found->second;
+  Material material;
+  if (index != -1)
+    material = convert(file_.at(file_.model.materials, index, "materials", where),
+                       fmt::format("materials[{}]", index));
+  else
+    material.name = "default";
+  materials_.push_back(std::move(material));
+  return materialOf_[index] = int(materials_.size()) - 1;
+}
+
+Material MaterialReader::convert(const tinygltf::Material& source, const std::string& where) {
+  const auto& pbr = source.pbrMetallicRoughness;
+  Material m;
+  m.name = source.name;
+  for (int i = 0; i < 4; ++i)
+    m.baseColor[i] =
+        number(file_, pbr.baseColorFactor[size_t(i)], 0, 1, where + ".baseColorFactor");
+  const TexelUse use{.srgb = true, .weightedByAlpha = source.alphaMode != "OPAQUE"};
+  m.baseColorTexture = slot(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
+                            pbr.baseColorTexture.extensions, use, where + ".baseColorTexture");
+  m.doubleSided = source.doubleSided;
+  m.alphaCutoff = number(file_, source.alphaCutoff, 0, 1e6, where + ".alphaCutoff");
+  if (source.alphaMode == "MASK")
+    m.alphaMode = AlphaMode::Mask;
+  else if (source.alphaMode == "BLEND")
+    m.alphaMode = AlphaMode::Blend;
+  else if (source.alphaMode != "OPAQUE")
+    file_.fail("{}.alphaMode: \"{}\" is not OPAQUE, MASK or BLEND", where, source.alphaMode);
+  if (findExtension(source.extensions, "KHR_materials_unlit")) {
+    m.unlit = true;
+    return m;
+  }
+
+  m.metallic = number(file_, pbr.metallicFactor, 0, 1, where + ".metallicFactor");
+  m.roughness = number(file_, pbr.roughnessFactor, 0, 1, where + ".roughnessFactor");
+  m.metallicRoughnessTexture =
+      slot(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
+           pbr.metallicRoughnessTexture.extensions, {}, where + ".metallicRoughnessTexture");
+  m.normalScale = number(file_, source.normalTexture.scale, -1e6, 1e6, where + ".normalTexture");
+  m.normalTexture = slot(source.normalTexture.index, source.normalTexture.texCoord,
+                         source.normalTexture.extensions, {}, where + ".normalTexture");
+
+  float strength = 1;
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_emissive_strength"))
+    strength = member(file_, *e, "emissiveStrength", 1, 0, 1e30, where);
+  for (int i = 0; i < 3; ++i)
+    m.emission[i] =
+        strength * number(file_, source.emissiveFactor[size_t(i)], 0, 1, where + ".emissiveFactor");
+  if (!isBlack(m.emission))
+    m.emissiveTexture =
+        slot(source.emissiveTexture.index, source.emissiveTexture.texCoord,
+             source.emissiveTexture.extensions, {.srgb = true}, where + ".emissiveTexture");
+
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_ior")) {
+    m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
+    if (m.ior != 0) m.ior = std::max(m.ior, 1.0f);
+  }
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"))
+    readSpecular(*e, where, m);
+  m.extended = readExtensions(source.extensions, where);
+  if (m.extended && m.ior == 0) m.extended->transmission = 0;  // reflects all
+  return m;
+}
+
+void MaterialReader::readSpecular(const Value& extension, const std::string& where, Material& m) {
+  m.specular = member(file_, extension, "specularFactor", 1, 0, 1, where);
+  m.specularColor =
+      vectorMember<3>(file_, extension, "specularColorFactor", vec3(1), 0, INFINITY, where);
+  m.specularTexture = slot(extension.Get("specularTexture"), false, where + ".specularTexture");
+  m.specularColorTexture =
+      slot(extension.Get("specularColorTexture"), true, where + ".specularColorTexture");
+}
+
+TextureSlot MaterialReader::slot(const Value& textureInfo, bool srgb, const std::string& where) {
+  if (!textureInfo.IsObject() || !textureInfo.Get("index").IsInt()) return {};
+  const Value& set = textureInfo.Get("texCoord");
+  tinygltf::ExtensionMap extensions;
+  if (const Value& nested = textureInfo.Get("extensions"); nested.IsObject())
+    for (const std::string& key : nested.Keys()) extensions[key] = nested.Get(key);
+  return slot(textureInfo.Get("index").GetNumberAsInt(), set.IsInt() ? set.GetNumberAsInt() : 0,
+              extensions, {.srgb = srgb}, where);
+}
+
+TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::ExtensionMap& extensions,
+                                 TexelUse use, const std::string& where) {
+  TextureSlot s;
+  if (index == -1) return s;
+  s.texture = texture(index, use, where);
+  s.uvSet = uvSet;
+  if (const Value* e = findExtension(extensions, "KHR_texture_transform")) {
+    const std::string at = where + ".KHR_texture_transform";
+    const float angle = member(file_, *e, "rotation", 0, -1e6, 1e6, at);
+    const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -INFINITY, INFINITY, at);
+    const float c = std::cos(angle), sn = std::sin(angle);
+    // Counter-clockwise as seen, with v pointing down.
+    s.uvRow0 = vec2(c, sn) * scale;
+    s.uvRow1 = vec2(-sn, c) * scale;
+    s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
+    if (e->Get("texCoord").IsInt()) s.uvSet = e->Get("texCoord").GetNumberAsInt();
+  }
+  if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
+    file_.fail("{}: texCoord {} is out of range; 0 to {} can be read", where, s.uvSet, kMaxUvSet);
+  return s;
+}
+
+int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
+  const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
+  int image = source.source;
+  if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
+    image = e->Get("source").IsInt() ? e->Get("source").GetNumberAsInt() : -1;
+  if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
+    file_.fail(
+        "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "
+        "turn it into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)",
+        index);
+  if (image == -1) {
+    file_.warnOnce("textures without an image are left out");
+    return -1;
+  }
+  Texture t;
+  t.srgb = use.srgb;
+  t.weightedByAlpha = use.weightedByAlpha;
+  if (source.sampler != -1) {
+    const tinygltf::Sampler& sampler =
+        file_.at(file_.model.samplers, source.sampler, "samplers", where);
+    t.wrapS = wrapOf(sampler.wrapS);
+    t.wrapT = wrapOf(sampler.wrapT);
+    if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) t.filter = Filter::Nearest;
+  }
+  file_.at(file_.images, image, "images", where);
+  const TextureKey key{image, t.wrapS, t.wrapT, t.filter, t.srgb, t.weightedByAlpha};
+  if (const auto found = textureOf_.find(key); found != textureOf_.end()) return found->second;
+  t.grid = grid(image);
+  textures_.push_back(t);
+  return textureOf_[key] = int(textures_.size()) - 1;
+}
+
+TexelGrid* MaterialReader::grid(int image) {
+  const auto [found, isNew] = gridOf_.try_emplace(image, int(grids_.size()));
+  if (isNew) {
+    grids_.push_back(std::make_unique<TexelGrid>());
+    imageOf_.push_back(image);
+  }
+  return grids_[size_t(found->second)].get();
+}
+
+// Each image with its smaller versions at once, while its texels are in the cache; the longest
+// files first, so that no thread is left with one at the end. Textures that differ in their
+// samplers alone share them.
+void MaterialReader::moveInto(Scene& scene) {
+  using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
+  std::map<std::tuple<const TexelGrid*, bool, bool>, Chain> chains;
+  for (const Texture& t : textures_) chains[{t.grid, t.srgb, t.weightedByAlpha}];
+  struct Source {
+    size_t grid;
+    Bytes storage;
+    std::span<const uint8_t> bytes;
+  };
+  std::vector<Source> sources(grids_.size());
+  for (size_t i = 0; i < sources.size(); ++i) {
+    sources[i].grid = i;
+    sources[i].bytes = file_.image(imageOf_[i], sources[i].storage);
+  }
+  std::sort(sources.begin(), sources.end(),
+            [](const Source& a, const Source& b) { return a.bytes.size() > b.bytes.size(); });
+  std::atomic<size_t> next = 0;
+  tbb::parallel_for(size_t(0), sources.size(), [&](size_t) {
+    const Source& source = sources[next++];
+    DecodedImage decoded = decodeImage(source.bytes, file_.describeImage(imageOf_[source.grid]));
+    TexelGrid& grid = *grids_[source.grid];
+    grid = {decoded.width, decoded.height, std::move(decoded.texels8),
+            std::move(decoded.texelsFloat)};
+    for (bool srgb : {false, true})
+      for (bool weighted : {false, true})
+        if (const auto wanted = chains.find({&grid, srgb, weighted}); wanted != chains.end())
+          wanted->second =
+              std::make_shared<const std::vector<TexelGrid>>(makeSmaller(grid, srgb, weighted));
+  });
+  for (Texture& t : textures_) t.smaller = chains[{t.grid, t.srgb, t.weightedByAlpha}];
+  scene.materials = std::move(materials_);
+  scene.textures = std::move(textures_);
+  scene.grids = std::move(grids_);
+}
+
+}  // namespace chromeball

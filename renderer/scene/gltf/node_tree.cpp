@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/node_tree.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace chromeball {
+namespace {
+
+using glm::dmat4;
+
+void checkNumbers(const GltfFile& file, const std::vector<double>& numbers, size_t count,
+                  const std::string& where) {
+  if (numbers.size() != count)
+    file.fail("{}: has {} numbers, not {}", where, numbers.size(), count);
+  for (double x : numbers)
+    if (!std::isfinite(x)) file.fail("{}: holds a number that is not finite", where);
+}
+
+dmat4 localMatrix(const GltfFile& file, const tinygltf::Node& node, const std::string& where) {
+  if (!node.matrix.empty()) {
+    checkNumbers(file, node.matrix, 16, where + ".matrix");
+    const dmat4 m = glm::make_mat4(node.matrix.data());
+    if (m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1)
+      file.fail("{}.matrix: is not affine; its last row should be 0 0 0 1", where);
+    return m;
+  }
+  dmat4 m(1);
+  if (const auto& t = node.translation; !t.empty()) {
+    checkNumbers(file, t, 3, where + ".translation");
+    m = glm::translate(m, {t[0], t[1], t[2]});
+  }
+  if (const auto& r = node.rotation; !r.empty()) {
+    checkNumbers(file, r, 4, where + ".rotation");
+    const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
+    if (!(length > 0)) file.fail("{}.rotation: is a quaternion of length 0", where);
+    glm::dquat q;
+    q.x = r[0] / length, q.y = r[1] / length, q.z = r[2] / length, q.w = r[3] / length;
+    m *= glm::mat4_cast(q);
+  }
+  if (const auto& s = node.scale; !s.empty()) {
+    checkNumbers(file, s, 3, where + ".scale");
+    m = glm::scale(m, {s[0], s[1], s[2]});
+  }
+  return m;
+}
+
+std::vector<int> parentsOf(const GltfFile& file) {
+  const auto& nodes = file.model.nodes;
+  std::vector<int> parents(nodes.size(), -1);
+  for (size_t i = 0; i < nodes.size(); ++i)
+    for (int child : nodes[i].children) {
+      const std::string where = fmt::format("nodes[{}].children", i);
+      file.at(nodes, child, "nodes", where);
+      if (parents[size_t(child)] != -1)
+        file.fail("{}: nodes[{}] is a child of nodes[{}] too; nodes must form trees", where, child,
+                  parents[size_t(child)]);
+      parents[size_t(child)] = int(i);
+    }
+  return parents;
+}
+
+// All nodes below the given ones and these themselves, parents first; each once.
+std::vector<int> descend(const GltfFile& file, const std::vector<int>& roots) {
+  std::vector<bool> seen(file.model.nodes.size(), false);
+  std::vector<int> order, stack(roots.rbegin(), roots.rend());
+  while (!stack.empty()) {
+    const int node = stack.back();
+    stack.pop_back();
+    if (seen[size_t(node)]) continue;
+    seen[size_t(node)] = true;
+    order.push_back(node);
+    const auto& children = file.model.nodes[size_t(node)].children;
+    stack.insert(stack.end(), children.rbegin(), children.rend());
+  }
+  return order;
+}
+
+std::vector<int> sceneRoots(const GltfFile& file, const std::vector<int>& treeRoots) {
+  const tinygltf::Model& model = file.model;
+  if (model.scenes.empty()) return treeRoots;
+  const int index = std::max(model.defaultScene, 0);
+  const std::vector<int>& roots = file.at(model.scenes, index, "scenes", "scene").nodes;
+  for (int root : roots)
+    file.at(model.nodes, root, "nodes", fmt::format("scenes[{}].nodes", index));
+  return roots;
+}
+
+std::string nameOf(const tinygltf::Model& model, size_t i) {
+  const tinygltf::Node& node = model.nodes[i];
+  if (!node.name.empty()) return node.name;
+  const bool hasMesh = node.mesh >= 0 && size_t(node.mesh) < model.meshes.size();
+  if (hasMesh && !model.meshes[size_t(node.mesh)].name.empty())
+    return model.meshes[size_t(node.mesh)].name;
+  return fmt::format("nodes[{}]", i);
+}
+
+}  // namespace
+
+NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin) {
+  const auto& nodes = file.model.nodes;
+  const std::vector<int> parents = parentsOf(file);
+  std::vector<int> treeRoots;
+  for (size_t i = 0; i < nodes.size(); ++i)
+    if (parents[i] == -1) treeRoots.push_back(int(i));
+  const std::vector<int> order = descend(file, treeRoots);
+
+  NodeTree tree;
+  dmat4 outermost{glm::dmat3(placement.linear)};
+  outermost[3] = glm::dvec4(glm::dvec3(placement.translation) - origin, 1);
+  tree.toWorld.assign(nodes.size(), dmat4(0));
+  for (int i : order) {
+    const int parent = parents[size_t(i)];
+    tree.toWorld[size_t(i)] = (parent == -1 ? outermost : tree.toWorld[size_t(parent)]) *
+                              localMatrix(file, nodes[size_t(i)], fmt::format("nodes[{}]", i));
+  }
+  // With one parent each, what no root reaches hangs on a cycle.
+  if (order.size() < nodes.size()) {
+    std::vector<bool> reached(nodes.size(), false);
+    for (int i : order) reached[size_t(i)] = true;
+    const auto first = std::find(reached.begin(), reached.end(), false) - reached.begin();
+    file.fail("nodes[{}]: is its own ancestor; nodes must form trees", first);
+  }
+  tree.inScene = descend(file, sceneRoots(file, treeRoots));
+  for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nameOf(file.model, i));
+  tree.parents = parents;
+  return tree;
+}
+
+bool isInvertible(const dmat4& m) {
+  const glm::dmat3 linear(glm::mat3{glm::dmat3(m)});
+  const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return std::isfinite(volume) && std::fabs(glm::determinant(linear)) > 1e-9 * volume;
+}
+
+}  // namespace chromeball

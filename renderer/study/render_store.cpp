@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/render_store.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "job/job_description.h"
+
+namespace chromeball {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string textIn(const Metadata& metadata, const std::string& key) {
+  const auto found = metadata.find(key);
+  const auto* text = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text ? *text : "";
+}
+
+double numberIn(const Metadata& metadata, const std::string& key) {
+  const std::string text = textIn(metadata, key);
+  double number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+}  // namespace
+
+void RenderStore::makeFolder() const {
+  std::error_code error;
+  fs::create_directories(fs::path(study_.folder) / "renders", error);
+  if (error) throwRun("--output: {}: {}", study_.folder, error.message());
+}
+
+std::string RenderStore::path(const RenderKey& key) const {
+  std::string strategy = key.strategy;
+  std::replace(strategy.begin(), strategy.end(), ':', '.');
+  return (fs::path(study_.folder) / "renders" /
+          fmt::format("{}-{}-{}.exr", strategy, key.budget.label(), key.repeat + 1))
+      .string();
+}
+
+std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
+  if (!fs::exists(path(key))) return std::nullopt;
+  const ImageFile file = readImageFile(path(key));
+  const Metadata& metadata = file.metadata;
+  if (const std::string made = textIn(metadata, "study"); made != study_.identity)
+    throwInput("--output: {} is another comparison's: {}; give another folder", path(key),
+               differenceOf(made, study_.identity));
+  const std::optional<Image> color = findColor(file);
+  if (!color || color->width != size_.width || color->height != size_.height)
+    throwInput("--output: {} is not the render that it was: delete it", path(key));
+  StoredRender render;
+  render.image = *color;
+  render.samples = numberIn(metadata, "samples");
+  render.seconds = numberIn(metadata, "seconds");
+  render.prepareSeconds = numberIn(metadata, "prepareSeconds");
+  render.noise = numberIn(metadata, "noise");
+  render.rays = numberIn(metadata, "rays");
+  render.invalidSamples = numberIn(metadata, "invalidSamples");
+  render.unbiased = textIn(metadata, "unbiased") == "yes";
+  return render;
+}
+
+void RenderStore::save(const RenderKey& key, const StoredRender& render) const {
+  const auto text = [](double number) { return fmt::format("{}", number); };
+  writeImage(
+      path(key),
+      OutputImage{{{"", "RGB", render.image}},
+                  {{"study", study_.identity},
+                   {"strategy", key.strategy},
+                   {"unbiased", render.unbiased ? "yes" : "no"},
+                   {key.budget.timed ? "budgetSeconds" : "budgetSamples", text(key.budget.amount)},
+                   {"seed", std::to_string(seedOf(key, study_.seed))},
+                   {"samples", text(render.samples)},
+                   {"seconds", text(render.seconds)},
+                   {"prepareSeconds", text(render.prepareSeconds)},
+                   {"noise", text(render.noise)},
+                   {"rays", text(render.rays)},
+                   {"invalidSamples", text(render.invalidSamples)}}});
+}
+
+std::vector<RenderKey> RenderStore::firstRepeats() const {
+  std::set<std::string> paths;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(fs::path(study_.folder) / "renders", none))
+    if (entry.path().string().ends_with("-1.exr")) paths.insert(entry.path().string());
+  std::vector<RenderKey> keys;
+  for (const std::string& path : paths) {
+    const Metadata metadata = readImageFile(path).metadata;
+    const bool timed = metadata.contains("budgetSeconds");
+    const double amount = numberIn(metadata, timed ? "budgetSeconds" : "budgetSamples");
+    RenderKey key{textIn(metadata, "strategy"), {timed, amount}, 0};
+    if (key.strategy.empty() || key.strategy == kReference || amount <= 0) continue;
+    if (find(key)) keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+}  // namespace chromeball

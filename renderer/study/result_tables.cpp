@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/result_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/estimate_text.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no infinity and no NaN: null there.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json toJson(const Estimate& e) {
+  return {{"mean", number(e.mean)}, {"low", number(e.low())}, {"high", number(e.high())}};
+}
+
+Json toJson(const Cell& cell) {
+  return {{"budget", cell.budget.label()},
+          {"samples", cell.samples},
+          {"seconds", toJson(cell.seconds)},
+          {"prepare_seconds", cell.prepareSeconds},
+          {"relmse", toJson(cell.error.relMse)},
+          {"variance", toJson(cell.error.variance)},
+          {"squared_bias", toJson(cell.error.squaredBias)},
+          {"bias", toJson(cell.error.bias)},
+          {"mse", cell.error.mse},
+          {"efficiency", toJson(cell.efficiency)},
+          {"reference_variance", cell.error.reference},
+          {"reported_noise", number(cell.noise)},
+          {"invalid_samples", cell.invalidSamples}};
+}
+
+Json toJson(const StrategyResult& strategy) {
+  Json json = {{"name", strategy.name}, {"unbiased", strategy.unbiased}};
+  json["variance_slope"] = strategy.variance ? toJson(strategy.variance->slope) : Json(nullptr);
+  json["relmse_slope"] = strategy.relMse ? toJson(strategy.relMse->slope) : Json(nullptr);
+  json["squared_bias"] = toJson(strategy.squaredBias);
+  if (const auto& crossing = strategy.biasEqualsNoise)
+    json["bias_equals_noise"] = {
+        {"samples", crossing->samples}, {"low", crossing->low}, {"high", crossing->high}};
+  json["cells"] = Json::array();
+  for (const Cell& cell : strategy.cells) json["cells"].push_back(toJson(cell));
+  return json;
+}
+
+}  // namespace
+
+std::string resultsCsv(const StudyResults& results) {
+  std::string csv = "strategy,unbiased,budget,samples";
+  for (const char* name : {"seconds", "relmse", "variance", "squared_bias", "bias", "efficiency"})
+    csv += fmt::format(",{0},{0}_low,{0}_high", name);
+  csv += ",prepare_seconds,mse,reference_variance,reported_noise,invalid_samples\n";
+  for (const StrategyResult& strategy : results.strategies)
+    for (const Cell& cell : strategy.cells) {
+      const CellError& error = cell.error;
+      csv += fmt::format("{},{},{},{}", strategy.name, strategy.unbiased ? "yes" : "no",
+                         cell.budget.label(), cell.samples);
+      for (const Estimate& e : {cell.seconds, error.relMse, error.variance, error.squaredBias,
+                                error.bias, cell.efficiency})
+        csv += fmt::format(",{:.6g},{:.6g},{:.6g}", e.mean, e.low(), e.high());
+      csv += fmt::format(",{:.4g},{:.6g},{:.6g},{:.6g},{:g}\n", cell.prepareSeconds, error.mse,
+                         error.reference, cell.noise, cell.invalidSamples);
+    }
+  return csv;
+}
+
+Json resultsJson(const Study& study, const StudyResults& results, const Machine& machine) {
+  Json json = {{"version", CHROMEBALL_VERSION},
+               {"command", machine.command},
+               {"date", machine.date},
+               {"machine",
+                {{"processor", machine.processor},
+                 {"system", machine.system},
+                 {"compiler", machine.compiler},
+                 {"threads", machine.threads}}},
+               {"study", Json::parse(study.identity)},
+               {"complete", results.complete},
+               {"warnings", results.warnings},
+               {"repeats", study.repeats},
+               {"baseline", study.baseline},
+               {"reference", {{"relative_standard_error", results.referenceNoise}}}};
+  if (study.referenceFile.empty())
+    json["reference"].update(
+        {{"strategy", study.referenceStrategy}, {"samples", study.referenceSamples}});
+  else
+    json["reference"]["file"] = study.referenceFile;
+  json["strategies"] = Json::array();
+  for (const StrategyResult& strategy : results.strategies)
+    json["strategies"].push_back(toJson(strategy));
+  json["same_picture"] = Json::array();
+  for (const PairResult& pair : results.pairs)
+    json["same_picture"].push_back({{"a", pair.a},
+                                    {"b", pair.b},
+                                    {"budget", pair.budget.label()},
+                                    {"tiles", pair.agreement.tiles},
+                                    {"share_failing", pair.agreement.fraction},
+                                    {"p_value", pair.agreement.pValue}});
+  return json;
+}
+
+std::vector<const Cell*> ranking(const Study& study, const StudyResults& results) {
+  std::vector<const Cell*> cells;
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  for (const StrategyResult& strategy : results.strategies)
+    if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell* a, const Cell* b) {
+    return a->efficiency.mean > b->efficiency.mean;
+  });
+  return cells;
+}
+
+std::string resultsTable(const Study& study, const StudyResults& results) {
+  const std::vector<const Cell*> cells = ranking(study, results);
+  if (cells.empty()) return "no budget has been rendered by all strategies\n";
+  std::string table =
+      fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
+                  "seconds", "relMSE", "bias %", cells.front()->budget.label());
+  for (const Cell* cell : cells) {
+    const Estimate& bias = cell->error.bias;
+    table += fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}\n", cell->strategy,
+                         resolvedText(cell->efficiency), resolvedText(cell->seconds),
+                         resolvedText(cell->error.relMse),
+                         resolvedText({100 * bias.mean, 100 * bias.standardError}));
+  }
+  return table;
+}
+
+}  // namespace chromeball

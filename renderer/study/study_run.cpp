@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/study_run.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace chromeball {
+namespace {
+
+double now() {
+  using namespace std::chrono;
+  return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
+                   const RenderSettings& settings)
+    : study_(study),
+      store_(store),
+      loaded_(loaded),
+      settings_(settings),
+      world_(loaded.scene),
+      renders_(study.renders()) {
+  const auto build = [&](const std::string& name, const std::string& strategy,
+                         const char* location) {
+    const double start = now();
+    Built& built = built_[name];
+    built.strategy = makeLighting({strategy, location}, settings.mis, loaded);
+    built.prepareSeconds = now() - start;
+  };
+  for (const std::string& name : study.strategies) build(name, name, "--strategies");
+  if (study.referenceFile.empty())
+    build(kReference, study.referenceStrategy, "--reference-strategy");
+  for (const RenderKey& key : renders_) {
+    present_.push_back(store.find(key).has_value());
+    stored_ += present_.back();
+  }
+}
+
+RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
+                              const std::atomic<bool>& stop) const {
+  RenderSettings settings = settings_;
+  settings.seed = seedOf(key, study_.seed);
+  settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
+  settings.timeLimit.reset();
+  if (key.budget.timed) settings.timeLimit = key.budget.amount;
+  return chromeball::render(world_, loaded_.camera, strategy(key.strategy), settings, progress,
+                            stop);
+}
+
+double StudyRun::guess(const RenderKey& key) const {
+  if (key.budget.timed) return key.budget.amount;
+  double known = built_.at(key.strategy).secondsPerSample, sum = 0;
+  int count = 0;
+  for (const auto& [name, built] : built_) {
+    sum += built.secondsPerSample;
+    count += built.secondsPerSample > 0;
+  }
+  if (known == 0) known = count ? sum / count : 1e-3;
+  return known * key.budget.amount;
+}
+
+double StudyRun::guessMissing(size_t from) const {
+  double seconds = 0;
+  for (size_t i = from; i < renders_.size(); ++i)
+    if (!present_[i]) seconds += guess(renders_[i]);
+  return seconds;
+}
+
+void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
+                         const std::atomic<bool>& stop) {
+  const double start = now();
+  const RenderResult result = render(key, progress, stop);
+  const double seconds = now() - start;
+  if (result.interrupted) return;
+  Built& built = built_.at(key.strategy);
+  built.secondsPerSample = seconds / std::max(1u, result.samples);
+  const RayCounts& rays = result.rays;
+  store_.save(key,
+              {built.strategy->unbiased(), result.film.mean(), double(result.samples), seconds,
+               built.prepareSeconds, result.film.noise().noise,
+               double(rays.camera + rays.shadow + rays.bounce), double(result.invalid.total())});
+  ++stored_;
+}
+
+void StudyRun::warmUp(const std::atomic<bool>& stop) {
+  for (auto& [name, built] : built_) {
+    const double start = now();
+    render(
+        {name, {false, 1}, 0}, [](double) {}, stop);
+    built.secondsPerSample = now() - start;
+    if (stop) return;
+  }
+}
+
+bool StudyRun::run(const Progress& progress, const std::function<void()>& finishedBudget,
+                   const std::atomic<bool>& stop) {
+  if (stored_ == total()) return true;
+  store_.makeFolder();
+  warmUp(stop);
+  double spent = 0;
+  for (size_t i = 0; i < renders_.size(); ++i) {
+    const RenderKey& key = renders_[i];
+    if (!present_[i]) {
+      if (stop) return false;
+      const double expected = guess(key), left = guessMissing(i + 1);
+      const double start = now();
+      renderOne(
+          key,
+          [&](double fraction) {
+            progress((spent + fraction * expected) / (spent + expected + left));
+          },
+          stop);
+      if (stop) return false;
+      spent += now() - start;
+      present_[i] = true;
+    }
+    const bool last = i + 1 == renders_.size() || !(renders_[i + 1].budget == key.budget);
+    if (last && key.strategy != kReference) finishedBudget();
+  }
+  return true;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of repeated images, on images whose noise and bias are known.
+#include "measure/bias_variance.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "measure/agreement.h"
+#include "measure/power_law.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 16;
+
+// A picture of truth 0.8 to 1.6, noise that differs from pixel to pixel, and a bias.
+struct World {
+  Image truth{kWidth, kHeight, 3}, sigma{kWidth, kHeight, 3}, bias{kWidth, kHeight, 3};
+  std::mt19937_64 random;
+
+  explicit World(uint64_t seed, float biasScale) : random(seed) {
+    std::uniform_real_distribution<float> unit;
+    for (size_t i = 0; i < truth.texels.size(); ++i) {
+      truth.texels[i] = 0.8f + 0.8f * unit(random);
+      sigma.texels[i] = 0.02f + 0.1f * unit(random);
+      bias.texels[i] = biasScale * (unit(random) - 0.3f);
+    }
+  }
+
+  Image render(float noise, bool biased) {
+    std::normal_distribution<float> normal;
+    Image image = truth;
+    for (size_t i = 0; i < truth.texels.size(); ++i)
+      image.texels[i] += noise * sigma.texels[i] * normal(random) + biased * bias.texels[i];
+    return image;
+  }
+  std::vector<Image> repeats(int count, float noise) {
+    std::vector<Image> images;
+    for (int i = 0; i < count; ++i) images.push_back(render(noise, true));
+    return images;
+  }
+  Reference reference(float noise) {
+    Reference reference{render(noise, false), sigma};
+    for (float& v : reference.squaredError.texels) v *= v * noise * noise;
+    return reference;
+  }
+
+  struct Truth {
+    double variance = 0, squaredBias = 0, bias = 0;
+  };
+  Truth expected(float noise) const {
+    Truth result;
+    double sum = 0;
+    const double n = double(truth.texels.size());
+    for (size_t i = 0; i < truth.texels.size(); ++i) {
+      const double t = truth.texels[i], s = noise * sigma.texels[i], b = bias.texels[i];
+      result.variance += s * s / (t * t + 0.01) / n;
+      result.squaredBias += b * b / (t * t + 0.01) / n;
+      result.bias += b;
+      sum += t;
+    }
+    result.bias /= sum;
+    return result;
+  }
+};
+
+// Intervals of 95% hold the truth in at least 93% of the studies, and are not wide for nothing.
+void expectCovers(int covered, int studies, const char* what, double maximum = 1) {
+  const double fraction = double(covered) / studies;
+  EXPECT_GE(fraction, 0.93) << what;
+  EXPECT_LE(fraction, maximum) << what;
+}
+
+TEST(CellError, intervalsHoldTheTruth) {
+  constexpr int kStudies = 500;
+  for (const float biasScale : {0.0f, 0.05f, 0.5f}) {
+    SCOPED_TRACE(biasScale);
+    World world(7, biasScale);
+    const World::Truth truth = world.expected(1);
+    int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
+    for (int study = 0; study < kStudies; ++study) {
+      const CellError error = cellError(world.repeats(4, 1), world.reference(0.2f));
+      const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
+      relMse += holds(error.relMse, truth.variance + truth.squaredBias);
+      variance += holds(error.variance, truth.variance);
+      squaredBias += holds(error.squaredBias, truth.squaredBias);
+      bias += holds(error.bias, truth.bias);
+    }
+    expectCovers(relMse, kStudies, "relMse");
+    expectCovers(variance, kStudies, "variance");
+    expectCovers(squaredBias, kStudies, "squared bias");
+    expectCovers(bias, kStudies, "bias");
+  }
+}
+
+// Without its variance, the reference's noise counts as error; with it, it does not.
+TEST(CellError, referenceVarianceIsRemoved) {
+  World world(11, 0);
+  const double truth = world.expected(1).variance;
+  double with = 0, without = 0;
+  constexpr int kStudies = 200;
+  for (int study = 0; study < kStudies; ++study) {
+    Reference reference = world.reference(0.5f);
+    const std::vector<Image> repeats = world.repeats(3, 1);
+    with += cellError(repeats, reference).relMse.mean / kStudies;
+    reference.squaredError = {};
+    without += cellError(repeats, reference).relMse.mean / kStudies;
+  }
+  EXPECT_NEAR(with / truth, 1, 0.02);
+  EXPECT_NEAR(without / truth, 1.25, 0.02);
+}
+
+TEST(CellError, partsAddUp) {
+  World world(3, 0.3f);
+  const CellError error = cellError(world.repeats(5, 1), world.reference(0.3f));
+  EXPECT_NEAR(error.relMse.mean, error.variance.mean + error.squaredBias.mean, 1e-12);
+}
+
+TEST(Slope, powerLawIsFound) {
+  std::vector<ConvergencePoint> points;
+  for (const double n : {1.0, 4.0, 16.0, 64.0})
+    points.push_back({n, {3 * std::pow(n, -1.4), 0.1 * std::pow(n, -1.4)}});
+  const PowerLaw law = fitPowerLaw(points).value();
+  EXPECT_NEAR(law.slope.mean, -1.4, 1e-12);
+  EXPECT_NEAR(std::exp(law.logAt(9)), 3 * std::pow(9, -1.4), 1e-12);
+  points.resize(1);
+  EXPECT_FALSE(fitPowerLaw(points));
+}
+
+TEST(Slope, intervalHoldsTheTruth) {
+  constexpr int kStudies = 2000;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  int covered = 0;
+  for (int study = 0; study < kStudies; ++study) {
+    std::vector<ConvergencePoint> points;
+    for (const double n : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+      const double truth = 5 / n, error = 0.03 * truth;
+      points.push_back({n, {truth + error * normal(random), error}});
+    }
+    const Estimate slope = fitPowerLaw(points)->slope;
+    covered += slope.low() <= -1 && -1 <= slope.high();
+  }
+  expectCovers(covered, kStudies, "slope");
+}
+
+TEST(Slope, biasEqualsNoiseWhereTheyCross) {
+  std::vector<ConvergencePoint> points;
+  for (const double n : {1.0, 4.0, 16.0}) points.push_back({n, {2 / n, 0.02 / n}});
+  const PowerLaw law = fitPowerLaw(points).value();
+  const Crossing crossing = biasEqualsNoise(law, {0.004, 0.0004}).value();
+  EXPECT_NEAR(crossing.samples, 500, 1e-6);
+  EXPECT_LT(crossing.low, 500 * 0.85);
+  EXPECT_GT(crossing.high, 500 * 1.15);
+  EXPECT_FALSE(biasEqualsNoise(law, {0.004, 0.003})) << "a bias that may be none";
+}
+
+TEST(Agreement, pValuesAreUniformForTheSamePicture) {
+  World world(13, 0);
+  constexpr int kStudies = 2000;
+  int below5 = 0, failing = 0;
+  for (int study = 0; study < kStudies; ++study) {
+    const Agreement result = agreement(world.repeats(4, 1), world.repeats(4, 1));
+    below5 += result.pValue < 0.05;
+    failing += result.fraction > 0;
+  }
+  // Welch's approximation is careful with so few repeats.
+  expectCovers(kStudies - below5, kStudies, "p-value");
+  EXPECT_EQ(failing, below5) << "a tile fails where the p-value of all is below 5%";
+  EXPECT_GT(below5, kStudies / 100);
+}
+
+TEST(Agreement, anotherPictureIsFound) {
+  World world(17, 0);
+  std::vector<Image> a = world.repeats(4, 1), b = world.repeats(4, 1);
+  for (Image& image : b)
+    for (int y = 8; y < 16; ++y)
+      for (int x = 0; x < 8; ++x) image.setRgb(x, y, image.rgb(x, y) + Rgb(0.2f));
+  const Agreement result = agreement(a, b);
+  EXPECT_EQ(result.tiles, 6u);
+  EXPECT_LT(result.pValue, 0.01);
+  EXPECT_NEAR(result.fraction, 1.0 / 6, 1e-9);
+  EXPECT_LT(*result.z.at(0, 1), -3);
+  EXPECT_LT(std::fabs(*result.z.at(2, 0)), 4);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+// Metadata of images: no library sees it, in whatever way a file comes in.
+#include "image/io/strip_metadata.h"
+
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "image/io/decode_image.h"
+#include "image/io/read_image.h"
+#include "run_command.h"
+#include "shared_data.h"
+
+namespace chromeball {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+using Words = std::vector<std::string>;
+
+#ifdef __SANITIZE_ADDRESS__
+const CommandLimits kSmall;  // the sanitizer reserves terabytes of address space
+#else
+const CommandLimits kSmall{.memory = size_t(1) << 30};
+#endif
+
+Bytes seed(const std::string& name) {
+  const std::string text =
+      fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/" + name);
+  EXPECT_FALSE(text.empty()) << name;
+  return {text.begin(), text.end()};
+}
+
+Bytes joined(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+Bytes text(const std::string& text) { return {text.begin(), text.end()}; }
+
+Bytes bigEndian(uint64_t value, int bytes) {
+  Bytes out;
+  while (bytes-- > 0) out.push_back(uint8_t(value >> 8 * bytes));
+  return out;
+}
+
+Bytes inserted(const Bytes& file, size_t at, const Bytes& more) {
+  Bytes out = file;
+  out.insert(out.begin() + std::ptrdiff_t(at), more.begin(), more.end());
+  return out;
+}
+
+// An ICC profile whose only tag, a description, lies two gigabytes behind its end; its end,
+// reckoned in 32 bits, lies inside.
+Bytes profile() {
+  Bytes icc(128);
+  const auto put = [&](size_t at, const Bytes& bytes) {
+    std::copy(bytes.begin(), bytes.end(), icc.begin() + std::ptrdiff_t(at));
+  };
+  put(0, bigEndian(144, 4));
+  put(12, text("mntrRGB XYZ "));
+  put(36, text("acsp"));
+  return joined(
+      {icc, bigEndian(1, 4), text("desc"), bigEndian(0x80000000, 4), bigEndian(0x80000010, 4)});
+}
+
+Bytes segment(uint8_t marker, const Bytes& data) {
+  return joined({{0xff, marker}, bigEndian(data.size() + 2, 2), data});
+}
+
+Bytes profileSegment() {
+  return segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, profile()}));
+}
+
+Bytes chunk(const std::string& type, const Bytes& data) {
+  return joined({bigEndian(data.size(), 4), text(type), data, {1, 2, 3, 4}});
+}
+
+// Where a JPEG's first frame header begins.
+size_t frameOf(const Bytes& jpeg) {
+  for (size_t at = 2; at + 4 < jpeg.size(); at += 2 + size_t(jpeg[at + 2] << 8 | jpeg[at + 3]))
+    if (jpeg[at + 1] >= 0xc0 && jpeg[at + 1] <= 0xc2) return at;
+  ADD_FAILURE() << "no frame";
+  return 0;
+}
+
+// The little-endian TIFF with one more entry in its directory, which is moved to the end.
+Bytes withTag(Bytes tiff, uint16_t tag, uint16_t type, const Bytes& data) {
+  const auto number = [&](size_t at, int bytes) {
+    uint32_t value = 0;
+    while (bytes-- > 0) value = value << 8 | tiff[at + size_t(bytes)];
+    return value;
+  };
+  const auto little = [](uint32_t value, int bytes) {
+    Bytes out = bigEndian(value, bytes);
+    std::reverse(out.begin(), out.end());
+    return out;
+  };
+  const size_t directory = number(4, 4), count = number(directory, 2), first = directory + 2;
+  size_t at = first;
+  while (at < first + 12 * count && number(at, 2) < tag) at += 12;
+  const Bytes entry = joined({little(tag, 2), little(type, 2), little(uint32_t(data.size()), 4),
+                              little(uint32_t(tiff.size()), 4)});
+  const auto part = [&](size_t from, size_t to) {
+    return Bytes(tiff.begin() + std::ptrdiff_t(from), tiff.begin() + std::ptrdiff_t(to));
+  };
+  const Bytes moved = joined(
+      {little(uint32_t(count + 1), 2), part(first, at), entry, part(at, first + 12 * count + 4)});
+  const Bytes offset = little(uint32_t(tiff.size() + data.size()), 4);
+  std::copy(offset.begin(), offset.end(), tiff.begin() + 4);
+  return joined({tiff, data, moved});
+}
+
+std::string saved(const std::string& path, const Bytes& bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  return path;
+}
+
+TEST(Bare, JpegKeepsWhatItsColourNeeds) {
+  const Bytes jpeg = bareJpeg(seed("a.jpg"), "a").file;
+  const Bytes adobe = segment(0xee, joined({text("Adobe"), Bytes(7)}));
+  const size_t first = 4 + size_t(jpeg[4] << 8 | jpeg[5]);  // behind JFIF's segment
+  const Bytes coloured = inserted(jpeg, first, adobe);
+  Bytes laden = coloured;
+  for (uint8_t marker = 0xe1; marker <= 0xef; ++marker)
+    if (marker != 0xee) laden = inserted(laden, first, segment(marker, text("Exif and others")));
+  laden = inserted(laden, first, segment(0xfe, text("comment")));
+  laden = inserted(laden, first,
+                   joined({{0, 7, 0xff}, profileSegment()}));  // after bytes of no segment
+  EXPECT_EQ(bareJpeg(laden, "a").file, coloured);
+  EXPECT_EQ(bareJpeg(coloured, "a").file, coloured);
+}
+
+TEST(Bare, PngKeepsTransparencyAndCriticalChunks) {
+  const size_t behindHeader = 8 + 25;
+  const Bytes keyed = inserted(kPng, behindHeader, chunk("tRNS", Bytes(6)));
+  Bytes laden = keyed;
+  for (const char* type : {"iCCP", "eXIf", "tEXt", "zTXt", "iTXt", "gAMA", "zzzz"})
+    laden = inserted(laden, behindHeader, chunk(type, Bytes(20)));
+  laden = joined({laden, chunk("tEXt", Bytes(9))});
+  EXPECT_EQ(barePng(laden), keyed);
+  // What ends too early loses only what is metadata.
+  for (size_t size = 0; size < keyed.size(); ++size) {
+    const Bytes cut(keyed.begin(), keyed.begin() + std::ptrdiff_t(size));
+    EXPECT_TRUE(std::equal(cut.begin(), cut.begin() + std::ptrdiff_t(barePng(cut).size()),
+                           barePng(cut).begin()));
+  }
+}
+
+TEST(Bare, TiffLosesMetadataAlone) {
+  const TemporaryFolder folder;
+  const Bytes tiff = bareTiff(seed("a.tif"));
+  const Image plain = readImage(saved(folder / "a.tif", tiff));
+  Bytes laden = tiff;
+  for (const uint16_t tag : {700, 33723, 34377, 34675}) laden = withTag(laden, tag, 7, profile());
+  EXPECT_NE(laden, tiff);
+  EXPECT_EQ(readImage(saved(folder / "b.tif", laden)).texels, plain.texels);
+  const Bytes once = bareTiff(laden);
+  EXPECT_NE(once, laden);
+  EXPECT_EQ(bareTiff(once), once);
+}
+
+// As a picture, a probe, and a model's texture in each place that it may have.
+TEST(Bare, ADamagedProfileChangesNothing) {
+  const TemporaryFolder folder;
+  const Bytes png = inserted(kPng, 8 + 25, chunk("iCCP", Bytes(40)));
+  const std::vector<std::pair<std::string, Bytes>> files = {
+      {"a.jpg", inserted(seed("a.jpg"), 2, profileSegment())},
+      {"a.png", png},
+      {"a.tif", withTag(seed("a.tif"), 34675, 7, profile())}};
+  for (const auto& [name, bytes] : files) {
+    const std::string path = saved(folder / name, bytes);
+    const CommandResult view = runCommand({"image", "view", path, folder / "out.png"});
+    EXPECT_EQ(view.status, 0) << name << ": " << view.error;
+    const CommandResult info = runCommand({"probe", "info", path, "--mapping", "lat-long"});
+    EXPECT_EQ(info.status, 0) << name << ": " << info.error;
+  }
+  const Bytes& jpeg = files[0].second;
+  EXPECT_EQ(decodeImage(jpeg, "a").texels8, decodeImage(seed("a.jpg"), "a").texels8);
+  EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
+}
+
+// Models whose texture is `jpeg`: beside it, in a data URI and in a buffer view.
+std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  model.write("a.jpg", jpeg);
+  std::string uri = "data:image/jpeg;base64,";
+  Bytes padded = jpeg;
+  while (padded.size() % 3) padded.push_back(0);
+  for (size_t i = 0; i < padded.size(); i += 3) {
+    const uint32_t three = uint32_t(padded[i] << 16 | padded[i + 1] << 8 | padded[i + 2]);
+    for (int shift = 18; shift >= 0; shift -= 6) uri += kDigits[three >> shift & 63];
+  }
+  return {{{"uri", "a.jpg"}},
+          {{"uri", uri}},
+          {{"bufferView", model.view(jpeg)}, {"mimeType", "image/jpeg"}}};
+}
+
+TEST(SlowBare, TexturesOfModels) {
+  const Bytes damaged = inserted(seed("a.jpg"), 2, profileSegment());
+  Bytes bomb = damaged;
+  const size_t frame = frameOf(bomb);
+  bomb[frame + 1] = 0xc2;  // progressive
+  std::fill_n(bomb.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xfc));
+  for (int location = 0; location < 3; ++location)
+    for (const bool isBomb : {false, true}) {
+      GltfWriter model;
+      model.add("images", imagesOf(model, isBomb ? bomb : damaged)[size_t(location)]);
+      model.add("textures", {{"source", 0}});
+      model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+      addTriangle(model, {{"material", 0}});
+      const std::string probe =
+          saved((model.folder() / "p.pfm").string(), joined({text("PF\n1 1\n-1\n"), Bytes(12)}));
+      const Words words = {"render",
+                           model.save(),
+                           "--probe",
+                           probe,
+                           "--probe-mapping",
+                           "lat-long",
+                           "--size",
+                           "8x8",
+                           "--samples",
+                           "1",
+                           "--quiet",
+                           "-o",
+                           (model.folder() / "out.pfm").string()};
+      if (isBomb) {
+        expectRefused(words, "64764 x 64764 texels cannot be held by", kSmall);
+      } else {
+        const CommandResult result = runCommand(words);
+        EXPECT_EQ(result.status, 0) << location << ": " << result.error;
+      }
+    }
+}
+
+// Every kind of frame, at any place among the segments, before memory is taken for it.
+TEST(SlowBare, JpegFramesAreJudgedBeforeTheyAreOpened) {
+  const TemporaryFolder folder;
+  const Bytes jpeg = seed("a.jpg");
+  const size_t frame = frameOf(jpeg);
+  const auto reason = [&](const Bytes& bytes) -> std::string {
+    try {
+      bareJpeg(bytes, "a");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (int kind = 0xc0; kind <= 0xcf; ++kind) {
+    if (kind == 0xc4 || kind == 0xc8 || kind == 0xcc) continue;  // not frames
+    Bytes bomb = inserted(jpeg, 2, profileSegment());
+    const size_t at = frame + profileSegment().size();
+    bomb[at + 1] = uint8_t(kind);
+    std::fill_n(bomb.begin() + std::ptrdiff_t(at) + 5, 4, uint8_t(0xff));
+    EXPECT_NE(reason(bomb).find("65535 x 65535 texels cannot be held"), std::string::npos) << kind;
+    const std::string path = saved(folder / "bomb.jpg", bomb);
+    expectRefused({"image", "view", path, folder / "out.png"}, "65535 x 65535", kSmall);
+    expectRefused({"probe", "info", path}, "65535 x 65535", kSmall);
+  }
+  // Enough bytes for the texels do not make the picture small enough.
+  Bytes large = jpeg;
+  large[frame + 1] = 0xc2;
+  std::fill_n(large.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xff));
+  large.resize(9 << 20);
+  expectRefused({"probe", "info", saved(folder / "large.jpg", large)}, "more than the", kSmall);
+  EXPECT_THROW(decodeImage(large, "large"), InputError);
+  // Without a frame, or with part of one.
+  EXPECT_EQ(reason(Bytes(jpeg.begin(), jpeg.begin() + std::ptrdiff_t(frame) + 8)),
+            "a: damaged image: no frame header");
+}
+
+TEST(Bare, JpegScansAreCounted) {
+  const Bytes jpeg = seed("a.jpg");
+  const Bytes scan = segment(0xda, {1, 1, 0, 0, 0, 0});
+  const auto withScans = [&](int count) {
+    Bytes bytes(jpeg.begin(), jpeg.end() - 2);
+    for (int i = 1; i < count; ++i) bytes = joined({bytes, scan, {0xff, 0}});
+    return joined({bytes, {0xff, 0xd9}});
+  };
+  EXPECT_NO_THROW(bareJpeg(withScans(kMaxJpegScans), "a"));
+  EXPECT_THROW(bareJpeg(withScans(kMaxJpegScans + 1), "a"), InputError);
+  // What follows the picture is not part of it.
+  Bytes followed = jpeg;
+  for (int i = 0; i < 200; ++i) followed = joined({followed, scan});
+  EXPECT_NO_THROW(bareJpeg(followed, "a"));
+}
+
+TEST(Bare, FilesThatWereFound) {
+  const auto folder = sharedData("hostile");
+  if (!folder) GTEST_SKIP() << "../shared/data/hostile is not there";
+  const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();
+  const TemporaryFolder out;
+  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot be held by 522 bytes",
+                kSmall);
+  const std::string damaged = (*folder / "corrupt-icc-4551.jpg").string();
+  const CommandResult result = runCommand({"image", "view", damaged, out / "a.png"});
+  EXPECT_TRUE(result.status == 0 || result.status == 2) << result.status << result.error;
+}
+
+}  // namespace
+}  // namespace chromeball
