@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading, writing and showing images.
+// Reading and writing images, and tone mapping.
 #include "image/image.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace chromeball {
 namespace {
 
-// Numbers over the whole range of a float, none of them round.
+// Numbers over the whole range of float, with full mantissas.
 Image awkwardImage(int width, int height, int channels) {
   Image image(width, height, channels);
   for (size_t i = 0; i < image.texels.size(); ++i)
@@ -97,7 +97,7 @@ TEST(Image, HdrLongRunsSurvive) {
   EXPECT_EQ(readImage(folder / "a.hdr").texels, image.texels);
 }
 
-TEST(Image, HdrHeaderIsHonoured) {
+TEST(Image, HdrHeaderIsApplied) {
   const TemporaryFolder folder;
   const std::string texels{"\x80\x40\x20\x81\x10\x80\x10\x81", 8};  // (1, .5, .25), (.125, 1, .125)
   write(folder / "a.hdr",
@@ -116,7 +116,7 @@ TEST(Image, HdrMatchesReferenceDecoder) {
   }
 }
 
-TEST(Image, DamagedHdrIsRefused) {
+TEST(Image, DamagedHdrIsRejected) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.hdr", head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
   const auto refuse = [&](const std::string& bytes, const std::string& reason) {
@@ -136,7 +136,7 @@ TEST(Image, DamagedHdrIsRefused) {
   refuse("#?RADIANCE", "end");
 }
 
-TEST(Image, PfmForms) {
+TEST(Image, PfmBigEndianAndGrey) {
   const TemporaryFolder folder;
   write(folder / "big.pfm", "Pf\n1 2\n1.0\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
   const Image image = readImage(folder / "big.pfm");  // big-endian, grey, bottom row first
@@ -219,14 +219,14 @@ TEST(Image, WritesAllOrNothing) {
   EXPECT_EQ(folder.files().size(), 5u);
 }
 
-TEST(Image, FailingToWriteIsARunError) {
-  // A folder that exists and takes no files.
+TEST(Image, FailedWriteIsARunError) {
+  // A folder that exists but into which no file can be written.
   if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "no /proc";
   EXPECT_THROW(writePfm("/proc/chromeball.pfm", Image(1, 1, 3)), RunError);
   EXPECT_THROW(writeRadianceHdr("/proc/chromeball.hdr", Image(1, 1, 3)), RunError);
 }
 
-TEST(Image, WhatIsNoFileIsRefused) {
+TEST(Image, MissingAndUnreadableFilesAreRejected) {
   const TemporaryFolder folder;
   expectInputError(folder / "none.exr", "no such file");
   expectInputError(std::filesystem::temp_directory_path().string(), "not a regular file");
@@ -242,7 +242,7 @@ TEST(ToneMap, SrgbIsItsOwnInverse) {
   EXPECT_NEAR(linearToSrgb(0.18f), 0.46135f, 1e-4f);
 }
 
-TEST(ToneMap, OperatorsAreMonotonicWithinTheScreensRange) {
+TEST(ToneMap, OperatorsAreMonotonicInTheDisplayRange) {
   for (const std::string_view name : toneOperatorNames()) {
     const ToneOperator tone = parseToneOperator(name);
     float last = -1;
@@ -259,7 +259,7 @@ TEST(ToneMap, OperatorsAreMonotonicWithinTheScreensRange) {
 }
 
 TEST(ToneMap, KnownPoints) {
-  // Exposure is in stops; Reinhard's white maps to white; neutral keeps a mid grey, less its 4%.
+  // Exposure is in stops; Reinhard's white becomes 1; neutral subtracts its 4% from a mid grey.
   EXPECT_FLOAT_EQ(display({ToneOperator::None, 2}, Rgb(0.125f)).x, 0.5f);
   EXPECT_NEAR(display({ToneOperator::Reinhard}, Rgb(4)).x, 1, 1e-6f);
   EXPECT_NEAR(display({ToneOperator::PbrNeutral}, Rgb(0.5f)).x, 0.46f, 1e-6f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Metadata of images: no library sees it, in whatever way a file comes in.
+// Libraries never see the metadata of image files, whichever way a file is read.
 #include "image/io/strip_metadata.h"
 
 #include <gtest/gtest.h>
@@ -49,8 +49,8 @@ Bytes inserted(const Bytes& file, size_t at, const Bytes& more) {
   return out;
 }
 
-// An ICC profile whose only tag, a description, lies two gigabytes behind its end; its end,
-// reckoned in 32 bits, lies inside.
+// An ICC profile whose only tag, a description, is two gigabytes beyond the end of the profile; the
+// end of the tag, computed in 32 bits, is inside.
 Bytes profile() {
   Bytes icc(128);
   const auto put = [&](size_t at, const Bytes& bytes) {
@@ -75,7 +75,7 @@ Bytes chunk(const std::string& type, const Bytes& data) {
   return joined({bigEndian(data.size(), 4), text(type), data, {1, 2, 3, 4}});
 }
 
-// Where a JPEG's first frame header begins.
+// The offset of the first frame header of a JPEG.
 size_t frameOf(const Bytes& jpeg) {
   for (size_t at = 2; at + 4 < jpeg.size(); at += 2 + size_t(jpeg[at + 2] << 8 | jpeg[at + 3]))
     if (jpeg[at + 1] >= 0xc0 && jpeg[at + 1] <= 0xc2) return at;
@@ -83,7 +83,7 @@ size_t frameOf(const Bytes& jpeg) {
   return 0;
 }
 
-// The little-endian TIFF with one more entry in its directory, which is moved to the end.
+// The little-endian TIFF with an additional directory entry; the directory moves to the end.
 Bytes withTag(Bytes tiff, uint16_t tag, uint16_t type, const Bytes& data) {
   const auto number = [&](size_t at, int bytes) {
     uint32_t value = 0;
@@ -116,52 +116,52 @@ std::string saved(const std::string& path, const Bytes& bytes) {
   return path;
 }
 
-TEST(Bare, JpegKeepsWhatItsColourNeeds) {
-  const Bytes jpeg = bareJpeg(seed("a.jpg"), "a").file;
+TEST(StripMetadata, JpegKeepsTheSegmentsThatDefineItsColour) {
+  const Bytes jpeg = stripJpeg(seed("a.jpg"), "a").file;
   const Bytes adobe = segment(0xee, joined({text("Adobe"), Bytes(7)}));
-  const size_t first = 4 + size_t(jpeg[4] << 8 | jpeg[5]);  // behind JFIF's segment
+  const size_t first = 4 + size_t(jpeg[4] << 8 | jpeg[5]);  // after the JFIF segment
   const Bytes coloured = inserted(jpeg, first, adobe);
   Bytes laden = coloured;
   for (uint8_t marker = 0xe1; marker <= 0xef; ++marker)
     if (marker != 0xee) laden = inserted(laden, first, segment(marker, text("Exif and others")));
   laden = inserted(laden, first, segment(0xfe, text("comment")));
   laden = inserted(laden, first,
-                   joined({{0, 7, 0xff}, profileSegment()}));  // after bytes of no segment
-  EXPECT_EQ(bareJpeg(laden, "a").file, coloured);
-  EXPECT_EQ(bareJpeg(coloured, "a").file, coloured);
+                   joined({{0, 7, 0xff}, profileSegment()}));  // after bytes between segments
+  EXPECT_EQ(stripJpeg(laden, "a").file, coloured);
+  EXPECT_EQ(stripJpeg(coloured, "a").file, coloured);
 }
 
-TEST(Bare, PngKeepsTransparencyAndCriticalChunks) {
+TEST(StripMetadata, PngKeepsTransparencyAndCriticalChunks) {
   const size_t behindHeader = 8 + 25;
   const Bytes keyed = inserted(kPng, behindHeader, chunk("tRNS", Bytes(6)));
   Bytes laden = keyed;
   for (const char* type : {"iCCP", "eXIf", "tEXt", "zTXt", "iTXt", "gAMA", "zzzz"})
     laden = inserted(laden, behindHeader, chunk(type, Bytes(20)));
   laden = joined({laden, chunk("tEXt", Bytes(9))});
-  EXPECT_EQ(barePng(laden), keyed);
-  // What ends too early loses only what is metadata.
+  EXPECT_EQ(stripPng(laden), keyed);
+  // A truncated file loses its metadata only.
   for (size_t size = 0; size < keyed.size(); ++size) {
     const Bytes cut(keyed.begin(), keyed.begin() + std::ptrdiff_t(size));
-    EXPECT_TRUE(std::equal(cut.begin(), cut.begin() + std::ptrdiff_t(barePng(cut).size()),
-                           barePng(cut).begin()));
+    EXPECT_TRUE(std::equal(cut.begin(), cut.begin() + std::ptrdiff_t(stripPng(cut).size()),
+                           stripPng(cut).begin()));
   }
 }
 
-TEST(Bare, TiffLosesMetadataAlone) {
+TEST(StripMetadata, TiffLosesMetadataOnly) {
   const TemporaryFolder folder;
-  const Bytes tiff = bareTiff(seed("a.tif"));
+  const Bytes tiff = stripTiff(seed("a.tif"));
   const Image plain = readImage(saved(folder / "a.tif", tiff));
   Bytes laden = tiff;
   for (const uint16_t tag : {700, 33723, 34377, 34675}) laden = withTag(laden, tag, 7, profile());
   EXPECT_NE(laden, tiff);
   EXPECT_EQ(readImage(saved(folder / "b.tif", laden)).texels, plain.texels);
-  const Bytes once = bareTiff(laden);
+  const Bytes once = stripTiff(laden);
   EXPECT_NE(once, laden);
-  EXPECT_EQ(bareTiff(once), once);
+  EXPECT_EQ(stripTiff(once), once);
 }
 
-// As a picture, a probe, and a model's texture in each place that it may have.
-TEST(Bare, ADamagedProfileChangesNothing) {
+// As an image, as a probe, and as a texture at every location in a model.
+TEST(StripMetadata, DamagedProfilesAreIgnored) {
   const TemporaryFolder folder;
   const Bytes png = inserted(kPng, 8 + 25, chunk("iCCP", Bytes(40)));
   const std::vector<std::pair<std::string, Bytes>> files = {
@@ -180,7 +180,7 @@ TEST(Bare, ADamagedProfileChangesNothing) {
   EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
 }
 
-// Models whose texture is `jpeg`: beside it, in a data URI and in a buffer view.
+// Models with the texture `jpeg`: in a file, in a data URI and in a buffer view.
 std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
   constexpr const char* kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -197,7 +197,7 @@ std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
           {{"bufferView", model.view(jpeg)}, {"mimeType", "image/jpeg"}}};
 }
 
-TEST(SlowBare, TexturesOfModels) {
+TEST(SlowStripMetadata, TexturesOfModels) {
   const Bytes damaged = inserted(seed("a.jpg"), 2, profileSegment());
   Bytes bomb = damaged;
   const size_t frame = frameOf(bomb);
@@ -226,7 +226,7 @@ TEST(SlowBare, TexturesOfModels) {
                            "-o",
                            (model.folder() / "out.pfm").string()};
       if (isBomb) {
-        expectRefused(words, "64764 x 64764 texels cannot be held by", kSmall);
+        expectRefused(words, "64764 x 64764 texels cannot fit into", kSmall);
       } else {
         const CommandResult result = runCommand(words);
         EXPECT_EQ(result.status, 0) << location << ": " << result.error;
@@ -234,14 +234,14 @@ TEST(SlowBare, TexturesOfModels) {
     }
 }
 
-// Every kind of frame, at any place among the segments, before memory is taken for it.
-TEST(SlowBare, JpegFramesAreJudgedBeforeTheyAreOpened) {
+// All kinds of frames, anywhere among the segments, before memory is allocated.
+TEST(SlowStripMetadata, JpegFramesAreCheckedBeforeTheFileIsOpened) {
   const TemporaryFolder folder;
   const Bytes jpeg = seed("a.jpg");
   const size_t frame = frameOf(jpeg);
   const auto reason = [&](const Bytes& bytes) -> std::string {
     try {
-      bareJpeg(bytes, "a");
+      stripJpeg(bytes, "a");
     } catch (const InputError& error) {
       return error.what();
     }
@@ -258,19 +258,19 @@ TEST(SlowBare, JpegFramesAreJudgedBeforeTheyAreOpened) {
     expectRefused({"image", "view", path, folder / "out.png"}, "65535 x 65535", kSmall);
     expectRefused({"probe", "info", path}, "65535 x 65535", kSmall);
   }
-  // Enough bytes for the texels do not make the picture small enough.
+  // An image that is too large is rejected even if the file has enough bytes.
   Bytes large = jpeg;
   large[frame + 1] = 0xc2;
   std::fill_n(large.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xff));
   large.resize(9 << 20);
   expectRefused({"probe", "info", saved(folder / "large.jpg", large)}, "more than the", kSmall);
   EXPECT_THROW(decodeImage(large, "large"), InputError);
-  // Without a frame, or with part of one.
+  // No frame, and a truncated one.
   EXPECT_EQ(reason(Bytes(jpeg.begin(), jpeg.begin() + std::ptrdiff_t(frame) + 8)),
             "a: damaged image: no frame header");
 }
 
-TEST(Bare, JpegScansAreCounted) {
+TEST(StripMetadata, JpegWithTooManyScansIsRejected) {
   const Bytes jpeg = seed("a.jpg");
   const Bytes scan = segment(0xda, {1, 1, 0, 0, 0, 0});
   const auto withScans = [&](int count) {
@@ -278,21 +278,20 @@ TEST(Bare, JpegScansAreCounted) {
     for (int i = 1; i < count; ++i) bytes = joined({bytes, scan, {0xff, 0}});
     return joined({bytes, {0xff, 0xd9}});
   };
-  EXPECT_NO_THROW(bareJpeg(withScans(kMaxJpegScans), "a"));
-  EXPECT_THROW(bareJpeg(withScans(kMaxJpegScans + 1), "a"), InputError);
-  // What follows the picture is not part of it.
+  EXPECT_NO_THROW(stripJpeg(withScans(kMaxJpegScans), "a"));
+  EXPECT_THROW(stripJpeg(withScans(kMaxJpegScans + 1), "a"), InputError);
+  // Bytes after the end of the image are ignored.
   Bytes followed = jpeg;
   for (int i = 0; i < 200; ++i) followed = joined({followed, scan});
-  EXPECT_NO_THROW(bareJpeg(followed, "a"));
+  EXPECT_NO_THROW(stripJpeg(followed, "a"));
 }
 
-TEST(Bare, FilesThatWereFound) {
+TEST(StripMetadata, FilesFromFuzzing) {
   const auto folder = sharedData("hostile");
   if (!folder) GTEST_SKIP() << "../shared/data/hostile is not there";
   const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();
   const TemporaryFolder out;
-  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot be held by 522 bytes",
-                kSmall);
+  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot fit into 522 bytes", kSmall);
   const std::string damaged = (*folder / "corrupt-icc-4551.jpg").string();
   const CommandResult result = runCommand({"image", "view", damaged, out / "a.png"});
   EXPECT_TRUE(result.status == 0 || result.status == 2) << result.status << result.error;

@@ -24,19 +24,19 @@ TEST(Suggest, DistanceIsSymmetric) {
     for (auto b : words) EXPECT_EQ(editDistance(a, b), editDistance(b, a)) << a << " " << b;
 }
 
-TEST(Suggest, NearestIsTheLeastDistanceAndTheFirstOfEquals) {
+TEST(Suggest, NearestHasTheMinimumDistanceAndIsTheFirstOfEquals) {
   EXPECT_EQ(nearestName("sampels", {"size", "samples", "seed"}), "samples");
   EXPECT_EQ(nearestName("tame", {"time", "name"}), "time");
   EXPECT_EQ(nearestName("max-depth", {"size", "max_depth"}), "max_depth");
 }
 
-TEST(Suggest, NothingIsNearWhereMostLettersDiffer) {
+TEST(Suggest, NoNameIsNearIfMostLettersDiffer) {
   EXPECT_EQ(nearestName("x", {"up", "fov"}), "");
   EXPECT_EQ(nearestName("probe", {}), "");
   EXPECT_EQ(nearestName("wattage", {"size", "seed"}), "");
 }
 
-TEST(Suggest, SentenceNamesTheNearestOrElseAll) {
+TEST(Suggest, MessageHasTheNearestNameOrAllNames) {
   EXPECT_EQ(didYouMean("sized", {"size", "seed"}), "did you mean `size`?");
   EXPECT_EQ(didYouMean("wattage", {"size", "seed"}), "known: size, seed");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways a run can end before its time. The command turns each into one line and an exit status.
+// The ways in which a run can fail. The command turns each into one line and an exit status.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,12 +15,13 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Something failed while running, a full disk say (exit status 1).
+// Something failed while running, such as a full disk (exit status 1).
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The user stopped the run, and what was to be saved is saved (exit status 130).
+// The user stopped the run; the work done so far is saved where that was asked for (exit status
+// 130).
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -27,7 +27,7 @@ std::vector<uint8_t> readFile(const fs::path& path) {
   std::vector<uint8_t> bytes(fs::file_size(path));
   std::ifstream in(path, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-    throwInput("{}: cannot be read to its end", path.string());
+    throwInput("{}: cannot read the whole file", path.string());
   return bytes;
 }
 
@@ -35,14 +35,13 @@ void checkReplaceable(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!fs::is_directory(folder))
     throwInput("{}: there is no folder {}", path.string(), folder.string());
-  if (fs::is_directory(path)) throwRun("{}: cannot be written: is a folder", path.string());
+  if (fs::is_directory(path)) throwRun("{}: cannot be written: it is a folder", path.string());
   if (access(folder.c_str(), W_OK) != 0)
-    throwRun("{}: nothing can be written into {}: {}", path.string(), folder.string(),
-             std::strerror(errno));
+    throwRun("{}: cannot write into {}: {}", path.string(), folder.string(), std::strerror(errno));
 }
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
-  // The process number keeps two runs that write the same target apart.
+  // The process id keeps two runs with the same target from writing to the same file.
   temporary_.replace_filename(
       fmt::format(".{}.{}.part", target_.filename().string(), static_cast<long>(getpid())));
 }

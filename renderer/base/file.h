@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files: read with the errors of this project, written so that nobody sees half of one.
+// Reads and writes whole files. Writes are atomic.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace chromeball {
 
-// Throws InputError where the path is no readable regular file (a pipe or device would never end).
+// Throws InputError unless the path is a readable regular file (a pipe or device might never end).
 void checkReadable(const std::filesystem::path& path);
 
 // All bytes of a regular file. Throws InputError.
 std::vector<uint8_t> readFile(const std::filesystem::path& path);
 
-// Asked before the work whose result is to stand there, since only a write that fails is sure.
-// Throws InputError where there is no such folder, RunError where no file can be created or
-// replaced in it.
+// Checks that a file can be created or replaced at `path`, so that a run fails before the work and
+// not after it. The write itself may still fail. Throws InputError if the folder does not exist,
+// RunError if nothing can be written into it.
 void checkReplaceable(const std::filesystem::path& path);
 
-// A file that appears under its name only when complete: written under a temporary name in the same
-// folder, renamed by commit(), removed where commit() was not reached.
+// A file that appears under its name only when complete. It is written under a temporary name in
+// the same folder and renamed by commit(). The destructor removes it if commit() was not called.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path target);

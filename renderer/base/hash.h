@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integer hashes: the only source of randomness, so that every number depends on its key alone.
+// Integer hashes. They are the only source of randomness, so that every random number depends on
+// its key alone.
 #pragma once
 
 #include <cstdint>

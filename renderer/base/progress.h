@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long work reports how far it is.
+// Reports the progress of long work.
 #pragma once
 
 #include <functional>
 
 namespace chromeball {
 
-// Called now and then with the fraction of the work that is done, in [0, 1]; NaN where that is not
-// known.
+// Called from time to time with the fraction of the work done, in [0, 1]; NaN if unknown.
 using Progress = std::function<void(double)>;
 
 }  // namespace chromeball

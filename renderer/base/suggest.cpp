@@ -9,7 +9,8 @@
 namespace chromeball {
 
 int editDistance(std::string_view a, std::string_view b) {
-  // Three rows of the table d(i, j) = distance between the first i letters of a and j of b.
+  // Three rows of the table d(i, j) = distance between the first i letters of a and the first j of
+  // b.
   std::vector<int> beforeLast(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);
   for (size_t i = 1; i <= a.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Did you mean ...?": the known name nearest to one that is not known.
+// "Did you mean ...?": suggests the known name nearest to an unknown one.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace chromeball {
 
-// Fewest single-character edits that turn `a` into `b`: insert, delete, replace, or swap two
-// neighbours (optimal string alignment; Damerau 1964). O(|a| |b|).
+// Minimum number of single-character edits that turn `a` into `b`: insert, delete, replace, or swap
+// two neighbours (optimal string alignment; Damerau 1964). O(|a| |b|).
 int editDistance(std::string_view a, std::string_view b);
 
-// The known name at the least distance from `name`; empty where even that one takes more edits than
-// half the letters of the longer of the two. Of several as near, the first.
+// The known name with the smallest edit distance from `name`, the first of several; empty if that
+// distance is more than half the length of the longer name.
 std::string_view nearestName(std::string_view name, const std::vector<std::string_view>& known);
 
-// "did you mean `NEAREST`?", or where none is near "known: A, B, C". Ends an error's sentence.
+// "did you mean `NEAREST`?", or "known: A, B, C" if no name is near. The end of an error message.
 std::string didYouMean(std::string_view name, const std::vector<std::string_view>& known);
 
 }  // namespace chromeball

@@ -22,7 +22,7 @@ struct Image {
   float* at(int x, int y) { return &texels[(size_t(y) * width + x) * channels]; }
   const float* at(int x, int y) const { return &texels[(size_t(y) * width + x) * channels]; }
 
-  // Colour access; asks for at least three channels.
+  // Colour access. Precondition: at least three channels.
   Rgb rgb(int x, int y) const {
     const float* t = at(x, y);
     return {t[0], t[1], t[2]};

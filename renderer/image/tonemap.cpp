@@ -10,8 +10,8 @@
 namespace chromeball {
 namespace {
 
-constexpr float kBrightest =
-    1e6f;  // far beyond every operator's white, so that infinity stays finite
+// Channels are clamped to this, so that infinity stays finite; far above every operator's white.
+constexpr float kMaxChannel = 1e6f;
 
 Rgb reinhard(const Rgb& c) {
   constexpr float kWhite = 4;
@@ -19,7 +19,7 @@ Rgb reinhard(const Rgb& c) {
   return c * ((1 + y / (kWhite * kWhite)) / (1 + y));
 }
 
-// The matrices go from linear sRGB to the fit's RRT space and back (glm is column-major).
+// The matrices convert linear sRGB to the RRT space of the fit and back (glm is column-major).
 Rgb aces(const Rgb& c) {
   const mat3 in(0.59719f, 0.07600f, 0.02840f, 0.35458f, 0.90834f, 0.13383f, 0.04823f, 0.01566f,
                 0.83777f);
@@ -79,7 +79,7 @@ ToneOperator parseToneOperator(std::string_view name) {
 
 Rgb display(const DisplayTransform& transform, const Rgb& radiance) {
   Rgb c = radiance * std::exp2(transform.exposure);
-  for (int i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::min(c[i], kBrightest) : 0.0f;
+  for (int i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::min(c[i], kMaxChannel) : 0.0f;
   switch (transform.tone) {
     case ToneOperator::None:
       break;

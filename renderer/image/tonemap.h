@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From linear radiance to what a screen shows.
+// Tone mapping: from linear radiance to display colours.
 #pragma once
 
 #include <string_view>
@@ -19,20 +19,20 @@ enum class ToneOperator {
   None,        // clips at 1
   Reinhard,    // luminance Y becomes Y (1 + Y/16) / (1 + Y): Reinhard et al. 2002, eq. 4, white 4
   Aces,        // fit of the ACES RRT and ODT: Hill, "BakingLab", 2016
-  PbrNeutral,  // Khronos PBR Neutral, 2024: colours below 0.8 keep their hue and saturation
+  PbrNeutral,  // Khronos PBR Neutral, 2024: preserves hue and saturation of colours below 0.8
   Filmic,      // Hable, "Uncharted 2", GDC 2010; white 11.2
 };
 
-// none, reinhard, aces, neutral, filmic; throws InputError for any other, and names the nearest.
+// none, reinhard, aces, neutral or filmic. Throws InputError with the nearest name for any other.
 ToneOperator parseToneOperator(std::string_view name);
-const std::vector<std::string_view>& toneOperatorNames();  // in the enumeration's order
+const std::vector<std::string_view>& toneOperatorNames();  // in the order of the enumeration
 
 struct DisplayTransform {
   ToneOperator tone = ToneOperator::None;
   float exposure = 0;  // stops: radiance is multiplied by 2^exposure
 };
 
-// Display-linear colour in [0, 1]. NaN gives 0; negative channels count as 0.
+// Display-linear colour in [0, 1]. NaN and negative channels count as 0.
 Rgb display(const DisplayTransform& transform, const Rgb& radiance);
 
 }  // namespace chromeball

@@ -26,7 +26,7 @@ bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// The content decides, since models often label their images wrongly.
+// Decides by the content, since many models label their images wrongly.
 const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
   const char* reader = readerFor(file);
   if (reader && (reader == std::string_view("png") || reader == std::string_view("jpeg")))
@@ -35,27 +35,27 @@ const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
                       : startsWith(file, "DDS ")                    ? "DDS"
                       : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
                                                                     : nullptr;
-  if (found) throwInput("{}: is {}; PNG, JPEG and WebP can be read", name, found);
-  throwInput("{}: is neither PNG, JPEG nor WebP", name);
+  if (found) throwInput("{}: is {}; it must be PNG, JPEG or WebP", name, found);
+  throwInput("{}: is not a PNG, JPEG or WebP file", name);
 }
 
-// Of a JPEG, bareJpeg() has looked whether the bytes can hold as many texels.
+// stripJpeg() checks whether the bytes of a JPEG can hold as many texels.
 void checkSize(int width, int height, int channels, const char* reader, size_t fileBytes,
                const std::string& name) {
   if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide || channels < 1)
-    throwInput("{}: {} x {} texels of {} channels; at most {} x {} can be read", name, width,
-               height, channels, kMaxImageSide, kMaxImageSide);
-  // A PNG's texel has at least a bit.
+    throwInput("{}: {} x {} texels with {} channels; the limit is {} x {}", name, width, height,
+               channels, kMaxImageSide, kMaxImageSide);
+  // A texel of a PNG takes at least one bit.
   if (reader == std::string_view("png") &&
-      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMaxDeflated)
-    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name, width,
-               height, fileBytes);
+      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMaxDeflateRatio)
+    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, width, height,
+               fileBytes);
 }
 
-// Reads the image as T, spread over RGBA. A few rows at a time, so that each page of the result is
-// touched once and nothing else is large: pages cost about as much as decoding does. `type`: what
-// to convert to; UNKNOWN where the file holds T, since asking for T itself makes OpenImageIO take a
-// buffer of 64 MB for every call.
+// Reads the image as RGBA texels of type T. It reads a few rows at a time, so that each page of the
+// result is touched once and no other buffer is large: page faults cost about as much as decoding.
+// `type` is the type to convert to. It is UNKNOWN if the file holds T, because OpenImageIO
+// allocates a buffer of 64 MB on every call that asks for T itself.
 template <class T, class Texel>
 std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
   constexpr int kRows = 32;
@@ -86,7 +86,7 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
   if (startsWith(file, "RIFF") && startsWith(file, "WEBP", 8)) return decodeWebp(file, name);
   const char* reader = readerOf(file, name);
-  const QuietStandardError quiet;
+  const SilencedStderr silenced;
   ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   const auto check = [&](int width, int height, int channels) {

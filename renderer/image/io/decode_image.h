@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes an image file that is already in memory.
+// Decodes an image file in memory: the textures of a model.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace chromeball {
 
-// RGBA texels, row 0 on top, alpha unassociated (as the file states it) and 1 where the file has
-// none; grey is spread over RGB. Exactly one of the arrays is filled. Values are as encoded: no
-// transfer function is applied.
+// RGBA texels, row 0 on top. Alpha is unassociated, as in the file, and 1 if the file has none;
+// grey is copied to R, G and B. Exactly one of the arrays is filled. No transfer function is
+// applied.
 struct DecodedImage {
   int width = 0, height = 0;
   std::vector<std::array<uint8_t, 4>> texels8;  // 8-bit sources
@@ -23,9 +23,9 @@ struct DecodedImage {
 
 inline constexpr int kMaxImageSide = 16384;
 
-// `file` holds a PNG, a JPEG or a WebP; `name` is for messages. Throws InputError for another
-// format, an image larger than kMaxImageSide on a side or than its bytes can hold, and for damaged
-// data.
+// Decodes a PNG, JPEG or WebP; `name` is for messages. Throws InputError for another format, for
+// damaged data, and for an image with a side above kMaxImageSide or with more texels than the bytes
+// of the file can hold.
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name);
 
 }  // namespace chromeball

@@ -11,15 +11,15 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) 
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK)
     throwInput("{}: damaged image: not a WebP", name);
-  if (features.has_animation) throwInput("{}: is an animation; give a still picture", name);
-  DecodedImage image;  // the format allows 16383 texels a side at most
+  if (features.has_animation) throwInput("{}: is an animation; it must be a still image", name);
+  DecodedImage image;  // the format allows at most 16383 texels per side
   image.width = features.width;
   image.height = features.height;
-  // A picture of one colour shrinks 25000 times; small ones are believed anyway.
+  // An image of one colour compresses 25000 : 1. Small images may have any ratio.
   const uint64_t texels = uint64_t(image.width) * uint64_t(image.height);
   if (texels > (uint64_t(1) << 24) && texels > file.size() * 32768)
-    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
-               image.width, image.height, file.size());
+    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
+               image.height, file.size());
   image.texels8.resize(texels);
   uint8_t* out = image.texels8.data()->data();
   const size_t bytes = image.texels8.size() * 4;

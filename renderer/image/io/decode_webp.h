@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// WebP, by its own library: OpenImageIO's reader multiplies the colour by alpha, which rounds
-// transparent colours away.
+// Decodes WebP by libwebp: OpenImageIO's reader multiplies the colour by alpha, which rounds away
+// the colours of transparent texels.
 #pragma once
 
 #include "image/io/decode_image.h"
 
 namespace chromeball {
 
-// As decodeImage(); `file` begins as a WebP does.
+// As decodeImage(), for a WebP file.
 DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
 
 }  // namespace chromeball

@@ -14,11 +14,11 @@ std::vector<uint8_t> encodePng(int width, int height, int channels,
   const auto output = OIIO::ImageOutput::create("png");
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  // Texels go out as they are; without this, colour would be divided by alpha.
+  // Without this attribute OpenImageIO would divide the colour by alpha.
   if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
   if (!output || !output->set_ioproxy(&encoded) || !output->open("memory.png", spec) ||
       !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-    throwRun("a PNG could not be made: {}", output ? output->geterror() : OIIO::geterror());
+    throwRun("cannot encode a PNG: {}", output ? output->geterror() : OIIO::geterror());
   return encoded.buffer();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG in memory: for documents that carry their pictures with them, and for files, since
-// OpenImageIO's writer does not notice a disk that is full.
+// Encodes a PNG in memory: for images embedded in documents, and for files, because OpenImageIO's
+// writer does not detect a full disk.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// `bytes` are rows of interleaved 8-bit channels, sRGB: one (grey), three, or four with
-// unassociated alpha, which come back unchanged.
+// `bytes` are rows of interleaved 8-bit sRGB channels: one (grey), three, or four with unassociated
+// alpha. The encoding is lossless.
 std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes);
 
 }  // namespace chromeball

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 using Bytes = std::vector<char>;
 
-// How long the content of each type is.
+// Bytes of an attribute of each type of fixed length.
 const std::map<std::string, size_t> kLengths = {
     {"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
     {"compression", 1}, {"double", 8},   {"envmap", 1},
@@ -27,8 +27,8 @@ const std::map<std::string, size_t> kLengths = {
     {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
     {"v3f", 12},        {"v3i", 12},     {"deepImageState", 1}};
 
-// Each channel is a name that ends with 0, and 16 bytes; an empty name ends the list. 0 where the
-// list does not end with its attribute.
+// The number of channels in a channel list, in which each is a name that ends with 0, then 16
+// bytes; an empty name ends the list. 0 if the list and its attribute do not end at the same byte.
 int64_t channelsIn(const Bytes& list) {
   int64_t channels = 0;
   size_t at = 0;
@@ -37,8 +37,8 @@ int64_t channelsIn(const Bytes& list) {
   return at + 1 == list.size() ? channels : 0;
 }
 
-// Texts, each behind its length.
-bool isTexts(const Bytes& list) {
+// Whether the content is a sequence of strings, each after its length.
+bool isStringVector(const Bytes& list) {
   size_t at = 0;
   while (list.size() - at >= sizeof(uint32_t)) {
     uint32_t length;
@@ -50,19 +50,19 @@ bool isTexts(const Bytes& list) {
   return at == list.size();
 }
 
-// What the library reads of an attribute depends on the type, not on the length that the file
-// states. Only where both agree does the walk below see the attributes that the library will see.
+// The type of an attribute decides how many bytes the library reads, not the length that the file
+// states. Only if both agree does ExrHeaders see the same attributes as the library.
 bool hasLengthOfType(const std::string& type, const Bytes& content) {
   if (const auto found = kLengths.find(type); found != kLengths.end())
     return content.size() == found->second;
   if (type == "chlist") return channelsIn(content) > 0;
-  if (type == "stringvector") return isTexts(content);
+  if (type == "stringvector") return isStringVector(content);
   if (type == "floatvector") return content.size() % sizeof(float) == 0;
   return true;
 }
 
-// OpenEXR allocates what an attribute says is its length, and buffers for whole rows of blocks, as
-// soon as it opens a file: gigabytes for a file of 400 bytes.
+// When OpenEXR opens a file, it allocates the stated length of each attribute and buffers for whole
+// rows of blocks: gigabytes for a file of 400 bytes. So these sizes are checked first.
 class ExrHeaders {
  public:
   explicit ExrHeaders(const fs::path& path)
@@ -83,10 +83,10 @@ class ExrHeaders {
       const std::string type = word();
       const Bytes content = bytes(number<int32_t>());
       if (!hasLengthOfType(type, content))
-        throwInput("{}: cannot be read: its header holds a {} of {} bytes", path_.string(),
+        throwInput("{}: damaged header: it has a {} of {} bytes", path_.string(),
                    kLengths.contains(type) ? type : "list", content.size());
       if (type == "box2i" && name == "dataWindow") {
-        int32_t box[4];  // the first and the last column and row
+        int32_t box[4];  // first column, first row, last column, last row
         std::memcpy(box, content.data(), sizeof(box));
         width = int64_t(box[2]) - box[0] + 1;
         height = int64_t(box[3]) - box[1] + 1;
@@ -107,17 +107,16 @@ class ExrHeaders {
   void checkSide(int64_t side) const {
     constexpr int64_t kMaxSide = 1 << 17;  // a row of blocks is at most 256 texels high
     if (side > kMaxSide)
-      throwInput("{}: {} texels in a row are more than {}", path_.string(), side, kMaxSide);
+      throwInput("{}: {} texels per row exceed the limit of {}", path_.string(), side, kMaxSide);
   }
 
   Bytes bytes(int64_t count) {
     if (count < 0 || count > left_)
-      throwInput("{}: cannot be read: its header names more bytes than the file has",
-                 path_.string());
+      throwInput("{}: damaged header: it claims more bytes than the file has", path_.string());
     left_ -= count;
     Bytes content(count);
     if (!in_.read(content.data(), count))
-      throwInput("{}: cannot be read to its end", path_.string());
+      throwInput("{}: cannot read the whole file", path_.string());
     return content;
   }
 
@@ -134,7 +133,7 @@ class ExrHeaders {
     for (char c = bytes(1)[0]; c != 0; c = bytes(1)[0]) {
       text += c;
       if (text.size() > kMaxLength)
-        throwInput("{}: cannot be read: a name in its header does not end", path_.string());
+        throwInput("{}: damaged header: a name in it does not end", path_.string());
     }
     return text;
   }

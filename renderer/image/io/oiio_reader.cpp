@@ -11,11 +11,11 @@
 namespace chromeball {
 namespace {
 
-std::vector<uint8_t> bareFile(std::string_view reader, std::span<const uint8_t> file,
-                              const std::string& name, const CheckSize& check) {
-  if (reader == "png") return barePng(file);
-  if (reader == "tiff") return bareTiff(file);
-  BareJpeg jpeg = bareJpeg(file, name);
+std::vector<uint8_t> stripMetadata(std::string_view reader, std::span<const uint8_t> file,
+                                   const std::string& name, const CheckSize& check) {
+  if (reader == "png") return stripPng(file);
+  if (reader == "tiff") return stripTiff(file);
+  StrippedJpeg jpeg = stripJpeg(file, name);
   check(jpeg.width, jpeg.height, jpeg.components);
   return std::move(jpeg.file);
 }
@@ -37,10 +37,10 @@ const char* readerFor(std::span<const uint8_t> firstBytes) {
   return nullptr;
 }
 
-// By name, since OpenImageIO gives what one reader refuses to all others in turn: readers of film,
-// camera and medical formats that nobody asked for, one of which takes 2 GB for a file of 400
-// bytes. One at a time, since version 2.4 looks ICC and EXIF tags up in tables that grow by the
-// look-up, without a lock (its issue 3756).
+// The reader is given by name, because OpenImageIO passes a file that one reader rejects to all
+// others in turn, among them readers of film, camera and medical formats; one of these allocates
+// 2 GB for a file of 400 bytes. The mutex is needed because version 2.4 looks up ICC and EXIF tags
+// in tables that the look-up itself extends without a lock (OpenImageIO's issue 3756).
 std::unique_ptr<OIIO::ImageInput> openImage(const char* reader, const std::string& path,
                                             const OIIO::ImageSpec& config) {
   static std::mutex mutex;
@@ -54,7 +54,7 @@ std::unique_ptr<OIIO::ImageInput> openImage(const char* reader, const std::strin
 
 MemoryInput::MemoryInput(const char* reader, std::span<const uint8_t> file, const std::string& name,
                          const CheckSize& check, OIIO::ImageSpec config)
-    : file_(bareFile(reader, file, name, check)), memory_(file_.data(), file_.size()) {
+    : file_(stripMetadata(reader, file, name, check)), memory_(file_.data(), file_.size()) {
   OIIO::Filesystem::IOProxy* proxy = &memory_;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   input_ = openImage(reader, name, config);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenImageIO's readers, each called by name.
+// OpenImageIO's readers, selected by name.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>
@@ -14,21 +14,23 @@
 
 namespace chromeball {
 
-// The reader for a file that begins with these bytes: "openexr", "png", "jpeg", "tiff", or nullptr.
+// The reader for a file that starts with these bytes: "openexr", "png", "jpeg", "tiff", or nullptr.
 const char* readerFor(std::span<const uint8_t> firstBytes);
 
-// Both throw std::runtime_error with the reader's words where it cannot open the file.
+// Throws std::runtime_error with the reader's message if it cannot open the file.
 std::unique_ptr<OIIO::ImageInput> openImage(const char* reader, const std::string& path,
                                             const OIIO::ImageSpec& config = {});
 
-// Throws where an image of this size is not to be read.
+// Throws if an image of this size must not be read.
 using CheckSize = std::function<void(int width, int height, int channels)>;
 
-// A PNG, JPEG or TIFF in memory, of which the library is given what is left without metadata
-// (bare.h). Of a JPEG it takes memory for all texels as soon as it opens one, so `check` goes
-// first; and for every format once it is open. `name` is for messages.
+// Opens a PNG, JPEG or TIFF in memory. The library sees the file without its metadata
+// (strip_metadata.h). `check` runs once the file is open; for a JPEG also before, because the
+// library allocates all texels of a JPEG when it opens one.
 class MemoryInput {
  public:
+  // `name` is for messages. Throws std::runtime_error with the reader's message if it cannot open
+  // the file, and whatever `check` throws.
   MemoryInput(const char* reader, std::span<const uint8_t> file, const std::string& name,
               const CheckSize& check, OIIO::ImageSpec config = {});
   MemoryInput(const MemoryInput&) = delete;

@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little);
 
 namespace {
 
-// The next word of the header; `position` ends on the single white space behind it.
+// The next word of the header. Moves `position` to the white space after it.
 std::string_view nextWord(std::string_view text, size_t& position) {
   constexpr std::string_view kSpace = " \t\r\n";
   const size_t begin = std::min(text.find_first_not_of(kSpace, position), text.size());
@@ -51,7 +51,7 @@ Image readPfm(const std::filesystem::path& path) {
   checkImageSize(path, width, height, channels);
   const size_t rowBytes = size_t(width) * channels * sizeof(float);
   if (bytes.size() < begin || bytes.size() - begin < rowBytes * height)
-    throwInput("{}: {} x {} texels need {} bytes, the file ends after {}", path.string(), width,
+    throwInput("{}: {} x {} texels need {} bytes, but the file has {}", path.string(), width,
                height, begin + rowBytes * height, bytes.size());
 
   Image image(width, height, channels);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portable float map: "PF" (RGB) or "Pf" (grey), rows from the bottom up, 32-bit floats whose byte
-// order is the sign of the scale line. The magnitude of that line has no agreed meaning and is
-// ignored; we write -1 (little-endian).
+// Portable float map: "PF" (RGB) or "Pf" (grey), rows from the bottom up, 32-bit floats. The sign
+// of the scale line gives the byte order. Its magnitude has no agreed meaning and is ignored; we
+// write -1 (little-endian).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace chromeball {
 // One or three channels. Throws InputError.
 Image readPfm(const std::filesystem::path& path);
 
-// The first three channels, or the first one of an image that has fewer. Throws RunError.
+// Writes the first three channels, or the first one of an image with fewer. Throws RunError.
 void writePfm(const std::filesystem::path& path, const Image& image);
 
 }  // namespace chromeball

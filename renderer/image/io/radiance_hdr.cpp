@@ -17,8 +17,8 @@ namespace {
 
 using Rgbe = std::array<uint8_t, 4>;
 
-constexpr int kMinRunWidth = 8,
-              kMaxRunWidth = 32767;  // widths the newer run-length encoding allows
+// The widths that the newer run-length encoding allows.
+constexpr int kMinRunWidth = 8, kMaxRunWidth = 32767;
 
 class Reader {
  public:
@@ -26,7 +26,7 @@ class Reader {
 
   Image read() {
     readHeader();
-    checkPlausible();
+    checkFileLength();
     Image image(width_, height_, 3);
     std::vector<Rgbe> row(width_);
     for (int y = 0; y < height_; ++y) {
@@ -53,11 +53,11 @@ class Reader {
   }
 
   void readHeader() {
-    if (!line().starts_with("#?")) fail("not a Radiance picture");
+    if (!line().starts_with("#?")) fail("not a Radiance HDR file");
     double exposure = 1;
     for (std::string_view text = line(); !text.empty() && text != "\r"; text = line()) {
       if (text.starts_with("FORMAT=") && text.find("32-bit_rle_rgbe") == std::string_view::npos)
-        fail("only FORMAT=32-bit_rle_rgbe can be read");
+        fail("unsupported FORMAT; it must be 32-bit_rle_rgbe");
       if (text.starts_with("EXPOSURE=")) exposure *= std::atof(std::string(text.substr(9)).c_str());
     }
     if (!(exposure > 1e-20 && exposure < 1e20)) fail("EXPOSURE must be a positive number");
@@ -78,10 +78,10 @@ class Reader {
            bytes_[position_ + 2] * 256 + bytes_[position_ + 3] == width_;
   }
 
-  // Refuses a header whose texels cannot be in so short a file, before they are allocated. A run
-  // takes two bytes for at most 127 texels; the older encoding has no such bound, so a generous one
-  // is set.
-  void checkPlausible() const {
+  // Throws if the file is too short for the image that its header claims, before its texels are
+  // allocated. A run takes two bytes for at most 127 texels. The older encoding has no such bound;
+  // 1000 texels per texel of the file is an estimate.
+  void checkFileLength() const {
     const uint64_t left = bytes_.size() - position_;
     const uint64_t minimum = atRunLengthRow()
                                  ? uint64_t(height_) * (4 + 8 * uint64_t((width_ + 126) / 127))
@@ -90,7 +90,7 @@ class Reader {
   }
 
   uint8_t byte() {
-    if (position_ >= bytes_.size()) fail("the file ends inside its texels");
+    if (position_ >= bytes_.size()) fail("the file ends before its last texel");
     return bytes_[position_++];
   }
 
@@ -102,14 +102,14 @@ class Reader {
         const uint8_t code = byte();
         const bool run = code > 128;
         const int count = run ? code - 128 : code;
-        if (count == 0 || count > width_ - x) fail("a run leaves its row");
+        if (count == 0 || count > width_ - x) fail("damaged data: a run exceeds its row");
         const uint8_t repeated = run ? byte() : 0;
         for (const int end = x + count; x < end; ++x) row[x][channel] = run ? repeated : byte();
       }
   }
 
-  // Flat texels, among which (1, 1, 1, n) repeats the one before n times, n shifted left by 8 for
-  // each such texel that directly follows another.
+  // The older encoding: flat texels, among which (1, 1, 1, n) repeats the previous texel n times; n
+  // is shifted left by 8 for each directly preceding repeat.
   void readOldRow(std::vector<Rgbe>& row) {
     int shift = 0;
     for (int x = 0; x < width_;) {
@@ -117,7 +117,7 @@ class Reader {
       for (uint8_t& b : texel) b = byte();
       if (texel[0] == 1 && texel[1] == 1 && texel[2] == 1) {
         const int64_t count = shift < 32 ? int64_t(texel[3]) << shift : width_;
-        if (x == 0 || count > width_ - x) fail("a run leaves its row");
+        if (x == 0 || count > width_ - x) fail("damaged data: a run exceeds its row");
         std::fill_n(row.begin() + x, count, row[x - 1]);
         x += int(count);
         shift += 8;
@@ -158,7 +158,7 @@ Rgbe encode(Rgb color) {
 }
 
 void appendRuns(std::vector<uint8_t>& out, const std::vector<Rgbe>& row, int channel) {
-  constexpr int kMaxCount = 127, kWorthARun = 4;
+  constexpr int kMaxCount = 127, kMinRun = 4;
   const int width = int(row.size());
   const auto runLength = [&](int x) {
     int end = x + 1;
@@ -167,13 +167,13 @@ void appendRuns(std::vector<uint8_t>& out, const std::vector<Rgbe>& row, int cha
   };
   for (int x = 0; x < width;) {
     const int run = runLength(x);
-    if (run >= kWorthARun) {
+    if (run >= kMinRun) {
       out.insert(out.end(), {uint8_t(128 + run), row[x][channel]});
       x += run;
       continue;
     }
     int end = x + 1;
-    while (end < width && end - x < kMaxCount && runLength(end) < kWorthARun) ++end;
+    while (end < width && end - x < kMaxCount && runLength(end) < kMinRun) ++end;
     out.push_back(uint8_t(end - x));
     for (; x < end; ++x) out.push_back(row[x][channel]);
   }

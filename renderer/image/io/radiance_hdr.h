@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance pictures (.hdr, .pic): RGBE texels, flat or in either of the two run-length encodings
+// Radiance images (.hdr, .pic): RGBE texels, flat or in one of the two run-length encodings
 // (Ward, "Real Pixels", Graphics Gems II; Radiance's color.c). A texel (r, g, b, e) stands for
-// (r, g, b) 2^(e - 136), divided by the product of the header's EXPOSURE lines.
+// (r, g, b) 2^(e - 136), divided by the product of the EXPOSURE lines in the header.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@ namespace chromeball {
 // Three channels. Throws InputError.
 Image readRadianceHdr(const std::filesystem::path& path);
 
-// The first three channels, each rounded to the nearest mantissa of the texel's shared exponent.
-// RGBE holds nothing negative and nothing invalid: such channels are written as 0. Throws RunError.
+// Writes the first three channels, each rounded to the nearest mantissa for the texel's shared
+// exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0. Throws RunError.
 void writeRadianceHdr(const std::filesystem::path& path, const Image& image);
 
 }  // namespace chromeball

@@ -19,22 +19,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// OpenImageIO's message about `path`, as one line of ours. What its message says up to the path is
-// said by ours, unless the path is its end; a damaged file's names may hold anything.
+// Throws OpenImageIO's message about `path` as a one-line InputError. Text before the path is
+// dropped, since our message starts with the path, unless the path comes last. Characters that are
+// not printable are replaced, since names in a damaged file may hold any bytes.
 [[noreturn]] void fail(const fs::path& path, std::string reason) {
   constexpr const char* kPunctuation = "\"'.:() \n";
-  const size_t repeated = reason.rfind(path.string());
-  if (repeated != std::string::npos) {
-    const std::string after = reason.substr(repeated + path.string().size());
-    const size_t more = after.find_first_not_of(kPunctuation);
-    reason = more != std::string::npos ? after.substr(more) : reason.substr(0, repeated);
-    if (more == std::string::npos) reason.erase(reason.find_last_not_of(kPunctuation) + 1);
+  const size_t pathBegin = reason.rfind(path.string());
+  if (pathBegin != std::string::npos) {
+    const std::string after = reason.substr(pathBegin + path.string().size());
+    const size_t textBegin = after.find_first_not_of(kPunctuation);
+    if (textBegin != std::string::npos) {
+      reason = after.substr(textBegin);
+    } else {
+      reason = reason.substr(0, pathBegin);
+      reason.erase(reason.find_last_not_of(kPunctuation) + 1);
+    }
   }
   reason.erase(reason.find_last_not_of(".: \n") + 1);
   for (char& c : reason)
     if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
   throwInput("{}: cannot be read: {}", path.string(),
-             reason.empty() ? "damaged, or of an unknown format" : reason);
+             reason.empty() ? "it is damaged or of an unknown format" : reason);
 }
 
 std::string firstBytes(const fs::path& path) {
@@ -61,18 +66,19 @@ Metadata metadataOf(const OIIO::ImageSpec& spec) {
   return metadata;
 }
 
-// Throws where the file is too short for what its header says. Of OpenEXR's and TIFF's encodings
-// only a guess is known, which small images need not keep. JPEG's frames are judged in bareJpeg().
-void checkPlausible(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxPacked = 100'000;
-  const uint64_t decoded = spec.image_bytes(true), bytes = fs::file_size(path);
-  const uint64_t maximum =
-      std::max(kAlwaysAllowed, bytes * (reader == "png" ? kMaxDeflated : kMaxPacked));
-  if (decoded > maximum)
+// Throws if the file is too short for the image that its header claims. The compression ratio of
+// OpenEXR and TIFF has no known bound; kMaxRatio is an estimate, which small images may exceed.
+// stripJpeg() checks the frames of a JPEG.
+void checkFileLength(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
+  const uint64_t decodedBytes = spec.image_bytes(true), fileBytes = fs::file_size(path);
+  const uint64_t maxBytes =
+      std::max(kAlwaysAllowed, fileBytes * (reader == "png" ? kMaxDeflateRatio : kMaxRatio));
+  if (decodedBytes > maxBytes)
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
-// Colour becomes what is seen before black, which for linear texels is a product.
+// Multiplies the colour by alpha; the texels are linear.
 void associate(Image& image, int alphaChannel) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -102,23 +108,23 @@ ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexel
   return file;
 }
 
-ImageFile readThroughLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
+ImageFile readByLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
   const auto checkSize = [&](int width, int height, int channels) {
     checkImageSize(path, width, height, channels);
   };
   if (reader != std::string_view("openexr")) {
-    // Associating alpha is left to us: the library does it to encoded texels.
+    // readTexels() associates alpha; the library would do so before the texels are decoded.
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     MemoryInput memory(reader, readFile(path), path.string(), checkSize, config);
-    checkPlausible(path, reader, memory.input().spec());
+    checkFileLength(path, reader, memory.input().spec());
     return readTexels(path, memory.input(), integers);
   }
   checkExrHeaders(path);
   const auto input = openImage(reader, path.string());
   const OIIO::ImageSpec& spec = input->spec();
   checkSize(spec.width, spec.height, spec.nchannels);
-  checkPlausible(path, reader, spec);
+  checkFileLength(path, reader, spec);
   return readTexels(path, *input, integers);
 }
 
@@ -150,15 +156,15 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
   const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
-  if (!reader) fail(path, "is neither EXR, Radiance HDR, PFM, PNG, JPEG nor TIFF");
+  if (!reader) fail(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
   try {
-    const QuietStandardError quiet;
-    return readThroughLibrary(path, reader, integers);
+    const SilencedStderr silenced;
+    return readByLibrary(path, reader, integers);
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    fail(path, "its header asks for more memory than there is");
-  } catch (const std::exception& error) {  // the library's own, about a damaged file
+    fail(path, "its header claims more texels than fit into memory");
+  } catch (const std::exception& error) {  // thrown by OpenImageIO about a damaged file
     fail(path, error.what());
   }
 }
@@ -189,10 +195,11 @@ std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
 }
 
 std::vector<std::string> layerNames(const ImageFile& file) {
-  constexpr std::array kOfTheColor = {"R", "G", "B", "A", "X", "Y", "Z"};
+  constexpr std::array kColorChannels = {"R", "G", "B", "A", "X", "Y", "Z"};
   std::vector<std::string> names;
   for (const std::string& channel : file.channels) {
-    if (std::find(kOfTheColor.begin(), kOfTheColor.end(), channel) != kOfTheColor.end()) continue;
+    if (std::find(kColorChannels.begin(), kColorChannels.end(), channel) != kColorChannels.end())
+      continue;
     const std::string name = channel.substr(0, channel.rfind('.'));
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -202,7 +209,9 @@ std::vector<std::string> layerNames(const ImageFile& file) {
 Image colorOf(ImageFile&& file, const fs::path& path) {
   if (file.channels == std::vector<std::string>{"R", "G", "B"}) return std::move(file.image);
   std::optional<Image> color = findColor(file);
-  if (!color) throwInput("{}: has no channels R, G and B, and is not grey", path.string());
+  if (!color)
+    throwInput("{}: has no colour; it needs channels R, G and B, or Y, or a single channel",
+               path.string());
   return *std::move(color);
 }
 

@@ -11,24 +11,24 @@ namespace chromeball {
 namespace {
 
 std::mutex mutex;
-int living = 0;
+int objectCount = 0;
 int savedError = -1;
 
 }  // namespace
 
-QuietStandardError::QuietStandardError() {
+SilencedStderr::SilencedStderr() {
   const std::lock_guard lock(mutex);
-  if (living++ > 0) return;
+  if (objectCount++ > 0) return;
   std::fflush(stderr);
   savedError = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (savedError >= 0 && nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-  if (nowhere >= 0) close(nowhere);
+  const int devNull = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (savedError >= 0 && devNull >= 0) dup2(devNull, STDERR_FILENO);
+  if (devNull >= 0) close(devNull);
 }
 
-QuietStandardError::~QuietStandardError() {
+SilencedStderr::~SilencedStderr() {
   const std::lock_guard lock(mutex);
-  if (--living > 0 || savedError < 0) return;
+  if (--objectCount > 0 || savedError < 0) return;
   std::fflush(stderr);
   dup2(savedError, STDERR_FILENO);
   close(savedError);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Libraries under OpenImageIO (libpng) print what they find wrong, besides reporting it; the
-// command owes its user one line.
+// Silences libraries below OpenImageIO (libpng) that print errors besides returning them, so that
+// the command prints one line about each error.
 #pragma once
 
 namespace chromeball {
 
-// Standard error goes nowhere while any of these lives, in any thread.
-class QuietStandardError {
+// While any object of this class exists, in any thread, standard error goes to /dev/null.
+class SilencedStderr {
  public:
-  QuietStandardError();
-  ~QuietStandardError();
-  QuietStandardError(const QuietStandardError&) = delete;
-  QuietStandardError& operator=(const QuietStandardError&) = delete;
+  SilencedStderr();
+  ~SilencedStderr();
+  SilencedStderr(const SilencedStderr&) = delete;
+  SilencedStderr& operator=(const SilencedStderr&) = delete;
 };
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG (ITU-T T.81, annex B): markers, most with a segment of a stated length behind them, up to
+// JPEG (ITU-T T.81, annex B): markers, most of them followed by a segment of a stated length, up to
 // the first start of scan.
 #include <algorithm>
 
@@ -21,7 +21,7 @@ enum Marker : uint8_t {
   kEoi = 0xd9,
   kSos = 0xda,
   kApp0 = 0xe0,   // JFIF
-  kApp14 = 0xee,  // Adobe: whether colour is YCbCr, RGB, CMYK or YCCK
+  kApp14 = 0xee,  // Adobe: colour is YCbCr, RGB, CMYK or YCCK
   kApp15 = 0xef,
   kCom = 0xfe
 };
@@ -38,8 +38,8 @@ bool standsAlone(uint8_t marker) { return marker == kTem || (marker >= kRst0 && 
 
 int bigEndian16(const uint8_t* bytes) { return bytes[0] << 8 | bytes[1]; }
 
-// The next marker's byte, past anything between segments, as libjpeg finds it; `at` is then behind
-// it. 0 at the end.
+// The second byte of the next marker; 0 at the end of the file. Skips anything between segments, as
+// libjpeg does, and moves `at` to the byte after the marker.
 uint8_t nextMarker(std::span<const uint8_t> file, size_t& at) {
   for (; at + 1 < file.size(); ++at)
     if (file[at] == 0xff && file[at + 1] != 0xff && file[at + 1] != 0) {
@@ -49,38 +49,38 @@ uint8_t nextMarker(std::span<const uint8_t> file, size_t& at) {
   return 0;
 }
 
-// `at` is behind a marker.
+// The end of the segment whose marker ends at `at`.
 size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
   if (standsAlone(marker) || marker == kEoi) return at;
   if (file.size() - at < 2) return file.size();
   return std::min(at + size_t(std::max(bigEndian16(&file[at]), 2)), file.size());
 }
 
-// `at` is where the first scan begins. In coded data, 0xff is followed by 0 or a restart marker.
+// The first scan begins at `at`. In coded data, 0xff is followed by 0 or a restart marker.
 void checkScans(std::span<const uint8_t> file, size_t at, const std::string& name) {
   int count = 0;
   for (uint8_t marker; (marker = nextMarker(file, at)) && marker != kEoi;) {
     if (marker == kSos && ++count > kMaxJpegScans)
-      throwInput("{}: more than {} scans: hostile", name, kMaxJpegScans);
+      throwInput("{}: damaged image: more than {} scans", name, kMaxJpegScans);
     at = endOfSegment(file, at, marker);
   }
 }
 
 void readFrame(std::span<const uint8_t> segment, size_t fileBytes, const std::string& name,
-               BareJpeg& jpeg) {
+               StrippedJpeg& jpeg) {
   if (segment.size() < 8) return;  // length, precision, height, width, components
   jpeg.height = bigEndian16(&segment[3]);
   jpeg.width = bigEndian16(&segment[5]);
   jpeg.components = segment[7];
   if (uint64_t(jpeg.width) * uint64_t(jpeg.height) > fileBytes * kMaxTexelsPerJpegByte)
-    throwInput("{}: {} x {} texels cannot be held by {} bytes: damaged or hostile", name,
-               jpeg.width, jpeg.height, fileBytes);
+    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, jpeg.width,
+               jpeg.height, fileBytes);
 }
 
 }  // namespace
 
-BareJpeg bareJpeg(std::span<const uint8_t> file, const std::string& name) {
-  BareJpeg jpeg;
+StrippedJpeg stripJpeg(std::span<const uint8_t> file, const std::string& name) {
+  StrippedJpeg jpeg;
   jpeg.file.reserve(file.size());
   const auto keep = [&](size_t begin, size_t end) {
     jpeg.file.insert(jpeg.file.end(), file.begin() + std::ptrdiff_t(begin),

@@ -28,8 +28,8 @@ std::string extension(const fs::path& path) {
 }
 
 // `texels` holds channels of the spec's format, interleaved.
-void writeThroughLibrary(const fs::path& path, const std::string& format,
-                         const OIIO::ImageSpec& spec, const void* texels) {
+void writeByLibrary(const fs::path& path, const std::string& format, const OIIO::ImageSpec& spec,
+                    const void* texels) {
   const auto check = [&](bool ok, const std::string& reason) {
     if (!ok)
       throwRun("{}: cannot be written: {}", path.string(),
@@ -37,7 +37,7 @@ void writeThroughLibrary(const fs::path& path, const std::string& format,
   };
   AtomicFile file(path);
   const auto output = OIIO::ImageOutput::create(format);
-  check(output != nullptr, "this build of OpenImageIO lacks the format");
+  check(output != nullptr, "this build of OpenImageIO does not support the format");
   check(output->open(file.temporary().string(), spec), output->geterror());
   check(output->write_image(spec.format, texels), output->geterror());
   check(output->close(), output->geterror());
@@ -78,11 +78,11 @@ void writeExr(const fs::path& path, const OutputImage& output) {
       spec.attribute(name, *number);
     else
       spec.attribute(name, std::get<int>(contents));
-  writeThroughLibrary(path, "openexr", spec, all.texels.data());
+  writeByLibrary(path, "openexr", spec, all.texels.data());
 }
 
-// PNG's colour is not multiplied by alpha; where nothing is covered it is black. Before the tone
-// curve, which is not linear.
+// Colour in a PNG is unassociated; black where alpha is 0. This comes before the tone curve, which
+// is not linear.
 Rgb unassociated(const Rgb& color, float alpha) { return alpha > 0 ? color / alpha : Rgb(0); }
 
 void writePng(const fs::path& path, const Image& color, const DisplayTransform& transform) {
@@ -100,7 +100,7 @@ void writePng(const fs::path& path, const Image& color, const DisplayTransform& 
   writeFile(path, encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes));
 }
 
-// Grey repeated into three channels; anything else as it is.
+// Repeats grey in three channels; returns other images unchanged.
 Image withColor(const Image& image) {
   if (image.channels >= 3) return image;
   Image color(image.width, image.height, 3);
@@ -114,7 +114,7 @@ Image withColor(const Image& image) {
 void checkImageName(const fs::path& path) {
   constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
   if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
-    throwInput("{}: cannot write this kind of image; end the name in .exr, .hdr, .pfm or .png",
+    throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
                path.string());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing images. Every write is atomic: the file appears whole, or not at all.
+// Writes image files. Every write is atomic: the file appears complete or not at all.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,14 @@
 
 namespace chromeball {
 
-// Some channels of a file: `channels` names each by a letter, so {"albedo", "RGB"} is albedo.R,
-// albedo.G, albedo.B. The colour itself has the empty name; {"samples", ""} is one channel,
-// samples.
+// A group of channels. Each letter of `channels` is one: {"albedo", "RGB"} stands for albedo.R,
+// albedo.G, albedo.B. The colour has the empty name. {"samples", ""} is the single channel samples.
 struct Layer {
   std::string name, channels;
-  Image image;  // as many channels as letters (at least one)
+  Image image;  // as many channels as letters, at least one
 };
 
-// Layers of one size, the colour ("RGB" or "RGBA", or one letter for grey) first.
+// Layers of one size; the first is the colour ("RGB" or "RGBA", or one letter for grey).
 struct OutputImage {
   std::vector<Layer> layers;
   Metadata metadata;
@@ -29,17 +28,16 @@ struct OutputImage {
 // Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.
 void checkImageName(const std::filesystem::path& path);
 
-// The same; and throws as checkReplaceable (base/file.h) does. Ask this before rendering.
+// checkImageName() and checkReplaceable() (base/file.h), to be called before rendering.
 void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
-// colour through `transform`, 8 bits, sRGB, and its alpha, by which the colour, associated in the
-// layer, is divided first. Throws as checkWritable does, and
-// RunError where writing fails.
+// colour after `transform`, 8 bits, sRGB, with unassociated alpha (the layer's colour is associated
+// and is divided by alpha first). Throws as checkWritable() does, and RunError if writing fails.
 void writeImage(const std::filesystem::path& path, const OutputImage& output,
                 const DisplayTransform& transform = {});
 
-// The colour alone.
+// Writes the colour alone.
 void writeImage(const std::filesystem::path& path, const Image& color,
                 const DisplayTransform& transform = {});
 
