@@ -65,8 +65,8 @@ TEST(Camera, RaysThroughTheLensMeetInThePlaneInFocus) {
   }
 }
 
-// A small disc of light at distance z is seen as a disc of aperture |z - focus| / z in the plane in
-// focus; a disc of diameter D has the variance D^2 / 16 along each axis.
+// A point at distance z appears as a disc of diameter D = aperture |z - focus| / z in the plane in
+// focus, which has the variance D^2 / 16 along each axis.
 TEST(Camera, CircleOfConfusion) {
   constexpr float kAperture = 0.4f, kFocus = 4, kFov = 0.5f;
   constexpr int kSize = 64;
@@ -96,11 +96,11 @@ TEST(Camera, CircleOfConfusion) {
     const double source = 2 * half * kFocus / z / pixel;  // the variance of a square is side^2 / 12
     const double expected = blur * blur / 16 + source * source / 12 + 1 / 12.0;
     EXPECT_NEAR(variance / sum / expected, 1, 0.03) << z;
-    EXPECT_NEAR(sum / (source * source), 1, 0.02) << z;  // out of focus, no light is lost
+    EXPECT_NEAR(sum / (source * source), 1, 0.02) << z;  // defocus loses no light
   }
 }
 
-TEST(Camera, BeamsCoverThePictureOnce) {
+TEST(Camera, BeamsCoverTheImageFourTimes) {
   Camera camera;
   camera.fov = kPi / 2;
   EXPECT_NEAR(beamOf(camera, 100, 16).crossSection(3) * 16 * 100 * 100, 4 * 36, 1e-4);
@@ -120,13 +120,13 @@ TEST(Camera, LookAtIsOrthonormalAndAims) {
   EXPECT_EQ(camera.fov, 0.8f);
 }
 
-TEST(Camera, LookAtRefusesDegenerateFrames) {
+TEST(Camera, LookAtRejectsDegenerateFrames) {
   EXPECT_THROW(Camera::lookAt({1, 2, 3}, {1, 2, 3}, {0, 1, 0}, 1), InputError);
   EXPECT_THROW(Camera::lookAt({0, 5, 0}, {0, 0, 0}, {0, 1, 0}, 1), InputError);
   EXPECT_THROW(Camera::lookAt({0, 5, 0}, {1, 0, 0}, {0, 0, 0}, 1), InputError);
 }
 
-// Where a point falls in the picture; (0.5, 0.5) is the centre.
+// The image point of a position; (0.5, 0.5) is the centre.
 vec2 project(const Camera& camera, vec3 p, float aspect) {
   const vec3 q = p - camera.position;
   const float depth = -glm::dot(q, camera.back);
@@ -136,7 +136,7 @@ vec2 project(const Camera& camera, vec3 p, float aspect) {
           0.5f - 0.5f * glm::dot(q, camera.up) / (depth * tanHalf)};
 }
 
-TEST(Camera, FramingShowsAllVerticesAndFillsThePicture) {
+TEST(Camera, FramingShowsAllVerticesAndFillsTheImage) {
   for (const float aspect : {0.4f, 1.0f, 2.5f})
     for (const float size : {1e-3f, 1.0f, 1e4f})
       for (const vec3 shape : {vec3(1, 1, 1), vec3(10, 1, 1), vec3(1, 10, 0), vec3(0, 1, 10)}) {
@@ -159,7 +159,7 @@ TEST(Camera, FramingShowsAllVerticesAndFillsThePicture) {
       }
 }
 
-TEST(Camera, FramingNothingOrAPointIsStillACamera) {
+TEST(Camera, FramingOfAnEmptySceneOrAPointIsValid) {
   for (const vec3& point : {vec3(0), vec3(7)}) {
     Scene scene;
     if (point.x > 0) {

@@ -402,7 +402,7 @@ TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
     words.insert(words.end(), more.begin(), more.end());
     refused(words, more.front(), remedy);
   };
-  refused({scene.folder() + "/none.gltf", "-o", output}, "none.gltf", "does not exist");
+  refused({scene.folder() + "/none.gltf", "-o", output}, "none.gltf", "no such file");
   refused({scene.folder() + "/none.toml", "-o", output}, "none.toml", "no such file");
   refused({scene.gradient, "-o", output}, "gradient.exr", ".gltf");
   refused({scene.model, "--probe", scene.folder() + "/none.exr", "-o", output}, "none.exr",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The view of a scene that brings no camera: grounds do not count, rooms are seen from inside.
+// Cameras for scenes without one: ground planes are not framed, rooms are seen from inside.
 #include "scene/framing.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kAspect = 1.5f;
 
-// Where a point is seen, u right and v down, both in [0, 1].
+// The image point of a position: u right and v down, both in [0, 1].
 vec2 seenAt(const Camera& camera, const vec3& point) {
   const vec3 q = point - camera.position;
   const float depth = -glm::dot(q, camera.back), half = std::tan(0.5f * camera.fov);
@@ -19,8 +19,8 @@ vec2 seenAt(const Camera& camera, const vec3& point) {
           0.5f - 0.5f * glm::dot(q, camera.up) / (depth * half)};
 }
 
-// The larger of the shares of the picture's width and height that a mesh takes; 0 where a part of
-// it is not seen.
+// The fraction of the image's width or height that a mesh covers, whichever is larger; 0 if a part
+// of it is out of view.
 float samplesOf(const Camera& camera, const Mesh& mesh) {
   vec2 minimum(1e9f), maximum(-1e9f);
   for (const vec3& p : mesh.positions) {
@@ -42,7 +42,7 @@ void addGround(Scene& scene, vec2 from, float size) {
   addQuad(scene, 0, vec3(from.x, 0, from.y), vec3(0, 0, size), vec3(size, 0, 0));
 }
 
-TEST(Framing, AGroundOfAnySizeAndAnyNumberOfTilesIsLeftOut) {
+TEST(Framing, GroundsOfAnySizeAndNumberOfTilesAreNotFramed) {
   Scene scene = ball();
   const Camera alone = framingCamera(scene, kAspect);
   EXPECT_GT(samplesOf(alone, scene.meshes[0]), 0.9f);
@@ -56,18 +56,18 @@ TEST(Framing, AGroundOfAnySizeAndAnyNumberOfTilesIsLeftOut) {
   EXPECT_GT(samplesOf(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
 }
 
-TEST(Framing, WhatIsFlatAndNoGroundCounts) {
+TEST(Framing, FlatObjectsOtherThanGroundsAreFramed) {
   Scene board = ball();  // on a board twice as wide
   addGround(board, vec2(-2), 4);
   EXPECT_GT(samplesOf(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
-  Scene flat;  // nothing stands on it
+  Scene flat;  // with nothing on it
   addMaterial(flat, lambert(Rgb(0.5f)));
   addGround(flat, vec2(-50), 100);
   EXPECT_GT(samplesOf(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
 }
 
-// Walls, floor and ceiling of a room around the outline (counter-clockwise seen from above), which
-// face inwards.
+// Walls, floor and ceiling of a room with the given outline (counter-clockwise seen from above),
+// with front faces inside.
 Scene room(const std::vector<vec2>& outline, float height, bool inwards = true) {
   Scene scene;
   addMaterial(scene, lambert(Rgb(0.5f)));
@@ -88,11 +88,11 @@ void addFloorAndCeiling(Scene& scene, vec2 from, vec2 size, float height) {
 
 const std::vector<vec2> kHall{{0, 0}, {0, 5}, {8, 5}, {8, 0}};  // 8 m along x, 5 m along z
 
-TEST(Framing, ARoomIsSeenFromInsideAlongItsLength) {
+TEST(Framing, RoomsAreSeenFromInsideAlongTheirLength) {
   for (const float size : {0.01f, 1.0f, 100.0f}) {
     Scene hall = room(kHall, 3);
     addFloorAndCeiling(hall, vec2(0), vec2(8, 5), 3);
-    addSphere(hall, 0, vec3(4, 0.5f, 2.5f), 0.5f);  // furniture, which faces outwards
+    addSphere(hall, 0, vec3(4, 0.5f, 2.5f), 0.5f);  // furniture, with front faces outside
     for (Mesh& mesh : hall.meshes)
       for (vec3& p : mesh.positions) p *= size;
     const Camera camera = framingCamera(hall, kAspect);
@@ -106,15 +106,15 @@ TEST(Framing, ARoomIsSeenFromInsideAlongItsLength) {
   }
 }
 
-TEST(Framing, AHouseIsSeenFromOutside) {
+TEST(Framing, HousesAreSeenFromOutside) {
   Scene house = room(kHall, 3, false);
   const Camera camera = framingCamera(house, kAspect);
   const vec3 eye = camera.position;
   EXPECT_TRUE(eye.x < 0 || eye.x > 8 || eye.z < 0 || eye.z > 5);
 }
 
-TEST(Framing, ThePlaceIsInTheRoomWhereTheRoomIsNoBox) {
-  // An L: the notch x > 3, z < 6 lies outside.
+TEST(Framing, ThePositionIsInsideRoomsThatAreNotBoxes) {
+  // An L; the notch x > 3, z < 6 is outside.
   Scene corner = room({{0, 0}, {0, 9}, {9, 9}, {9, 6}, {3, 6}, {3, 0}}, 3);
   addFloorAndCeiling(corner, vec2(0), vec2(3, 9), 3);
   addFloorAndCeiling(corner, vec2(3, 6), vec2(6, 3), 3);
@@ -123,7 +123,7 @@ TEST(Framing, ThePlaceIsInTheRoomWhereTheRoomIsNoBox) {
   EXPECT_TRUE(eye.x < 3 || eye.z > 6) << eye.x << " " << eye.z;
 }
 
-TEST(Framing, MirroredInstancesKeepTheirFronts) {
+TEST(Framing, MirroredInstancesKeepTheirFrontFaces) {
   Scene hall = room(kHall, 3);
   addFloorAndCeiling(hall, vec2(0), vec2(8, 5), 3);
   for (Instance& instance : hall.instances) {
@@ -134,13 +134,13 @@ TEST(Framing, MirroredInstancesKeepTheirFronts) {
   EXPECT_TRUE(eye.x < 0 && eye.x > -8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
 }
 
-// Walls of two faces, 0.2 m thick, without a ceiling; around `furniture` boxes.
+// Walls with two faces, 0.2 m thick, around `furniture` boxes; no ceiling.
 Scene doubleWalls(int furniture, float scale) {
   Scene scene = room(kHall, 3);
   const Scene outer = room({{-0.2f, -0.2f}, {-0.2f, 5.2f}, {8.2f, 5.2f}, {8.2f, -0.2f}}, 3, false);
   for (const Mesh& mesh : outer.meshes) addMesh(scene, 0, mesh);
   addQuad(scene, 0, vec3(0), vec3(0, 0, 5), vec3(8, 0, 0));
-  Mesh shell;  // all in one
+  Mesh shell;  // as a single mesh
   for (const Mesh& mesh : scene.meshes) {
     const uint32_t first = uint32_t(shell.positions.size());
     shell.positions.insert(shell.positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -154,7 +154,7 @@ Scene doubleWalls(int furniture, float scale) {
   return scene;
 }
 
-TEST(Framing, AFurnishedRoomIsSeenFromInsideAndACupFromOutside) {
+TEST(Framing, FurnishedRoomsAreSeenFromInsideAndCupsFromOutside) {
   const auto isInside = [](const Scene& scene, float scale) {
     const vec3 eye = framingCamera(scene, kAspect).position / scale;
     return eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5 && eye.y > 0 && eye.y < 3;
@@ -164,7 +164,7 @@ TEST(Framing, AFurnishedRoomIsSeenFromInsideAndACupFromOutside) {
   EXPECT_FALSE(isInside(doubleWalls(5, 0.02f), 0.02f)) << "a box of beads";
 }
 
-TEST(Framing, AnOpenBoxIsLookedIntoFromOutside) {
+TEST(Framing, OpenBoxesAreSeenFromOutside) {
   Scene box = room({{5, 5}, {5, 0}, {0, 0}, {0, 5}}, 5);
   box.meshes.pop_back(), box.instances.pop_back();  // the front, at z = 5, is open
   addFloorAndCeiling(box, vec2(0), vec2(5, 5), 5);

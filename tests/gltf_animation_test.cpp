@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animations at a time: each interpolation against its closed form, and what is refused.
+// Animations at a given time: closed forms of each interpolation, and rejected input.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -39,7 +39,7 @@ void animate(GltfWriter& w, int node, const char* path, const char* interpolatio
          {"samplers", {{{"input", times}, {"output", values}, {"interpolation", interpolation}}}}});
 }
 
-// Where a triangle's first vertex goes.
+// The position of the first vertex of a triangle.
 vec3 origin(const Scene& scene) { return scene.meshes.at(0).positions.at(0); }
 
 vec3 translated(const char* interpolation, const std::vector<float>& times,
@@ -66,7 +66,7 @@ TEST(GltfAnimation, StepAndLinear) {
   }
 }
 
-// A Hermite spline with the tangents of a cubic is that cubic.
+// A Hermite spline with the values and tangents of a cubic is that cubic.
 TEST(GltfAnimation, CubicSplineOfACubicIsExact) {
   const auto cubic = [](double t) { return ((t - 3) * t + 0.5) * t + 2; };
   const auto slope = [](double t) { return (3 * t - 6) * t + 0.5; };
@@ -81,7 +81,7 @@ TEST(GltfAnimation, CubicSplineOfACubicIsExact) {
   }
 }
 
-TEST(GltfAnimation, RotationGoesTheShorterWayAtConstantSpeed) {
+TEST(GltfAnimation, RotationTakesTheShorterArcAtConstantSpeed) {
   const float s = std::sqrt(0.5f);
   for (float sign : {1.0f, -1.0f}) {  // q and -q are the same rotation
     GltfWriter w;
@@ -116,14 +116,14 @@ TEST(GltfAnimation, MorphWeights) {
   addTriangle(w, {{"targets", {{{"POSITION", first}}, {{"POSITION", second}}}}});
   animate(w, 0, "weights", "LINEAR", scalars(w, {0, 1}), scalars(w, {0, 4, 2, 0}));
   EXPECT_NEAR(glm::distance(origin(at(w, 0.25)), vec3(0.5f, 3, 0)), 0, 1e-6);
-  // Cubic splines keep all in-tangents, then all values, then all out-tangents of a key together.
+  // Each key of a cubic spline has all in-tangents, then all values, then all out-tangents.
   w.root.erase("animations");
   animate(w, 0, "weights", "CUBICSPLINE", scalars(w, {0, 2}),
-          scalars(w, {7, 7, 0, 0, 1, 2, 1, 2, 2, 4, 7, 7}));  // 1 and 2 per second throughout
+          scalars(w, {7, 7, 0, 0, 1, 2, 1, 2, 2, 4, 7, 7}));  // slopes of 1 and 2 per second
   EXPECT_NEAR(glm::distance(origin(at(w, 0.5)), vec3(0.5f, 1, 0)), 0, 1e-6);
 }
 
-// A skin follows its joints; normals turn with it.
+// A skin follows its joints, and so do its normals.
 TEST(GltfAnimation, SkinsFollowTheirJoints) {
   GltfWriter w;
   const int joints = w.accessor(w.view(std::vector<uint8_t>(12, 0)), kUByte, "VEC4", 3);
@@ -161,9 +161,8 @@ TEST(GltfAnimation, IsChosenByNameOrIndex) {
   EXPECT_TRUE(rest.notes[0].ends_with("`0`, `Walk`")) << rest.notes[0];
 }
 
-// What an extension animates (KHR_animation_pointer) has no node; the specification makes it
-// optional.
-TEST(GltfAnimation, ChannelsWithoutANodeAreLeftOut) {
+// Channels of KHR_animation_pointer have no node, which the specification allows.
+TEST(GltfAnimation, ChannelsWithoutANodeAreIgnored) {
   for (const json& target :
        {json{{"path", "translation"}},
         json{{"path", "pointer"},
@@ -180,7 +179,7 @@ TEST(GltfAnimation, ChannelsWithoutANodeAreLeftOut) {
   }
 }
 
-TEST(GltfAnimation, WhatIsNotWellFormedIsRefused) {
+TEST(GltfAnimation, InvalidAnimationsAreRejected) {
   const auto refusal = [](const json& channel, const json& sampler, const json& node = {}) {
     GltfWriter w;
     addTriangle(w, {}, node);
@@ -202,8 +201,8 @@ TEST(GltfAnimation, WhatIsNotWellFormedIsRefused) {
   EXPECT_TRUE(holds(refusal({{"target", {{"node", 7}}}}, json::object()), "nodes[7]"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"input", 3}}), "not in the order of time"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"output", 4}}), "not finite"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"output", 1}}), "1 components where 3 are wanted"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "CUBICSPLINE"}}), "do not serve"));
+  EXPECT_TRUE(holds(refusal(json::object(), {{"output", 1}}), "1 components; it must have 3"));
+  EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "CUBICSPLINE"}}), "do not match"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "Linear"}}), "is not STEP"));
   EXPECT_TRUE(holds(refusal(json::object(), json::object(),
                             {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry that files keep compressed or instanced: it must be the geometry that was put in, and
-// damaged data must be refused.
+// Compressed and instanced geometry: decoding gives the original, and damaged data is rejected.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +32,7 @@ const Data kSequential = {
     0x01, 0x30, 0x01, 0x10, 0x03, 0x00, 0x28, 0x82, 0x64, 0x01, 0x00, 0x00, 0x00, 0x00, 0xff, 0x03,
     0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
     0x80, 0x3f, 0x0a, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x3f, 0x0a};
-constexpr size_t kSequentialFaces = 11;  // where the number of triangles is
+constexpr size_t kSequentialFaces = 11;  // offset of the number of triangles
 const Data kEdgebreaker = {
     0x44, 0x52, 0x41, 0x43, 0x4f, 0x02, 0x02, 0x01, 0x01, 0x00, 0x00, 0x00, 0x04, 0x02, 0x01, 0x02,
     0x00, 0x00, 0x01, 0x1f, 0xff, 0x01, 0x11, 0xff, 0x01, 0x11, 0x02, 0xff, 0x00, 0x00, 0x00, 0x00,
@@ -45,7 +44,7 @@ const Data kEdgebreaker = {
     0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x3f, 0x0a};
 constexpr size_t kEdgebreakerFaces = 13;
 
-// A buffer view of `count` elements of `stride` bytes, of which only the compressed form is there.
+// A buffer view of `count` elements of `stride` bytes in compressed form only.
 int meshoptView(GltfWriter& w, const Data& data, const char* mode, size_t count, size_t stride,
                 const json& more = json::object()) {
   const int view = w.view(data);
@@ -69,7 +68,7 @@ GltfWriter& square(GltfWriter& w, int positions, int indices) {
   return w;
 }
 
-TEST(GltfCompression, MeshoptGivesBackWhatWasPutIn) {
+TEST(GltfCompression, MeshoptDecodesToTheOriginal) {
   for (const bool strip : {false, true}) {
     GltfWriter w;
     const int positions =
@@ -81,7 +80,7 @@ TEST(GltfCompression, MeshoptGivesBackWhatWasPutIn) {
     EXPECT_EQ(scene.meshes.at(0).positions, corners);
     ASSERT_EQ(scene.meshes[0].triangles.size(), 2u);
     EXPECT_EQ(bounds(scene).max, vec3(1, 1, 0));
-    // The triangle coder may turn a triangle, but not over.
+    // The triangle coder may rotate the vertices of a triangle, but keeps their orientation.
     for (const Triangle& t : scene.meshes[0].triangles) {
       const auto& p = scene.meshes[0].positions;
       EXPECT_EQ(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]), vec3(0, 0, 1));
@@ -94,11 +93,11 @@ TEST(GltfCompression, MeshoptFilters) {
   Data exponential = {0xa0, 1, 0x24, 0, 0, 0, 0, 0, 1, 0x24, 0, 0, 0, 1, 0x0c, 0, 0, 0,
                       0x0b, 1, 4,    0, 0, 0, 1, 4, 0, 0,    0, 1, 4, 0, 0,    0, 0, 0};
   exponential.resize(70);
-  // The octahedron's points (0,0) (1,0) (0,0).
+  // The points (0,0) (1,0) (0,0) of the octahedron.
   Data octahedral = {0xa0, 1, 0x3c, 0, 0, 0, 0xfe, 0xfd};
   octahedral.resize(43);
   octahedral[41] = 0x7f;
-  // (0, 0, 1/2) beside the largest component, w.
+  // (0, 0, 1/2) and the largest component, w.
   Data quaternion = {0xa0, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
   quaternion.resize(41);
   quaternion[37] = 0x81, quaternion[38] = 0x5a, quaternion[39] = 0xff, quaternion[40] = 0x7f;
@@ -124,7 +123,7 @@ TEST(GltfCompression, MeshoptFilters) {
   EXPECT_NEAR(glm::distance(turned, vec3(1, std::sqrt(3.0f), 0)), 0, 2e-4);
 }
 
-TEST(GltfCompression, MeshoptIsRefusedWhereItIsNotWellFormed) {
+TEST(GltfCompression, InvalidMeshoptDataIsRejected) {
   const auto refusal = [](const json& change, const Data& data = kPositions) {
     GltfWriter w;
     const int view = meshoptView(w, data, "ATTRIBUTES", 4, 12, change);
@@ -135,9 +134,9 @@ TEST(GltfCompression, MeshoptIsRefusedWhereItIsNotWellFormed) {
   };
   EXPECT_EQ(refusal(json::object()), "");
   EXPECT_TRUE(holds(refusal({{"mode", "VERTICES"}}), "is not ATTRIBUTES, TRIANGLES or INDICES"));
-  EXPECT_TRUE(holds(refusal({{"byteStride", 10}}), "10 does not suit ATTRIBUTES"));
-  EXPECT_TRUE(holds(refusal({{"filter", "OCTAHEDRAL"}}), "does not suit"));
-  EXPECT_TRUE(holds(refusal({{"filter", "LOUD"}}), "does not suit"));
+  EXPECT_TRUE(holds(refusal({{"byteStride", 10}}), "10 is invalid for ATTRIBUTES"));
+  EXPECT_TRUE(holds(refusal({{"filter", "OCTAHEDRAL"}}), "is invalid for"));
+  EXPECT_TRUE(holds(refusal({{"filter", "LOUD"}}), "is invalid for"));
   EXPECT_TRUE(holds(refusal({{"buffer", 9}}), "buffers[9] does not exist"));
   EXPECT_TRUE(holds(refusal({{"buffer", 1}}), "buffers[1] does not exist"));
   EXPECT_TRUE(holds(refusal({{"byteLength", 4000}}), "which has"));
@@ -165,13 +164,13 @@ GltfWriter& dracoSquare(GltfWriter& w, const Data& data, size_t indexCount = 6) 
   return w;
 }
 
-TEST(GltfCompression, DracoGivesBackWhatWasPutIn) {
+TEST(GltfCompression, DracoDecodesToTheOriginal) {
   for (const Data& data : {kSequential, kEdgebreaker}) {
     GltfWriter w;
     const Mesh mesh = dracoSquare(w, data).load().meshes.at(0);
     ASSERT_EQ(mesh.triangles.size(), 2u);
     ASSERT_EQ(mesh.positions.size(), 4u);
-    for (size_t i = 0; i < 4; ++i)  // corners and coordinates still belong together
+    for (size_t i = 0; i < 4; ++i)  // positions and texture coordinates still match
       EXPECT_NEAR(glm::distance(vec2(mesh.positions[i]), mesh.uvs.at(0)[i]), 0, 1e-6);
     double area = 0;
     for (const Triangle& t : mesh.triangles)
@@ -183,7 +182,7 @@ TEST(GltfCompression, DracoGivesBackWhatWasPutIn) {
   }
 }
 
-TEST(GltfCompression, DracoThatClaimsTooMuchIsRefusedBeforeItIsDecoded) {
+TEST(GltfCompression, DracoWithTooManyTrianglesIsRejectedBeforeDecoding) {
   for (const auto& [data, at] :
        {std::pair{kSequential, kSequentialFaces}, {kEdgebreaker, kEdgebreakerFaces}}) {
     Data hostile = data;
@@ -204,7 +203,7 @@ TEST(GltfCompression, DracoThatClaimsTooMuchIsRefusedBeforeItIsDecoded) {
   EXPECT_NE(dracoSquare(noise, Data(50, 7)).refusal().find("is not Draco"), std::string::npos);
 }
 
-// Any single byte may be wrong, and the data may end anywhere.
+// With any single byte changed, and truncated anywhere.
 TEST(GltfCompression, DamagedDataNeverCrashes) {
   int refused = 0;
   for (const Data& good : {kSequential, kEdgebreaker})
@@ -218,13 +217,13 @@ TEST(GltfCompression, DamagedDataNeverCrashes) {
   EXPECT_GT(refused, 50);
 }
 
-TEST(GltfCompression, AnUncompressedStandInNeedsNoDecoder) {
+TEST(GltfCompression, UncompressedCopiesAreUsedWithoutDecoding) {
   GltfWriter w;
   addTriangle(w, {{"extensions", {{"KHR_draco_mesh_compression", {{"bufferView", 99}}}}}});
   EXPECT_EQ(w.load().triangleCount(), 1u);
 }
 
-TEST(GltfInstancing, ShowsAMeshOnceForEachTransform) {
+TEST(GltfInstancing, AddsAnInstanceForEachTransform) {
   GltfWriter w;
   w.root["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
   addTriangle(w, {}, {{"translation", {0, 0, 7}}});
@@ -241,7 +240,7 @@ TEST(GltfInstancing, ShowsAMeshOnceForEachTransform) {
   EXPECT_NE(w.refusal().find("1 elements for 2 instances"), std::string::npos);
 }
 
-TEST(GltfSamples, CompressedModelsAreThePlainOnes) {
+TEST(GltfSamples, CompressedModelsEqualUncompressedOnes) {
   const auto load = [](const char* name) -> std::optional<Scene> {
     const auto path = sharedData(std::string("gltf/") + name);
     if (!path) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environment that a glTF file brings along.
+// Light probes in glTF files (EXT_lights_image_based).
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -17,8 +17,8 @@ using nlohmann::json;
 
 constexpr int kFace = 32;
 
-// Where the faces look and how their images lie, by the specification's figure: the direction at
-// (u, v) in [-1, 1] is forward + u right + v down.
+// The orientation of the faces, from the figure in the specification: the direction at (u, v) in
+// [-1, 1] is forward + u right + v down.
 struct Face {
   vec3 forward, right, down;
 };
@@ -32,11 +32,11 @@ uint8_t encode(float radiance) {
   return uint8_t(std::lround(255 * c));
 }
 
-// Different in every direction, between 0 and 1.
+// A radiance between 0 and 1 that differs in all directions.
 Rgb colors(const vec3& d) { return 0.5f + 0.5f * glm::normalize(d); }
 
-// Writes a triangle lit by an environment of `radiance`, which is at most 1 and stored divided by
-// `scale` (RGBD) where that is not 1.
+// Writes a triangle lit by an environment of `radiance`, at most 1. If `scale` is not 1, the images
+// are RGBD.
 void addEnvironment(GltfWriter& w, Rgb (*radiance)(const vec3&) = colors, float scale = 1) {
   addTriangle(w);
   json level = json::array();
@@ -84,7 +84,7 @@ void expectRadiance(const Scene& scene, const std::function<Rgb(const vec3&)>& e
         << d.x << " " << d.y << " " << d.z;
 }
 
-TEST(GltfEnvironment, FacesLieAsTheFigureHasThem) {
+TEST(GltfEnvironment, FacesAreOrientedAsInTheSpecification) {
   GltfWriter w;
   addEnvironment(w);
   expectRadiance(w.load(), colors, 0.03f);
@@ -99,7 +99,7 @@ TEST(GltfEnvironment, AlphaDividesAndIntensityMultiplies) {
       w.load(), [](const vec3& d) { return 15.0f * colors(d); }, 0.45f);
 }
 
-TEST(GltfEnvironment, Turns) {
+TEST(GltfEnvironment, RotationTurnsIt) {
   GltfWriter w;
   addEnvironment(w);
   const glm::quat q = glm::normalize(glm::quat(0.7f, 0.3f, -0.5f, 0.2f));
@@ -108,7 +108,7 @@ TEST(GltfEnvironment, Turns) {
       w.load(), [&](const vec3& d) { return colors(glm::inverse(q) * d); }, 0.03f);
 }
 
-TEST(GltfEnvironment, IsReadOnlyWhereTheSceneNamesItAndItIsWanted) {
+TEST(GltfEnvironment, IsReadOnlyIfTheSceneHasItAndItIsWanted) {
   GltfWriter w;
   addEnvironment(w);
   const std::string path = w.save();
@@ -119,8 +119,8 @@ TEST(GltfEnvironment, IsReadOnlyWhereTheSceneNamesItAndItIsWanted) {
   EXPECT_FALSE(w.load().environment);
 }
 
-// The first coefficient is the mean irradiance over Y00.
-TEST(GltfEnvironment, DisagreeingCoefficientsAreSaid) {
+// The first coefficient is the mean irradiance divided by Y00.
+TEST(GltfEnvironment, InconsistentCoefficientsGiveAWarning) {
   GltfWriter w;
   addEnvironment(w, [](const vec3&) { return Rgb(0.5f); });
   const float y00 = std::sqrt(1 / (4 * kPi));
@@ -139,7 +139,7 @@ TEST(GltfEnvironment, DisagreeingCoefficientsAreSaid) {
   EXPECT_NE(w.warnings[0].find("2.01 times the light"), std::string::npos) << w.warnings[0];
 }
 
-TEST(GltfEnvironment, BadOnesAreRefused) {
+TEST(GltfEnvironment, InvalidEnvironmentsAreRejected) {
   const auto refusal = [](const std::function<void(GltfWriter&)>& spoil) {
     GltfWriter w;
     addEnvironment(w);
@@ -163,31 +163,32 @@ TEST(GltfEnvironment, BadOnesAreRefused) {
   expect("images[99] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = 99; });
   expect("images[-1] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = "a"; });
   expect("length 0", [&](auto& w) { light(w)["rotation"] = {0, 0, 0, 0}; });
-  expect("is square", [&](auto& w) { w.write("face3.png", kPng); });
-  expect("is 1 x 1, and the first face 32 x 32", [&](auto& w) {
+  expect("must be square", [&](auto& w) { w.write("face3.png", kPng); });
+  expect("is 1 x 1, but the first face is 32 x 32", [&](auto& w) {
     w.write("face3.png", encodePng(1, 1, 3, std::vector<uint8_t>{1, 2, 3}));
   });
   expect("damaged", [&](auto& w) {
     w.write("face3.png", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'});
   });
-  expect("leaves the model's folder",
+  expect("outside of the model's folder",
          [&](auto& w) { w.root["images"][0]["uri"] = "../face0.png"; });
 }
 
-// It lights the scene where no probe is given, as the probe would that it holds.
+// Without a probe the environment lights the scene, with the same result as if given as a probe.
 TEST(SlowGltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
   GltfWriter w;
   addEnvironment(w, [](const vec3&) { return Rgb(1); });
   const TemporaryFolder folder;
   const std::string model = w.save(), picture = folder / "a.pfm";
-  const auto corner = [&](std::vector<std::string> more) {  // which shows the surroundings
-    std::vector<std::string> arguments = {"render", model, "-o",        picture,
-                                          "--size", "8x8", "--samples", "4"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const CommandResult result = runCommand(arguments);
-    EXPECT_EQ(result.status, 0) << result.error;
-    return readImage(picture).rgb(7, 0).y;
-  };
+  const auto corner =
+      [&](std::vector<std::string> more) {  // of the image, where the environment is visible
+        std::vector<std::string> arguments = {"render", model, "-o",        picture,
+                                              "--size", "8x8", "--samples", "4"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const CommandResult result = runCommand(arguments);
+        EXPECT_EQ(result.status, 0) << result.error;
+        return readImage(picture).rgb(7, 0).y;
+      };
   EXPECT_NEAR(corner({}), 1, 1e-3f);
   EXPECT_NEAR(corner({"--probe-scale", "3"}), 3, 3e-3f);
   writeImage(folder / "probe.pfm", constantProbe({4, 2}, Rgb(0.25f)));

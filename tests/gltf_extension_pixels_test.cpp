@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample models of material extensions, normal maps and UV sets: what their authors say a right
-// picture shows, in pixels.
+// Sample models of material extensions, normal maps and UV sets: the pixels show what their
+// documentation says.
 #include <gtest/gtest.h>
 
 #include "probe/synth.h"
@@ -14,7 +14,7 @@ const Probe& darkness() {
   return kBlack;
 }
 
-// Each cube shines twice as bright as its neighbour on the left.
+// Each cube emits twice as much as its left neighbour.
 TEST(GltfPixels, EmissiveStrengthTest) {
   const auto scene = sampleModel("EmissiveStrengthTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -28,7 +28,7 @@ TEST(GltfPixels, EmissiveStrengthTest) {
   }
 }
 
-// The second UV set shows a green mark; by the first, the image says that it was not used.
+// With the second UV set the texture shows a green mark, with the first an error text.
 TEST(GltfPixels, MultiUVTest) {
   const auto scene = sampleModel("MultiUVTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -44,8 +44,8 @@ TEST(GltfPixels, MultiUVTest) {
   EXPECT_EQ(white, 0);
 }
 
-// Bumps of geometry and bumps of normal maps, in every orientation of their tangents, reflect the
-// same surroundings: brighter above, and to the right.
+// Geometric bumps and normal-mapped bumps, in all orientations of their tangents, reflect the same
+// environment, which is brighter at the top and at the right.
 void expectSameBumps(const Scene& scene, const std::vector<float>& columns) {
   const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.4, 0.8, 0}));
   constexpr float kOffset = 0.035f;  // less than half of a bump's radius
@@ -62,7 +62,7 @@ void expectSameBumps(const Scene& scene, const std::vector<float>& columns) {
             << x << " " << y << " at " << d.x << " " << d.y;
   }
   const float above = patch(columns[0], 0.8f + kOffset), below = patch(columns[0], 0.8f - kOffset);
-  EXPECT_GT(above, 1.3f * below);  // so that a flipped axis would be seen
+  EXPECT_GT(above, 1.3f * below);  // so that a flipped axis would be detected
 }
 
 TEST(GltfPixels, NormalTangentTest) {
@@ -77,8 +77,8 @@ TEST(GltfPixels, NormalTangentMirrorTest) {
   expectSameBumps(*scene, {0.299f, 0.618f, 0.942f, 1.263f});
 }
 
-// In each column, thickness, scale and attenuation distance give the same blue, by Beer's law and
-// two passes of Fresnel's.
+// In each column, thickness, scale and attenuation distance give the same blue: Beer's law and two
+// Fresnel transmissions.
 TEST(GltfPixels, AttenuationTest) {
   auto scene = sampleModel("AttenuationTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -89,7 +89,7 @@ TEST(GltfPixels, AttenuationTest) {
   for (const auto& [x, thickness] : columns) {
     const Rgb answer = glm::pow(Rgb(0.1f, 0.5f, 0.9f), Rgb(thickness));
     for (float y : {6.0f, 3.0f, 0.0f, -3.0f, -6.0f}) {
-      const bool key = y == 6;  // a coloured sheet, which shows what is right but for Fresnel
+      const bool key = y == 6;  // a coloured sheet with the expected colour, without Fresnel
       const Rgb c = meanColor(
           squareView(*scene, {x, y, 3}, 0.05f, 8, darkness(), smallRender(0, 0, 256, 12)));
       for (int k = 0; k < 3; ++k)
@@ -98,8 +98,8 @@ TEST(GltfPixels, AttenuationTest) {
   }
 }
 
-// Before a white lamp: what share of a sphere's picture is dark, shows the lamp itself, and shows
-// it through two walls of the colour.
+// In front of a white lamp: the fractions of a sphere's pixels that are dark, that show the lamp
+// directly, and that show it through two walls of the given colour.
 struct Seen {
   float dark = 0, open = 0, tinted = 0;
 };
@@ -119,7 +119,7 @@ Seen lookThrough(const Scene& scene, const vec2& centre, const Rgb& color) {
   return seen;
 }
 
-// Columns: transmission, with holes, with a texture; rows: smooth, rough, partly metal.
+// Columns: transmission, with holes, with a texture; rows: smooth, rough, partly metallic.
 TEST(SlowGltfPixels, TransmissionTest) {
   auto scene = sampleModel("TransmissionTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -142,8 +142,8 @@ TEST(SlowGltfPixels, TransmissionTest) {
   EXPECT_EQ(rough.dark, 0);
 }
 
-// The middle column shows the highlights of both others: the base, less what the coating takes, and
-// the coating alone. Each tile by itself, since its neighbours shade it.
+// The middle column has the highlights of both others: the base, attenuated by the coating, and the
+// coating alone. Tiles are rendered one by one, since they would shadow each other.
 TEST(SlowGltfPixels, ClearCoatTest) {
   auto scene = sampleModel("ClearCoatTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -167,7 +167,7 @@ TEST(SlowGltfPixels, ClearCoatTest) {
         const float b = luminance(base.rgb(i, j)), c = luminance(coated.rgb(i, j)),
                     k = luminance(coat.rgb(i, j));
         both += b + k, seen += c, more += std::fabs(c - b);
-        if (row == "R1_") continue;  // whose coating is blended with what is behind it
+        if (row == "R1_") continue;  // its coating is alpha-blended
         EXPECT_LT(c, 1.1f * (b + k)) << y << " " << i << " " << j;
         EXPECT_GT(c, 0.8f * b + 0.9f * k) << y << " " << i << " " << j;
       }

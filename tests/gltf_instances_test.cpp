@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which primitives of a glTF file become one mesh with several instances.
+// Primitives of equal geometry become one mesh with several instances.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// Whether two primitives of one geometry, apart from what each states, become one mesh.
+// Whether two primitives, equal except for the given members, become one mesh.
 bool shareOneMesh(const json& material, const json& otherMaterial, const json& other = {}) {
   GltfWriter w;
   w.write("wood.png", kPng);
@@ -41,7 +41,7 @@ TEST(GltfInstances, PrimitivesOfOneGeometryShareAMesh) {
   EXPECT_TRUE(shareOneMesh({{"alphaMode", "MASK"}}, {{"alphaMode", "BLEND"}}));
   EXPECT_TRUE(
       shareOneMesh(textured("baseColorTexture", 1), textured("metallicRoughnessTexture", 1)));
-  // The vertices or what is kept of them differ:
+  // Different vertices, or different attributes kept:
   EXPECT_FALSE(shareOneMesh(plain, rough, {{"mode", 5}}));
   EXPECT_FALSE(shareOneMesh(plain, textured("baseColorTexture", 0)));
   EXPECT_FALSE(shareOneMesh(textured("baseColorTexture", 0), textured("baseColorTexture", 1)));
@@ -49,7 +49,7 @@ TEST(GltfInstances, PrimitivesOfOneGeometryShareAMesh) {
   EXPECT_FALSE(shareOneMesh(plain, {{"alphaMode", "BLEND"}}));
 }
 
-TEST(GltfInstances, MorphedPosesShareWhereTheyAreTheSame) {
+TEST(GltfInstances, EqualMorphWeightsShareAMesh) {
   GltfWriter w;
   const int up = w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int node = addTriangle(w, {{"targets", {{{"POSITION", up}}}}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF materials, textures and the images behind them.
+// glTF materials, textures and images.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ Scene loadWith(GltfWriter& w, const json& material) {
   return w.load();
 }
 
-TEST(GltfMaterial, DefaultsWithoutOne) {
+TEST(GltfMaterial, DefaultMaterial) {
   GltfWriter w;
   addTriangle(w);
   const Scene scene = w.load();
@@ -99,7 +99,7 @@ TEST(GltfMaterial, ExtendedMaterials) {
   EXPECT_EQ(m.transmission, .75f);
   EXPECT_TRUE(m.transmissionTexture);
   EXPECT_FALSE(m.thinWalled);
-  for (int c = 0; c < 3; ++c)  // half the distance lets the square root pass
+  for (int c = 0; c < 3; ++c)  // half the distance transmits the square root
     EXPECT_NEAR(std::exp(-m.attenuation[c] * 0.25f), std::sqrt(.25f * float(1 << c)), 1e-5f);
   EXPECT_EQ(m.dispersion, .3f);
   EXPECT_EQ(m.clearcoat, .5f);
@@ -111,8 +111,8 @@ TEST(GltfMaterial, ExtendedMaterials) {
   EXPECT_EQ(m.anisotropyRotation, 1.5f);
   EXPECT_EQ(m.iridescence, .9f);
   EXPECT_EQ(m.filmIor, 1.7f);
-  EXPECT_EQ(m.filmThinnest, 100);
-  EXPECT_EQ(m.filmThickest, 500);
+  EXPECT_EQ(m.filmMinThickness, 100);
+  EXPECT_EQ(m.filmMaxThickness, 500);
   EXPECT_EQ(scene.meshes[0].tangents.size(), 3u);  // for the coat's normal map
 }
 
@@ -139,7 +139,7 @@ TEST(GltfMaterial, VariantsChooseMaterials) {
   }
 }
 
-TEST(GltfMaterial, VariantsThatDangleAreWarnedOf) {
+TEST(GltfMaterial, DanglingVariantsGiveAWarning) {
   const auto warnings = [](const json& mapping, const char* variant) {
     GltfWriter w;
     w.root["extensions"] = {
@@ -162,10 +162,10 @@ TEST(GltfMaterial, VariantsThatDangleAreWarnedOf) {
   EXPECT_TRUE(holds(warnings({{"material", 7}, {"variants", {0}}}, "day"),
                     "materials[7], which does not exist (2 in the file)"));
   EXPECT_TRUE(holds(warnings({{"material", 1}, {"variants", {0}}}, "night"),
-                    "variant `night` changes nothing"));
+                    "variant `night` has no effect"));
 }
 
-TEST(GltfMaterial, ExtensionsThatChangeNothingCostNothing) {
+TEST(GltfMaterial, ExtensionsWithoutEffectAreDropped) {
   GltfWriter w;
   const Scene scene = loadWith(w, {{"extensions",
                                     {{"KHR_materials_transmission", {{"transmissionFactor", 0}}},
@@ -174,7 +174,7 @@ TEST(GltfMaterial, ExtensionsThatChangeNothingCostNothing) {
   EXPECT_FALSE(scene.materials[0].extended);
 }
 
-TEST(GltfMaterial, MediaGrowWithTheModel) {
+TEST(GltfMaterial, MediaScaleWithTheModel) {
   GltfWriter w;
   loadWith(w, {{"extensions",
                 {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
@@ -225,7 +225,7 @@ TEST(GltfMaterial, SamplersAndTransforms) {
   EXPECT_EQ(texture.wrapT, Wrap::MirroredRepeat);
   EXPECT_EQ(texture.filter, Filter::Nearest);
   EXPECT_TRUE(texture.srgb);
-  // Only the set that the material reads is kept.
+  // Only the UV set that the material uses is kept.
   const Mesh& mesh = scene.meshes[0];
   ASSERT_EQ(mesh.uvs.size(), 2u);
   EXPECT_TRUE(mesh.uvs[0].empty());
@@ -248,11 +248,11 @@ TEST(GltfMaterial, TangentsOnlyForNormalMaps) {
   GltfWriter mapped;
   const Mesh mesh = loadWith(mapped, {{"normalTexture", {{"index", 0}}}}).meshes[0];
   ASSERT_EQ(mesh.tangents.size(), 3u);
-  // v points down the image and here up the triangle, so the map's up is the triangle's down.
+  // v points down in the image and up on the triangle, so the map's up is the triangle's down.
   for (const vec4& t : mesh.tangents) EXPECT_EQ(t, vec4(1, 0, 0, -1));
 }
 
-TEST(GltfMaterial, RefusesAndClamps) {
+TEST(GltfMaterial, InvalidNumbersAreRejectedOrClamped) {
   const auto refusal = [](const json& material) {
     GltfWriter w;
     try {
@@ -267,7 +267,7 @@ TEST(GltfMaterial, RefusesAndClamps) {
   EXPECT_EQ(refusal({{"normalTexture", {{"index", 9}}}}),
             "materials[0].normalTexture: textures[9] does not exist (2 in the file)");
   EXPECT_EQ(refusal({{"normalTexture", {{"index", 0}, {"texCoord", 1000000000}}}}),
-            "materials[0].normalTexture: texCoord 1000000000 is out of range; 0 to 15 can be read");
+            "materials[0].normalTexture: texCoord 1000000000 is not in the range 0 to 15");
   GltfWriter w;
   const Scene scene = loadWith(w, {{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}});
   EXPECT_EQ(scene.materials[0].roughness, 1);
@@ -282,11 +282,11 @@ TEST(GltfMaterial, TexturesByExtension) {
   EXPECT_EQ(w.load().textures.at(0).grid->width, 2);
   texture = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
   EXPECT_NE(w.refusal().find("textures[0]: has only a KTX2 image"), std::string::npos);
-  texture["source"] = 0;  // for those that cannot read KTX2
+  texture["source"] = 0;  // the fallback for readers without KTX2
   EXPECT_EQ(w.refusal(), "");
 }
 
-TEST(GltfMaterial, RefusesImagesThatCannotBe) {
+TEST(GltfMaterial, RejectsInvalidImages) {
   const auto refusal = [](const std::vector<uint8_t>& image) {
     GltfWriter w;
     loadWith(w, {{"normalTexture", {{"index", 0}}}});
@@ -294,7 +294,7 @@ TEST(GltfMaterial, RefusesImagesThatCannotBe) {
     return w.refusal();
   };
   EXPECT_EQ(refusal(kPng), "");
-  EXPECT_EQ(refusal({}), "images[0] (a.png): is neither PNG, JPEG nor WebP");
+  EXPECT_EQ(refusal({}), "images[0] (a.png): is not a PNG, JPEG or WebP file");
   EXPECT_NE(refusal({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("not a WebP"),
             std::string::npos);
   EXPECT_NE(refusal({kPng.begin(), kPng.begin() + 50}).find("damaged image"), std::string::npos);

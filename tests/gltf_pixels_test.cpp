@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample models that carry their own right answer, rendered: where they say what a right
-// picture shows, ours must.
+// Sample models that define their correct appearance: the renders must show it.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// From the front, without perspective, in even light; exactly as wide and high as the model.
+// Seen from the front by an orthographic camera of exactly the size of the model, in uniform light.
 struct Front {
   Bounds box;
   Image image;
@@ -60,7 +59,7 @@ vec3 centreOf(const Scene& scene, const Instance& instance) {
   return 0.5f * (box.min + box.max);
 }
 
-// A wrong answer shows a red cross, a right one a green check.
+// A wrong result shows a red cross, a correct one a green check mark.
 TEST(SlowGltfPixels, ChecksAndNoCrosses) {
   for (const char* name : {"TextureSettingsTest", "NegativeScaleTest", "AlphaBlendModeTest"}) {
     const auto scene = sampleModel(name);
@@ -71,7 +70,7 @@ TEST(SlowGltfPixels, ChecksAndNoCrosses) {
   }
 }
 
-// Vertex colours take two channels from each check; were they ignored, a cross in them would show.
+// Vertex colours remove two channels from each check mark; without them a cross would show.
 TEST(GltfPixels, VertexColorTest) {
   const auto scene = sampleModel("VertexColorTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -86,7 +85,7 @@ TEST(GltfPixels, VertexColorTest) {
   EXPECT_GT(front.count(isGreen), 100);
 }
 
-// In each row of spheres, factors and three encodings of textures mean the same material.
+// In each row of spheres, factors and three texture encodings define the same material.
 TEST(SlowGltfPixels, TextureEncodingTest) {
   const auto scene = sampleModel("TextureEncodingTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -115,8 +114,8 @@ TEST(GltfPixels, TextureLinearInterpolationTest) {
   EXPECT_NEAR(glm::distance(factor, texture), 0, 0.01f);
 }
 
-// The upper quads show checks on green, blue and cyan; yellow would be a missing offset. On the
-// lower ones the arrow's tip lies at the marker named "Correct".
+// The upper quads show check marks on green, blue and cyan; yellow would be a missing offset. On
+// the lower quads the tip of the arrow is at the marker "Correct".
 TEST(GltfPixels, TextureTransformTest) {
   const auto scene = sampleModel("TextureTransformTest");
   if (!scene) GTEST_SKIP() << "no sample models";
@@ -130,14 +129,14 @@ TEST(GltfPixels, TextureTransformTest) {
   EXPECT_EQ(yellow, 0);
 
   const Image& image = front.image;
-  const auto isArrow = [&](int x, int y) {  // dark, and not at the edge of the quad
+  const auto isArrow = [&](int x, int y) {  // dark, and not on the edge of the quad
     if (x < 2 || y < 2 || x >= image.width - 2 || y >= image.height - 2) return false;
     for (int dy = -2; dy <= 2; dy += 2)
       for (int dx = -2; dx <= 2; dx += 2)
         if (isBlack(image.rgb(x + dx, y + dy))) return false;
     return maxComponent(image.rgb(x, y)) < 0.12f;
   };
-  const auto isNear = [&](const vec3& marker) {  // within a marker's width
+  const auto isNear = [&](const vec3& marker) {  // within the width of a marker
     const vec2 m = front.pixelOf(marker), unit = front.pixelOf(marker + vec3(0.16f, 0, 0)) - m;
     for (int y = int(m.y - unit.x); y <= int(m.y + unit.x); ++y)
       for (int x = int(m.x - unit.x); x <= int(m.x + unit.x); ++x)
@@ -151,7 +150,7 @@ TEST(GltfPixels, TextureTransformTest) {
   }
 }
 
-// Each arrow, turned by its node, points at a target of its colour that no node turns.
+// Each arrow, rotated by its node, points at a target of its colour that is not rotated.
 TEST(GltfPixels, OrientationTest) {
   const auto scene = sampleModel("OrientationTest");
   if (!scene) GTEST_SKIP() << "no sample models";

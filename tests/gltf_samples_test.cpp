@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real and hostile glTF files, where they are present beside the project.
+// Real and malformed glTF files, if the shared data is available.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::vector<fs::path> modelsBelow(const fs::path& folder) {
   return models;
 }
 
-// What every scene promises to those who render it.
+// Checks the invariants of a scene.
 void expectSound(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     const size_t n = mesh.positions.size();
@@ -59,7 +59,7 @@ void expectSound(const Scene& scene) {
   }
 }
 
-// Loads a sample that must load, if it is there.
+// Loads a valid sample model if it is available.
 std::optional<Scene> sample(const std::string& relative) {
   const auto path = sharedData("gltf/" + relative);
   if (!path) return std::nullopt;
@@ -78,16 +78,17 @@ TEST(SlowGltfSamples, EveryGoodModelLoads) {
       const std::string message = e.what();
       EXPECT_TRUE(message.starts_with(name + ": "));
       EXPECT_EQ(message.find('\n'), std::string::npos);
-      const bool expected = name.find("assimp_gltf1") != std::string::npos ||
-                            name.find("assimp_specgloss") != std::string::npos ||
-                            name.ends_with("Compatibility_04.gltf") ||  // asks for glTF 2.1
-                            name.ends_with("Compatibility_05.gltf");    // a made-up extension
+      const bool expected =
+          name.find("assimp_gltf1") != std::string::npos ||
+          name.find("assimp_specgloss") != std::string::npos ||
+          name.ends_with("Compatibility_04.gltf") ||  // requires glTF 2.1
+          name.ends_with("Compatibility_05.gltf");    // requires an unknown extension
       EXPECT_TRUE(expected) << message;
     }
   }
 }
 
-TEST(SlowGltfSamples, EveryBadModelIsRefusedInOneLineOrSound) {
+TEST(SlowGltfSamples, EveryMalformedModelIsRejectedInOneLineOrValid) {
   const auto folder = sharedData("bad");
   if (!folder) GTEST_SKIP() << "no hostile models";
   for (const fs::path& model : modelsBelow(*folder)) {
@@ -100,7 +101,7 @@ TEST(SlowGltfSamples, EveryBadModelIsRefusedInOneLineOrSound) {
   }
 }
 
-// Cutting a binary model short, or turning single bytes, may spoil it but nothing else.
+// Truncated models and models with a single byte changed do not crash.
 TEST(SlowGltfSamples, DamagedBytesNeverCrash) {
   const auto path = sharedData("gltf/BoxTextured/glTF-Binary/BoxTextured.glb");
   if (!path) GTEST_SKIP() << "no sample models";
@@ -121,7 +122,7 @@ TEST(SlowGltfSamples, DamagedBytesNeverCrash) {
   fs::remove(target);
 }
 
-TEST(GltfSamples, EveryEncodingOfTheBoxIsTheSame) {
+TEST(GltfSamples, EveryEncodingOfTheBoxGivesTheSameScene) {
   const auto plain = sample("Box/glTF/Box.gltf");
   if (!plain) GTEST_SKIP() << "no sample models";
   for (const char* other : {"Box/glTF-Binary/Box.glb", "Box/glTF-Embedded/Box.gltf",
@@ -137,16 +138,16 @@ TEST(GltfSamples, EveryEncodingOfTheBoxIsTheSame) {
   EXPECT_EQ(binary->meshes[0].triangles, plain->meshes[0].triangles);
 }
 
-TEST(GltfSamples, CountsOfMetalRoughSpheres) {
+TEST(GltfSamples, EqualSpheresShareAMesh) {
   const auto scene =
       sample("MetalRoughSpheresNoTextures/glTF-Binary/MetalRoughSpheresNoTextures.glb");
   if (!scene) GTEST_SKIP() << "no sample models";
   EXPECT_EQ(scene->triangleCount(), 1040409u);
-  EXPECT_EQ(scene->instances.size(), 123u);  // a primitive each
-  EXPECT_LT(scene->meshes.size(), 30u);      // the 98 spheres are one
+  EXPECT_EQ(scene->instances.size(), 123u);  // one per primitive
+  EXPECT_LT(scene->meshes.size(), 30u);      // the 98 spheres share a mesh
 }
 
-TEST(GltfSamples, QuantisedDuckIsTheDuck) {
+TEST(GltfSamples, QuantisedDuckEqualsTheDuck) {
   const auto duck = sample("Duck/glTF/Duck.gltf"),
              quantised = sample("Duck/glTF-Quantized/Duck.gltf");
   if (!duck || !quantised) GTEST_SKIP() << "no sample models";
@@ -156,7 +157,7 @@ TEST(GltfSamples, QuantisedDuckIsTheDuck) {
   EXPECT_NEAR(glm::distance(bounds(*duck).max, bounds(*quantised).max), 0, tolerance);
 }
 
-// The tangents of this model were made with MikkTSpace, mirrored in half of its cells.
+// The tangents in this model are from MikkTSpace; half of its cells are mirrored.
 TEST(GltfSamples, ComputedTangentsAgreeWithMikkTSpace) {
   const auto scene = sample("NormalTangentMirrorTest/glTF/NormalTangentMirrorTest.gltf");
   if (!scene) GTEST_SKIP() << "no sample models";

@@ -19,7 +19,7 @@ std::vector<Triangle> trianglesOf(int mode, const std::vector<uint16_t>& indices
 }
 
 TEST(Gltf, TrianglesStripsAndFans) {
-  EXPECT_EQ(trianglesOf(4, {0, 1, 2, 2, 1, 3, 4, 4}),  // two indices too many
+  EXPECT_EQ(trianglesOf(4, {0, 1, 2, 2, 1, 3, 4, 4}),  // two surplus indices
             (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}}));
   EXPECT_EQ(trianglesOf(5, {0, 1, 2, 3, 4}),
             (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
@@ -28,13 +28,13 @@ TEST(Gltf, TrianglesStripsAndFans) {
   EXPECT_EQ(trianglesOf(5, {}), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
 }
 
-TEST(Gltf, WhatHasNoTrianglesIsLeftOutWithOneWarning) {
+TEST(Gltf, PrimitivesWithoutTrianglesAreIgnoredWithOneWarning) {
   GltfWriter w;
   addTriangle(w, {{"mode", 0}});
   addTriangle(w, {{"mode", 3}});
   EXPECT_TRUE(w.load().meshes.empty());
   ASSERT_EQ(w.warnings.size(), 1u);
-  EXPECT_TRUE(w.warnings[0].ends_with("model.gltf: points and lines are left out"));
+  EXPECT_TRUE(w.warnings[0].ends_with("model.gltf: ignored: points and lines"));
 
   GltfWriter bare;
   bare.add("nodes", {{"mesh", bare.mesh({{"attributes", json::object()}})}});
@@ -52,7 +52,7 @@ TEST(Gltf, UnusedVerticesAreDropped) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(Gltf, OneUserIsBakedSeveralShare) {
+TEST(Gltf, MeshesWithOneInstanceAreBakedAndOthersShared) {
   GltfWriter w;
   addTriangle(w, {}, {{"translation", {10, 0, 0}}, {"name", "alone"}});
   const int shared = w.mesh({{"attributes", {{"POSITION", w.vec3s({0, 0, 0, 2, 0, 0, 0, 2, 0})}}}});
@@ -84,8 +84,8 @@ TEST(Gltf, HierarchyAndPlacementCompose) {
   EXPECT_NEAR(p.z, -2, 1e-6f);
 }
 
-// The geometric normal stays on the side of the shading normal.
-TEST(Gltf, MirrorsKeepTheFront) {
+// The geometric normal remains on the side of the shading normal.
+TEST(Gltf, MirroredNodesKeepTheirFrontFaces) {
   GltfWriter w;
   addTriangle(w, {{"attributes", {{"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}},
               {{"matrix", {-2, 0, 0, 0, 0, 3, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1}}});
@@ -94,40 +94,40 @@ TEST(Gltf, MirrorsKeepTheFront) {
   const vec3 geometric = glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
                                     mesh.positions[t.z] - mesh.positions[t.x]);
   EXPECT_GT(glm::dot(geometric, mesh.normals[0]), 0);
-  // The plane maps to itself but its normal does not follow the shear: inverse transpose.
+  // The shear maps the plane to itself; its normal needs the inverse transpose.
   EXPECT_NEAR(glm::dot(mesh.normals[0], mesh.positions[t.y] - mesh.positions[t.x]), 0, 1e-6f);
   EXPECT_NEAR(glm::length(mesh.normals[0]), 1, 1e-6f);
 }
 
-TEST(Gltf, BadNormalsAreMended) {
+TEST(Gltf, InvalidNormalsAreRepaired) {
   GltfWriter w;
   addTriangle(w, {{"attributes", {{"NORMAL", w.vec3s({0, 0, 0, 0, 3, 0, NAN, 0, 1})}}}});
   const std::vector<vec3> normals = w.load().meshes[0].normals;
   EXPECT_EQ(normals, (std::vector<vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
 }
 
-TEST(Gltf, FlattenedNodesAreLeftOut) {
+TEST(Gltf, NodesWithSingularTransformsAreIgnored) {
   GltfWriter w;
   addTriangle(w, {}, {{"scale", {1, 0, 1}}});
-  addTriangle(w, {}, {{"scale", {1e-6, 1e-6, 1e-6}}});  // small, but a shape
+  addTriangle(w, {}, {{"scale", {1e-6, 1e-6, 1e-6}}});  // small, but invertible
   EXPECT_EQ(w.load().instances.size(), 1u);
   EXPECT_EQ(w.warnings.size(), 1u);
 }
 
-TEST(Gltf, ScenesChooseTheNodes) {
+TEST(Gltf, TheDefaultSceneSelectsTheNodes) {
   GltfWriter w;
   addTriangle(w);
   addTriangle(w, {}, {{"translation", {7, 0, 0}}});
-  EXPECT_EQ(w.load().instances.size(), 2u);  // no scenes: every root
+  EXPECT_EQ(w.load().instances.size(), 2u);  // no scenes: all root nodes
   w.root["scenes"] = {{{"nodes", {1}}}, {{"nodes", {0}}}};
-  EXPECT_EQ(w.load().instances.at(0).node, 1);  // none named: the first
+  EXPECT_EQ(w.load().instances.at(0).node, 1);  // no default: the first scene
   w.root["scene"] = 1;
   EXPECT_EQ(w.load().instances.at(0).node, 0);
   w.root["scene"] = 2;
   EXPECT_EQ(w.refusal(), "scene: scenes[2] does not exist (2 in the file)");
 }
 
-TEST(Gltf, MeshesWithoutNodesStandAtTheOrigin) {
+TEST(Gltf, MeshesWithoutNodesAreAtTheOrigin) {
   GltfWriter w;
   addTriangle(w);
   w.root.erase("nodes");
@@ -145,7 +145,7 @@ TEST(Gltf, NodesMustFormTrees) {
   EXPECT_EQ(w.refusal(), "nodes[0].children: nodes[5] does not exist (1 in the file)");
 }
 
-TEST(Gltf, AVeryDeepChainIsNoProblem) {
+TEST(Gltf, VeryDeepHierarchiesLoad) {
   GltfWriter w;
   constexpr int kDepth = 20000;
   for (int i = 0; i < kDepth; ++i)
@@ -154,13 +154,13 @@ TEST(Gltf, AVeryDeepChainIsNoProblem) {
   EXPECT_EQ(w.load().meshes[0].positions[0], vec3(0, 0, kDepth / 2));
 }
 
-TEST(Gltf, CamerasStandAtTheirNodes) {
+TEST(Gltf, CamerasHaveTheFramesOfTheirNodes) {
   GltfWriter w;
   w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
   w.add("cameras", {{"type", "orthographic"},
                     {"name", "plan"},
                     {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}});
-  // Turned a quarter about +Y, and scaled unevenly and mirrored, which a camera ignores.
+  // Rotated by 90 degrees about +Y; cameras ignore the non-uniform scale and the mirroring.
   const double half = std::sqrt(0.5);
   w.add("nodes", {{"camera", 0},
                   {"name", "eye"},
@@ -199,7 +199,7 @@ TEST(Gltf, SkinsBlendTheirJoints) {
                                 kUByte, "VEC4", 3);
   const int weights = w.accessor(w.view(std::vector<float>{1, 0, 0, 0, .5f, .5f, 0, 0, 1, 0, 0, 0}),
                                  kFloat, "VEC4", 3);
-  // The mesh's own node is far away, which a skinned mesh ignores.
+  // Skinned meshes ignore the transform of their own node, which is far away.
   const json patch = {{"attributes", {{"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}};
   addTriangle(w, patch, {{"skin", 0}, {"translation", {100, 0, 0}}});
   w.add("nodes", {{"translation", {0, 0, 1}}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes small glTF files for tests, each into a folder of its own that goes with the writer.
+// Writes small glTF files for tests, each into its own folder, which the destructor removes.
 #pragma once
 
 #include <unistd.h>
@@ -70,7 +70,7 @@ class GltfWriter {
     return accessor(view(i), kUShort, "SCALAR", i.size());
   }
 
-  // Appends to one of the root's arrays; returns the index.
+  // Appends to an array of the root; returns the index.
   int add(const std::string& array, const nlohmann::json& element) {
     root[array].push_back(element);
     return int(root[array].size()) - 1;
@@ -99,7 +99,7 @@ class GltfWriter {
     return loadGltf(save(), placement, [this](const std::string& w) { warnings.push_back(w); });
   }
 
-  // The message with which the file is refused, without the path; "" where it loads.
+  // The message with which the file is rejected, without the path; "" if it loads.
   std::string refusal() {
     const std::string path = save();
     try {

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-// A square in z = 0 of two triangles, front to +Z, with an upright map on it: v runs down.
+// A square in z = 0 of two triangles, front to +Z, with an upright texture: v points down.
 Mesh square() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -28,8 +28,8 @@ TEST(MeshAttributes, TangentRunsAlongUAndBitangentUpTheImage) {
   }
 }
 
-TEST(MeshAttributes, MirrorSeamsSplitTheirVertices) {
-  // The map is folded along the diagonal 0-2: the second triangle reads it mirrored.
+TEST(MeshAttributes, VerticesOnMirrorSeamsAreSplit) {
+  // The texture is mirrored on the second triangle, along the diagonal 0-2.
   Mesh mesh = square();
   computeTangents(mesh, {{0, 1}, {1, 1}, {1, 0}, {1, 1}});
   EXPECT_EQ(mesh.positions.size(), 6u);
@@ -46,7 +46,7 @@ TEST(MeshAttributes, MirrorSeamsSplitTheirVertices) {
   EXPECT_EQ(mesh.positions[t.y], vec3(1, 1, 0));
 }
 
-TEST(MeshAttributes, DegenerateCoordinatesGiveSomePerpendicular) {
+TEST(MeshAttributes, DegenerateUvsGiveAPerpendicularTangent) {
   for (const vec2 uv : {vec2(0), vec2(NAN), vec2(INFINITY)}) {
     Mesh mesh = square();
     computeTangents(mesh, std::vector<vec2>(4, uv));
@@ -57,8 +57,8 @@ TEST(MeshAttributes, DegenerateCoordinatesGiveSomePerpendicular) {
   }
 }
 
-// T(mesh's frame) is the frame of T(mesh), for a rotation, a mirror and a shear.
-TEST(MeshAttributes, TransformsCarryTheWholeFrame) {
+// Transforming the frame or the mesh gives the same, for a rotation, a reflection and a shear.
+TEST(MeshAttributes, TransformsApplyToTheWholeFrame) {
   glm::dmat4 shear(1);
   shear[2][0] = 0.5;
   for (const glm::dmat4& m :
@@ -78,7 +78,7 @@ TEST(MeshAttributes, TransformsCarryTheWholeFrame) {
   }
 }
 
-TEST(MeshAttributes, FlatMeshesGetATriangleEach) {
+TEST(MeshAttributes, FlatTrianglesDoNotShareVertices) {
   Mesh mesh = square();
   mesh.normals.clear();
   mesh.uvs = {{}, kUpright};
@@ -93,7 +93,7 @@ TEST(MeshAttributes, TinyNormalsKeepTheirDirection) {
   Mesh mesh = square();
   mesh.normals[0] = vec3(0, 1e-30f, 0);
   mesh.normals[1] = vec3(3e38f, 0, 0);
-  mendNormals(mesh);
+  repairNormals(mesh);
   EXPECT_EQ(mesh.normals[0], vec3(0, 1, 0));
   EXPECT_EQ(mesh.normals[1], vec3(1, 0, 0));
 }

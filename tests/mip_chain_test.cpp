@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filtered textures: means that are means, and pictures that neither alias nor blur.
+// Texture filtering: mip levels are means, and renders neither alias nor blur.
 #include "scene/mip_chain.h"
 
 #include <gtest/gtest.h>
@@ -28,58 +28,58 @@ vec4 mean(const TexelGrid& grid) {
   return vec4(sum / double(grid.texelsFloat.size()));
 }
 
-TEST(MipChain, EveryVersionHasTheMeanOfTheWhole) {
+TEST(MipChain, EveryLevelHasTheMeanOfTheTexture) {
   for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 9}, {31, 2}}) {
     const TexelGrid grid = randomGrid(width, height);
-    const std::vector<TexelGrid> levels = makeSmaller(grid, false);
+    const std::vector<TexelGrid> levels = makeMipLevels(grid, false);
     for (const TexelGrid& level : levels) {
       EXPECT_EQ(level.texelsFloat.size(), size_t(level.width) * size_t(level.height));
       EXPECT_NEAR(glm::distance(mean(level), mean(grid)), 0, 1e-6) << width << "x" << level.width;
     }
     EXPECT_EQ(levels.back().width * levels.back().height, 1);
   }
-  EXPECT_TRUE(makeSmaller(randomGrid(1, 1), false).empty());
+  EXPECT_TRUE(makeMipLevels(randomGrid(1, 1), false).empty());
 }
 
 TEST(MipChain, AveragesInLinearLight) {
   TexelGrid grid{2, 2, {{0, 0, 0, 0}, {255, 255, 0, 255}, {255, 255, 0, 0}, {0, 255, 0, 255}}, {}};
   // Half the light has the sRGB code 188, three quarters 225; alpha is linear.
   const std::array<uint8_t, 4> encoded{188, 225, 0, 128}, linear{128, 191, 0, 128};
-  EXPECT_EQ(makeSmaller(grid, true).at(0).texels8.at(0), encoded);
-  EXPECT_EQ(makeSmaller(grid, false).at(0).texels8.at(0), linear);
-  for (int code = 0; code < 256; ++code) {  // what is even stays as it is
+  EXPECT_EQ(makeMipLevels(grid, true).at(0).texels8.at(0), encoded);
+  EXPECT_EQ(makeMipLevels(grid, false).at(0).texels8.at(0), linear);
+  for (int code = 0; code < 256; ++code) {  // uniform textures do not change
     const uint8_t c = uint8_t(code);
     const TexelGrid even{2, 1, {{c, c, c, c}, {c, c, c, c}}, {}};
     const std::array<uint8_t, 4> same{c, c, c, c};
-    EXPECT_EQ(makeSmaller(even, true)[0].texels8[0], same);
+    EXPECT_EQ(makeMipLevels(even, true)[0].texels8[0], same);
   }
 }
 
-// White that is there beside black that is not: what is there is white, half of it.
+// Opaque white next to transparent black: the mean is white with alpha 1/2.
 const TexelGrid kHoles{
     2, 2, {{255, 255, 255, 255}, {0, 0, 0, 0}, {0, 0, 0, 0}, {255, 255, 255, 255}}, {}};
 
 TEST(MipChain, TransparentTexelsDoNotTint) {
   const std::array<uint8_t, 4> white{255, 255, 255, 128}, grey{128, 128, 128, 128};
-  EXPECT_EQ(makeSmaller(kHoles, false, true)[0].texels8[0], white);
-  EXPECT_EQ(makeSmaller(kHoles, false)[0].texels8[0], grey);
-  // By how much is there, level after level; where nothing is, the plain mean is as good.
+  EXPECT_EQ(makeMipLevels(kHoles, false, true)[0].texels8[0], white);
+  EXPECT_EQ(makeMipLevels(kHoles, false)[0].texels8[0], grey);
+  // Weighted by alpha at every level; the plain mean where alpha is 0.
   TexelGrid odd{3, 1, {}, {vec4(1, 0, 0, 0.75f), vec4(0, 1, 0, 0.25f), vec4(0, 0, 1, 0)}};
-  const vec4 mean = makeSmaller(odd, false, true)[0].texelsFloat[0];
+  const vec4 mean = makeMipLevels(odd, false, true)[0].texelsFloat[0];
   EXPECT_NEAR(glm::distance(mean, vec4(0.75f, 0.25f, 0, 1 / 3.0f)), 0, 1e-6);
   for (vec4& texel : odd.texelsFloat) texel.w = 0;
-  const vec4 nothing = makeSmaller(odd, false, true)[0].texelsFloat[0];
+  const vec4 nothing = makeMipLevels(odd, false, true)[0].texelsFloat[0];
   EXPECT_NEAR(glm::distance(nothing, vec4(vec3(1 / 3.0f), 0)), 0, 1e-6);
-  // What is opaque everywhere is filtered as ever, to the last bit.
+  // Opaque textures are filtered without weights, with the same bits.
   TexelGrid opaque{4, 2, {}, {}};
   for (int i = 0; i < 8; ++i)
     opaque.texels8.push_back({uint8_t(hash(uint64_t(i))), uint8_t(i * 30), 7, 255});
-  EXPECT_EQ(makeSmaller(opaque, true, true)[0].texels8, makeSmaller(opaque, true)[0].texels8);
+  EXPECT_EQ(makeMipLevels(opaque, true, true)[0].texels8, makeMipLevels(opaque, true)[0].texels8);
 }
 
-TEST(MipChain, LookupsWeighByAlphaWhereTheTextureSaysSo) {
+TEST(MipChain, LookupsAreWeightedByAlphaIfTheTextureAsksForIt) {
   Texture texture{&kHoles};
-  texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(kHoles, false, true));
+  texture.mipLevels = std::make_shared<std::vector<TexelGrid>>(makeMipLevels(kHoles, false, true));
   EXPECT_NEAR(texture.lookup({0.5f, 0.5f}).x, 0.5f, 1e-6);
   texture.weightedByAlpha = true;
   for (const float texels : {1.0f, 1.7f, 3.0f, 64.0f})
@@ -88,12 +88,12 @@ TEST(MipChain, LookupsWeighByAlphaWhereTheTextureSaysSo) {
       EXPECT_NEAR(seen.x, 1, 1e-5) << texels;
       EXPECT_GT(seen.w, 0);
     }
-  EXPECT_EQ(texture.lookup({0.25f, 0.75f}), vec4(0));  // in the middle of nothing
+  EXPECT_EQ(texture.lookup({0.25f, 0.75f}), vec4(0));  // centre of a transparent texel
 }
 
-// A chequered veil seen from afar, in a file: half of it is white, half shows the black behind. The
-// same picture as an opaque texture, whose alpha does not count, is grey; sRGB leaves 0 and 1.
-TEST(MipChain, AVeilOfHolesIsHalfWhiteAtAnyNumberOfSamples) {
+// A model with a chequered alpha texture seen from far away: half of it is opaque white, half shows
+// the black behind it. The same image as an opaque texture is grey; sRGB does not change 0 and 1.
+TEST(MipChain, ChequeredAlphaIsHalfWhiteForAnyNumberOfSamples) {
   constexpr int kSide = 64;
   std::vector<uint8_t> texels;
   for (int y = 0; y < kSide; ++y)
@@ -103,7 +103,7 @@ TEST(MipChain, AVeilOfHolesIsHalfWhiteAtAnyNumberOfSamples) {
     w.write("a.png", encodePng(kSide, kSide, 4, texels));
     w.root["images"] = {{{"uri", "a.png"}}};
     w.root["textures"] = {{{"source", 0}}};
-    for (const char* alphaMode : {mode, "OPAQUE", "BLEND"})  // others share the image
+    for (const char* alphaMode : {mode, "OPAQUE", "BLEND"})  // textures that share the image
       w.add("materials", {{"alphaMode", alphaMode},
                           {"doubleSided", true},
                           {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}},
@@ -132,15 +132,15 @@ TEST(MipChain, AVeilOfHolesIsHalfWhiteAtAnyNumberOfSamples) {
   }
 }
 
-TEST(MipChain, LookupGoesFromThePointToTheMean) {
+TEST(MipChain, LookupGoesFromBilinearToTheMean) {
   const TexelGrid grid = randomGrid(16, 16);
   Texture texture{&grid};
-  texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(grid, false));
+  texture.mipLevels = std::make_shared<std::vector<TexelGrid>>(makeMipLevels(grid, false));
   const vec2 uv(0.3f, 0.6f);
   EXPECT_EQ(texture.lookup(uv, 0), texture.lookup(uv));
   EXPECT_EQ(texture.lookup(uv, 1), texture.lookup(uv));
   for (int level = 1; level <= 4; ++level) {
-    const Texture alone{&(*texture.smaller)[size_t(level) - 1]};
+    const Texture alone{&(*texture.mipLevels)[size_t(level) - 1]};
     const float texels = std::pow(4.0f, float(level));
     EXPECT_NEAR(glm::distance(texture.lookup(uv, texels), alone.lookup(uv)), 0, 1e-6);
     EXPECT_NEAR(glm::distance(texture.lookup(uv, texels * 0.99999f), alone.lookup(uv)), 0, 1e-3);
@@ -149,7 +149,7 @@ TEST(MipChain, LookupGoesFromThePointToTheMean) {
   EXPECT_NEAR(glm::distance(texture.lookup(uv, INFINITY), mean(grid)), 0, 1e-6);
 }
 
-// A glowing checkerboard that goes to the horizon: squares of 1 m, 8 texels each.
+// An emitting checkerboard up to the horizon: squares of 1 m and 8 texels.
 Scene checkerboard(bool filtered) {
   Scene scene;
   constexpr int kSide = 64;
@@ -161,7 +161,7 @@ Scene checkerboard(bool filtered) {
     }
   Texture texture{grid.get()};
   if (filtered)
-    texture.smaller = std::make_shared<std::vector<TexelGrid>>(makeSmaller(*grid, false));
+    texture.mipLevels = std::make_shared<std::vector<TexelGrid>>(makeMipLevels(*grid, false));
   scene.grids.push_back(std::move(grid));
   scene.textures.push_back(texture);
   Material glow = lambert(Rgb(0));
@@ -172,7 +172,7 @@ Scene checkerboard(bool filtered) {
   return scene;
 }
 
-// From two metres to the horizon, or from high above.
+// Seen from a height of two metres towards the horizon, or from far above.
 std::vector<double> seen(bool steep, bool filtered, uint32_t samples, uint64_t seed,
                          std::optional<double> noiseLimit = {}) {
   const Camera camera = steep ? Camera::lookAt({3, 150, 10}, {0.4f, 0, -50}, {0, 1, 0}, 0.7f)
@@ -194,7 +194,7 @@ double rmsDifference(const std::vector<double>& a, const std::vector<double>& b)
   return std::sqrt(sum / double(a.size()));
 }
 
-// Share of the reference's contrast that the picture shows.
+// The contrast of the image as a fraction of that of the reference.
 double contrast(const std::vector<double>& picture, const std::vector<double>& reference) {
   double both = 0, own = 0;
   for (size_t i = 0; i < picture.size(); ++i) {
@@ -209,13 +209,13 @@ TEST(SlowMipChain, AFarCheckerboardNeitherAliasesNorBlurs) {
     const auto truth = seen(steep, false, 2048, 1);
     const auto few = seen(steep, true, 16, 2), fewPoints = seen(steep, false, 16, 2);
     const auto many = seen(steep, true, 1024, 3), manyPoints = seen(steep, false, 1024, 3);
-    // Point samples err by 0.065 and 0.099, filtered ones by 0.032 and 0.005.
+    // The error of unfiltered lookups is 0.065 and 0.099, that of filtered ones 0.032 and 0.005.
     EXPECT_LT(rmsDifference(few, truth), (steep ? 0.1 : 0.6) * rmsDifference(fewPoints, truth));
     EXPECT_LT(rmsDifference(many, truth), 1.1 * rmsDifference(manyPoints, truth));
-    if (steep) continue;  // an even grey
+    if (steep) continue;  // uniform grey
     EXPECT_GT(contrast(few, truth), 0.97);
     EXPECT_NEAR(contrast(many, truth), 1, 0.002);
-    // As sharp where the number of samples was not known before.
+    // The same sharpness if the number of samples is not known in advance.
     EXPECT_NEAR(contrast(seen(steep, true, 1024, 4, 1e-9), truth), 1, 0.003);
   }
 }

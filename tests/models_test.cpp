@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real models under real probes: every sample of every picture is valid.
+// Real models lit by real probes: every sample of every render is valid.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -54,7 +54,7 @@ TEST(SlowModels, EveryModelUnderEveryProbeHasNoInvalidSample) {
     try {
       scene = loadGltf(file.string(), {}, nullptr);
     } catch (const InputError&) {
-      continue;  // what is refused, and why, is gltf_samples_test's
+      continue;  // gltf_samples_test checks which models are rejected
     }
     if (scene.instances.empty()) continue;
     ++rendered;

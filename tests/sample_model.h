@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Khronos's sample models, where they are present.
+// Khronos's sample models, if they are available.
 #pragma once
 
 #include "scene/gltf/load_gltf.h"
@@ -14,7 +14,7 @@ inline std::optional<Scene> sampleModel(const std::string& name) {
   return loadGltf(path->string(), {}, nullptr);
 }
 
-// A square of the scene around `centre`, seen along -Z without perspective.
+// An orthographic camera along -Z on a square of the scene around `centre`.
 inline Image squareView(const Scene& scene, const vec3& centre, float halfHeight, int pixels,
                         const Probe& probe, RenderSettings settings) {
   Camera camera;
@@ -31,7 +31,7 @@ inline Material& materialNamed(Scene& scene, const std::string& name) {
   throw std::runtime_error("no material " + name);
 }
 
-// A black body that shines white to all sides.
+// A black material that emits white.
 inline void makeLamp(Material& material) {
   material.baseColor = vec4(0, 0, 0, 1);
   material.specular = material.metallic = 0;

@@ -103,7 +103,7 @@ TEST(Texture, InterpolatesInLinearLight) {
   EXPECT_NEAR(texture.lookup({0.5f, 0.5f}).x, 0.5f, 1e-6f);
 }
 
-TEST(Texture, AnyCoordinateIsAnswered) {
+TEST(Texture, AnyCoordinateIsValid) {
   const TexelGrid grid = row({51, 102, 153});
   const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
   for (const Wrap wrap : {Wrap::Repeat, Wrap::ClampToEdge, Wrap::MirroredRepeat})

@@ -22,7 +22,7 @@ CameraRays::CameraRays(const Camera& camera, float aspectRatio)
 }
 
 void CameraRays::ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const {
-  // The cosine-weighted hemisphere seen from its pole is an even disc.
+  // The projection of the cosine-weighted hemisphere is a uniform disc.
   const vec2 disc = lensRadius_ * vec2(squareToCosineHemisphere(lens));
   const vec3 onLens = disc.x * right_ + disc.y * up_;
   origin = position_ + onLens;
@@ -33,7 +33,8 @@ Beam beamOf(const Camera& camera, int height, double samples) {
   const double halfHeight =
       camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
   const double side = 2 * halfHeight / height;
-  // Of overlaps of 1, 2, 4 and 8, this one makes the least error of 16 samples of a checkerboard.
+  // Of the overlaps 1, 2, 4 and 8, this one has the smallest error for 16 samples of a
+  // checkerboard.
   constexpr double kOverlap = 4;
   const float fraction = float(side * side * std::min(kOverlap / samples, 1.0));
   return camera.orthographic ? Beam{fraction, 0} : Beam{0, fraction};

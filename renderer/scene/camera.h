@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the picture is taken from.
+// Cameras and their rays.
 #pragma once
 
 #include <string>
@@ -10,47 +10,48 @@ namespace chromeball {
 
 // Looks along -Z of its frame, +Y up (glTF's convention). Positions in metres.
 struct Camera {
-  std::string name, node;  // the model's names for it and for the node that carries it
+  std::string name, node;  // names of the camera and of its node in the model
   vec3 position{0, 0, 0};
   vec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};  // orthonormal
   bool orthographic = false;
   float fov = 0.6911112f;  // vertical field of view in radians (perspective)
   float halfHeight = 1;    // half the height of the view in metres (orthographic)
-  float aspect = 0;        // width / height the file asks for; 0: none
+  float aspect = 0;        // width / height that the file states; 0: none
   float lensRadius = 0;    // metres; 0: a pinhole. Perspective only
-  float focus = 1;         // metres along the axis to the plane in focus, where there is a lens
+  float focus = 1;         // metres along the axis to the plane in focus; used if there is a lens
 
-  // Throws InputError where eye and target coincide or up is parallel to the view.
+  // Throws InputError if position and target coincide or if up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);
 };
 
-// How wide the beam around a camera's ray is: its cross-section, after `distance` metres, in m^2.
+// The beam around a camera ray. Its cross-section after `distance` metres is
+// area + solidAngle distance^2, in m^2.
 struct Beam {
-  float area = 0, solidAngle = 0;  // both 0: a ray that sees points
+  float area = 0, solidAngle = 0;  // both 0: an infinitely thin ray
 
   explicit operator bool() const { return area + solidAngle > 0; }
   float crossSection(float distance) const { return area + solidAngle * distance * distance; }
 };
 
-// The beam of one of `samples` rays through a pixel at the centre of a picture of `height` pixels:
-// the beams overlap and cover the pixel four times, so that textures do not alias, and grow narrow
-// with many samples, so that textures do not blur.
+// The beam of one of `samples` rays through a pixel at the centre of an image of `height` pixels.
+// The beams of a pixel overlap: together they cover it four times, so that textures do not alias.
+// More samples make them narrower, so that textures do not blur.
 Beam beamOf(const Camera& camera, int height, double samples);
 
-// The rays of a camera for a picture with the given width / height.
+// The rays of a camera for an image of the given width / height.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, float aspectRatio);
 
-  // Through image point (u right, v down, both in [0, 1]). The direction is unit.
+  // The ray through an image point (u right, v down, both in [0, 1]). The direction is unit.
   void ray(float u, float v, vec3& origin, vec3& direction) const {
     const vec3 point = corner_ + u * across_ + v * down_;
     origin = orthographic_ ? position_ + point : position_;
     direction = orthographic_ ? forward_ : glm::normalize(point);
   }
 
-  // The ray that meets the same point of the plane in focus (thin lens), from the point of the lens
-  // that `lens` in [0, 1)^2 chooses uniformly over its area.
+  // The ray of a thin lens to the same point of the plane in focus. It starts at a point of the
+  // lens that is uniform over the area for `lens` uniform in [0, 1)^2.
   bool hasLens() const { return lensRadius_ > 0; }
   void ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const;
 
@@ -62,7 +63,7 @@ class CameraRays {
  private:
   bool orthographic_;
   vec3 position_, forward_;
-  vec3 corner_, across_, down_;  // of the view's rectangle, from the position; at distance 1
+  vec3 corner_, across_, down_;  // the view's rectangle at distance 1, relative to the position
   vec3 right_, up_;
   float lensRadius_, focus_;
 };

@@ -4,13 +4,13 @@
 namespace chromeball {
 namespace {
 
-// A factor, times one channel of a texture where there is one.
+// A factor, times a channel of a texture if there is one.
 float product(const Scene& scene, const Surface& s, float factor, const TextureSlot& slot,
               int channel) {
   return slot && factor != 0 ? factor * lookup(scene, slot, s)[channel] : factor;
 }
 
-// The clear coat has its own normal map, or else none: the base's does not reach it.
+// The clear coat uses its own normal map or none; the base layer's does not affect it.
 vec3 clearcoatNormal(const Scene& scene, const Instance& instance, const Surface& s) {
   const Material& m = *s.material;
   if (!m.normalTexture && !m.extended->clearcoatNormalTexture) return s.normal;
@@ -24,7 +24,7 @@ vec3 clearcoatNormal(const Scene& scene, const Instance& instance, const Surface
   return glm::dot(n, s.geometricNormal) > 0 ? n : s.geometricNormal;
 }
 
-// Strength and direction of the grooves (KHR_materials_anisotropy).
+// Reads the strength and direction of anisotropy (KHR_materials_anisotropy).
 void readAnisotropy(const Scene& scene, const Instance& instance, const Surface& s,
                     ExtendedPoint& p) {
   const ExtendedMaterial& e = *s.material->extended;
@@ -66,9 +66,9 @@ ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance, c
   if (e.iridescence > 0) {
     p.iridescence = product(scene, s, e.iridescence, e.iridescenceTexture, 0);
     p.filmIor = e.filmIor;
-    p.filmThickness = e.filmThicknessTexture ? glm::mix(e.filmThinnest, e.filmThickest,
+    p.filmThickness = e.filmThicknessTexture ? glm::mix(e.filmMinThickness, e.filmMaxThickness,
                                                         lookup(scene, e.filmThicknessTexture, s).y)
-                                             : e.filmThickest;
+                                             : e.filmMaxThickness;
   }
   return p;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of a material's extensions at a point: factors x textures.
+// The parameters of a material's extensions at a surface point: factors times textures.
 #pragma once
 
 #include "scene/surface.h"
@@ -15,12 +15,12 @@ struct ExtendedPoint {
   Rgb sheenColor{0};
   float sheenRoughness = 0;
   float anisotropy = 0;
-  vec3 anisotropyTangent{0};  // unit, at right angles to the smooth normal
+  vec3 anisotropyTangent{0};  // unit, perpendicular to the smooth normal
   float iridescence = 0, filmIor = 1, filmThickness = 0;  // nanometres
   vec3 clearcoatNormal{0};  // on the viewer's side, as Surface::normal
 };
 
-// The surface's material must be an extended one.
+// Precondition: the surface's material has extensions.
 ExtendedPoint extendedMaterialAt(const Scene& scene, const Instance& instance,
                                  const Surface& surface);
 
@@ -30,9 +30,9 @@ inline bool isInsideBody(const Surface& surface, const ExtendedPoint& point) {
   return point.transmission > 0 && !point.thinWalled && !surface.frontFace;
 }
 
-// Share of the light emitted towards `wo` that passes the clear coat (KHR_materials_clearcoat):
-// 1 - clearcoat F, with Schlick's Fresnel term F at the coat's normal. The surface's material must
-// be an extended one.
+// Fraction of the light emitted towards `wo` that passes the clear coat (KHR_materials_clearcoat):
+// 1 - clearcoat F, with Schlick's Fresnel term F at the coat's normal. Precondition: the surface's
+// material has extensions.
 float coatTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                         const vec3& wo);
 

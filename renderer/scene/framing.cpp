@@ -9,11 +9,12 @@ namespace {
 constexpr float kFov = 47 * kPi / 180;
 constexpr double kMargin = 1.05;
 
-// Of what a view whose edges rise by `slope` a metre must hold, along one axis of the picture: how
-// far the vertices reach past edges through the origin. With a camera at `position` along the axis
-// and `distance` behind the origin, a vertex at x and (towards the camera) z is in view where
+// Fits the camera along one axis of the image, for a view whose edges have the given `slope`. With
+// the camera at `position` along the axis and at `distance` from the origin, a vertex at x and z
+// (towards the camera) is in view if
 //   |x - position| <= (distance - z) slope.
-struct Reach {
+// The extremes of x + z slope and -x + z slope give the smallest distance for which this holds.
+struct AxisFit {
   double slope;
   double upper = -INFINITY, lower = -INFINITY;
 
@@ -52,7 +53,7 @@ bool reachesBeyond(const Bounds& box, const Bounds& others) {
          box.min.z < others.min.z - maximum || box.max.z > others.max.z + maximum;
 }
 
-// The instances to be framed: all but grounds.
+// The instances to frame: all except ground planes.
 std::vector<int> subjects(const Scene& scene) {
   std::vector<Bounds> boxes;
   Bounds upright;
@@ -82,15 +83,15 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
   Camera camera = Camera::lookAt({0.45f, 0.35f, 1}, vec3(0), vec3(0, 1, 0), kFov);
   const glm::dvec3 right(camera.right), up(camera.up), back(camera.back);
 
-  // Something to look at where there is no extent: a view as wide as the distance from the origin
-  // can resolve, or of a metre.
+  // A scene without extent gets a view of about a metre, or wider if the rounding of coordinates
+  // far from the origin requires it.
   if (glm::length(size) <= 1e-6 * glm::length(centre)) {
     camera.position = vec3(centre + (2 + 1e-3 * glm::length(centre)) * back);
     return camera;
   }
 
   const double slope = std::tan(0.5 * kFov) / kMargin;
-  Reach across{slope * aspectRatio}, upwards{slope};
+  AxisFit across{slope * aspectRatio}, upwards{slope};
   for (const int i : framed) {
     const Instance& instance = scene.instances[size_t(i)];
     for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view of a scene that brings no camera of its own.
+// Chooses a camera for a scene without one.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace chromeball {
 
-// A camera that frames the scene from the front, slightly above and to the right: as close as the
-// vertices allow, with a small margin. `aspectRatio`: width / height. A scene without extent is
-// seen from some distance; a room is seen from inside (interior_view.h).
+// A camera that frames the scene from the front, slightly above and to the right: as close as
+// possible with all vertices in view and a small margin. `aspectRatio`: width / height. A scene
+// without extent is seen from a fixed distance, a room from inside (interior_view.h).
 //
-// Grounds are not framed: instances that are flat (twenty times as wide as high) and reach farther
-// beyond the bounds of those that are not than these are wide.
+// Ground planes are not framed. These are flat instances (at least twenty times as wide as high)
+// that extend beyond the bounds of all other instances by more than the width of those bounds.
 Camera framingCamera(const Scene& scene, float aspectRatio);
 
 }  // namespace chromeball

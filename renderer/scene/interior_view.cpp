@@ -9,11 +9,12 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kCells = 64;  // a side of the grids from outside
+constexpr int kCells = 64;  // per side of OutsideView's grid
 
 using Corners = std::array<dvec3, 3>;
 
-template <class Visit>  // of the corners of each triangle, counter-clockwise from the front
+// Calls visit(corners) for each triangle, with its corners counter-clockwise from the front.
+template <class Visit>
 void forEachTriangle(const Scene& scene, const std::vector<int>& instances, const Visit& visit) {
   for (const int i : instances) {
     const Instance& instance = scene.instances[size_t(i)];
@@ -43,10 +44,11 @@ Box boundsOf(const Scene& scene, const std::vector<int>& instances) {
   return box;
 }
 
-// What is met first along one axis, from its upper and from its lower end.
-class TwoSides {
+// The nearest surfaces seen along one axis, from both sides of the bounding box. A grid of kCells^2
+// parallel rays stands for the view.
+class OutsideView {
  public:
-  TwoSides(const Box& box, int axis) : box_(box), axis_(axis) {}
+  OutsideView(const Box& box, int axis) : box_(box), axis_(axis) {}
 
   void add(const Corners& corners) {
     const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
@@ -54,7 +56,7 @@ class TwoSides {
     for (size_t k = 0; k < 3; ++k)
       p[k] = double(kCells) * dvec2((corners[k][u] - box_.min[u]) / box_.size()[u],
                                     (corners[k][v] - box_.min[v]) / box_.size()[v]);
-    const double area = cross(p[1] - p[0], p[2] - p[0]);  // > 0: faces the upper end
+    const double area = cross(p[1] - p[0], p[2] - p[0]);  // > 0: faces the upper side
     if (area == 0) return;
     const auto cell = [](double x) { return int(std::clamp(x, 0.0, double(kCells))); };
     const dvec2 low = glm::min(p[0], glm::min(p[1], p[2])),
@@ -66,17 +68,18 @@ class TwoSides {
         if (a < 0 || b < 0 || a + b > 1) continue;
         const double height =
             a * corners[0][axis_] + b * corners[1][axis_] + (1 - a - b) * corners[2][axis_];
-        Cell& met = cells_[size_t(y * kCells + x)];
-        if (height > met.high) met.high = height, met.highIsFront = area > 0;
-        if (height < met.low) met.low = height, met.lowIsFront = area < 0;
+        Cell& nearest = cells_[size_t(y * kCells + x)];
+        if (height > nearest.high) nearest.high = height, nearest.highIsFront = area > 0;
+        if (height < nearest.low) nearest.low = height, nearest.lowIsFront = area < 0;
       }
   }
 
-  void count(double& behind, double& all) const {
-    for (const Cell& met : cells_) {
-      if (met.high < met.low) continue;
-      all += 2;
-      behind += !met.highIsFront + !met.lowIsFront;
+  // Adds the number of back faces and of all faces that the two views show.
+  void count(double& backFaces, double& faces) const {
+    for (const Cell& nearest : cells_) {
+      if (nearest.high < nearest.low) continue;
+      faces += 2;
+      backFaces += !nearest.highIsFront + !nearest.lowIsFront;
     }
   }
 
@@ -90,22 +93,23 @@ class TwoSides {
   std::vector<Cell> cells_ = std::vector<Cell>(size_t(kCells) * kCells);
 };
 
-bool showsItsBack(const Scene& scene, const std::vector<int>& instances, const Box& box) {
-  constexpr double kFraction = 0.6;
-  std::array<TwoSides, 3> axes{TwoSides(box, 0), TwoSides(box, 1), TwoSides(box, 2)};
+// Whether most surfaces seen from outside are back faces.
+bool facesInwards(const Scene& scene, const std::vector<int>& instances, const Box& box) {
+  constexpr double kMinFraction = 0.6;
+  std::array<OutsideView, 3> views{OutsideView(box, 0), OutsideView(box, 1), OutsideView(box, 2)};
   forEachTriangle(scene, instances, [&](const Corners& c) {
-    for (TwoSides& sides : axes) sides.add(c);
+    for (OutsideView& view : views) view.add(c);
   });
-  double behind = 0, all = 0;
-  for (const TwoSides& sides : axes) sides.count(behind, all);
-  return behind > kFraction * all;
+  double backFaces = 0, faces = 0;
+  for (const OutsideView& view : views) view.count(backFaces, faces);
+  return backFaces > kMinFraction * faces;
 }
 
-// A horizontal section: where something is in the way of a view at this height, and which way its
-// fronts look. Cells are square; the room lies in the middle.
+// A horizontal section through the scene, as a grid of square cells with the room in the middle.
+// Each cell holds the directions of the front faces that cross it at this height.
 class Section {
  public:
-  static constexpr int kSide = 256;  // cells; walls are thicker than one
+  static constexpr int kSide = 256;  // cells per side; walls are thicker than one cell
 
   Section(const Scene& scene, const std::vector<int>& instances, const Box& box, double height)
       : cell_(std::max(box.size().x, box.size().z) / kSide),
@@ -115,17 +119,17 @@ class Section {
 
   dvec2 point(int x, int z) const { return corner_ + cell_ * dvec2(x + 0.5, z + 0.5); }
 
-  // Nothing within some hundredths of the room's length.
+  // Whether no surface is near: within 8 of 256 cells, 3% of the room's length.
   bool isFree(int x, int z) const {
-    constexpr int kRoom = 8;
-    for (int dz = -kRoom; dz <= kRoom; ++dz)
-      for (int dx = -kRoom; dx <= kRoom; ++dx)
+    constexpr int kMargin = 8;
+    for (int dz = -kMargin; dz <= kMargin; ++dz)
+      for (int dx = -kMargin; dx <= kMargin; ++dx)
         if (inside(x + dx, z + dz) && at(x + dx, z + dz) != 0) return false;
     return true;
   }
 
-  // Metres from there to what is in the way, where that shows its front; else nullopt.
-  std::optional<double> sight(int x, int z, const dvec2& direction) const {
+  // Metres to the first surface in this direction; nullopt if there is none or if its back is seen.
+  std::optional<double> sightDistance(int x, int z, const dvec2& direction) const {
     constexpr double kStep = 0.7;
     for (double t = kStep;; t += kStep) {
       const int cx = int(std::floor(x + 0.5 + t * direction.x));
@@ -140,7 +144,7 @@ class Section {
   }
 
  private:
-  static constexpr int kNormals = 16;  // of the circle; a bit of a cell for each
+  static constexpr int kNormals = 16;  // directions of the circle, one bit of a cell for each
 
   static dvec2 normal(int i) {
     const double angle = (i + 0.5) * 2 * kPiD / kNormals;
@@ -150,7 +154,7 @@ class Section {
   uint16_t at(int x, int z) const { return fronts_[size_t(z * kSide + x)]; }
 
   void add(const Corners& corners, double height) {
-    std::array<dvec2, 2> ends;  // of the triangle's part at that height
+    std::array<dvec2, 2> ends;  // of the segment in which the triangle crosses the plane
     int count = 0;
     for (size_t k = 0; k < 3 && count < 2; ++k) {
       const dvec3 &a = corners[k], &b = corners[(k + 1) % 3];
@@ -182,57 +186,63 @@ dvec2 direction(int i) {
   return {std::sin(angle), -std::cos(angle)};
 }
 
-// What is seen from a place, squared: the area of each direction's sector but for a factor; below 0
-// where no front is seen.
+// The squared sight distance in each direction, which is proportional to the area of its sector;
+// negative in directions where no front face is seen.
 using Panorama = std::array<double, kDirections>;
 
-// A person's room with furniture: what a cup is not, whose walls also surround the place within.
+// Whether size and number of instances are those of a furnished room.
 bool isFurnishedRoom(const Box& box, const std::vector<int>& instances) {
-  constexpr double kLowest = 2, kHighest = 10, kShortest = 2.5;  // metres
-  constexpr size_t kMin = 5;
+  constexpr double kMinHeight = 2, kMaxHeight = 10, kMinWidth = 2.5;  // metres
+  constexpr size_t kMinInstances = 5;
   const dvec3 size = box.size();
-  return size.y >= kLowest && size.y <= kHighest && std::min(size.x, size.z) >= kShortest &&
-         instances.size() >= kMin;
+  return size.y >= kMinHeight && size.y <= kMaxHeight && std::min(size.x, size.z) >= kMinWidth &&
+         instances.size() >= kMinInstances;
 }
 
-// Walls all around, but for a window or a door: of a box without a front, the opening takes at
-// least 53 degrees.
+// Whether there are walls on all sides, except for a window or a door. (In a box without a front
+// wall, the opening takes at least 53 degrees.)
 bool isEnclosed(const Panorama& seen) {
   constexpr int kMaxOpen = 3;  // of 32 directions: 34 degrees
   return std::count_if(seen.begin(), seen.end(), [](double s) { return s < 0; }) <= kMaxOpen;
 }
 
+// The area seen in a view centred on direction i, up to a factor; -infinity if the view has a gap.
+double viewArea(const Panorama& seen, int i) {
+  constexpr int kHalfView = 3;  // a view of 7/32 of a turn, 79 degrees
+  double area = 0;
+  for (int k = -kHalfView; k <= kHalfView; ++k) {
+    const double sector = seen[size_t((i + k + kDirections) % kDirections)];
+    area = sector < 0 ? -INFINITY : area + sector;
+  }
+  return area;
+}
+
 }  // namespace
 
 std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
-  constexpr double kEye = 0.55;  // of the room's height
+  constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
   constexpr float kFov = kPi / 3;
-  constexpr int kHalfView = 3;  // a view of 7/32 of a turn, 79 degrees
   const Box box = boundsOf(scene, instances);
   if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
-  if (!isFurnishedRoom(box, instances) && !showsItsBack(scene, instances, box)) return std::nullopt;
+  if (!isFurnishedRoom(box, instances) && !facesInwards(scene, instances, box)) return std::nullopt;
 
-  const double height = glm::mix(box.min.y, box.max.y, kEye);
+  const double height = glm::mix(box.min.y, box.max.y, kEyeHeight);
   const Section section(scene, instances, box, height);
-  double widest = 0;
+  double maxArea = 0;
   std::optional<Camera> best;
   for (int z = 0; z < Section::kSide; z += 4)
     for (int x = 0; x < Section::kSide; x += 4) {
       if (!section.isFree(x, z)) continue;
       Panorama seen;
       for (int i = 0; i < kDirections; ++i) {
-        const auto sight = section.sight(x, z, direction(i));
-        seen[size_t(i)] = sight ? *sight * *sight : -1;
+        const auto distance = section.sightDistance(x, z, direction(i));
+        seen[size_t(i)] = distance ? *distance * *distance : -1;
       }
       if (!isEnclosed(seen)) continue;
       for (int i = 0; i < kDirections; ++i) {
-        double area = 0;
-        for (int k = -kHalfView; k <= kHalfView; ++k) {
-          const double sector = seen[size_t((i + k + kDirections) % kDirections)];
-          area = sector < 0 ? -INFINITY : area + sector;
-        }
-        if (!(area > widest)) continue;
-        widest = area;
+        const double area = viewArea(seen, i);
+        if (!(area > maxArea)) continue;
+        maxArea = area;
         const dvec2 at = section.point(x, z), to = at + box.size().y * direction(i);
         const dvec3 eye(at.x, height, at.y), target(to.x, height - 0.1 * box.size().y, to.y);
         best = Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);

@@ -10,7 +10,7 @@ vec3 moved(const vec3& position, const glm::dvec3& origin) {
   return vec3(glm::dvec3(position) - origin);
 }
 
-// Counter-clockwise seen from where it shines.
+// A polygon whose front, with its corners counter-clockwise, is the side that shines.
 Mesh polygonOf(const DiscLamp& disc, const vec3& centre) {
   const double turn = 2 * kPiD / kDiscSides;
   const double circumradius = disc.radius * std::sqrt(turn / std::sin(turn));  // of equal area
@@ -27,7 +27,7 @@ Mesh polygonOf(const DiscLamp& disc, const vec3& centre) {
   return mesh;
 }
 
-Material shining(const DiscLamp& disc, const std::string& name) {
+Material emitter(const DiscLamp& disc, const std::string& name) {
   Material m;
   m.name = name;
   m.baseColor = vec4(0, 0, 0, 1);
@@ -38,8 +38,8 @@ Material shining(const DiscLamp& disc, const std::string& name) {
 
 }  // namespace
 
-// Over a spot's cone the falloff is 1 within cosInner, and from there falls to 0 as the square of
-// the cosine's share of the way.
+// A spot's falloff is 1 within the inner cone and ((cos - cosOuter) / (cosInner - cosOuter))^2
+// between the cones.
 float PunctualLight::intensityOfOneWatt() const {
   if (kind == Kind::Point) return 1 / (4 * kPi);
   return 1 / (2 * kPi * ((1 - cosInner) + (cosInner - cosOuter) / 3));
@@ -51,7 +51,7 @@ void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
     scene.lights.back().position = moved(lamp.punctual->position, origin);
     return;
   }
-  scene.materials.push_back(shining(*lamp.disc, lamp.name));
+  scene.materials.push_back(emitter(*lamp.disc, lamp.name));
   scene.meshes.push_back(polygonOf(*lamp.disc, moved(lamp.disc->position, origin)));
   scene.instances.push_back({int(scene.meshes.size()) - 1,
                              int(scene.materials.size()) - 1,

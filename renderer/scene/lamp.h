@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps that a scene file adds to its models.
+// Lamps that a scene file adds to the models ([[light]]).
 #pragma once
 
 #include "scene/scene.h"
 
 namespace chromeball {
 
-// One of the two, with the name of its node.
+// Exactly one of `punctual` and `disc` is set.
 struct Lamp {
-  std::string name;
+  std::string name;  // of its node
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;
 };
 
-// Adds the lamp, in the world whose point `origin` is the scene's origin. A disc becomes a
-// single-sided emitting polygon of kDiscSides sides that has exactly its area.
+// Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
+// single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
 inline constexpr int kDiscSides = 128;
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 

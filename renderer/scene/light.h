@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights that are no part of a model's surfaces, and the units that files state them in.
+// Lights that are not part of a model's surfaces, and the units in which files state them.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// How a file's candela and lux become W/sr and W/m^2: at 683 lm/W, as Blender writes and reads
-// them, or as if they were radiometric units already.
+// The conversion of a file's candela and lux to W/sr and W/m^2: Photometric divides by 683 lm/W, as
+// Blender's exporter and importer do; Radiometric takes the numbers as W/sr and W/m^2.
 enum class LightUnits : uint8_t { Photometric, Radiometric };
 
 constexpr float lumensPerWatt(LightUnits units) {
@@ -20,21 +20,22 @@ struct PunctualLight {
   enum class Kind : uint8_t { Directional, Point, Spot };
 
   Kind kind = Kind::Point;
-  Rgb intensity{1};          // W/sr; of a directional one, irradiance on a surface that faces it
-  vec3 position{0};          // metres
-  vec3 direction{0, 0, -1};  // unit, where it shines
-  float range = INFINITY;    // metres at which it has faded to nothing
-  float cosInner = 1, cosOuter = 0.70710678f;  // of a spot's cone: full light within, none without
+  Rgb intensity{
+      1};  // W/sr; for a directional light W/m^2, its irradiance on a surface that faces it
+  vec3 position{0};                            // metres
+  vec3 direction{0, 0, -1};                    // unit, from the light into the scene
+  float range = INFINITY;                      // metres at which its light has faded to 0
+  float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
 
-  // W/sr of a lamp that sends out 1 W: the inverse of the integral of its falloff over directions.
+  // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions).
   float intensityOfOneWatt() const;
 };
 
-// A round lamp that shines evenly to one side.
+// A disc that emits uniform radiance from one side.
 struct DiscLamp {
   vec3 position{0};          // of the centre, metres
-  vec3 direction{0, 0, -1};  // unit, where it shines
-  float radius = 1;
+  vec3 direction{0, 0, -1};  // unit, the normal of the side that shines
+  float radius = 1;          // metres
   Rgb radiance{1};
 };
 

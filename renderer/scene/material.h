@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 metallic-roughness material, as the file states it.
+// A glTF 2.0 metallic-roughness material with the values of the file.
 #pragma once
 
 #include <optional>
@@ -14,14 +14,14 @@ class Projection;
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-// What single-sided surfaces are not there for: the camera and mirrors behind them, as back-face
-// culling has it (glTF 2.0, 3.9.6); the light that comes from behind as well; or nothing.
+// What ignores the back faces of single-sided surfaces (glTF 2.0, 3.9.6): the camera and mirrors
+// (back-face culling), also light that comes from behind, or nothing.
 enum class SingleSided : uint8_t { Camera, Light, Off };
 
 struct Material {
   std::string name;
   vec4 baseColor{1};                  // linear RGB and alpha; times texture, times vertex colour
-  float metallic = 1, roughness = 1;  // perceptual roughness; alpha of GGX is its square
+  float metallic = 1, roughness = 1;  // perceptual roughness; GGX alpha = roughness^2
   Rgb emission{0};                    // emissiveFactor * emissiveStrength, radiance
   float ior = 1.5f;                   // KHR_materials_ior; 0 means infinite (F0 = 1)
   float specular = 1;                 // KHR_materials_specular: weight of the dielectric lobe
@@ -30,20 +30,20 @@ struct Material {
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
-  SingleSided singleSided = SingleSided::Camera;  // where not doubleSided
+  SingleSided singleSided = SingleSided::Camera;  // ignored if doubleSided
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
 
-  // Whether the camera and mirrors do not see it from behind; and whether light from there passes.
+  // Whether the camera and mirrors do not see its back, and whether light passes it from behind.
   bool hidesBack() const {
     return !doubleSided && singleSided != SingleSided::Off &&
            !(extended && extended->transmission > 0);
   }
   bool backLetsLightThrough() const { return hidesBack() && singleSided == SingleSided::Light; }
 
-  // Whether it is the boundary of a body that light passes (KHR_materials_volume).
+  // Whether it is the boundary of a transparent body (KHR_materials_volume).
   bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }
 
-  // Gives the base colour where it sees the surface; null: none does.
+  // Replaces the base colour wherever the projector sees the surface; null: no projector.
   const Projection* projection = nullptr;
 
   bool emits() const { return unlit || emission != Rgb(0); }
@@ -58,10 +58,10 @@ struct Material {
   std::optional<ExtendedMaterial> extended;
 };
 
-// Every slot of a material, for what treats them alike.
+// All texture slots of a material.
 std::vector<TextureSlot*> textureSlots(Material& m);
 
-// The slot whose coordinates the tangents follow, where the material needs tangents at all.
+// The slot whose UV coordinates define the tangents; nullopt if the material needs no tangents.
 std::optional<TextureSlot> tangentSpace(const Material& m);
 
 }  // namespace chromeball

@@ -19,14 +19,14 @@ void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   array = std::move(gathered);
 }
 
-// Twice the area times the normal.
+// The triangle's normal times twice its area.
 dvec3 areaNormal(const Mesh& mesh, const Triangle& t) {
   const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
   return glm::cross(b - a, c - a);
 }
 
-// False where the vector has no direction. The double's range keeps tiny and huge ones apart from
-// 0.
+// Returns false if the vector is zero or not finite. Double precision keeps the length of tiny and
+// huge float vectors from becoming 0 or infinite.
 bool normalize(dvec3& v) {
   const double length = glm::length(v);
   if (!(length > 0) || !std::isfinite(length)) return false;
@@ -73,10 +73,10 @@ void makeFlat(Mesh& mesh) {
   }
   gatherVertices(mesh, source);
   mesh.normals.assign(mesh.positions.size(), vec3(0));
-  mendNormals(mesh);
+  repairNormals(mesh);
 }
 
-void mendNormals(Mesh& mesh) {
+void repairNormals(Mesh& mesh) {
   std::vector<uint32_t> bad;
   for (uint32_t i = 0; i < mesh.normals.size(); ++i) {
     dvec3 n = mesh.normals[i];
@@ -95,7 +95,7 @@ void mendNormals(Mesh& mesh) {
   for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : vec3(0, 1, 0);
 }
 
-void mendTangents(Mesh& mesh) {
+void repairTangents(Mesh& mesh) {
   for (size_t i = 0; i < mesh.tangents.size(); ++i) {
     const vec4& given = mesh.tangents[i];
     dvec3 t(given);
@@ -113,8 +113,8 @@ void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), mirrors ? -t.w : t.w);
   if (mirrors)
     for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
-  mendNormals(mesh);
-  mendTangents(mesh);
+  repairNormals(mesh);
+  repairTangents(mesh);
 }
 
 }  // namespace chromeball

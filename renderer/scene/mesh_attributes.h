@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work on a mesh's vertex arrays: mending what files leave out or state badly.
+// Repairs and completes the vertex arrays of a mesh.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,31 @@
 
 namespace chromeball {
 
-// Makes vertex i a copy of the present vertex source[i], in every array the mesh has. Triangles are
-// left alone.
+// Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
+// change the triangles.
 void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source);
 
 // Drops the vertices that no triangle uses.
 void dropUnusedVertices(Mesh& mesh);
 
-// Gives every triangle three vertices of its own, with the triangle's normal.
+// Gives every triangle its own three vertices, with the triangle's normal.
 void makeFlat(Mesh& mesh);
 
-// Normals become unit; one that is zero or not finite is replaced by the area-weighted mean of the
-// normals of the triangles around it. A mesh without normals is left so.
-void mendNormals(Mesh& mesh);
+// Normalises the normals. One that is zero or not finite becomes the area-weighted mean of the
+// normals of the triangles around its vertex. Does nothing if the mesh has no normals.
+void repairNormals(Mesh& mesh);
 
-// Tangents become unit and their w a sign; one that is zero or not finite becomes some direction
-// perpendicular to the normal. Asks for normals.
-void mendTangents(Mesh& mesh);
+// Normalises the tangents and makes w a sign. One that is zero or not finite becomes an arbitrary
+// direction perpendicular to the normal. Precondition: the mesh has normals.
+void repairTangents(Mesh& mesh);
 
-// Computes tangents from the coordinates a normal map is read with (one for each vertex). Asks for
-// normals. Vertices whose triangles disagree in handedness are split.
+// Computes tangents from the UV coordinates of the normal map, one for each vertex. Splits vertices
+// whose triangles differ in handedness. Precondition: the mesh has normals.
 void computeTangents(Mesh& mesh, std::vector<vec2> uv);
 
-// Moves the mesh by an affine transform. Normals go by the inverse transpose; a mirror turns the
-// triangles' winding and the tangents' sign, so that the front stays the front.
+// Applies an affine transform. Normals are transformed by the inverse transpose. If the transform
+// mirrors, the winding of the triangles and the sign of the tangents are inverted, so that front
+// faces stay front faces.
 void transformMesh(Mesh& mesh, const glm::dmat4& transform);
 
 }  // namespace chromeball

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangents for meshes that come without. Like MikkTSpace, a vertex's tangent is the mean of dP/du
-// over its triangles, each projected onto the plane of the vertex normal, made unit and weighted by
-// the triangle's angle there; and triangles of opposite handedness do not mix. Unlike MikkTSpace,
-// the file's own indexing says which triangles share a vertex: corners that agree in everything but
-// are stored twice are not joined, and triangles around a vertex are not grouped by shared edges.
+// Tangents for meshes without them. As in MikkTSpace, a vertex's tangent is the mean of dP/du over
+// its triangles, each projected onto the plane of the vertex normal, normalised and weighted by the
+// triangle's angle at the vertex; triangles of opposite handedness are not mixed. Unlike
+// MikkTSpace, the indices of the file decide which triangles share a vertex: identical vertices
+// with different indices are not merged, and triangles around a vertex are not grouped by shared
+// edges.
 #include <array>
 
 #include "scene/mesh_attributes.h"
@@ -14,7 +15,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-enum Handedness { kRight = 0, kLeft = 1, kUndecided = 2 };  // w = 1, w = -1, no area in uv
+enum Handedness { kRight = 0, kLeft = 1, kUndefined = 2 };  // w = 1; w = -1; no area in UV space
 
 dvec3 unitOrZero(const dvec3& v) {
   const double length = glm::length(v);
@@ -26,16 +27,16 @@ double cornerAngle(const std::array<dvec3, 3>& p, int k) {
   return std::acos(std::fmin(std::fmax(glm::dot(a, b), -1.0), 1.0));
 }
 
-// What a triangle adds to the tangents of its three corners.
+// A triangle's contribution to the tangents of its three corners.
 struct Contribution {
-  std::array<Handedness, 3> handedness{kUndecided, kUndecided, kUndecided};
+  std::array<Handedness, 3> handedness{kUndefined, kUndefined, kUndefined};
   std::array<dvec3, 3> tangent{};
 };
 
 Contribution contributionOf(const Mesh& mesh, const std::vector<vec2>& uv, const Triangle& t) {
   const std::array<dvec3, 3> p{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
   const dvec2 d1 = dvec2(uv[t.y]) - dvec2(uv[t.x]), d2 = dvec2(uv[t.z]) - dvec2(uv[t.x]);
-  const double area = d1.x * d2.y - d2.x * d1.y;  // twice, signed, in uv
+  const double area = d1.x * d2.y - d2.x * d1.y;  // twice the signed area in UV space
   Contribution c;
   if (!(std::fabs(area) > 0) || !std::isfinite(area)) return c;
 
@@ -66,13 +67,13 @@ void computeTangents(Mesh& mesh, std::vector<vec2> uv) {
     const Contribution c = contributionOf(mesh, uv, t);
     handedness[i] = c.handedness;
     for (int k = 0; k < 3; ++k) {
-      if (c.handedness[k] == kUndecided) continue;
+      if (c.handedness[k] == kUndefined) continue;
       sums[t[k]][c.handedness[k]] += c.tangent[k];
       has[t[k]][c.handedness[k]] = true;
     }
   }
 
-  // Where both kinds meet, the left-handed triangles get a copy of the vertex.
+  // If a vertex has triangles of both kinds, the left-handed ones get a copy of the vertex.
   std::vector<uint32_t> source(vertexCount), leftCopy(vertexCount);
   for (uint32_t i = 0; i < vertexCount; ++i) source[i] = leftCopy[i] = i;
   for (uint32_t i = 0; i < vertexCount; ++i) {
@@ -95,7 +96,7 @@ void computeTangents(Mesh& mesh, std::vector<vec2> uv) {
                            ? vec4(vec3(unitOrZero(sums[source[i]][kind])), kind == kRight ? 1 : -1)
                            : vec4(0, 0, 0, 1);
   }
-  mendTangents(mesh);
+  repairTangents(mesh);
 }
 
 }  // namespace chromeball

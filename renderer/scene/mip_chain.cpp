@@ -10,7 +10,8 @@ double encodeSrgb(double c) {  // IEC 61966-2-1
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
 }
 
-// The 8-bit code of linear light; finer than the codes are apart, even where the curve is steepest.
+// 8-bit sRGB codes of linear light. The steps are finer than the distance between codes, even where
+// the curve is steepest.
 constexpr int kSteps = 1 << 14;
 const std::vector<uint8_t>& srgbCodes() {
   static const std::vector<uint8_t> kCodes = [] {
@@ -27,8 +28,8 @@ uint8_t code8(float c, bool srgb) {
   return srgb ? srgbCodes()[size_t(c * kSteps + 0.5f)] : uint8_t(c * 255 + 0.5f);
 }
 
-// Which texels of a side of `from` one of its half covers, and how much of each: two, or where the
-// side is odd three.
+// The texels of a row that one texel of the halved row covers, with the weight of each: two texels,
+// or three if the length of the row is odd.
 struct Cover {
   int first = 0;
   std::array<float, 3> weight{};
@@ -50,11 +51,11 @@ std::vector<Cover> covers(int from, int to) {
   return all;
 }
 
-// The usual case, four texels for one.
+// The common case: one texel for four.
 TexelGrid halvedEvenly(const TexelGrid& grid, bool srgb) {
   TexelGrid half{grid.width / 2, grid.height / 2, {}, {}};
   half.texels8.resize(size_t(half.width) * size_t(half.height));
-  std::array<float, 256> light;  // a quarter of what each code stands for
+  std::array<float, 256> light;  // a quarter of the linear light of each code
   for (int code = 0; code < 256; ++code) {
     const uint8_t c = uint8_t(code);
     light[size_t(code)] = 0.25f * linearTexel({1, 1, {{c, c, c, c}}, {}}, srgb, 0, 0).x;
@@ -121,7 +122,7 @@ TexelGrid halved(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
 
 }  // namespace
 
-std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
+std::vector<TexelGrid> makeMipLevels(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
   weightedByAlpha = weightedByAlpha && !isOpaque(grid);
   std::vector<TexelGrid> levels;
   for (const TexelGrid* last = &grid; last->width > 1 || last->height > 1; last = &levels.back())

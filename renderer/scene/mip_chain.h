@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smaller versions of a texture, for what is seen from afar.
+// Mip levels of a texture.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,11 @@
 
 namespace chromeball {
 
-// The grid at half its size, at a quarter, and so on down to one texel. Each texel is the mean, in
-// linear light, of those it covers; it is stored as the grid stores its own (`srgb`: encoded).
-// Colours weigh in proportion to their alpha where `weightedByAlpha` says so and any has some.
-// Empty for a grid of one texel.
-std::vector<TexelGrid> makeSmaller(const TexelGrid& grid, bool srgb, bool weightedByAlpha = false);
+// The grid at half its size, at a quarter, and so on down to one texel; empty for a grid of one
+// texel. Each texel is the mean, in linear light, of the texels it covers, stored like those of the
+// grid (`srgb`: encoded). With `weightedByAlpha`, colours are weighted by alpha unless all alphas
+// are 0.
+std::vector<TexelGrid> makeMipLevels(const TexelGrid& grid, bool srgb,
+                                     bool weightedByAlpha = false);
 
 }  // namespace chromeball

@@ -43,8 +43,8 @@ size_t Scene::texelByteCount() const {
   for (const auto& grid : grids) bytes += bytesOf(*grid);
   std::set<const void*> counted;
   for (const Texture& texture : textures)
-    if (texture.smaller && counted.insert(texture.smaller.get()).second)
-      for (const TexelGrid& level : *texture.smaller) bytes += bytesOf(level);
+    if (texture.mipLevels && counted.insert(texture.mipLevels.get()).second)
+      for (const TexelGrid& level : *texture.mipLevels) bytes += bytesOf(level);
   return bytes;
 }
 

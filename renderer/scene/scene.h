@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene as the tracer wants it: meshes, where they stand, what they are made of.
+// A scene ready to trace: meshes, their instances and materials, textures, cameras and lights.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace chromeball {
 
 using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the front
 
-// The geometry of a glTF primitive: an indexed triangle soup.
+// The geometry of a glTF primitive: indexed triangles.
 // Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
 // the bitangent in w (bitangent = w * cross(normal, tangent)).
 struct Mesh {
@@ -25,7 +25,7 @@ struct Mesh {
   std::vector<vec3> normals;           // empty: flat, the triangle's own normal
   std::vector<vec4> tangents;          // filled only where a material has a normal map
   std::vector<vec4> colors;            // linear RGBA; empty: white
-  std::vector<std::vector<vec2>> uvs;  // by UV set; only those a material reads are kept
+  std::vector<std::vector<vec2>> uvs;  // by UV set; filled only for sets that the material uses
 };
 
 // Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
@@ -36,8 +36,9 @@ struct Transform {
   vec3 point(const vec3& p) const { return linear * p + translation; }
 };
 
-// A mesh standing somewhere, made of something. A mesh with one instance is stored in world space
-// and has no transform here; one with several serves materials that need the same of its vertices.
+// A mesh with a transform and a material. A mesh with a single instance is stored in world space
+// and has no transform here. Instances of one mesh may differ in material if the materials need the
+// same vertex arrays.
 struct Instance {
   int mesh = 0;
   int material = 0;
@@ -50,16 +51,16 @@ struct Instance {
 struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
-  std::vector<Material> materials;  // never empty where there is a mesh
+  std::vector<Material> materials;  // not empty if there is a mesh
   std::vector<Texture> textures;
-  std::vector<std::unique_ptr<TexelGrid>> grids;  // owns the texels that textures point to
+  std::vector<std::unique_ptr<TexelGrid>> grids;  // own the texels that textures point to
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
-  std::optional<Image> environment;  // the model's own light probe: lat-long, fit to render with
+  std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired
   std::vector<std::string> nodeNames;
-  std::vector<std::string> notes;  // "FILE: ...": what a viewer may like to know
-  std::vector<int> nodeParents;    // by node, -1 for none; or empty, where no node has one
-  std::vector<std::string> files;  // that it comes from: models, their buffers and images
+  std::vector<std::string> notes;  // hints for the user: "FILE: ..."
+  std::vector<int> nodeParents;    // by node, -1 for none; empty if no node has a parent
+  std::vector<std::string> files;  // paths of all files read: models, their buffers and images
 
   size_t triangleCount() const;  // instanced triangles count once per instance
   size_t byteCount() const;      // of geometry and texels, for the statistics
@@ -72,7 +73,7 @@ struct Bounds {
 };
 Bounds bounds(const Scene& scene);
 
-// Puts `other` into `scene` (a scene file may name several models).
+// Adds the contents of `other` to `scene` (a scene file may have several models).
 void append(Scene& scene, Scene&& other);
 
 }  // namespace chromeball

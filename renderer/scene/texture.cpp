@@ -8,15 +8,15 @@ double decodeSrgb(double c) {  // IEC 61966-2-1
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// The sRGB curve at every 8-bit code.
+// The sRGB curve at all 8-bit codes.
 const std::array<float, 256> kSrgb8 = [] {
   std::array<float, 256> table;
   for (int i = 0; i < 256; ++i) table[i] = float(decodeSrgb(i / 255.0));
   return table;
 }();
 
-// The curve at kSteps + 1 equidistant points, for sources deeper than 8 bits. Between the points it
-// is interpolated linearly, which errs by less than 5e-7.
+// The curve at kSteps + 1 equidistant points, for sources of more than 8 bits. Linear interpolation
+// between them has an error below 5e-7.
 constexpr int kSteps = 1024;
 const std::array<float, kSteps + 2> kSrgbCurve = [] {
   std::array<float, kSteps + 2> table;
@@ -43,8 +43,8 @@ vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
   return {decodeSrgbFast(t.x), decodeSrgbFast(t.y), decodeSrgbFast(t.z), t.w};
 }
 
-// Maps a texel index at most one period outside [0, size) back inside. A coordinate that has been
-// reduced (see `reduce`) and shifted by a texel for interpolation is never further out.
+// Maps a texel index at most one period outside [0, size) into that range. A coordinate after
+// reduce(), shifted by a texel for interpolation, is never further outside.
 int wrapIndex(int i, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::Repeat:
@@ -60,8 +60,8 @@ int wrapIndex(int i, int size, Wrap wrap) {
   return 0;
 }
 
-// Brings a coordinate into one period, [0, 1] or for the mirrored wrap [0, 1] after the fold.
-// Comparisons are so ordered that NaN and infinities give 0.
+// Maps a coordinate into [0, 1]: into one period, and for the mirrored wrap also folded. The order
+// of the comparisons makes NaN and infinities give 0.
 float reduce(float x, Wrap wrap) {
   switch (wrap) {
     case Wrap::Repeat:
@@ -82,8 +82,8 @@ float reduce(float x, Wrap wrap) {
 
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
 
-// Calls mean(fetch) for the mean of texels that a lookup is; weighted by alpha, that of
-// (alpha colour, alpha), from which the colour is had by division.
+// The result of a lookup that takes a mean of texels by mean(fetch). If colours are weighted by
+// alpha, this is the mean of (alpha colour, alpha), with the colour then divided by alpha.
 template <class Mean>
 [[gnu::always_inline]] static inline vec4 weighted(const Texture& t, const Mean& mean) {
   const bool srgb = t.srgb;
@@ -93,7 +93,7 @@ template <class Mean>
     const vec4 texel = fetch(g, srgb, x, y);
     return vec4(texel.w * Rgb(texel), texel.w);
   });
-  if (!(sum.w > 0)) return mean(plain);  // a mask may show what has no alpha
+  if (!(sum.w > 0)) return mean(plain);  // alpha masks with a cutoff of 0 show texels of alpha 0
   return vec4(Rgb(sum) / sum.w, sum.w);
 }
 
@@ -102,7 +102,7 @@ vec4 Texture::lookup(vec2 uv) const {
 }
 
 vec4 Texture::lookup(vec2 uv, float texels) const {
-  if (!(texels > 1) || !smaller || smaller->empty()) return lookup(uv);
+  if (!(texels > 1) || !mipLevels || mipLevels->empty()) return lookup(uv);
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return lookup(uv);
   return weighted(*this, [&](const auto& fetch) { return trilinear(uv, texels, fetch); });
 }
@@ -119,19 +119,19 @@ vec4 Texture::nearestOrBilinear(vec2 uv, const Fetch& fetch) const {
 
 template <class Fetch>
 vec4 Texture::trilinear(vec2 uv, float texels, const Fetch& fetch) const {
-  // Half the binary logarithm, linear between powers of two.
+  // level = log2(texels) / 2, with the logarithm interpolated linearly between powers of two.
   int exponent = 0;
   const float mantissa = 2 * std::frexp(texels, &exponent) - 1;
   const float level = 0.5f * (float(exponent - 1) + mantissa);
-  const size_t last = smaller->size();
-  if (!(level < float(last))) return bilinear(smaller->back(), uv, fetch);
+  const size_t last = mipLevels->size();
+  if (!(level < float(last))) return bilinear(mipLevels->back(), uv, fetch);
   const size_t below = size_t(level);
   const vec4 finer =
-      below == 0 ? nearestOrBilinear(uv, fetch) : bilinear((*smaller)[below - 1], uv, fetch);
-  return glm::mix(finer, bilinear((*smaller)[below], uv, fetch), level - float(below));
+      below == 0 ? nearestOrBilinear(uv, fetch) : bilinear((*mipLevels)[below - 1], uv, fetch);
+  return glm::mix(finer, bilinear((*mipLevels)[below], uv, fetch), level - float(below));
 }
 
-// `uv` is finite.
+// Precondition: `uv` is finite.
 template <class Fetch>
 vec4 Texture::bilinear(const TexelGrid& g, vec2 uv, const Fetch& fetch) const {
   const float x = reduce(uv.x, wrapS) * float(g.width);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A 2D texture: texels as the file stored them (8 bits stay 8 bits), decoded when looked up.
+// A 2D texture. Texels are stored as in the file (8 bits stay 8 bits) and decoded on lookup.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace chromeball {
 
-// The texels of one image file, shared by every texture that names it. Always four channels;
-// exactly one of the two arrays is filled.
+// The texels of an image file, shared by all textures that use it. Always four channels; exactly
+// one of the two arrays is filled.
 struct TexelGrid {
   int width = 0, height = 0;
   std::vector<std::array<uint8_t, 4>> texels8;  // 8-bit sources
-  std::vector<vec4> texelsFloat;                // everything deeper, 0..1 for integer files
+  std::vector<vec4> texelsFloat;                // sources of more bits; 0..1 for integer files
 };
 
 enum class Wrap : uint8_t { Repeat, ClampToEdge, MirroredRepeat };
@@ -29,16 +29,16 @@ struct Texture {
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter filter = Filter::Linear;
   bool srgb = false;
-  // Means of texels weigh colour by alpha, so that what is transparent does not tint what is not.
-  // For base colours that blend or are masked; elsewhere alpha says nothing of the colour.
+  // Whether filtering weights colours by alpha, so that transparent texels do not tint opaque ones.
+  // True for base colours that blend or are masked; elsewhere alpha is unrelated to the colour.
   bool weightedByAlpha = false;
-  std::shared_ptr<const std::vector<TexelGrid>> smaller;  // mip_chain.h; null: none
+  std::shared_ptr<const std::vector<TexelGrid>> mipLevels;  // mip_chain.h; null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
   vec4 lookup(vec2 uv) const;
 
-  // The mean of an area of about `texels` texels around uv: trilinear between the smaller versions
-  // (Williams 1983). Up to one texel it is lookup(uv).
+  // The mean of an area of about `texels` texels around uv: trilinear between mip levels (Williams
+  // 1983). Up to one texel it is lookup(uv).
   vec4 lookup(vec2 uv, float texels) const;
 
  private:
@@ -53,8 +53,8 @@ struct Texture {
 // Linear RGBA of one texel.
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y);
 
-// A material's use of a texture: which one, by which UV set, after which transform
-// (KHR_texture_transform: uv' = offset + R(rotation) S(scale) uv).
+// A material's use of a texture: its index, its UV set and its transform (KHR_texture_transform:
+// uv' = offset + R(rotation) S(scale) uv).
 struct TextureSlot {
   int texture = -1;  // index into Scene::textures; -1: none
   int uvSet = 0;
@@ -64,7 +64,7 @@ struct TextureSlot {
   vec2 transform(vec2 uv) const {
     return vec2(glm::dot(uvRow0, uv), glm::dot(uvRow1, uv)) + uvOffset;
   }
-  // By how much the transform enlarges areas.
+  // The factor by which the transform scales areas.
   float areaFactor() const { return std::fabs(uvRow0.x * uvRow1.y - uvRow0.y * uvRow1.x); }
 };
 

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth sheets without thickness (KHR_materials_transmission): light passes them in a straight
-// line, so that shadow rays need not stop there.
+// Smooth thin sheets (KHR_materials_transmission): light passes them in a straight line, so that
+// shadow rays can pass them, too.
 #pragma once
 
 #include "scene/extended_surface.h"
 
 namespace chromeball {
 
-// Whether what a material transmits goes straight on, and straightTransmittance() is all of it.
+// Whether the material transmits light only in a straight line, so that straightTransmittance() is
+// all of its transmission.
 bool passesStraight(const Material& material);
 
-// Share of the light that passes a smooth sheet under the given cosine: what its surface does not
-// reflect (Schlick's Fresnel term), tinted by the base colour.
+// Fraction of the light that passes a smooth sheet at an angle of the given cosine: the part that
+// is not reflected (Schlick's Fresnel term), tinted by the base colour.
 Rgb sheetTransmittance(const MaterialPoint& material, float transmission, float cosine);
 
-// The same at a point of a scene, along `direction` (unit, either way); black for other materials.
+// The same at a surface point, along `direction` (unit, of either sign); black for other materials.
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction);
 

@@ -7,7 +7,7 @@
 namespace chromeball {
 namespace {
 
-// An accessor's elements, gathered one behind the other, sparse substitution done.
+// The elements of an accessor, tightly packed, after sparse substitution.
 struct Packed {
   size_t count = 0;
   int components = 0, componentType = 0;
@@ -15,8 +15,9 @@ struct Packed {
   Bytes bytes;
 };
 
-// Nothing in the file backs the zeros of an accessor without a buffer view.
-constexpr size_t kMaxUnbackedElements = size_t(1) << 24;
+// An accessor without a buffer view is all zeros, so the length of the file does not limit its
+// size.
+constexpr size_t kMaxElementsWithoutView = size_t(1) << 24;
 
 size_t componentSize(int type) {
   switch (type) {
@@ -34,14 +35,15 @@ size_t componentSize(int type) {
   }
 }
 
-// Throws unless `count` elements of `size` bytes, `stride` apart, fit behind `offset`.
+// Throws unless `count` elements of `size` bytes, `stride` bytes apart, fit into the buffer view
+// from `offset` on.
 void checkFit(const GltfFile& file, size_t viewBytes, size_t offset, size_t stride, size_t size,
               size_t count, const std::string& where) {
   const bool fits = offset <= viewBytes && size <= viewBytes - offset &&
                     count - 1 <= (viewBytes - offset - size) / stride;
   if (!fits)
     file.fail(
-        "{}: {} elements of {} bytes, {} apart, from byte {} on do not fit the {} bytes of "
+        "{}: {} elements of {} bytes, {} apart, from byte {} on do not fit into the {} bytes of "
         "the buffer view",
         where, count, size, stride, offset, viewBytes);
 }
@@ -70,7 +72,7 @@ void substituteSparse(const GltfFile& file, const tinygltf::Accessor& a, size_t 
   const auto& sparse = a.sparse;
   if (sparse.count < 1 || size_t(sparse.count) > packed.count || sparse.indices.byteOffset < 0 ||
       sparse.values.byteOffset < 0 || !isUnsigned(sparse.indices.componentType))
-    file.fail("{}: its sparse substitution is not well-formed", where);
+    file.fail("{}: invalid sparse substitution", where);
   const size_t count = size_t(sparse.count);
   const size_t indexSize = componentSize(sparse.indices.componentType);
   const auto indices = file.view(sparse.indices.bufferView, where + ".sparse.indices");
@@ -101,14 +103,14 @@ Packed readPacked(GltfFile& file, int accessor, const std::string& user) {
   packed.components = tinygltf::GetNumComponentsInType(uint32_t(a.type));
   const size_t size = componentSize(a.componentType);
   if (size == 0 || packed.components < 1)
-    file.fail("{}: componentType {} is not one of glTF 2.0's", where, a.componentType);
+    file.fail("{}: componentType {} is not a glTF 2.0 type", where, a.componentType);
   if (a.count < 1) file.fail("{}: has no elements", where);
 
   const size_t elementSize = size * size_t(packed.components);
   if (a.bufferView < 0) {
-    if (a.count > kMaxUnbackedElements)
-      file.fail("{}: {} elements without a buffer view; at most {} are believed", where, a.count,
-                kMaxUnbackedElements);
+    if (a.count > kMaxElementsWithoutView)
+      file.fail("{}: {} elements without a buffer view; the limit is {}", where, a.count,
+                kMaxElementsWithoutView);
     file.spend(a.count * elementSize);
     packed.bytes.assign(a.count * elementSize, 0);
   } else {
@@ -116,7 +118,8 @@ Packed readPacked(GltfFile& file, int accessor, const std::string& user) {
     const size_t byteStride = file.model.bufferViews[size_t(a.bufferView)].byteStride;
     const size_t stride = byteStride ? byteStride : elementSize;
     if (stride < elementSize)
-      file.fail("{}: byteStride {} is less than an element's {} bytes", where, stride, elementSize);
+      file.fail("{}: byteStride {} is less than the {} bytes of an element", where, stride,
+                elementSize);
     checkFit(file, view.size(), a.byteOffset, stride, elementSize, a.count, where);
     file.spend(a.count * elementSize);
     packed.bytes.resize(a.count * elementSize);
@@ -131,7 +134,7 @@ Packed readPacked(GltfFile& file, int accessor, const std::string& user) {
   return packed;
 }
 
-// Signed normalised integers reach -1 twice: glTF 2.0, 3.6.2.2: f = max(c / 127, -1).
+// Two codes of a signed normalised integer stand for -1 (glTF 2.0, 3.6.2.2): f = max(c / 127, -1).
 template <class T>
 void convert(const Packed& packed, float* out) {
   const float scale =
@@ -160,11 +163,11 @@ void toFloats(const Packed& packed, float* out) {
   }
 }
 
-void checkComponents(const GltfFile& file, const Packed& packed, int wanted, int accessor,
+void checkComponents(const GltfFile& file, const Packed& packed, int expected, int accessor,
                      const std::string& where) {
-  if (packed.components != wanted)
-    file.fail("{}: accessors[{}] has {} components where {} are wanted", where, accessor,
-              packed.components, wanted);
+  if (packed.components != expected)
+    file.fail("{}: accessors[{}] has {} components; it must have {}", where, accessor,
+              packed.components, expected);
 }
 
 }  // namespace
@@ -189,7 +192,7 @@ std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCou
   const Packed packed = readPacked(file, accessor, where);
   checkComponents(file, packed, 1, accessor, where);
   if (!isUnsigned(packed.componentType))
-    file.fail("{}: accessors[{}] has componentType {}; indices are unsigned integers", where,
+    file.fail("{}: accessors[{}] has componentType {}; indices must be unsigned integers", where,
               accessor, packed.componentType);
   const size_t size = componentSize(packed.componentType);
   const uint32_t restart = uint32_t((uint64_t(1) << (8 * size)) - 1);
@@ -197,7 +200,7 @@ std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCou
   for (size_t i = 0; i < indices.size(); ++i) {
     const uint32_t index = loadUnsigned(packed.bytes.data() + i * size, packed.componentType);
     if (index == restart)
-      file.fail("{}: index {} means primitive restart, which glTF forbids", where, index);
+      file.fail("{}: index {} is the primitive-restart value, which glTF forbids", where, index);
     if (index >= vertexCount)
       file.fail("{}: index {} out of range ({} vertices)", where, index, vertexCount);
     indices[i] = index;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads glTF accessors: every component type, interleaved, normalised, sparse. Each byte offset,
-// stride and count is checked before a byte is touched; what is wrong throws InputError naming the
-// user of the accessor (`where`).
+// stride and count is checked before any byte is read. Errors throw InputError and name the user of
+// the accessor (`where`).
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@
 
 namespace chromeball {
 
-// Elements of N components as floats; integers as normalised values where the accessor says so.
-// Throws where the accessor's type is not N components wide. N: 1 to 4.
+// Elements of N components (1 to 4) as floats; integers are normalised if the accessor says so.
+// Throws if the accessor's type does not have N components.
 template <int N>
 std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor, const std::string& where);
 
-// Vertex indices. Throws where one is the primitive-restart value or not below `vertexCount`.
+// Vertex indices. Throws if one is the primitive-restart value or not below `vertexCount`.
 std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCount,
                                   const std::string& where);
 
 std::vector<glm::dmat4> readMatrices(GltfFile& file, int accessor, const std::string& where);
 
-// RGB or RGBA (alpha 1 where there is none).
+// RGB (then alpha is 1) or RGBA.
 std::vector<vec4> readColors(GltfFile& file, int accessor, const std::string& where);
 
 }  // namespace chromeball

@@ -16,10 +16,10 @@ std::string nameOf(const std::vector<Animation>& animations, size_t i) {
   return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
 }
 
-// The one named, by its name or, where it has none, its index; the first where none is named.
+// Finds an animation by its name, or by its index if it has no name; the first if `when` has none.
 size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
   const auto& animations = file.model.animations;
-  if (animations.empty()) file.fail("has no animation ({} asks for one)", when.location);
+  if (animations.empty()) file.fail("has no animations ({})", when.location);
   if (when.name.empty()) return 0;
   std::vector<std::string> names;
   for (size_t i = 0; i < animations.size(); ++i) {
@@ -32,8 +32,8 @@ size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
 
 enum class Interpolation { Step, Linear, CubicSpline };
 
-// One sampler: numbers over time. `values` holds `width` numbers for each key; for a cubic spline
-// three times as many, those of the in-tangent, of the value and of the out-tangent.
+// An animation sampler: keys over time. `values` holds `width` numbers per key; for a cubic spline
+// three times as many: in-tangent, value, out-tangent.
 struct Track {
   Interpolation interpolation = Interpolation::Linear;
   std::vector<float> times;
@@ -54,13 +54,13 @@ std::vector<double> readNumbers(GltfFile& file, int accessor, const std::string&
   std::vector<double> numbers;
   for (const auto& v : readVectors<N>(file, accessor, where))
     for (int k = 0; k < N; ++k) {
-      if (!std::isfinite(v[k])) file.fail("{}: holds a number that is not finite", where);
+      if (!std::isfinite(v[k])) file.fail("{}: a number is not finite", where);
       numbers.push_back(v[k]);
     }
   return numbers;
 }
 
-// `components`: of the animated property; 1 for morph weights, of which a key holds several.
+// `components`: numbers per key; 1 for morph weights, where the number of targets decides.
 Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int components,
                 const std::string& where) {
   Track track;
@@ -74,7 +74,7 @@ Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int c
   for (double time : readNumbers<1>(file, sampler.input, where + ".input"))
     track.times.push_back(float(time));
   if (!std::is_sorted(track.times.begin(), track.times.end()))
-    file.fail("{}.input: the keys are not in the order of time", where);
+    file.fail("{}.input: the keys are not in ascending order of time", where);
 
   const std::string at = where + ".output";
   track.values = components == 1   ? readNumbers<1>(file, sampler.output, at)
@@ -84,13 +84,14 @@ Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int c
   track.width = track.values.size() / (perKey * track.times.size());
   if (track.width * perKey * track.times.size() != track.values.size() ||
       (components > 1 ? track.width != size_t(components) : track.width == 0))
-    file.fail("{}: {} numbers do not serve {} keys", at, track.values.size(), track.times.size());
+    file.fail("{}: {} numbers do not match {} keys", at, track.values.size(), track.times.size());
   return track;
 }
 
 glm::dquat quaternion(const double* q) { return {q[3], q[0], q[1], q[2]}; }
 
-// The shorter way around at constant speed, or the cubic's value made unit (appendix C).
+// LINEAR: spherical interpolation along the shorter arc. CUBICSPLINE: the interpolated quaternion,
+// normalised (appendix C).
 std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_t i,
                                  double fraction, const std::vector<double>& interpolated,
                                  const std::string& where) {
@@ -100,7 +101,7 @@ std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_
                    glm::normalize(quaternion(track.value(i + 1))), fraction);
   const double length = glm::length(q);
   if (!(length > 0) || !std::isfinite(length))
-    file.fail("{}.output: is a quaternion of length 0", where);
+    file.fail("{}.output: a quaternion has length 0", where);
   q /= length;
   return {q.x, q.y, q.z, q.w};
 }
@@ -111,7 +112,7 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
   const auto after = std::upper_bound(times.begin(), times.end(), seconds,
                                       [](double t, float key) { return t < key; });
   const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
-  double fraction = 0;  // of the way from key i to the next
+  double fraction = 0;  // position between keys i and i + 1
   if (after != times.begin() && after != times.end())
     fraction = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
 
@@ -122,7 +123,7 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
   if (fraction > 0 && track.interpolation == Interpolation::CubicSpline) {
     const double t = fraction, t2 = t * t, t3 = t2 * t;
     const double duration = double(times[i + 1]) - times[i];
-    for (size_t k = 0; k < track.width; ++k)  // Hermite; tangents are per second
+    for (size_t k = 0; k < track.width; ++k)  // cubic Hermite spline; tangents are per second
       result[k] = (2 * t3 - 3 * t2 + 1) * track.value(i)[k] +
                   (t3 - 2 * t2 + t) * duration * track.outTangent(i)[k] +
                   (3 * t2 - 2 * t3) * track.value(i + 1)[k] +
@@ -153,13 +154,17 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
     const bool isWeights = path == "weights", isRotation = path == "rotation";
     if (channel.target_node == -1 ||
         !(isWeights || isRotation || path == "translation" || path == "scale")) {
-      file.warnOnce("animation of what is no node's transform or morph weights is ignored");
+      file.warnOnce(
+          "ignored: animation channels that target neither a transform nor morph weights");
       continue;
     }
     file.at(file.model.nodes, channel.target_node, "nodes", where + ".target");
     tinygltf::Node& node = file.model.nodes[size_t(channel.target_node)];
     if (!node.matrix.empty() && !isWeights)
-      file.fail("{}: moves nodes[{}], which has a matrix", where, channel.target_node);
+      file.fail(
+          "{}: animates nodes[{}], which has a matrix; only nodes with translation, rotation "
+          "and scale can be animated",
+          where, channel.target_node);
 
     const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", where);
     const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);

@@ -6,13 +6,12 @@
 
 namespace chromeball {
 
-// Sets the translation, rotation, scale and morph weights of the nodes that the animation moves to
-// what they are at its time (glTF 2.0, 3.11 and appendix C); before the first key and after the
-// last one they stand still. Throws InputError where the file has no such animation, or its
-// channels are not well-formed.
+// Sets translation, rotation, scale and morph weights of the animated nodes to their state at the
+// given time (glTF 2.0, 3.11 and appendix C); constant before the first key and after the last.
+// Throws InputError if the file has no such animation or if its channels are invalid.
 void applyAnimation(GltfFile& file, const AnimationTime& when);
 
-// "`Walk`, `Run` and 3 more": how to ask for the file's animations.
+// The names of the file's animations, for messages: "`Walk`, `Run` and 3 more".
 std::string animationNames(const GltfFile& file);
 
 }  // namespace chromeball

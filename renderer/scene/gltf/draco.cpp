@@ -16,9 +16,9 @@ using tinygltf::Value;
 
 constexpr const char* kExtension = "KHR_draco_mesh_compression";
 
-// A byte of the file that asks for more than this many triangles lies: so many no coder packs.
+// More than any encoder can achieve; a file that claims more is damaged.
 constexpr uint64_t kMaxTrianglesPerByte = 64;
-constexpr uint64_t kBytesPerTriangle = 64;  // of working memory, at least
+constexpr uint64_t kBytesPerTriangle = 64;  // of working memory, a lower bound
 
 draco::DecoderBuffer bufferOf(std::span<const uint8_t> bytes) {
   draco::DecoderBuffer buffer;
@@ -26,8 +26,8 @@ draco::DecoderBuffer bufferOf(std::span<const uint8_t> bytes) {
   return buffer;
 }
 
-// The number of triangles that the mesh claims, before the library allocates for them (Draco
-// bitstream specification 2.2, sections "Header" and "Connectivity decoder").
+// The number of triangles that the header claims, so that it can be checked before the library
+// allocates memory (Draco bitstream specification 2.2, "Header" and "Connectivity decoder").
 uint32_t claimedTriangles(const GltfFile& file, std::span<const uint8_t> bytes,
                           const std::string& where) {
   draco::DecoderBuffer buffer = bufferOf(bytes);
@@ -36,7 +36,7 @@ uint32_t claimedTriangles(const GltfFile& file, std::span<const uint8_t> bytes,
     file.fail("{}: is not Draco data", where);
   if (header.version_major != 2 || header.version_minor != 2 ||
       header.encoder_type != draco::TRIANGULAR_MESH)
-    file.fail("{}: is not a mesh of Draco's bitstream 2.2, which the extension asks for", where);
+    file.fail("{}: is not a mesh of Draco bitstream 2.2, which the extension requires", where);
   buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
 
   bool read = true;
@@ -51,7 +51,7 @@ uint32_t claimedTriangles(const GltfFile& file, std::span<const uint8_t> bytes,
   }
   uint32_t triangles = 0;
   if (!read || !draco::DecodeVarint(&triangles, &buffer))
-    file.fail("{}: is cut short in its header", where);
+    file.fail("{}: damaged data: the header is truncated", where);
   return triangles;
 }
 
@@ -64,7 +64,7 @@ std::unique_ptr<draco::Mesh> decodeMesh(const GltfFile& file, std::span<const ui
     file.fail("{}: damaged data: {}", where,
               mesh.ok() ? "no triangles" : mesh.status().error_msg());
   } catch (const std::bad_alloc&) {
-    file.fail("{}: damaged data: asks for more memory than there is", where);
+    file.fail("{}: damaged data: it needs more memory than there is", where);
   }
 }
 
@@ -83,13 +83,13 @@ bool copyAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribu
   return true;
 }
 
-// The attribute's elements one behind the other, as the accessor types them.
+// The elements of the attribute, tightly packed, converted to the type of the accessor.
 Bytes attributeBytes(const GltfFile& file, const draco::Mesh& mesh,
                      const draco::PointAttribute& attribute, const tinygltf::Accessor& accessor,
                      const std::string& where) {
   const int components = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
   if (components < 1 || components > 4)
-    file.fail("{}: its accessor has a type that no vertex attribute has", where);
+    file.fail("{}: the type of its accessor is not allowed for vertex attributes", where);
   const auto copy = [&] {
     switch (accessor.componentType) {
       case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -108,7 +108,7 @@ Bytes attributeBytes(const GltfFile& file, const draco::Mesh& mesh,
   }();
   Bytes bytes;
   if (!copy(mesh, attribute, components, bytes))
-    file.fail("{}: damaged data: values that its accessor's type does not hold", where);
+    file.fail("{}: damaged data: values do not fit the type of the accessor", where);
   return bytes;
 }
 
@@ -130,7 +130,7 @@ class DracoReader {
 
   void decode(tinygltf::Primitive& primitive, const Value& extension, const std::string& where) {
     if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
-      file_.fail("{}: only triangles can be read, not strips", where);
+      file_.fail("{}: mode {} is not supported; only triangles (4) are", where, primitive.mode);
     const Value& attributes = extension.Get("attributes");
     if (!extension.Get("bufferView").IsInt() || !attributes.IsObject())
       file_.fail("{}: has no bufferView or no attributes", where);
@@ -146,7 +146,7 @@ class DracoReader {
       if (user == primitive.attributes.end()) continue;
       const std::string at = where + ".attributes." + name;
       tinygltf::Accessor& target = accessor(user->second, at);
-      if (target.bufferView >= 0) continue;  // several primitives may use the same one
+      if (target.bufferView >= 0) continue;  // decoded for another primitive
       const Value& id = attributes.Get(name);
       const draco::PointAttribute* attribute =
           id.IsInt() && id.GetNumberAsInt() >= 0
@@ -170,15 +170,15 @@ class DracoReader {
     target.count = count;
   }
 
-  // The decoded mesh of a buffer view, which is to have no more than `indexCount` indices.
+  // The decoded mesh of a buffer view. Throws if it has more than `indexCount` indices.
   const draco::Mesh& meshOf(int bufferView, size_t indexCount, const std::string& where) {
     std::unique_ptr<draco::Mesh>& mesh = meshes_[bufferView];
     if (mesh) return *mesh;
     const std::span<const uint8_t> bytes = file_.view(bufferView, where);
     const uint64_t triangles = claimedTriangles(file_, bytes, where);
     if (3 * triangles > indexCount || triangles > kMaxTrianglesPerByte * bytes.size())
-      file_.fail("{}: claims {} triangles where the accessor has {} indices, in {} bytes", where,
-                 triangles, indexCount, bytes.size());
+      file_.fail("{}: damaged data: claims {} triangles in {} bytes; the accessor has {} indices",
+                 where, triangles, bytes.size(), indexCount);
     file_.spend(triangles * kBytesPerTriangle);
     mesh = decodeMesh(file_, bytes, where);
     return *mesh;
@@ -188,7 +188,7 @@ class DracoReader {
   std::map<int, std::unique_ptr<draco::Mesh>> meshes_;  // by buffer view
 };
 
-// Whether the vertices are in the compressed data alone.
+// Whether the file has the vertices in compressed form only.
 bool dependsOnExtension(const GltfFile& file, const tinygltf::Primitive& primitive) {
   const auto positions = primitive.attributes.find("POSITION");
   return positions != primitive.attributes.end() && positions->second >= 0 &&

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_draco_mesh_compression: primitives whose vertices and indices are one Draco mesh.
+// KHR_draco_mesh_compression: primitives whose vertices and indices are stored as a Draco mesh.
 #pragma once
 
 #include "scene/gltf/gltf_file.h"
 
 namespace chromeball {
 
-// Decodes every Draco mesh that has no uncompressed stand-in, and points the accessors of its
-// primitives at what was decoded. Throws InputError where the data is not well-formed or holds more
-// than its accessors say.
+// Decodes every Draco mesh that has no uncompressed copy in the file, and points the accessors of
+// its primitives to the decoded data. Throws InputError if the data is damaged or does not match
+// its accessors.
 void decodeDraco(GltfFile& file);
 
 }  // namespace chromeball

@@ -21,7 +21,7 @@ using tinygltf::Value;
 constexpr const char* kExtension = "EXT_lights_image_based";
 constexpr int kFaces = 6, kMaxFace = 2048;
 
-// The light that the shown scene names; null where it names none.
+// The light of the default scene; null if it has none. Sets `where` to its location in the file.
 const Value* findLight(const GltfFile& file, std::string& where) {
   if (file.model.scenes.empty()) return nullptr;
   const int scene = std::max(file.model.defaultScene, 0);
@@ -43,7 +43,7 @@ std::array<int, kFaces> facesOf(const GltfFile& file, const Value& light,
   const Value& levels = light.Get("specularImages");
   const Value& level = levels.IsArray() && levels.ArrayLen() > 0 ? levels.Get(0) : levels;
   if (!level.IsArray() || level.ArrayLen() != size_t(kFaces))
-    file.fail("{}.specularImages: does not begin with the six faces of a cube", where);
+    file.fail("{}.specularImages: must begin with the six faces of a cube", where);
   std::array<int, kFaces> faces{};
   for (int i = 0; i < kFaces; ++i) {
     const Value& image = level.Get(i);
@@ -53,14 +53,15 @@ std::array<int, kFaces> facesOf(const GltfFile& file, const Value& light,
   return faces;
 }
 
-// RGB is sRGB-encoded, and divided by alpha: RGBD, where the file has alpha.
+// Files with alpha are RGBD: sRGB-encoded RGB, to be divided by alpha.
 Rgb radianceAt(const TexelGrid& grid, int x, int y) {
   const vec4 texel = linearTexel(grid, true, x, y);
   return Rgb(texel) / texel.w;
 }
 
-// The faces side by side as Mapping::HorizontalStrip has them. The extension's rows run with the
-// second coordinate of cube maps, which goes up: sides stand on their heads, seen from inside.
+// The faces side by side, as in Mapping::HorizontalStrip. The extension stores rows along the
+// second coordinate of cube maps, which points up, so the side faces have to be rotated by 180
+// degrees, and the top and bottom faces not.
 Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
   std::array<TexelGrid, kFaces> grids;
   tbb::parallel_for(0, kFaces, [&](int i) {
@@ -69,7 +70,7 @@ Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
     const std::string name = file.describeImage(image);
     DecodedImage d = decodeImage(file.image(image, storage), name);
     if (d.width != d.height || d.width > kMaxFace)
-      throwInput("{}: is {} x {}; a face of an environment is square, {} x {} at most", name,
+      throwInput("{}: is {} x {}; the face of an environment must be square, at most {} x {}", name,
                  d.width, d.height, kMaxFace, kMaxFace);
     grids[size_t(i)] = {d.width, d.height, std::move(d.texels8), std::move(d.texelsFloat)};
   });
@@ -78,8 +79,8 @@ Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
   for (int i = 0; i < kFaces; ++i) {
     const TexelGrid& grid = grids[size_t(i)];
     if (grid.width != n)
-      throwInput("{}: is {} x {}, and the first face {} x {}", file.describeImage(faces[size_t(i)]),
-                 grid.width, grid.width, n, n);
+      throwInput("{}: is {} x {}, but the first face is {} x {}",
+                 file.describeImage(faces[size_t(i)]), grid.width, grid.width, n, n);
     const bool isSide = i / 2 != 1;
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
@@ -91,12 +92,13 @@ Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
 
 glm::dmat3 rotationOf(GltfFile& file, const Value& light, const std::string& where) {
   const vec4 q = vectorMember<4>(file, light, "rotation", {0, 0, 0, 1}, -1e6, 1e6, where);
-  if (!(glm::length(q) > 1e-6f)) file.fail("{}.rotation: is a quaternion of length 0", where);
+  if (!(glm::length(q) > 1e-6f)) file.fail("{}.rotation: the quaternion has length 0", where);
   return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
 }
 
-// The first coefficient is the mean irradiance over all normals, over Y00; the images say the same
-// by pi times their mean radiance.
+// Warns if the images and the irradiance coefficients disagree. The first coefficient is the mean
+// irradiance over all normals, divided by Y00 = sqrt(1 / (4 pi)). That mean is also pi times the
+// mean radiance of the images.
 void compareWithCoefficients(GltfFile& file, const Value& light, const Image& latLong,
                              const std::string& where) {
   const Value& coefficients = light.Get("irradianceCoefficients");
@@ -106,11 +108,11 @@ void compareWithCoefficients(GltfFile& file, const Value& light, const Image& la
     if (const Value& x = coefficients.Get(0).Get(i); x.IsNumber())
       stated += x.GetNumberAsDouble() * std::sqrt(1 / (4 * kPiD)) / 3;
   const dvec3 mean = kPiD * meanRadiance(latLong);
-  const double shown = (mean.x + mean.y + mean.z) / 3, ratio = shown / stated;
+  const double ofImages = (mean.x + mean.y + mean.z) / 3, ratio = ofImages / stated;
   if (stated > 0 && !(ratio > 0.9 && ratio < 1.1))
     file.warnOnce(
         fmt::format("{}: its images give {:.3g} times the light of its "
-                    "irradianceCoefficients; the images are taken",
+                    "irradianceCoefficients; the images are used",
                     where, ratio));
 }
 

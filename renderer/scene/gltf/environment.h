@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environment a glTF file brings along (EXT_lights_image_based).
+// The light probe in a glTF file (EXT_lights_image_based).
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace chromeball {
 
-// The scene's image-based light as a lat-long map of radiance in the file's axes; nullopt where it
-// names none. It is made of the sharpest level of the cube map; the blurred ones and the irradiance
-// follow from that by light transport. Throws InputError where the light is not well-formed.
+// The image-based light of the scene as a lat-long map of radiance in the file's axes; nullopt if
+// it has none. Uses the sharpest level of the cube map only; the blurred levels and the irradiance
+// follow from it by light transport. Throws InputError if the light is invalid.
 std::optional<Image> readEnvironment(GltfFile& file);
 
 }  // namespace chromeball

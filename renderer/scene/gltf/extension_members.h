@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of a glTF extension's JSON, checked.
+// Reads members of a glTF extension's JSON with checks.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace chromeball {
 
-// The extension's object; null where the file does not use it here.
+// The extension's object; null if it is absent or not an object.
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
 
-// A number of the file, clamped to the range the specification gives it.
+// Clamps a number to the range that the specification allows, with a warning. Throws InputError if
+// it is not finite.
 float number(GltfFile& file, double x, double low, double high, const std::string& where);
 
-// A member of an object, or `fallback` where it is missing.
+// A member of an object, or `fallback` if it is missing; clamped as by number().
 float member(GltfFile& file, const tinygltf::Value& object, const char* key, double fallback,
              double low, double high, const std::string& where);
 
@@ -24,9 +25,10 @@ glm::vec<N, float> vectorMember(GltfFile& file, const tinygltf::Value& object, c
                                 const std::string& where) {
   const tinygltf::Value& v = object.Get(key);
   if (!v.IsArray()) return fallback;
-  if (v.ArrayLen() != N) file.fail("{}.{}: has {} numbers, not {}", where, key, v.ArrayLen(), N);
+  if (v.ArrayLen() != N)
+    file.fail("{}.{}: has {} numbers; it must have {}", where, key, v.ArrayLen(), N);
   for (int i = 0; i < N; ++i) {
-    if (!v.Get(i).IsNumber()) file.fail("{}.{}: holds something that is no number", where, key);
+    if (!v.Get(i).IsNumber()) file.fail("{}.{}: element {} is not a number", where, key, i);
     fallback[i] = number(file, v.Get(i).GetNumberAsDouble(), low, high, where + "." + key);
   }
   return fallback;

@@ -5,7 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "scene/gltf/glb.h"
+#include "scene/gltf/uri.h"
 
 namespace chromeball {
 namespace {
@@ -35,10 +37,10 @@ const std::set<std::string> kSupportedExtensions = {
     "KHR_texture_transform",
 };
 
-// What the user can do about a required extension.
+// How the user can avoid an unsupported extension.
 const char* adviceFor(const std::string& extension) {
   if (extension == "KHR_texture_basisu")
-    return "turn its KTX2 textures into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)";
+    return "convert its KTX2 textures to PNG, JPEG or WebP (`ktx extract` of KTX-Software can)";
   if (extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
     return "export it again with PNG, JPEG or WebP textures";
   if (extension == "KHR_materials_pbrSpecularGlossiness")
@@ -84,20 +86,20 @@ void checkVersion(const json& root) {
   const std::string version = asset == root.end() ? "" : stringMember(*asset, "version");
   if (version.starts_with("1") || version.empty())
     throw std::runtime_error(version.empty()
-                                 ? "has no asset.version; glTF 2.0 says \"2.0\" there"
+                                 ? "has no asset.version; it must be \"2.0\""
                                  : "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
   const std::string minimum = stringMember(*asset, "minVersion");
   if (!version.starts_with("2.") || (!minimum.empty() && minimum != "2.0"))
-    throw std::runtime_error(
-        fmt::format("asks for glTF {}; 2.0 can be read", minimum.empty() ? version : minimum));
+    throw std::runtime_error(fmt::format("requires glTF {}; only 2.0 is supported",
+                                         minimum.empty() ? version : minimum));
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// tinygltf refuses three things that the specification allows: a skin without inverse bind
-// matrices, an animation channel without a node (an extension may say what it moves), and indices
-// whose accessor has no buffer view. The first two get tinygltf's own "none"; the third a buffer
-// view that does not exist, whose index is returned.
+// tinygltf rejects three things that the specification allows: a skin without inverse bind
+// matrices, an animation channel without a node (an extension may define its target), and indices
+// whose accessor has no buffer view. The first two get the index -1, tinygltf's "none". Accessors
+// without a buffer view get an additional dummy view, whose index is returned.
 int fillGaps(json& root) {
   for (json& skin : root["skins"])
     if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
@@ -115,7 +117,7 @@ int fillGaps(json& root) {
   return none;
 }
 
-// tinygltf refuses these without a reason.
+// tinygltf rejects these skins without giving a reason.
 void checkSkins(const json& root) {
   const auto skins = root.find("skins");
   if (skins == root.end() || !skins->is_array()) return;
@@ -128,7 +130,7 @@ void checkSkins(const json& root) {
                                       [](const json& joint) { return joint.is_number_integer(); });
     if (!areNodes)
       throw std::runtime_error(
-          fmt::format("skins[{}].joints is missing or not a list of node indices", i));
+          fmt::format("skins[{}].joints: is missing or not a list of node indices", i));
   }
 }
 
@@ -143,7 +145,7 @@ std::string oneLine(std::string text) {
 GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
     : path_(path), files_{path}, warn_(std::move(warn)), external_(external) {
   try {
-    file_ = readWholeFile(path);
+    file_ = readFile(path);
     const GltfChunks chunks = splitContainer(file_);
     json root = parseJson(chunks.json);
     checkVersion(root);
@@ -153,12 +155,12 @@ GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
       const auto view = image.find("bufferView");
       const bool inView = view != image.end() && view->is_number_integer();
       images.push_back({inView ? view->get<int>() : -1, stringMember(image, "uri")});
-      note(images.back().uri);
+      addToFiles(images.back().uri);
     }
     readModel(root);
   } catch (const InputError&) {
     throw;
-  } catch (const std::exception& e) {  // from JSON and gltf_container.h
+  } catch (const std::exception& e) {  // from JSON and glb.h
     fail("{}", firstLine(e.what()));
   }
 }
@@ -172,8 +174,8 @@ void GltfFile::checkExtensions(const json& root) {
   if (!ignored.empty()) warnOnce("ignored extensions: " + join(ignored));
 }
 
-// Files are opened here, not by tinygltf, which would look for them in the working directory too
-// and reaches into images before anyone has checked their buffer views.
+// We open the files and not tinygltf, because it would also search the working directory, and
+// because it reads images before their buffer views are checked.
 void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryChunk) {
   uint64_t total = file_.size();
   for (size_t i = 0; i < buffers.size(); ++i) {
@@ -182,13 +184,13 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
     const std::string uri = stringMember(buffers[i], "uri");
     std::span<const uint8_t> bytes = i == 0 ? binaryChunk : std::span<const uint8_t>();
     if (!uri.empty()) {
-      note(uri);
-      storage_.push_back(resolve(uri, where + ".uri"));
+      addToFiles(uri);
+      storage_.push_back(readUri(uri, where + ".uri"));
       bytes = storage_.back();
     }
-    // A buffer may have no bytes at all (an extension's fallback), as long as nobody asks for them.
+    // A buffer may have no bytes at all (the fallback of an extension) if they are never read.
     if (bytes.size() < length && !(bytes.empty() && uri.empty()))
-      fail("{}: {} bytes promised, {} there", where, length, bytes.size());
+      fail("{}: byteLength is {}, but there are only {} bytes", where, length, bytes.size());
     buffers_.push_back(bytes.first(std::min<uint64_t>(length, bytes.size())));
     total += buffers_.back().size();
   }
@@ -207,8 +209,7 @@ void GltfFile::readModel(json& root) {
   error.erase(0, error.find_first_not_of(" \n"));
   if (!read || !error.empty())
     fail("is not well-formed glTF: {}",
-         error.empty() ? "a member is missing or has another type than glTF says"
-                       : firstLine(error));
+         error.empty() ? "a required member is missing or has the wrong type" : firstLine(error));
   model.bufferViews.pop_back();
   for (tinygltf::Accessor& accessor : model.accessors)
     if (accessor.bufferView == noView) accessor.bufferView = -1;
@@ -225,7 +226,7 @@ std::span<const uint8_t> GltfFile::bytes(int index, size_t offset, size_t length
   const std::span<const uint8_t> buffer = at(buffers_, index, "buffers", where);
   if (buffer.empty()) fail("{}: buffers[{}] has no bytes", where, index);
   if (offset > buffer.size() || length > buffer.size() - offset)
-    fail("{} covers bytes {} to {} of buffers[{}], which has {}", where, offset,
+    fail("{}: bytes {} to {} are outside of buffers[{}], which has {} bytes", where, offset,
          double(offset) + double(length), index, buffer.size());
   return buffer.subspan(offset, length);
 }
@@ -245,7 +246,7 @@ std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {
   const ImageSource& source = at(images, index, "images", where);
   if (source.bufferView >= 0) return view(source.bufferView, where);
   if (source.uri.empty()) fail("{}: has neither uri nor bufferView", where);
-  storage = resolve(source.uri, where + ".uri");
+  storage = readUri(source.uri, where + ".uri");
   return storage;
 }
 
@@ -255,36 +256,41 @@ std::string GltfFile::describeImage(int index) const {
   return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
 }
 
-void GltfFile::note(const std::string& uri) {
+void GltfFile::addToFiles(const std::string& uri) {
   if (uri.empty() || uri.starts_with("data:")) return;
   files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
 }
 
-Bytes GltfFile::resolve(const std::string& uri, const std::string& where) const {
+Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const {
   if (uri.starts_with("data:")) {
     Bytes bytes;
-    if (!decodeDataUri(uri, bytes)) fail("{}: is not a well-formed data URI", where);
+    if (!decodeDataUri(uri, bytes)) fail("{}: invalid data URI", where);
     return bytes;
   }
   const std::string name = decodePercent(uri);
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   try {
     checkFileName(name);
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
     if (external_ == ExternalFiles::Refuse) checkInside(folder, name);
-    return readWholeFile(folder / name);
   } catch (const std::exception& e) {
     fail("{}: \"{}\" {}", where, name, e.what());
+  }
+  try {
+    return readFile(folder / name);
+  } catch (const std::exception& e) {
+    fail("{}: {}", where, e.what());
   }
 }
 
 void GltfFile::warnOnce(const std::string& what) {
-  if (said_.insert(what).second && warn_) warn_(path_ + ": " + oneLine(what));
+  if (emittedWarnings_.insert(what).second && warn_) warn_(path_ + ": " + oneLine(what));
 }
 
 void GltfFile::spend(uint64_t bytes) {
   spent_ += bytes;
   if (bytes > budget_ || spent_ > budget_)
-    fail("asks for more than {} bytes of geometry, far more than the file holds", budget_);
+    fail("needs more than {} bytes of geometry, out of proportion to the length of the file",
+         budget_);
 }
 
 }  // namespace chromeball

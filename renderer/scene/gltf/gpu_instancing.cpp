@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kExtension = "EXT_mesh_gpu_instancing";
 
-// The attribute of each instance; empty where the node lacks it.
+// The attribute of each instance; empty if the node does not have it.
 template <int N>
 std::vector<glm::vec<N, float>> readAttribute(GltfFile& file, const tinygltf::Value& attributes,
                                               const char* name, size_t& count,
@@ -46,7 +46,8 @@ std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::N
     if (!rotations.empty()) {
       const glm::dvec4 r(rotations[i]);
       const double length = glm::length(r);
-      if (!(length > 0)) file.fail("{}.ROTATION: instance {} has a quaternion of length 0", at, i);
+      if (!(length > 0))
+        file.fail("{}.ROTATION: the quaternion of instance {} has length 0", at, i);
       m *= glm::mat4_cast(glm::dquat(r.w, r.x, r.y, r.z) / length);
     }
     if (!scales.empty()) m = glm::scale(m, glm::dvec3(scales[i]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_mesh_gpu_instancing: one node that shows its mesh many times.
+// EXT_mesh_gpu_instancing: a node with several instances of its mesh.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// Where the node shows its mesh, relative to the node: the one identity where it does not use the
+// The transforms of the node's instances, relative to the node; one identity if it does not use the
 // extension.
 std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
                                                const std::string& where);

@@ -24,7 +24,7 @@ class InstanceReader {
 
   Scene read() {
     for (int node : tree_.inScene) planNode(node);
-    for (const Plan& plan : plans_) location(plan);
+    for (const Plan& plan : plans_) addInstance(plan);
     materials_.moveInto(scene_);
     return std::move(scene_);
   }
@@ -32,13 +32,13 @@ class InstanceReader {
  private:
   struct Geometry {
     int users = 0;
-    int mesh = -1;  // in the scene, once it has been read for several users
+    int mesh = -1;  // index in the scene, once read; used if there are several users
   };
 
-  // A primitive that a node shows, at one of its places.
+  // An instance to add: a primitive of a node, by one of the node's transforms.
   struct Plan {
     int node, mesh, primitive, material;
-    Geometry* geometry;  // null: skinned, which puts it into world space
+    Geometry* geometry;  // null: skinned, which transforms it to world space
     dmat4 toWorld;
   };
 
@@ -49,26 +49,26 @@ class InstanceReader {
     const tinygltf::Mesh& mesh = file_.at(file_.model.meshes, node.mesh, "meshes", where + ".mesh");
     if (node.skin != -1) readJoints(node.skin, where + ".skin");
     const Pose pose = poseOf(index);
-    const std::vector<dmat4> places = placesOf(index, where);
+    const std::vector<dmat4> transforms = transformsOf(index, where);
     for (size_t i = 0; i < mesh.primitives.size(); ++i) {
       const tinygltf::Primitive& primitive = mesh.primitives[i];
       const bool skinned = isSkinned(primitive, pose);
       const std::string at = describe(node.mesh, i);
-      if (!hasTriangles(file_, primitive, at) || !(skinned || !places.empty())) continue;
-      file_.spend((sizeof(Plan) + sizeof(Instance)) * std::max<size_t>(places.size(), 1));
+      if (!hasTriangles(file_, primitive, at) || !(skinned || !transforms.empty())) continue;
+      file_.spend((sizeof(Plan) + sizeof(Instance)) * std::max<size_t>(transforms.size(), 1));
       const int material = materials_.use(primitive.material, at + ".material");
       if (skinned) {
         plans_.push_back({index, node.mesh, int(i), material, nullptr, dmat4(1)});
         continue;
       }
       Geometry& geometry = geometries_[recipeOf(primitive, pose, materials_[material])];
-      geometry.users += int(places.size());
-      for (const dmat4& toWorld : places)
+      geometry.users += int(transforms.size());
+      for (const dmat4& toWorld : transforms)
         plans_.push_back({index, node.mesh, int(i), material, &geometry, toWorld});
     }
   }
 
-  void location(const Plan& plan) {
+  void addInstance(const Plan& plan) {
     const bool shared = plan.geometry && plan.geometry->users > 1;
     int mesh = shared ? plan.geometry->mesh : -1;
     if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
@@ -78,8 +78,8 @@ class InstanceReader {
                                 shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt});
   }
 
-  // Adds a mesh to the scene, moved by `transform` where there is one; -1 where it has no
-  // triangles.
+  // Adds a mesh to the scene, transformed by `transform` unless that is null. Returns its index, or
+  // -1 if it has no triangles.
   int readMesh(const Plan& plan, const dmat4* transform) {
     const auto& primitive =
         file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
@@ -89,7 +89,7 @@ class InstanceReader {
     if (!mesh) return -1;
     if (transform) transformMesh(*mesh, *transform);
     if (!std::all_of(mesh->positions.begin(), mesh->positions.end(), isFinite))
-      file_.fail("{}: its node moves it out of the range of float", where);
+      file_.fail("{}: its node's transform exceeds the range of float", where);
     scene_.meshes.push_back(std::move(*mesh));
     return int(scene_.meshes.size()) - 1;
   }
@@ -98,17 +98,18 @@ class InstanceReader {
     return fmt::format("meshes[{}].primitives[{}]", mesh, primitive);
   }
 
-  // The invertible ones of the node's transforms; several where it is instanced.
-  std::vector<dmat4> placesOf(int index, const std::string& where) {
-    std::vector<dmat4> places =
+  // The node's transforms to world space (several with EXT_mesh_gpu_instancing), without those that
+  // are not invertible.
+  std::vector<dmat4> transformsOf(int index, const std::string& where) {
+    std::vector<dmat4> transforms =
         readInstanceTransforms(file_, file_.model.nodes[size_t(index)], where);
-    for (dmat4& location : places) location = tree_.toWorld[size_t(index)] * location;
-    const size_t all = places.size();
-    std::erase_if(places, [](const dmat4& location) { return !isInvertible(location); });
-    if (places.size() < all)
-      file_.warnOnce("nodes without an invertible transform (\"" + tree_.names[size_t(index)] +
-                     "\", say) are left out");
-    return places;
+    for (dmat4& transform : transforms) transform = tree_.toWorld[size_t(index)] * transform;
+    const size_t count = transforms.size();
+    std::erase_if(transforms, [](const dmat4& transform) { return !isInvertible(transform); });
+    if (transforms.size() < count)
+      file_.warnOnce("ignored: nodes without an invertible transform (such as \"" +
+                     tree_.names[size_t(index)] + "\")");
+    return transforms;
   }
 
   Pose poseOf(int index) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes a glTF file's nodes show, where, and made of what.
+// The meshes, materials and transforms of a glTF file's nodes.
 #pragma once
 
 #include "scene/gltf/gltf_file.h"
@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// A scene with the meshes, instances, materials and textures of the tree's nodes. However many
-// primitives describe the same geometry, it is stored once.
+// A scene with the meshes, instances, materials and textures of the nodes in the tree. Geometry
+// that several primitives share is stored once.
 Scene readInstances(GltfFile& file, const NodeTree& tree);
 
 }  // namespace chromeball

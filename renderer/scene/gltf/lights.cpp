@@ -23,10 +23,10 @@ Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
   Rgb c(1);
   if (!v.IsArray()) return c;
   for (int i = 0; i < 3; ++i) {
-    const Value& x = v.Get(i);  // a null value where the array is shorter
+    const Value& x = v.Get(i);  // null if the array is too short
     c[i] = x.IsNumber() ? float(x.GetNumberAsDouble()) : NAN;
     if (!(c[i] >= 0 && std::isfinite(c[i])))
-      file.fail("{}.color: is not three numbers >= 0", where);
+      file.fail("{}.color: must be three numbers >= 0", where);
   }
   return c;
 }
@@ -76,7 +76,7 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
     const glm::dvec3 backwards(toWorld[2]);
     const double length = glm::length(backwards);
     if (!isFinite(light.position) || !(length > 0) || !std::isfinite(length)) {
-      file.warnOnce("lights of nodes without an invertible transform are left out");
+      file.warnOnce("ignored: lights of nodes without an invertible transform");
       continue;
     }
     light.direction = vec3(-backwards / length);

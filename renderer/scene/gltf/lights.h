@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_lights_punctual: the lights that nodes carry.
+// KHR_lights_punctual: directional, point and spot lights.
 #pragma once
 
 #include "scene/gltf/gltf_file.h"
@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// The lights of the tree's nodes, in world space. Throws InputError where one is not well-formed.
+// The lights of the nodes in the tree, in world space. Throws InputError if one is invalid.
 std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, LightUnits units);
 
 }  // namespace chromeball

@@ -17,7 +17,8 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-// The camera's frame is the node's, made orthonormal; mirroring and scale do not reach the view.
+// The camera's frame is that of the node, orthonormalised, so that mirroring and scale do not
+// change the view.
 void placeCamera(const dmat4& toWorld, Camera& camera) {
   const dvec3 back = glm::normalize(dvec3(toWorld[2]));
   const dvec3 right = glm::normalize(glm::cross(dvec3(toWorld[1]), back));
@@ -43,11 +44,11 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
     camera.halfHeight = float(std::fabs(box.ymag));
     camera.aspect = float(camera.orthographic ? std::fabs(box.xmag / box.ymag) : lens.aspectRatio);
     if (!(camera.aspect > 0) || !std::isfinite(camera.aspect)) camera.aspect = 0;
-    const bool sees = camera.orthographic
-                          ? camera.halfHeight > 0 && std::isfinite(camera.halfHeight)
-                          : lens.yfov > 0 && lens.yfov < kPiD;
-    if (!sees || !isInvertible(tree.toWorld[size_t(i)])) {
-      file.warnOnce("camera \"" + camera.name + "\" has no view and is left out");
+    const bool isValid = camera.orthographic
+                             ? camera.halfHeight > 0 && std::isfinite(camera.halfHeight)
+                             : lens.yfov > 0 && lens.yfov < kPiD;
+    if (!isValid || !isInvertible(tree.toWorld[size_t(i)])) {
+      file.warnOnce("camera \"" + camera.name + "\" has no field of view and is ignored");
       continue;
     }
     placeCamera(tree.toWorld[size_t(i)], camera);
@@ -55,15 +56,15 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
   }
 }
 
-// Distances in a medium grow with the model that `placement` enlarges.
+// Distances in media scale with the model.
 void scaleMedia(const Transform& placement, Scene& scene) {
   const float scale = std::cbrt(std::fabs(glm::determinant(placement.linear)));
   for (Material& m : scene.materials)
     if (m.extended && scale > 0) m.extended->attenuation /= scale;
 }
 
-// A file of meshes without any node still shows them, each once.
-void standMeshesUp(tinygltf::Model& model) {
+// If the file has meshes but no nodes, adds a node for each mesh.
+void addMissingNodes(tinygltf::Model& model) {
   if (!model.nodes.empty() || !model.scenes.empty()) return;
   for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
 }
@@ -77,7 +78,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   decodeDraco(file);
   if (choice.variant) applyVariant(file, *choice.variant);
   if (choice.animation) applyAnimation(file, *choice.animation);
-  standMeshesUp(file.model);
+  addMissingNodes(file.model);
   const NodeTree tree = readNodes(file, placement, choice.origin);
   Scene scene = readInstances(file, tree);
   readCameras(file, tree, scene);
@@ -89,8 +90,8 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scene.files = file.files();
   if (!choice.animation && !file.model.animations.empty())
     scene.notes.push_back(
-        fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS shows "
-                    "another: {}",
+        fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS selects "
+                    "an animation: {}",
                     path, animationNames(file)));
   return scene;
 }

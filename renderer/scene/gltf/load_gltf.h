@@ -10,39 +10,39 @@
 
 namespace chromeball {
 
-// Takes one line of warning ("FILE: what was ignored"), each said once per file.
+// Receives one line per warning ("FILE: what was ignored"), the same one only once per file.
 using Warn = std::function<void(const std::string&)>;
 
-// Whether a model may name files outside its own folder: by an absolute path, by "..", or through a
-// link. URIs with a scheme (http:, file:) are refused in any case.
+// Whether a model may refer to files outside its own folder: by an absolute path, by "..", or
+// through a link. URIs with a scheme (http:, file:) are always errors.
 enum class ExternalFiles { Refuse, Allow };
 
-// An animation of the file and the time to show it at.
+// An animation of the file and the time at which to show it.
 struct AnimationTime {
-  std::string name;      // or its index where it has none; empty: the first
-  std::string location;  // where it was asked for, for the error where it does not exist
+  std::string name;      // or its index if it has no name; empty: the first animation
+  std::string location;  // of the setting, for the error if the animation does not exist
   double seconds = 0;
 };
 
 // A variant of the file's materials (KHR_materials_variants).
 struct VariantChoice {
   std::string name;
-  std::string location;  // where it was asked for, for the error where it does not exist
+  std::string location;  // of the setting, for the error if the variant does not exist
 };
 
-// What of a file to show, and what it may ask for.
+// Options of loadGltf().
 struct GltfChoice {
-  std::optional<AnimationTime> animation;  // else the rest pose
-  std::optional<VariantChoice> variant;    // else the materials that the primitives name
+  std::optional<AnimationTime> animation;  // nullopt: the rest pose
+  std::optional<VariantChoice> variant;    // nullopt: the materials of the primitives themselves
   ExternalFiles external = ExternalFiles::Refuse;
   LightUnits lightUnits = LightUnits::Photometric;  // of KHR_lights_punctual
-  bool environment = true;                          // whether the file's own light probe is wanted
-  glm::dvec3 origin{0};  // of the scene in the world: subtracted while numbers are still doubles
+  bool environment = true;                          // whether to read the file's own light probe
+  glm::dvec3 origin{0};  // scene origin in world space, subtracted in double precision
 };
 
-// Reads the default scene of the file (the first where none is named), with `placement` applied to
-// its roots. Throws InputError (file and reason) for whatever is not well-formed, refers outside
-// its buffers, or requires an extension that is not supported.
+// Reads the default scene of the file (the first if the file names none) and applies `placement` to
+// its roots. Throws InputError ("FILE: reason") if the file is invalid, refers to bytes outside its
+// buffers, or requires an unsupported extension.
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The material extensions that add lobes and media to metallic-roughness.
+// MaterialReader: the extensions that add lobes and media to metallic-roughness materials.
 #include "scene/gltf/extension_members.h"
 #include "scene/gltf/material_reader.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 using tinygltf::Value;
 
-// exp(-attenuation distance) = color. Zero in a channel would be an infinite attenuation.
+// Solves exp(-attenuation distance) = color. A channel of 0 would give an infinite attenuation.
 Rgb attenuationOf(const Rgb& color, float distance) {
   return -glm::log(glm::max(color, Rgb(1e-6f))) / distance;
 }
@@ -23,7 +23,7 @@ void MaterialReader::readTransmission(const tinygltf::ExtensionMap& extensions,
         slot(e->Get("transmissionTexture"), false, where + ".transmissionTexture");
   }
   if (const Value* e = findExtension(extensions, "KHR_materials_volume")) {
-    // How thick the body is, its own geometry says; only whether it is one, this factor.
+    // thicknessFactor only tells whether the mesh is a body; the geometry tells its thickness.
     m.thinWalled = member(file_, *e, "thicknessFactor", 0, 0, INFINITY, where) == 0;
     const Value& distance = e->Get("attenuationDistance");
     if (distance.IsNumber())
@@ -67,8 +67,8 @@ void MaterialReader::readIridescence(const Value& e, const std::string& where,
   m.iridescence = member(file_, e, "iridescenceFactor", 0, 0, 1, where);
   m.iridescenceTexture = slot(e.Get("iridescenceTexture"), false, where + ".iridescenceTexture");
   m.filmIor = member(file_, e, "iridescenceIor", 1.3, 1, 1e3, where);
-  m.filmThinnest = member(file_, e, "iridescenceThicknessMinimum", 100, 0, 1e6, where);
-  m.filmThickest = member(file_, e, "iridescenceThicknessMaximum", 400, 0, 1e6, where);
+  m.filmMinThickness = member(file_, e, "iridescenceThicknessMinimum", 100, 0, 1e6, where);
+  m.filmMaxThickness = member(file_, e, "iridescenceThicknessMaximum", 400, 0, 1e6, where);
   m.filmThicknessTexture =
       slot(e.Get("iridescenceThicknessTexture"), false, where + ".iridescenceThicknessTexture");
 }

@@ -87,7 +87,7 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"))
     readSpecular(*e, where, m);
   m.extended = readExtensions(source.extensions, where);
-  if (m.extended && m.ior == 0) m.extended->transmission = 0;  // reflects all
+  if (m.extended && m.ior == 0) m.extended->transmission = 0;  // infinite index: reflects all light
   return m;
 }
 
@@ -121,14 +121,14 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
     const float angle = member(file_, *e, "rotation", 0, -1e6, 1e6, at);
     const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -INFINITY, INFINITY, at);
     const float c = std::cos(angle), sn = std::sin(angle);
-    // Counter-clockwise as seen, with v pointing down.
+    // The rotation is counter-clockwise as seen, with v pointing down.
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
     s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
     if (e->Get("texCoord").IsInt()) s.uvSet = e->Get("texCoord").GetNumberAsInt();
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
-    file_.fail("{}: texCoord {} is out of range; 0 to {} can be read", where, s.uvSet, kMaxUvSet);
+    file_.fail("{}: texCoord {} is not in the range 0 to {}", where, s.uvSet, kMaxUvSet);
   return s;
 }
 
@@ -140,10 +140,10 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
     file_.fail(
         "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "
-        "turn it into PNG, JPEG or WebP (`ktx extract` of KTX-Software can)",
+        "convert it to PNG, JPEG or WebP (`ktx extract` of KTX-Software can)",
         index);
   if (image == -1) {
-    file_.warnOnce("textures without an image are left out");
+    file_.warnOnce("ignored: textures without an image");
     return -1;
   }
   Texture t;
@@ -173,9 +173,9 @@ TexelGrid* MaterialReader::grid(int image) {
   return grids_[size_t(found->second)].get();
 }
 
-// Each image with its smaller versions at once, while its texels are in the cache; the longest
-// files first, so that no thread is left with one at the end. Textures that differ in their
-// samplers alone share them.
+// Each task decodes an image and builds its mip levels while the texels are in the cache. Long
+// files come first, so that no thread works on one alone at the end. Textures of one image that
+// differ in their samplers only share the mip levels.
 void MaterialReader::moveInto(Scene& scene) {
   using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
   std::map<std::tuple<const TexelGrid*, bool, bool>, Chain> chains;
@@ -203,9 +203,9 @@ void MaterialReader::moveInto(Scene& scene) {
       for (bool weighted : {false, true})
         if (const auto wanted = chains.find({&grid, srgb, weighted}); wanted != chains.end())
           wanted->second =
-              std::make_shared<const std::vector<TexelGrid>>(makeSmaller(grid, srgb, weighted));
+              std::make_shared<const std::vector<TexelGrid>>(makeMipLevels(grid, srgb, weighted));
   });
-  for (Texture& t : textures_) t.smaller = chains[{t.grid, t.srgb, t.weightedByAlpha}];
+  for (Texture& t : textures_) t.mipLevels = chains[{t.grid, t.srgb, t.weightedByAlpha}];
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns glTF materials, textures, samplers and images into the scene's.
+// Converts glTF materials, textures, samplers and images to those of the scene.
 #pragma once
 
 #include <map>
@@ -13,22 +13,22 @@
 
 namespace chromeball {
 
-// Converts on demand, so that what no primitive uses costs nothing.
+// Converts on demand, so that unused materials and images cost nothing.
 class MaterialReader {
  public:
   explicit MaterialReader(GltfFile& file) : file_(file) {}
 
-  // Index into the scene's materials of glTF material `index`; -1 stands for the default material.
+  // Converts glTF material `index` (-1: the default material); returns its index in the scene.
   int use(int index, const std::string& where);
   const Material& operator[](int material) const { return materials_[size_t(material)]; }
 
-  // Decodes the images in use, each once and in parallel, and hands everything over.
+  // Decodes the images in use, each once, in parallel, and moves all results into the scene.
   void moveInto(Scene& scene);
 
  private:
   using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool, bool>;
   struct TexelUse {
-    bool srgb = false, weightedByAlpha = false;  // as of Texture
+    bool srgb = false, weightedByAlpha = false;  // see Texture
   };
 
   Material convert(const tinygltf::Material& source, const std::string& where);
@@ -38,7 +38,7 @@ class MaterialReader {
   int texture(int index, TexelUse use, const std::string& where);
   TexelGrid* grid(int image);
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
-  // Nothing where the extensions change nothing.
+  // nullopt if the extensions have no effect.
   std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,
                                                  const std::string& where);
   void readTransmission(const tinygltf::ExtensionMap& extensions, const std::string& where,
@@ -52,7 +52,7 @@ class MaterialReader {
                        ExtendedMaterial& m);
 
   GltfFile& file_;
-  std::map<int, int> materialOf_;  // glTF's index to ours
+  std::map<int, int> materialOf_;  // glTF index to index in the scene
   std::vector<Material> materials_;
   std::map<TextureKey, int> textureOf_;
   std::vector<Texture> textures_;

@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// Triangles of a vertex sequence, each with the front the specification gives it (3.7.2.1).
+// The triangles of a vertex sequence, wound as the specification says (glTF 2.0, 3.7.2.1).
 std::vector<Triangle> assemble(const std::vector<uint32_t>& v, int mode) {
   std::vector<Triangle> triangles;
   if (v.size() < 3) return triangles;
@@ -39,13 +39,13 @@ void checkFinite(const GltfFile& file, const std::vector<vec3>& positions,
     if (!isFinite(positions[i])) file.fail("{}: the position of vertex {} is not finite", where, i);
 }
 
-// Reads one primitive's vertex attributes, whose lengths must agree.
+// Reads the vertex attributes of a primitive. Throws if their lengths differ.
 class AttributeReader {
  public:
   AttributeReader(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where)
       : file_(file), primitive_(primitive), where_(where) {}
 
-  // The attribute by `readArray` (see gltf_accessor.h); empty where the primitive lacks it.
+  // Reads the attribute by `readArray` (from accessor.h); empty if the primitive does not have it.
   template <class T>
   std::vector<T> read(const std::string& name,
                       std::vector<T> (*readArray)(GltfFile&, int, const std::string&)) {
@@ -66,7 +66,7 @@ class AttributeReader {
   size_t vertexCount_ = 0;
 };
 
-// The UV sets that the material reads, by textures or tangents.
+// The UV sets that the material needs for textures or tangents.
 std::vector<int> uvSetsOf(Material material) {
   std::set<int> sets;
   for (const TextureSlot* slot : textureSlots(material))
@@ -82,7 +82,7 @@ void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const M
     const std::string name = fmt::format("TEXCOORD_{}", set);
     mesh.uvs[set] = attributes.read(name, readVectors<2>);
     if (!mesh.uvs[set].empty()) continue;
-    file.warnOnce(fmt::format("a textured primitive lacks {}: (0, 0) is used", name));
+    file.warnOnce(fmt::format("a textured primitive has no {}; (0, 0) is used", name));
     mesh.uvs[set].assign(mesh.positions.size(), vec2(0));
   }
 }
@@ -92,7 +92,7 @@ void readVertexColors(GltfFile& file, AttributeReader& attributes, const std::st
   mesh.colors = attributes.read("COLOR_0", readColors);
   for (vec4& c : mesh.colors) {
     if (!isFinite(Rgb(c)) || !std::isfinite(c.w))
-      file.fail("{}.attributes.COLOR_0: holds a colour that is not finite", where);
+      file.fail("{}.attributes.COLOR_0: a colour is not finite", where);
     c = glm::max(c, vec4(0));
   }
   const bool white = std::all_of(mesh.colors.begin(), mesh.colors.end(),
@@ -100,12 +100,12 @@ void readVertexColors(GltfFile& file, AttributeReader& attributes, const std::st
   if (white) mesh.colors.clear();
 }
 
-// Whoever reads a normal map needs normals and tangents.
+// Adds the normals and tangents that the material needs, for example for a normal map.
 void completeTangents(const Material& material, Mesh& mesh) {
   const std::optional<TextureSlot> slot = tangentSpace(material);
   if (!slot) return;
   if (mesh.normals.empty()) makeFlat(mesh);
-  if (!mesh.tangents.empty()) return mendTangents(mesh);
+  if (!mesh.tangents.empty()) return repairTangents(mesh);
   std::vector<vec2> uv = mesh.uvs[size_t(slot->uvSet)];
   for (vec2& coordinates : uv) coordinates = slot->transform(coordinates);
   computeTangents(mesh, uv);
@@ -124,16 +124,16 @@ bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const st
     case TINYGLTF_MODE_TRIANGLE_STRIP:
     case TINYGLTF_MODE_TRIANGLE_FAN:
       if (primitive.attributes.contains("POSITION")) return true;
-      file.warnOnce("primitives without POSITION are left out");
+      file.warnOnce("ignored: primitives without POSITION");
       return false;
     case TINYGLTF_MODE_POINTS:
     case TINYGLTF_MODE_LINE:
     case TINYGLTF_MODE_LINE_LOOP:
     case TINYGLTF_MODE_LINE_STRIP:
-      file.warnOnce("points and lines are left out");
+      file.warnOnce("ignored: points and lines");
       return false;
   }
-  file.fail("{}.mode: {} is not one of glTF's (0 to 6)", where, primitive.mode);
+  file.fail("{}.mode: {} is not in the range 0 to 6", where, primitive.mode);
 }
 
 MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
@@ -172,11 +172,11 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
   }
   mesh.triangles = assemble(vertices, primitive.mode);
   if (mesh.triangles.empty()) {
-    file.warnOnce("primitives with fewer than three indices are left out");
+    file.warnOnce("ignored: primitives with fewer than three indices");
     return std::nullopt;
   }
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && vertices.size() % 3 != 0)
-    file.warnOnce("indices beyond the last whole triangle are left out");
+    file.warnOnce("ignored: indices after the last complete triangle");
 
   mesh.normals = attributes.read("NORMAL", readVectors<3>);
   if (tangentSpace(material) && !mesh.normals.empty())
@@ -188,7 +188,7 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
   if (isSkinned(primitive, pose)) applySkin(file, primitive, pose.joints, where, mesh);
   checkFinite(file, mesh.positions, where);
   dropUnusedVertices(mesh);
-  mendNormals(mesh);
+  repairNormals(mesh);
   completeTangents(material, mesh);
   return mesh;
 }

@@ -10,7 +10,7 @@ using tinygltf::Value;
 
 constexpr const char* kExtension = "EXT_meshopt_compression";
 
-// What the extension says of one buffer view.
+// The extension's description of a buffer view.
 struct Compressed {
   std::span<const uint8_t> bytes;
   size_t count, stride;
@@ -44,22 +44,23 @@ Compressed readExtension(const GltfFile& file, const Value& extension, const std
   return c;
 }
 
-// The extension's own rules, on which the decoder relies.
+// Checks the rules of the extension, which the decoder assumes to hold.
 void check(const GltfFile& file, const Compressed& c, const std::string& where) {
   const bool isIndex = c.mode == "TRIANGLES" || c.mode == "INDICES";
   if (!isIndex && c.mode != "ATTRIBUTES")
     file.fail("{}.mode: \"{}\" is not ATTRIBUTES, TRIANGLES or INDICES", where, c.mode);
   const bool strideFits = isIndex ? c.stride == 2 || c.stride == 4
                                   : c.stride > 0 && c.stride <= 256 && c.stride % 4 == 0;
-  if (!strideFits) file.fail("{}.byteStride: {} does not suit {}", where, c.stride, c.mode);
+  if (!strideFits) file.fail("{}.byteStride: {} is invalid for {}", where, c.stride, c.mode);
   if (c.count == 0 || (c.mode == "TRIANGLES" && c.count % 3 != 0))
-    file.fail("{}.count: {} does not suit {}", where, c.count, c.mode);
+    file.fail("{}.count: {} is invalid for {}", where, c.count, c.mode);
   const bool filterFits =
       c.filter == "NONE" ||
       (!isIndex && ((c.filter == "OCTAHEDRAL" && (c.stride == 4 || c.stride == 8)) ||
                     (c.filter == "QUATERNION" && c.stride == 8) || c.filter == "EXPONENTIAL"));
   if (!filterFits)
-    file.fail("{}.filter: \"{}\" does not suit {} of {} bytes", where, c.filter, c.mode, c.stride);
+    file.fail("{}.filter: \"{}\" is invalid for {} with a stride of {} bytes", where, c.filter,
+              c.mode, c.stride);
 }
 
 Bytes decode(const GltfFile& file, const Compressed& c, const std::string& where) {

@@ -6,8 +6,8 @@
 
 namespace chromeball {
 
-// Replaces every compressed buffer view of the file by its decoded bytes. Throws InputError where
-// the compressed data or what is said about it is not well-formed.
+// Replaces every compressed buffer view by one of the decoded bytes. Throws InputError if the
+// compressed data or its description is invalid.
 void decodeMeshopt(GltfFile& file);
 
 }  // namespace chromeball

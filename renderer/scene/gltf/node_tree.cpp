@@ -12,9 +12,9 @@ using glm::dmat4;
 void checkNumbers(const GltfFile& file, const std::vector<double>& numbers, size_t count,
                   const std::string& where) {
   if (numbers.size() != count)
-    file.fail("{}: has {} numbers, not {}", where, numbers.size(), count);
+    file.fail("{}: has {} numbers; it must have {}", where, numbers.size(), count);
   for (double x : numbers)
-    if (!std::isfinite(x)) file.fail("{}: holds a number that is not finite", where);
+    if (!std::isfinite(x)) file.fail("{}: a number is not finite", where);
 }
 
 dmat4 localMatrix(const GltfFile& file, const tinygltf::Node& node, const std::string& where) {
@@ -22,7 +22,7 @@ dmat4 localMatrix(const GltfFile& file, const tinygltf::Node& node, const std::s
     checkNumbers(file, node.matrix, 16, where + ".matrix");
     const dmat4 m = glm::make_mat4(node.matrix.data());
     if (m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1)
-      file.fail("{}.matrix: is not affine; its last row should be 0 0 0 1", where);
+      file.fail("{}.matrix: is not affine; its last row must be 0 0 0 1", where);
     return m;
   }
   dmat4 m(1);
@@ -33,7 +33,7 @@ dmat4 localMatrix(const GltfFile& file, const tinygltf::Node& node, const std::s
   if (const auto& r = node.rotation; !r.empty()) {
     checkNumbers(file, r, 4, where + ".rotation");
     const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
-    if (!(length > 0)) file.fail("{}.rotation: is a quaternion of length 0", where);
+    if (!(length > 0)) file.fail("{}.rotation: the quaternion has length 0", where);
     glm::dquat q;
     q.x = r[0] / length, q.y = r[1] / length, q.z = r[2] / length, q.w = r[3] / length;
     m *= glm::mat4_cast(q);
@@ -53,14 +53,14 @@ std::vector<int> parentsOf(const GltfFile& file) {
       const std::string where = fmt::format("nodes[{}].children", i);
       file.at(nodes, child, "nodes", where);
       if (parents[size_t(child)] != -1)
-        file.fail("{}: nodes[{}] is a child of nodes[{}] too; nodes must form trees", where, child,
+        file.fail("{}: nodes[{}] is also a child of nodes[{}]; nodes must form trees", where, child,
                   parents[size_t(child)]);
       parents[size_t(child)] = int(i);
     }
   return parents;
 }
 
-// All nodes below the given ones and these themselves, parents first; each once.
+// The given nodes and all their descendants, each once, parents first.
 std::vector<int> descend(const GltfFile& file, const std::vector<int>& roots) {
   std::vector<bool> seen(file.model.nodes.size(), false);
   std::vector<int> order, stack(roots.rbegin(), roots.rend());
@@ -106,15 +106,15 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
   const std::vector<int> order = descend(file, treeRoots);
 
   NodeTree tree;
-  dmat4 outermost{glm::dmat3(placement.linear)};
-  outermost[3] = glm::dvec4(glm::dvec3(placement.translation) - origin, 1);
+  dmat4 rootTransform{glm::dmat3(placement.linear)};
+  rootTransform[3] = glm::dvec4(glm::dvec3(placement.translation) - origin, 1);
   tree.toWorld.assign(nodes.size(), dmat4(0));
   for (int i : order) {
     const int parent = parents[size_t(i)];
-    tree.toWorld[size_t(i)] = (parent == -1 ? outermost : tree.toWorld[size_t(parent)]) *
+    tree.toWorld[size_t(i)] = (parent == -1 ? rootTransform : tree.toWorld[size_t(parent)]) *
                               localMatrix(file, nodes[size_t(i)], fmt::format("nodes[{}]", i));
   }
-  // With one parent each, what no root reaches hangs on a cycle.
+  // Each node has at most one parent, so nodes that no root reaches lie on or below a cycle.
   if (order.size() < nodes.size()) {
     std::vector<bool> reached(nodes.size(), false);
     for (int i : order) reached[size_t(i)] = true;

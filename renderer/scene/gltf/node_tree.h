@@ -11,16 +11,17 @@ namespace chromeball {
 
 struct NodeTree {
   std::vector<glm::dmat4> toWorld;  // of every node in the file
-  std::vector<int> inScene;         // the nodes of the scene to show, parents before children
-  std::vector<std::string> names;   // of every node; never empty
-  std::vector<int> parents;         // of every node; -1: a root
+  std::vector<int> inScene;         // the nodes of the default scene, parents before children
+  std::vector<std::string> names;   // of every node in the file; never empty
+  std::vector<int> parents;         // of every node in the file; -1: a root
 };
 
-// Composes the transforms of all nodes, `placement` outermost, seen from `origin`. Throws
-// InputError where the nodes are not trees, or a transform is not affine and finite.
+// Composes the transforms of all nodes: the parents', then `placement`, then a translation by
+// -origin. Throws InputError if the nodes do not form trees, or if a transform is not affine and
+// finite.
 NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
 
-// False where the matrix flattens space, or does once it is rounded to float.
+// Whether the matrix is invertible, also after rounding to float.
 bool isInvertible(const glm::dmat4& m);
 
 }  // namespace chromeball

@@ -52,8 +52,8 @@ std::vector<glm::dmat4> blendJoints(GltfFile& file, const tinygltf::Primitive& p
         sum[i] += weight;
       }
   }
-  // Weights that quantisation has kept from adding up to 1 are made to; without any, the first
-  // joint carries the vertex.
+  // Normalise the weights, since quantised ones may not add up to 1. Vertices without weights
+  // follow the first joint.
   for (size_t i = 0; i < vertexCount; ++i)
     blended[i] = std::fabs(sum[i]) > 1e-6 ? blended[i] / sum[i] : joints[0];
   return blended;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a mesh into its pose: morph targets at their weights, skins at their joints.
+// Poses a mesh: morph targets and skinning.
 #pragma once
 
 #include <span>
@@ -10,6 +10,12 @@
 #include "scene/scene.h"
 
 namespace chromeball {
+
+// The pose that a node gives its mesh.
+struct Pose {
+  std::span<const double> weights;     // of the morph targets
+  std::span<const glm::dmat4> joints;  // joint matrices of the skin; empty: not skinned
+};
 
 // Adds weights[i] times morph target i to positions, normals and tangents (glTF 2.0, 3.7.2.2).
 void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,

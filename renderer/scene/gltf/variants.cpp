@@ -25,7 +25,7 @@ std::vector<std::string> variantNames(const GltfFile& file) {
   return names;
 }
 
-// A primitive's mappings, as far as they are well-formed.
+// The valid mappings of a primitive.
 struct Mapping {
   int material;
   std::vector<int> variants;
@@ -44,16 +44,16 @@ std::vector<Mapping> mappingsOf(const Value& extension) {
   return result;
 }
 
-// What a mapping refers to and the file has not got.
+// Warns if the mapping refers to variants or materials that do not exist.
 void warnOfDangling(GltfFile& file, const Mapping& mapping, size_t variantCount) {
   for (const int variant : mapping.variants)
     if (variant < 0 || size_t(variant) >= variantCount)
       file.warnOnce(
-          fmt::format("a mapping names variants[{}], which does not exist ({} in the file)",
+          fmt::format("a mapping refers to variants[{}], which does not exist ({} in the file)",
                       variant, variantCount));
   if (mapping.material < 0 || size_t(mapping.material) >= file.model.materials.size())
     file.warnOnce(
-        fmt::format("a mapping names materials[{}], which does not exist ({} in the file)",
+        fmt::format("a mapping refers to materials[{}], which does not exist ({} in the file)",
                     mapping.material, file.model.materials.size()));
 }
 
@@ -62,7 +62,7 @@ void warnOfDangling(GltfFile& file, const Mapping& mapping, size_t variantCount)
 void applyVariant(GltfFile& file, const VariantChoice& choice) {
   const std::vector<std::string> names = variantNames(file);
   const auto found = std::find(names.begin(), names.end(), choice.name);
-  if (names.empty()) file.fail("has no variants ({} asks for one)", choice.location);
+  if (names.empty()) file.fail("has no variants ({})", choice.location);
   if (found == names.end())
     file.fail("has no variant `{}` ({}); {}", choice.name, choice.location,
               didYouMean(choice.name, {names.begin(), names.end()}));
@@ -84,8 +84,8 @@ void applyVariant(GltfFile& file, const VariantChoice& choice) {
       }
     }
   if (!isUsed)
-    file.warnOnce(fmt::format("variant `{}` changes nothing: no primitive has a material for it",
-                              choice.name));
+    file.warnOnce(
+        fmt::format("variant `{}` has no effect: no primitive has a material for it", choice.name));
 }
 
 }  // namespace chromeball

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The URIs of a glTF file: data URIs, and relative paths of other files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace chromeball {
+
+// Decodes a data URI, in base64 or percent-encoded. Returns false if it is invalid.
+bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes);
+
+// Replaces each %XX by the byte it stands for.
+std::string decodePercent(const std::string& uri);
+
+// Both throw std::runtime_error with a reason to be preceded by the name ("is an absolute path").
+
+// Throws if a decoded URI is empty or has a scheme, a backslash or a control character.
+void checkFileName(const std::string& name);
+
+// Throws if `folder / name` is outside of the folder: by an absolute path, by "..", or through a
+// link.
+void checkInside(const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace chromeball
