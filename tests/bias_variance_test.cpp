@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of repeated images, on images whose noise and bias are known.
+// Estimates of error, variance and bias for synthetic images of known noise and bias; power laws;
+// agreement of images.
 #include "measure/bias_variance.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 24, kHeight = 16;
 
-// A picture of truth 0.8 to 1.6, noise that differs from pixel to pixel, and a bias.
+// Images with means of 0.8 to 1.6, noise that differs from pixel to pixel, and a bias.
 struct World {
   Image truth{kWidth, kHeight, 3}, sigma{kWidth, kHeight, 3}, bias{kWidth, kHeight, 3};
   std::mt19937_64 random;
@@ -65,14 +66,14 @@ struct World {
   }
 };
 
-// Intervals of 95% hold the truth in at least 93% of the studies, and are not wide for nothing.
+// The 95% intervals include the truth in at least 93% of the studies, and are not too wide.
 void expectCovers(int covered, int studies, const char* what, double maximum = 1) {
   const double fraction = double(covered) / studies;
   EXPECT_GE(fraction, 0.93) << what;
   EXPECT_LE(fraction, maximum) << what;
 }
 
-TEST(CellError, intervalsHoldTheTruth) {
+TEST(BiasVariance, intervalsIncludeTheTruth) {
   constexpr int kStudies = 500;
   for (const float biasScale : {0.0f, 0.05f, 0.5f}) {
     SCOPED_TRACE(biasScale);
@@ -80,7 +81,7 @@ TEST(CellError, intervalsHoldTheTruth) {
     const World::Truth truth = world.expected(1);
     int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
     for (int study = 0; study < kStudies; ++study) {
-      const CellError error = cellError(world.repeats(4, 1), world.reference(0.2f));
+      const BiasVariance error = biasVariance(world.repeats(4, 1), world.reference(0.2f));
       const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
       relMse += holds(error.relMse, truth.variance + truth.squaredBias);
       variance += holds(error.variance, truth.variance);
@@ -94,8 +95,8 @@ TEST(CellError, intervalsHoldTheTruth) {
   }
 }
 
-// Without its variance, the reference's noise counts as error; with it, it does not.
-TEST(CellError, referenceVarianceIsRemoved) {
+// The noise of the reference counts as error unless its variance is known.
+TEST(BiasVariance, referenceVarianceIsRemoved) {
   World world(11, 0);
   const double truth = world.expected(1).variance;
   double with = 0, without = 0;
@@ -103,21 +104,21 @@ TEST(CellError, referenceVarianceIsRemoved) {
   for (int study = 0; study < kStudies; ++study) {
     Reference reference = world.reference(0.5f);
     const std::vector<Image> repeats = world.repeats(3, 1);
-    with += cellError(repeats, reference).relMse.mean / kStudies;
+    with += biasVariance(repeats, reference).relMse.mean / kStudies;
     reference.squaredError = {};
-    without += cellError(repeats, reference).relMse.mean / kStudies;
+    without += biasVariance(repeats, reference).relMse.mean / kStudies;
   }
   EXPECT_NEAR(with / truth, 1, 0.02);
   EXPECT_NEAR(without / truth, 1.25, 0.02);
 }
 
-TEST(CellError, partsAddUp) {
+TEST(BiasVariance, partsAddUp) {
   World world(3, 0.3f);
-  const CellError error = cellError(world.repeats(5, 1), world.reference(0.3f));
+  const BiasVariance error = biasVariance(world.repeats(5, 1), world.reference(0.3f));
   EXPECT_NEAR(error.relMse.mean, error.variance.mean + error.squaredBias.mean, 1e-12);
 }
 
-TEST(Slope, powerLawIsFound) {
+TEST(PowerLaw, isRecovered) {
   std::vector<ConvergencePoint> points;
   for (const double n : {1.0, 4.0, 16.0, 64.0})
     points.push_back({n, {3 * std::pow(n, -1.4), 0.1 * std::pow(n, -1.4)}});
@@ -128,7 +129,7 @@ TEST(Slope, powerLawIsFound) {
   EXPECT_FALSE(fitPowerLaw(points));
 }
 
-TEST(Slope, intervalHoldsTheTruth) {
+TEST(PowerLaw, intervalIncludesTheTruth) {
   constexpr int kStudies = 2000;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -145,7 +146,7 @@ TEST(Slope, intervalHoldsTheTruth) {
   expectCovers(covered, kStudies, "slope");
 }
 
-TEST(Slope, biasEqualsNoiseWhereTheyCross) {
+TEST(PowerLaw, biasEqualsNoiseAtTheCrossing) {
   std::vector<ConvergencePoint> points;
   for (const double n : {1.0, 4.0, 16.0}) points.push_back({n, {2 / n, 0.02 / n}});
   const PowerLaw law = fitPowerLaw(points).value();
@@ -156,7 +157,7 @@ TEST(Slope, biasEqualsNoiseWhereTheyCross) {
   EXPECT_FALSE(biasEqualsNoise(law, {0.004, 0.003})) << "a bias that may be none";
 }
 
-TEST(Agreement, pValuesAreUniformForTheSamePicture) {
+TEST(Agreement, pValuesAreUniformForEqualImages) {
   World world(13, 0);
   constexpr int kStudies = 2000;
   int below5 = 0, failing = 0;
@@ -165,13 +166,13 @@ TEST(Agreement, pValuesAreUniformForTheSamePicture) {
     below5 += result.pValue < 0.05;
     failing += result.fraction > 0;
   }
-  // Welch's approximation is careful with so few repeats.
+  // Welch's approximation is conservative with so few repeats.
   expectCovers(kStudies - below5, kStudies, "p-value");
   EXPECT_EQ(failing, below5) << "a tile fails where the p-value of all is below 5%";
   EXPECT_GT(below5, kStudies / 100);
 }
 
-TEST(Agreement, anotherPictureIsFound) {
+TEST(Agreement, differentImagesAreDetected) {
   World world(17, 0);
   std::vector<Image> a = world.repeats(4, 1), b = world.repeats(4, 1);
   for (Image& image : b)

@@ -122,7 +122,7 @@ TEST_F(SlowCommandCompare, referenceFromAFileAndTimes) {
   EXPECT_EQ(cells[0]["budget"], "0.1s");
   EXPECT_GE(cells[0]["samples"], 1);
   for (const json& warning : all["warnings"])
-    EXPECT_EQ(std::string(warning).find("taken for exact"), std::string::npos) << warning;
+    EXPECT_EQ(std::string(warning).find("assumed to be exact"), std::string::npos) << warning;
 }
 
 TEST_F(SlowCommandCompare, badInputIsRefused) {
@@ -224,7 +224,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
     }
     const CommandResult result = runCommand(words(name, other->second));
     EXPECT_EQ(result.status, 2) << name;
-    EXPECT_NE(result.error.find("another comparison's"), std::string::npos) << name << result.error;
+    EXPECT_NE(result.error.find("another comparison"), std::string::npos) << name << result.error;
   }
   EXPECT_EQ(runCommand(words("", {})).status, 0) << "and this is still the same";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of numbers, and PNG in memory.
+// False colours, and encoding of PNGs in memory.
 #include "measure/false_color.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 double grey(const Color8& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
-TEST(FalseColor, heatKeepsItsOrderInGrey) {
+TEST(FalseColor, luminanceOfHeatIncreases) {
   for (int i = 1; i <= 255; ++i)
     EXPECT_GE(grey(heatColor(i / 255.0)), grey(heatColor((i - 1) / 255.0))) << i;
   EXPECT_LT(grey(heatColor(0)), 5);
@@ -41,7 +41,7 @@ TEST(FalseColor, scales) {
   EXPECT_EQ(percentile({}, 0.5), 0);
 }
 
-TEST(Png, bytesComeBack) {
+TEST(EncodePng, isLossless) {
   for (const int channels : {1, 3}) {
     std::vector<uint8_t> bytes(256 * size_t(channels));
     for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = uint8_t(i * 7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FLIP against numbers worked out apart: by brute force, two-dimensional convolutions and no shared
-// code, from the formulas of the paper.
+// FLIP compared with an independent brute-force implementation of the formulas of the paper, by
+// two-dimensional convolution and without shared code.
 #include "measure/flip.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Image reference() {
   return image;
 }
 
-// The same with darker, shifted patches.
+// The same image with darker, shifted patches.
 Image test() {
   Image image = reference();
   for (int y = 0; y < kHeight; ++y)
@@ -54,21 +54,21 @@ TEST(Flip, agreesWithBruteForce) {
   EXPECT_NEAR(*error.at(39, 23), 0.057411214656086215, 1e-5);
 }
 
-// Without structure there is only colour: black and white are 100 apart in lightness, which the
-// compression of the paper's section 4.1 turns into this.
+// Uniform images differ in colour only. Black and white differ by 100 in lightness, which the
+// compression of section 4.1 of the paper maps to this number.
 TEST(Flip, blackAndWhite) {
   EXPECT_NEAR(mean(flip(filled(Rgb(0)), filled(Rgb(1)))), 0.9673797614921327, 1e-6);
   EXPECT_NEAR(mean(flip(filled({0, 1, 0}), filled({0, 0, 1}))), 1, 1e-6);
 }
 
-TEST(Flip, equalPicturesDoNotDiffer) {
+TEST(Flip, equalImagesDoNotDiffer) {
   EXPECT_EQ(mean(flip(reference(), reference())), 0);
   EXPECT_EQ(mean(hdrFlip(reference(), reference())), 0);
 }
 
-// HDR-FLIP takes its exposures from the reference, so a common factor changes nothing; a highlight
-// that no single exposure shows counts.
-TEST(Flip, hdrLooksAtEveryExposure) {
+// HDR-FLIP derives its exposures from the reference, so a common factor changes nothing. It detects
+// differences in highlights that are clipped without exposure.
+TEST(Flip, hdrCoversAllExposures) {
   Image bright = reference(), off = test();
   const double before = mean(hdrFlip(bright, off));
   for (float& number : bright.texels) number *= 64;

@@ -39,7 +39,7 @@ TEST(ImageError, EqualImages) {
   EXPECT_EQ(imageError(filled(3, 3, 0), filled(3, 3, 0)).bias, 0);
 }
 
-TEST(ImageError, InvalidNumbersAreCountedAndLeftOut) {
+TEST(ImageError, InvalidNumbersAreCountedAndIgnored) {
   Image a = filled(2, 2, 1.5f);
   a.at(0, 0)[0] = std::nanf("");
   a.at(1, 1)[1] = std::numeric_limits<float>::infinity();
@@ -72,7 +72,7 @@ TEST(ImageError, ZScoresOfNormalNoise) {
   EXPECT_NEAR(z->standardDeviation, 1, 4 / std::sqrt(2 * 60000.0));
   EXPECT_NEAR(z->fractionBeyond3, 0.0027, 0.001);
 
-  // One variance too few: the scores scatter more. A shift of one sigma is seen.
+  // With only one of the variances the scores scatter more. A shift of one sigma is detected.
   EXPECT_GT(imageError(a, b, nullptr, &varianceB).zScores->standardDeviation, 1.5);
   for (size_t i = 0; i < a.texels.size(); ++i)
     a.texels[i] += std::sqrt(varianceA.texels[i] + varianceB.texels[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of `chromeball compare` in a browser, where one is installed.
+// The report of `chromeball compare` in a browser, if one is installed.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -12,14 +12,14 @@
 namespace chromeball {
 namespace {
 
-// Catches errors of the page's scripts.
+// Records errors of the page's scripts.
 constexpr const char* kWatch = R"(<script>
   window.failures = [];
   addEventListener('error', e => failures.push(e.message));
   addEventListener('unhandledrejection', e => failures.push(String(e.reason)));
 </script>)";
 
-// When the page is ready: flips, moves over the viewer and a map, and writes down what it saw.
+// When the page is ready: flips, moves over the viewer and a map, and adds the results to the page.
 constexpr const char* kUse = R"(<script>
   const picture = () => {
     const canvas = document.querySelector('#viewer canvas');
@@ -96,9 +96,9 @@ TEST(SlowReport, worksInABrowser) {
                 .status,
             0);
   std::string page = fileContents(folder / "report/index.html");
-  EXPECT_EQ(page.find("{{"), std::string::npos) << "a part was left out";
+  EXPECT_EQ(page.find("{{"), std::string::npos) << "a placeholder was not replaced";
   EXPECT_FALSE(std::regex_search(page, std::regex(R"((src|href)="?(http|//))")))
-      << "it should need no other file";
+      << "the page must be self-contained";
   page.replace(page.find("<head>"), 6, std::string("<head>") + kWatch);
   page.replace(page.rfind("</body>"), 7, std::string(kUse) + "</body>");
   std::ofstream(folder / "page.html") << page;

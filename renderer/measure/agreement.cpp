@@ -10,7 +10,7 @@ namespace chromeball {
 namespace {
 
 constexpr int kTile = Agreement::kTile;
-// Rounding alone makes means differ by less than this, relatively.
+// Relative differences of means below this are rounding errors.
 constexpr double kRounding = 1e-5;
 
 double meanLuminance(const Image& image, int left, int top) {
@@ -33,10 +33,10 @@ double pValueOf(const Moments& a, const Moments& b) {
   return welchTest(a, b);
 }
 
-// The two-sided normal deviate of chance `p`, of the sign of `difference`.
+// The normal deviate with the two-sided p-value `p` and the sign of `difference`.
 double deviate(double p, double difference) {
-  constexpr double kMin = 1e-300;  // a chance of 0 would be infinitely far
-  const double z = quantile(complement(boost::math::normal(), std::max(p, kMin) / 2));
+  constexpr double kMinP = 1e-300;  // p = 0 would give an infinite deviate
+  const double z = quantile(complement(boost::math::normal(), std::max(p, kMinP) / 2));
   return std::copysign(z, difference);
 }
 
@@ -58,7 +58,7 @@ Agreement agreement(std::span<const Image> a, std::span<const Image> b) {
       result.fraction += (p < significance) / double(result.tiles);
       minimum = std::min(minimum, p);
     }
-  // The chance that the least of so many p-values is this small.
+  // The probability that the minimum of this many p-values is this small.
   result.pValue = -std::expm1(double(result.tiles) * std::log1p(-minimum));
   return result;
 }

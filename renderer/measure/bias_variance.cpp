@@ -11,16 +11,15 @@ constexpr int kChannels = 3;
 
 double squared(double x) { return x * x; }
 
-// Sums over the pixels of a cell.
+// Sums over pixels and channels.
 struct Sums {
   double relMse = 0, variance = 0, squaredBias = 0, difference = 0, reference = 0, mse = 0,
          referenceVariance = 0;
-  // Of the sums above: squared standard errors.
+  // Squared standard errors of the sums above.
   double relMseError = 0, varianceError = 0, squaredBiasError = 0, differenceError = 0;
 };
 
-// Unbiased sample variance of `numbers` about their own mean, over their number: the squared
-// standard error of that mean.
+// The squared standard error of the mean of `numbers`: unbiased sample variance / count.
 double squaredErrorOfMean(std::span<const double> numbers) {
   double mean = 0, scatter = 0;
   const double n = double(numbers.size());
@@ -29,9 +28,9 @@ double squaredErrorOfMean(std::span<const double> numbers) {
   return scatter / (n - 1) / n;
 }
 
-class Pixels {
+class PixelSums {
  public:
-  Pixels(std::span<const Image> repeats, const Reference& reference)
+  PixelSums(std::span<const Image> repeats, const Reference& reference)
       : repeats_(repeats),
         reference_(reference),
         n_(double(repeats.size())),
@@ -62,7 +61,8 @@ class Pixels {
       sums_.referenceVariance += weight * v;
       sums_.difference += d;
       sums_.reference += truth;
-      // E[4 d^2 w] = 4 bias^2 w + 4 w^2, and E[s2^2] is (R + 1) / (R - 1) times the true square.
+      // 4 bias^2 w + 2 w^2 = E[4 d^2 w] - 2 w^2, since E[4 d^2 w] = 4 bias^2 w + 4 w^2. In w^2 the
+      // square s2^2 is corrected, since E[s2^2] = (R + 1) / (R - 1) variance^2.
       const double w2 = squared(s2 / n_) * (n_ - 1) / (n_ + 1) + v * v + 2 * v * s2 / n_;
       biasError += weight * std::sqrt(std::max(0.0, 4 * d * d * w - 2 * w2));
       crossError += weight * 2 * std::fabs(d) * std::sqrt(v);
@@ -80,28 +80,28 @@ class Pixels {
   std::span<const Image> repeats_;
   const Reference& reference_;
   double n_;
-  std::vector<double> squaredErrors_, deviations_;  // of a pixel in each repeat
+  std::vector<double> squaredErrors_, deviations_;  // of the current pixel, one for each repeat
   Sums sums_;
 };
 
 }  // namespace
 
-CellError cellError(std::span<const Image> repeats, const Reference& reference) {
+BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference) {
   assert(repeats.size() >= 3);
-  Pixels pixels(repeats, reference);
+  PixelSums pixels(repeats, reference);
   const size_t numbers = reference.mean.texels.size();
   for (size_t pixel = 0; pixel < numbers / kChannels; ++pixel) pixels.add(pixel);
 
   const Sums& sums = pixels.sums();
   const double n = double(numbers);
-  CellError error;
+  BiasVariance error;
   error.relMse = {sums.relMse / n, std::sqrt(sums.relMseError) / n};
   error.variance = {sums.variance / n, std::sqrt(sums.varianceError) / n};
   error.squaredBias = {sums.squaredBias / n, std::sqrt(sums.squaredBiasError) / n};
   error.bias = {sums.difference / sums.reference,
                 std::sqrt(sums.differenceError) / std::fabs(sums.reference)};
   error.mse = sums.mse / n;
-  error.reference = sums.referenceVariance / n;
+  error.referenceVariance = sums.referenceVariance / n;
   return error;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours that stand for a number.
+// False colours: maps from numbers to colours, and their scales.
 #pragma once
 
 #include <array>
@@ -10,21 +10,23 @@ namespace chromeball {
 
 using Color8 = std::array<uint8_t, 3>;  // sRGB
 
-// From black over violet and orange to pale yellow, t in [0, 1]; luminance grows with t, so that a
-// grey print keeps the order. (After `inferno` of Smith and van der Walt, 2015.)
+// Black, violet, orange, pale yellow for t in [0, 1]. Luminance increases with t, so that the order
+// survives a greyscale print. (After `inferno` of Smith and van der Walt, 2015.)
 Color8 heatColor(double t);
 
 // Blue, white, red for t in [-1, 1]. (After `RdBu` of Brewer's ColorBrewer.)
 Color8 signedColor(double t);
 
-// Where `number` stands in a logarithmic scale of `decades` below `maximum`, in [0, 1].
+// The position of `number` on a logarithmic scale that ends at `maximum` and spans `decades`:
+// clamped to [0, 1].
 double logLevel(double number, double maximum, double decades);
 
-// 1, 2 or 5 times a power of ten, not below the number: the end of a scale that people can read.
+// The smallest 1, 2 or 5 times a power of ten that is not below the number: a readable end of a
+// scale.
 double roundUp(double number);
 
-// The number that a share of all numbers does not exceed; NaN sorts nowhere. 0 where there are
-// none.
+// The number that about this fraction of the numbers does not exceed. Ignores NaN; 0 if there are
+// no numbers.
 double percentile(std::vector<float> numbers, double fraction);
 
 }  // namespace chromeball

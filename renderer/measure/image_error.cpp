@@ -17,7 +17,7 @@ void checkSameShape(const Image& a, const Image& b, const char* what) {
                a.channels, b.width, b.height, b.channels);
 }
 
-// NaN where no variance is known.
+// NaN if the variance is unknown.
 double zScore(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB,
               size_t i) {
   const double variance = (varianceA ? double(varianceA->texels[i]) : 0) +

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace chromeball {
 namespace {
 
-// No error is known better than this, relatively: keeps one lucky point from deciding alone.
+// Lower bound of relative standard errors, which keeps a single point from dominating the fit.
 constexpr double kMinRelativeError = 1e-3;
 
 struct LogPoint {
@@ -70,18 +71,6 @@ std::optional<Crossing> biasEqualsNoise(const PowerLaw& variance, const Estimate
   const double biasError = std::pow(squaredBias.standardError / squaredBias.mean, 2);
   const double error = std::sqrt(lineError + biasError) / -variance.slope.mean;
   return Crossing{std::exp(log), std::exp(log - 1.96 * error), std::exp(log + 1.96 * error)};
-}
-
-Estimate combine(std::span<const Estimate> estimates) {
-  double weights = 0, mean = 0;
-  for (const Estimate& e : estimates) {
-    if (!(e.standardError > 0)) continue;
-    const double weight = 1 / (e.standardError * e.standardError);
-    weights += weight;
-    mean += weight * e.mean;
-  }
-  if (!(weights > 0)) return {};
-  return {mean / weights, 1 / std::sqrt(weights)};
 }
 
 }  // namespace chromeball

@@ -40,7 +40,7 @@ ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double
   if (pooledExpected >= minimum) {
     add(pooledObserved, pooledExpected);
   } else if (pooledObserved > pooledExpected + 8 * std::sqrt(minimum)) {
-    result.statistic = std::numeric_limits<double>::infinity();  // samples where none can be
+    result.statistic = std::numeric_limits<double>::infinity();  // samples where none are expected
   }
   result.degreesOfFreedom = std::max(cells - 1, 0);
   if (std::isinf(result.statistic) || std::isnan(result.statistic))

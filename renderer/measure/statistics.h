@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hypothesis tests: is this the distribution, is this the same number?
+// Hypothesis tests for distributions and means.
 #pragma once
 
 #include <span>
 
 namespace chromeball {
 
-// Pearson's test of counts against expected ones. Cells that expect fewer than `minimum` are
-// pooled.
+// Pearson's chi-square test of observed against expected counts. Cells with an expected count below
+// `minimum` are pooled.
 struct ChiSquare {
   double statistic = 0;
   int degreesOfFreedom = 0;
-  double pValue = 1;  // chance of a statistic as large where the distribution is right
+  double pValue = 1;  // probability of such a statistic if the distribution is as expected
 };
 ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
                         double minimum = 5);
@@ -24,13 +24,13 @@ struct Moments {
   static Moments of(std::span<const double> values);
 };
 
-// Chance of means as far apart where both are equal (Welch's t-test, two-sided).
+// p-value of the hypothesis that both means are equal (Welch's t-test, two-sided).
 double welchTest(const Moments& a, const Moments& b);
-// The same against a number known exactly.
+// p-value of the hypothesis that the mean is `truth` (t-test, two-sided).
 double tTest(const Moments& a, double truth);
 
-// The significance each of `tests` independent tests must have, for a chance of `significance` that
-// any of them fails wrongly (Sidak 1967).
+// The significance of each of `tests` independent tests for which the probability that any of them
+// rejects a true hypothesis is `significance` (Sidak 1967).
 double sidak(double significance, int tests);
 
 }  // namespace chromeball

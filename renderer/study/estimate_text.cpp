@@ -8,13 +8,14 @@
 namespace chromeball {
 namespace {
 
-constexpr double kLargestPlain = 1e7, kSmallestPlain = 1e-4;
+// Numbers in this range are written without an exponent.
+constexpr double kMinPlain = 1e-4, kMaxPlain = 1e7;
 
-// `x` to a multiple of 10^place, as a multiple of 10^exponent.
-std::string toPlace(double x, int location, int exponent) {
-  const double unit = std::pow(10.0, location), rounded = std::round(x / unit) * unit + 0.0;
+// `x` rounded to a multiple of 10^place, written as a multiple of 10^exponent.
+std::string rounded(double x, int place, int exponent) {
+  const double unit = std::pow(10.0, place), multiple = std::round(x / unit) * unit + 0.0;
   const std::string digits =
-      fmt::format("{:.{}f}", rounded / std::pow(10.0, exponent), std::max(0, exponent - location));
+      fmt::format("{:.{}f}", multiple / std::pow(10.0, exponent), std::max(0, exponent - place));
   return exponent ? fmt::format("{}e{}", digits, exponent) : digits;
 }
 
@@ -26,25 +27,25 @@ EstimateText estimateText(const Estimate& e) {
   if (half == 0) return {shortNumber(e.mean), "0", e.mean != 0};
   const auto exponentOf = [](double x) { return int(std::floor(std::log10(x))); };
   const bool startsWithOne = half < 1.95 * std::pow(10.0, exponentOf(half));
-  const int location = exponentOf(half) - (startsWithOne ? 1 : 0);
+  const int place = exponentOf(half) - (startsWithOne ? 1 : 0);
   const double size = std::max(std::fabs(e.mean), half);
-  const bool isPlain = size < kLargestPlain && size >= kSmallestPlain;
+  const bool isPlain = size < kMaxPlain && size >= kMinPlain;
   const int exponent = isPlain ? 0 : exponentOf(size);
-  return {toPlace(e.mean, location, exponent), toPlace(half, location, exponent),
+  return {rounded(e.mean, place, exponent), rounded(half, place, exponent),
           std::fabs(e.mean) > half};
 }
 
-std::string resolvedText(const Estimate& e) {
+std::string significantText(const Estimate& e) {
   const EstimateText text = estimateText(e);
-  if (text.number == "unknown") return "not known";
-  if (!text.isResolved) return fmt::format("not resolved (+- {})", text.halfInterval);
+  if (text.number == "unknown") return "unknown";
+  if (!text.isSignificant) return fmt::format("not significant (+- {})", text.halfInterval);
   if (e.standardError == 0) return text.number;
   return fmt::format("{} +- {}", text.number, text.halfInterval);
 }
 
 std::string shortNumber(double x, int digits) {
   const double size = std::fabs(x);
-  if (size >= std::pow(10, digits) && size < kLargestPlain) return fmt::format("{:.0f}", x);
+  if (size >= std::pow(10, digits) && size < kMaxPlain) return fmt::format("{:.0f}", x);
   return fmt::format("{:.{}g}", x, digits);
 }
 

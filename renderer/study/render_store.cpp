@@ -50,12 +50,12 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   if (!fs::exists(path(key))) return std::nullopt;
   const ImageFile file = readImageFile(path(key));
   const Metadata& metadata = file.metadata;
-  if (const std::string made = textIn(metadata, "study"); made != study_.identity)
-    throwInput("--output: {} is another comparison's: {}; give another folder", path(key),
-               differenceOf(made, study_.identity));
+  if (const std::string stored = textIn(metadata, "study"); stored != study_.identity)
+    throwInput("--output: {} belongs to another comparison: {}; choose another folder", path(key),
+               differenceOf(stored, study_.identity));
   const std::optional<Image> color = findColor(file);
   if (!color || color->width != size_.width || color->height != size_.height)
-    throwInput("--output: {} is not the render that it was: delete it", path(key));
+    throwInput("--output: {} is damaged or was changed; delete it to render it again", path(key));
   StoredRender render;
   render.image = *color;
   render.samples = numberIn(metadata, "samples");

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has no infinity and no NaN: null there.
+// JSON has no infinity and no NaN; these become null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json toJson(const Estimate& e) {
@@ -31,7 +31,7 @@ Json toJson(const Cell& cell) {
           {"bias", toJson(cell.error.bias)},
           {"mse", cell.error.mse},
           {"efficiency", toJson(cell.efficiency)},
-          {"reference_variance", cell.error.reference},
+          {"reference_variance", cell.error.referenceVariance},
           {"reported_noise", number(cell.noise)},
           {"invalid_samples", cell.invalidSamples}};
 }
@@ -58,14 +58,14 @@ std::string resultsCsv(const StudyResults& results) {
   csv += ",prepare_seconds,mse,reference_variance,reported_noise,invalid_samples\n";
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
-      const CellError& error = cell.error;
+      const BiasVariance& error = cell.error;
       csv += fmt::format("{},{},{},{}", strategy.name, strategy.unbiased ? "yes" : "no",
                          cell.budget.label(), cell.samples);
       for (const Estimate& e : {cell.seconds, error.relMse, error.variance, error.squaredBias,
                                 error.bias, cell.efficiency})
         csv += fmt::format(",{:.6g},{:.6g},{:.6g}", e.mean, e.low(), e.high());
       csv += fmt::format(",{:.4g},{:.6g},{:.6g},{:.6g},{:g}\n", cell.prepareSeconds, error.mse,
-                         error.reference, cell.noise, cell.invalidSamples);
+                         error.referenceVariance, cell.noise, cell.invalidSamples);
     }
   return csv;
 }
@@ -117,16 +117,16 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
 
 std::string resultsTable(const Study& study, const StudyResults& results) {
   const std::vector<const Cell*> cells = ranking(study, results);
-  if (cells.empty()) return "no budget has been rendered by all strategies\n";
+  if (cells.empty()) return "no budget has been rendered with all strategies\n";
   std::string table =
       fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
                   "seconds", "relMSE", "bias %", cells.front()->budget.label());
   for (const Cell* cell : cells) {
     const Estimate& bias = cell->error.bias;
     table += fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}\n", cell->strategy,
-                         resolvedText(cell->efficiency), resolvedText(cell->seconds),
-                         resolvedText(cell->error.relMse),
-                         resolvedText({100 * bias.mean, 100 * bias.standardError}));
+                         significantText(cell->efficiency), significantText(cell->seconds),
+                         significantText(cell->error.relMse),
+                         significantText({100 * bias.mean, 100 * bias.standardError}));
   }
   return table;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number of a comparison, for other programs.
+// The results of a comparison as CSV, JSON and text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,17 +10,17 @@
 
 namespace chromeball {
 
-// A row for every strategy and budget; intervals hold the truth in 95 of 100 cases.
+// One row for each strategy and budget, with 95% confidence intervals.
 std::string resultsCsv(const StudyResults& results);
 
-// The same, and slopes, agreement and settings.
+// The same, with slopes, agreement of pairs and settings.
 nlohmann::ordered_json resultsJson(const Study& study, const StudyResults& results,
                                    const Machine& machine);
 
-// For a terminal: the strategies on the largest common budget, the most efficient first.
+// For a terminal: the strategies with the largest common budget, the most efficient first.
 std::string resultsTable(const Study& study, const StudyResults& results);
 
-// Their cells on that budget, the most efficient first.
+// The cells of that table, in its order.
 std::vector<const Cell*> ranking(const Study& study, const StudyResults& results);
 
 }  // namespace chromeball

@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "image/io/read_image.h"
+#include <fmt/format.h>
 
 namespace chromeball {
 namespace {
 
-// The reference's own variance should be below this share of what is measured with it.
-constexpr double kSmallFraction = 0.1;
-
-Estimate estimateOf(const std::vector<double>& numbers) {
-  double mean = 0, scatter = 0;
-  const double n = double(numbers.size());
-  for (const double x : numbers) mean += x / n;
-  for (const double x : numbers) scatter += (x - mean) * (x - mean);
-  return {mean, n > 1 ? std::sqrt(scatter / (n - 1) / n) : 0};
-}
+// There is a warning if the reference's variance is above this fraction of a relMSE.
+constexpr double kMaxReferenceFraction = 0.1;
 
 double mean(const std::vector<StoredRender>& renders, double StoredRender::*member) {
   double sum = 0;
@@ -27,7 +18,7 @@ double mean(const std::vector<StoredRender>& renders, double StoredRender::*memb
   return sum / double(renders.size());
 }
 
-// All repeats that are stored; empty where they are too few to judge by.
+// All stored repeats; empty if there are fewer than Study::kMinRepeats.
 std::vector<StoredRender> loadRepeats(const RenderStore& store, const std::string& strategy,
                                       const Budget& budget) {
   std::vector<StoredRender> renders;
@@ -37,7 +28,7 @@ std::vector<StoredRender> loadRepeats(const RenderStore& store, const std::strin
   return renders;
 }
 
-bool isWhole(const Study& study, const StudyResults& results) {
+bool isComplete(const Study& study, const StudyResults& results) {
   for (const StrategyResult& strategy : results.strategies) {
     if (std::count(study.strategies.begin(), study.strategies.end(), strategy.name) == 0) continue;
     for (const Budget& budget : study.budgets) {
@@ -59,21 +50,21 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   Cell cell{.strategy = strategy, .budget = budget};
   for (const StoredRender& render : renders) cell.repeatSeconds.push_back(render.seconds);
   cell.samples = mean(renders, &StoredRender::samples);
-  cell.seconds = estimateOf(cell.repeatSeconds);
+  cell.seconds = meanOf(cell.repeatSeconds);
   cell.prepareSeconds = mean(renders, &StoredRender::prepareSeconds);
   cell.noise = mean(renders, &StoredRender::noise);
   cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
-  cell.error = cellError(images(std::move(renders)), reference);
+  cell.error = biasVariance(images(std::move(renders)), reference);
   return cell;
 }
 
 Estimate efficiency(const Cell& cell, const Cell& baseline) {
   if (&cell == &baseline) return {1, 0};
   std::vector<double> logRatios;
-  const size_t turns = std::min(cell.repeatSeconds.size(), baseline.repeatSeconds.size());
-  for (size_t r = 0; r < turns; ++r)
+  const size_t repeats = std::min(cell.repeatSeconds.size(), baseline.repeatSeconds.size());
+  for (size_t r = 0; r < repeats; ++r)
     logRatios.push_back(std::log(baseline.repeatSeconds[r] / cell.repeatSeconds[r]));
-  const Estimate logSpeed = estimateOf(logRatios);
+  const Estimate logSpeed = meanOf(logRatios);
   const Estimate &here = cell.error.relMse, &there = baseline.error.relMse;
   const double ratio = there.mean / here.mean * std::exp(logSpeed.mean);
   return {ratio, ratio * std::sqrt(std::pow(here.standardError / here.mean, 2) +
@@ -101,7 +92,7 @@ void fitConvergence(StrategyResult& strategy) {
   }
   strategy.variance = fitPowerLaw(variances);
   strategy.relMse = fitPowerLaw(errors);
-  strategy.squaredBias = combine(biases);
+  strategy.squaredBias = weightedMean(biases);
   if (strategy.variance && !strategy.unbiased)
     strategy.biasEqualsNoise = biasEqualsNoise(*strategy.variance, strategy.squaredBias);
 }
@@ -122,66 +113,37 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   return pairs;
 }
 
-// Squared standard error of the mean of the parts, from how they scatter.
-Reference combineParts(const std::vector<Image>& parts) {
-  Reference reference{parts[0], parts[0]};
-  for (size_t i = 0; i < parts[0].texels.size(); ++i) {
-    std::vector<double> numbers;
-    for (const Image& part : parts) numbers.push_back(part.texels[i]);
-    const Estimate e = estimateOf(numbers);
-    reference.mean.texels[i] = float(e.mean);
-    reference.squaredError.texels[i] = float(e.standardError * e.standardError);
-  }
-  return reference;
-}
-
 std::vector<std::string> warningsOf(const Study& study, const StudyResults& results) {
   std::vector<std::string> warnings;
   if (!results.complete)
-    warnings.push_back("The comparison is not complete: some strategies lack some budgets.");
-  if (!results.referenceErrorKnown)
     warnings.push_back(
-        fmt::format("{} has no variance layer: it is taken for exact.", study.referenceFile));
+        "The comparison is incomplete: some strategies have not rendered all budgets.");
+  if (!results.referenceErrorKnown)
+    warnings.push_back(fmt::format("{} has no variance layer, so it is assumed to be exact.",
+                                   study.referenceFile));
   double worst = 0, invalid = 0;
   std::string where;
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       invalid += cell.invalidSamples;
-      const double fraction = cell.error.reference / cell.error.relMse.mean;
+      const double fraction = cell.error.referenceVariance / cell.error.relMse.mean;
       if (fraction <= worst) continue;
       worst = fraction;
       where = fmt::format("{} at {}", strategy.name, cell.budget.label());
     }
-  if (worst > kSmallFraction)
+  if (worst > kMaxReferenceFraction)
     warnings.push_back(fmt::format(
-        "The reference's own error is not small: its variance is {:.0f}% of the relMSE of {}. It "
-        "was removed, but intervals of small numbers are wide; give --reference-samples more.",
+        "The reference image is noisy: its variance is {:.0f}% of the relMSE of {}. It was "
+        "subtracted, but the confidence intervals of small errors are wide; increase "
+        "--reference-samples.",
         100 * worst, where));
   if (invalid > 0)
-    warnings.push_back(fmt::format(
-        "{:.0f} samples were invalid (NaN, infinite or negative) and left out.", invalid));
+    warnings.push_back(
+        fmt::format("{:.0f} invalid samples (NaN, infinite or negative) were ignored.", invalid));
   return warnings;
 }
 
 }  // namespace
-
-Reference loadReference(const Study& study, const RenderStore& store, int width, int height) {
-  if (study.referenceFile.empty()) {
-    std::vector<Image> parts;
-    for (int part = 0; part < Study::kReferenceParts; ++part)
-      parts.push_back(store.find(study.referencePart(part)).value().image);
-    return combineParts(parts);
-  }
-  const ImageFile file = readImageFile(study.referenceFile);
-  const std::optional<Image> color = findColor(file);
-  if (!color) throwInput("--reference: {}: has no colour", study.referenceFile);
-  if (color->width != width || color->height != height)
-    throwInput("--reference: {} is {} x {}, but the picture is {} x {}; give --size {}x{}",
-               study.referenceFile, color->width, color->height, width, height, color->width,
-               color->height);
-  const std::optional<Image> variance = findLayer(file, "variance");
-  return {*color, variance && variance->channels == 3 ? *variance : Image()};
-}
 
 StudyResults studyResults(const Study& study, const RenderStore& store,
                           const Reference& reference) {
@@ -199,9 +161,9 @@ StudyResults studyResults(const Study& study, const RenderStore& store,
     }
     fitConvergence(strategy);
     for (const Cell& cell : strategy.cells)
-      results.referenceNoise = std::sqrt(cell.error.reference);
+      results.referenceNoise = std::sqrt(cell.error.referenceVariance);
   }
-  results.complete = isWhole(study, results);
+  results.complete = isComplete(study, results);
   compareWithBaseline(results.strategies, study.baseline);
   results.pairs = comparePairs(study, store, results);
   results.warnings = warningsOf(study, results);

@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the renders of a study say.
+// The results of a study, computed from its renders.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "measure/agreement.h"
+#include "measure/bias_variance.h"
 #include "measure/power_law.h"
 #include "study/render_store.h"
 
 namespace chromeball {
 
-// All repeats of a strategy on a budget.
+// The results of one strategy for one budget, over all repeats.
 struct Cell {
   std::string strategy;
   Budget budget;
-  CellError error;
+  BiasVariance error;
   double samples = 0;                 // mean over the repeats
-  std::vector<double> repeatSeconds;  // of rendering, in order; as many as repeats
-  Estimate seconds;                   // their mean
-  double prepareSeconds = 0;          // of building the strategy, which all its renders share
-  double noise = 0;                   // mean of what the renders themselves report
-  double invalidSamples = 0;
-  // 1 / (relMse seconds), relative to the baseline on the same budget. Seconds are compared repeat
-  // by repeat: strategies take turns, so a machine that drifts slows a turn's renders alike.
+  std::vector<double> repeatSeconds;  // render time of each repeat, in order
+  Estimate seconds;                   // its mean
+  double prepareSeconds = 0;          // time to build the strategy, once for all its renders
+  double noise = 0;                   // mean of the noise that the renders themselves report
+  double invalidSamples = 0;          // sum over the repeats
+  // 1 / (relMse seconds), divided by that of the baseline for the same budget. Times are compared
+  // repeat by repeat: strategies alternate, so that a machine whose speed drifts slows all
+  // strategies of a repeat alike.
   Estimate efficiency;
 };
 
@@ -44,8 +45,8 @@ struct PairResult {
   Agreement agreement;
 };
 
-// Unbiased strategies are compared on the largest budget that all have. One whose relMSE is above
-// this has not met all the light: its repeats agree on what they have not seen.
+// Unbiased strategies are compared for the largest common budget if their relMSE is at most this. A
+// strategy above it has not yet sampled all light, so that its variance is underestimated.
 inline constexpr double kMaxNoiseOfPairs = 0.25;
 
 struct StudyResults {
@@ -53,23 +54,19 @@ struct StudyResults {
   bool referenceErrorKnown = true;
   double referenceNoise = 0;  // relative standard error of its mean pixel
   std::vector<StrategyResult> strategies;
-  std::vector<PairResult> pairs;      // of strategies that can be compared, on that budget
-  std::vector<std::string> warnings;  // what a reader should know before trusting the numbers
-  bool complete = true;               // every cell of this run is here
+  std::vector<PairResult> pairs;      // all pairs of comparable unbiased strategies
+  std::vector<std::string> warnings;  // reasons to distrust some of the numbers
+  bool complete = true;               // whether every cell of this run exists
 };
 
-// The reference as it is on file, or as its parts make it. Throws InputError where its file does
-// not fit the picture's size.
-Reference loadReference(const Study& study, const RenderStore& store, int width, int height);
-
-// From those cells of which enough repeats are stored.
+// Uses the cells of which at least Study::kMinRepeats repeats are stored.
 StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference);
 
-// The cell of a strategy on a budget; null where it is not there yet.
+// The cell of a strategy for a budget; null if it does not exist yet.
 const Cell* findCell(const StrategyResult& strategy, const Budget& budget);
 
-// The largest budget (of those wanted) on which every strategy of this run has its cell; nullopt
-// where there is none. Of those that runs before left behind, some may lack it.
+// The largest budget (with isWanted(budget)) for which all strategies of this run have a cell;
+// nullopt if there is none. Strategies of earlier runs may have no cell for it.
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results);
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
                                           bool (*isWanted)(const Budget&));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison of strategies as a set of renders, each of which its own seed makes independent.
+// A comparison of strategies: a set of independent renders, each with its own seed.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,18 @@
 
 namespace chromeball {
 
-// What a render may spend: samples a pixel, or seconds.
+// The budget of a render: samples per pixel, or seconds.
 struct Budget {
   bool timed;
   double amount;
 
-  std::string label() const;  // "64spp", "0.5s": exact
+  std::string label() const;  // "64spp", "0.5s"; not rounded
   bool operator==(const Budget&) const = default;
-  auto operator<=>(const Budget&) const = default;  // samples, then seconds
+  auto operator<=>(const Budget&) const = default;  // budgets in samples before those in seconds
 };
 
-// One render. The reference is a strategy of the name kReference, its parts are its repeats.
+// Identifies a render. The reference is stored as a strategy named kReference, with its parts as
+// repeats.
 struct RenderKey {
   std::string strategy;
   Budget budget;
@@ -26,33 +27,36 @@ struct RenderKey {
 };
 inline constexpr const char* kReference = "reference";
 
-// Different for every render of a study, and never one of the reference's for a render that is
-// judged by it: the reference has the top bit set, the others have not.
+// The seed of a render: a hash of its key. Seeds of the reference have the top bit set and those of
+// all other renders do not, so that no render shares a seed with the reference.
 uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
   std::string folder;
-  std::vector<std::string> strategies;  // to be rendered; names in full
-  std::vector<Budget> budgets;          // to be rendered; ascending: samples, then seconds
-  int repeats = 4;                      // of each
+  std::vector<std::string> strategies;  // to render; complete names ("median-cut:64")
+  std::vector<Budget> budgets;          // to render; ascending
+  int repeats = 4;                      // of each strategy and budget
   std::string baseline;                 // one of the strategies
 
-  // What the results show: the above, and what runs before this one left in the folder.
+  // Strategies and budgets in the results: the above, and those that earlier runs left in the
+  // folder.
   std::vector<std::string> shownStrategies;
   std::vector<Budget> shownBudgets;
 
-  std::string referenceFile;  // empty: made on the spot, by
-  std::string referenceStrategy;
-  int referenceSamples = 0;
-  static constexpr int kReferenceParts = 8;  // independent; how they scatter tells the error
-  static constexpr int kMinRepeats = 3;      // that show how a strategy scatters
+  std::string referenceFile;                 // empty: the reference is rendered by
+  std::string referenceStrategy;             // this strategy with
+  int referenceSamples = 0;                  // so many samples per pixel in all parts together
+  static constexpr int kReferenceParts = 8;  // independent; their variance gives the error
+  static constexpr int kMinRepeats = 3;      // the minimum to estimate the variance of a strategy
 
   uint64_t seed = 0;
-  // What all its renders have in common; those of another study cannot be used.
+  // JSON of all settings that the renders of a study share; renders of other studies cannot be
+  // used.
   std::string identity;
 
   RenderKey referencePart(int part) const;
-  // In the order of rendering: strategies take turns, so that a machine that drifts favours none.
+  // In the order of rendering. Strategies alternate, so that a machine whose speed drifts does not
+  // favour any of them.
   std::vector<RenderKey> renders() const;
 };
 

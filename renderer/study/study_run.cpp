@@ -49,7 +49,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                             stop);
 }
 
-double StudyRun::guess(const RenderKey& key) const {
+double StudyRun::estimatedSeconds(const RenderKey& key) const {
   if (key.budget.timed) return key.budget.amount;
   double known = built_.at(key.strategy).secondsPerSample, sum = 0;
   int count = 0;
@@ -61,10 +61,10 @@ double StudyRun::guess(const RenderKey& key) const {
   return known * key.budget.amount;
 }
 
-double StudyRun::guessMissing(size_t from) const {
+double StudyRun::estimatedSecondsMissing(size_t from) const {
   double seconds = 0;
   for (size_t i = from; i < renders_.size(); ++i)
-    if (!present_[i]) seconds += guess(renders_[i]);
+    if (!present_[i]) seconds += estimatedSeconds(renders_[i]);
   return seconds;
 }
 
@@ -104,7 +104,7 @@ bool StudyRun::run(const Progress& progress, const std::function<void()>& finish
     const RenderKey& key = renders_[i];
     if (!present_[i]) {
       if (stop) return false;
-      const double expected = guess(key), left = guessMissing(i + 1);
+      const double expected = estimatedSeconds(key), left = estimatedSecondsMissing(i + 1);
       const double start = now();
       renderOne(
           key,

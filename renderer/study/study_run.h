@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders what a study lacks.
+// Renders the missing images of a study.
 #pragma once
 
 #include <atomic>
@@ -15,14 +15,14 @@ namespace chromeball {
 
 class StudyRun {
  public:
-  // Builds every strategy, and the reference's. Throws InputError for a name that is not known. All
-  // arguments must outlive the run.
+  // Builds all strategies, including that of the reference. Throws InputError for unknown names.
+  // All arguments must outlive the run.
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
 
-  // Renders and stores what is missing. `progress` is told the share of the seconds that are
-  // thought to be needed, `finishedBudget` when all strategies have rendered on one. Returns false
-  // where `stop` was set: the render under way is dropped.
+  // Renders and stores the missing images. `progress` receives the fraction of the estimated time
+  // that has elapsed; `finishedBudget` is called when all strategies have rendered a budget.
+  // Returns false if `stop` was set; the unfinished render is discarded.
   bool run(const Progress& progress, const std::function<void()>& finishedBudget,
            const std::atomic<bool>& stop);
 
@@ -36,14 +36,15 @@ class StudyRun {
   struct Built {
     std::unique_ptr<LightingStrategy> strategy;
     double prepareSeconds = 0;
-    double secondsPerSample = 0;  // as measured last; 0 where not yet
+    double secondsPerSample = 0;  // of the last render; 0 if there was none
   };
 
-  // The seconds a render will probably take.
-  double guess(const RenderKey& key) const;
-  double guessMissing(size_t from) const;
+  // Estimates of the render time: of one render, and of all missing ones from index `from` on.
+  double estimatedSeconds(const RenderKey& key) const;
+  double estimatedSecondsMissing(size_t from) const;
   void renderOne(const RenderKey& key, const Progress& progress, const std::atomic<bool>& stop);
-  // A first render pays for cold caches and memory: one of a sample a pixel is thrown away.
+  // Renders one sample per pixel with each strategy and discards it, since the first render is slow
+  // because of cold caches and memory allocation.
   void warmUp(const std::atomic<bool>& stop);
   RenderResult render(const RenderKey& key, const Progress& progress,
                       const std::atomic<bool>& stop) const;

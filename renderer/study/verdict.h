@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a comparison comes to, in words.
+// A summary of a comparison in words.
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@
 
 namespace chromeball {
 
-// One sentence each: which strategy has the least error at equal samples, which at equal time, by
-// how much and how surely; of each biased strategy how large its bias is, and from how many samples
-// on it exceeds the noise. Empty where no budget has been rendered by all strategies.
+// One sentence each: the strategy with the smallest error at equal samples, and at equal time, with
+// its lead and the confidence interval of that; for each biased strategy the size of its bias and
+// the number of samples above which bias exceeds noise. Empty if no budget has been rendered with
+// all strategies and no strategy is biased.
 std::vector<std::string> verdict(const Study& study, const StudyResults& results);
 
 }  // namespace chromeball

@@ -14,6 +14,7 @@
 #include "lighting/methods.h"
 #include "progress_bar.h"
 #include "scene_options.h"
+#include "study/reference.h"
 #include "study/report/report.h"
 #include "study/report/sampled_directions.h"
 #include "study/result_tables.h"

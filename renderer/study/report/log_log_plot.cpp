@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "study/report/markup.h"
+
 namespace chromeball {
 namespace {
 
@@ -30,7 +32,7 @@ bool canShow(const PlotPoint& point) {
   return point.x > 0 && point.y > 0 && std::isfinite(point.x) && std::isfinite(point.y);
 }
 
-// A logarithmic axis over [least, most], on `length` pixels.
+// A logarithmic axis from minimum to maximum over `length` pixels.
 struct Axis {
   double minimum = std::numeric_limits<double>::max(), maximum = 0, length;
 
@@ -38,7 +40,7 @@ struct Axis {
     minimum = std::min(minimum, number);
     maximum = std::max(maximum, number);
   }
-  // Room for a mark at both ends; an axis that shows nothing, or one number, gets a decade or more.
+  // Adds room for a mark at both ends. An axis without numbers, or with one, gets a decade.
   void finish() {
     constexpr double kFraction = 0.06;  // of the axis, at each end
     if (maximum == 0) minimum = maximum = 1;
@@ -57,7 +59,7 @@ struct Axis {
       ticks.push_back(tick);
     return ticks;
   }
-  // 1, 2 and 5 times powers of ten; where these crowd, powers of ten alone.
+  // 1, 2 and 5 times powers of ten; powers of ten alone if these are too many.
   std::vector<double> decimalTicks() const {
     std::vector<double> ticks;
     const bool crowded = maximum > 2e3 * minimum;
@@ -74,19 +76,6 @@ struct Axis {
     return kind == Ticks::Binary ? binaryTicks() : decimalTicks();
   }
 };
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (static_cast<unsigned char>(c) >= ' ')
-      result += c;
-  }
-  return result;
-}
 
 std::string textAt(double x, double y, const char* anchor, const std::string& text) {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,

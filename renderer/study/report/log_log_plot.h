@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots for reports: both axes logarithmic.
+// Plots with two logarithmic axes, as SVG.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@ namespace chromeball {
 
 struct PlotPoint {
   double x, y;
-  double low = y, high = y;  // of y's interval, drawn where they differ
+  double low = y, high = y;  // confidence interval of y; drawn if it is not empty
 };
 
 struct PlotSeries {
   std::string name;
-  std::vector<PlotPoint> points;  // those not above 0, or infinite, are left out
+  std::vector<PlotPoint> points;  // points that are infinite or not positive are ignored
 };
 
 struct PlotPanel {
   std::string title;
-  std::vector<PlotSeries> series;  // the same names in the same order in every panel
+  std::vector<PlotSeries> series;  // same names and order in every panel
 };
 
 enum class Ticks { Binary, Decimal };  // at powers of two, or at 1, 2, 5, 10, ...
 
-// A self-contained SVG: panels side by side on common axes, and a legend. Series differ by their
-// marks and dashes, so that they can be told apart without colour.
+// A self-contained SVG: panels side by side with common axes, and a legend. Series differ in marks
+// and dashes, so that they can be distinguished without colour.
 std::string logLogPlot(const std::string& title, const std::string& xLabel,
                        const std::string& yLabel, const std::vector<PlotPanel>& panels,
                        Ticks xTicks = Ticks::Binary);

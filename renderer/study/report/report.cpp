@@ -9,27 +9,22 @@
 #include "image/tonemap.h"
 #include "probe/mapping.h"
 #include "probe/preview.h"
-#include "study/estimate_text.h"
 #include "study/report/log_log_plot.h"
+#include "study/report/markup.h"
 #include "study/report/report_images.h"
+#include "study/report/report_tables.h"
 #include "study/result_tables.h"
 #include "study/verdict.h"
 
 namespace chromeball {
 
-// tools/report/report.html and report.js, which CMake puts into a source file.
+// The contents of report.html and report.js in this folder; CMake puts them into a source file.
 extern const char* const kReportHtml;
 extern const char* const kReportScript;
 
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return result;
-}
-
+// Replaces {{name}} by its contents.
 void fill(std::string& page, const std::string& name, const std::string& contents) {
   const std::string mark = "{{" + name + "}}";
   for (size_t at = page.find(mark); at != std::string::npos;
@@ -50,66 +45,6 @@ std::string plot(const StudyResults& results, const char* title, const char* xLa
   return logLogPlot(title, xLabel, "relMSE", {panel}, ticks);
 }
 
-std::string plusMinus(const EstimateText& e) {
-  if (e.halfInterval == "0") return e.number;
-  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", e.number, e.halfInterval);
-}
-std::string plusMinus(const Estimate& e) { return plusMinus(estimateText(e)); }
-
-// Of what means nothing where it may be 0.
-std::string resolved(const Estimate& e) {
-  const EstimateText text = estimateText(e);
-  if (text.isResolved) return plusMinus(text);
-  return fmt::format("<span class=\"soft\">not resolved &plusmn; {}</span>", text.halfInterval);
-}
-
-std::string row(const Cell& cell, const StrategyResult& strategy, double mostEfficient) {
-  const double width = 70 * std::max(0.0, cell.efficiency.mean / mostEfficient);
-  std::string equal = "none seen";
-  if (strategy.unbiased) equal = "unbiased";
-  if (const auto& c = strategy.biasEqualsNoise)
-    equal = fmt::format("{} <span class=\"soft\">({} to {})</span>", shortNumber(c->samples, 2),
-                        shortNumber(c->low, 2), shortNumber(c->high, 2));
-  return fmt::format(
-      "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
-      "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
-      "td><td>{6}</td><td>{7}</td><td>{8}</td>"
-      "<td>{9}</td></tr>\n",
-      escaped(cell.strategy), width, resolved(cell.efficiency), resolved(cell.error.relMse),
-      plusMinus(cell.seconds), cell.prepareSeconds,
-      resolved({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
-      strategy.variance ? plusMinus(strategy.variance->slope) : "",
-      strategy.relMse ? plusMinus(strategy.relMse->slope) : "", equal);
-}
-
-std::string table(const Study& study, const StudyResults& results) {
-  std::string html =
-      "<table "
-      "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</th>"
-      "<th>seconds</th><th>to prepare</th><th>bias, %</th><th>slope of<br>variance</th>"
-      "<th>slope of<br>relMSE</th><th>bias = noise<br>at samples</th></tr></thead><tbody>\n";
-  const std::vector<const Cell*> cells = ranking(study, results);
-  for (const Cell* cell : cells)
-    for (const StrategyResult& strategy : results.strategies)
-      if (strategy.name == cell->strategy)
-        html += row(*cell, strategy, cells.front()->efficiency.mean);
-  return html + "</tbody></table>\n";
-}
-
-std::string pairsTable(const StudyResults& results) {
-  if (results.pairs.empty())
-    return "<p>Fewer than two strategies can be held to one another here.</p>\n";
-  std::string html =
-      "<table id=\"pairs\"><thead><tr><th>pair</th><th>p</th><th>tiles that differ</th></tr>"
-      "</thead><tbody>\n";
-  for (const PairResult& pair : results.pairs)
-    html += fmt::format("<tr><td>{} and {}</td><td{}>{:.2g}</td><td>{:.2g}%</td></tr>\n",
-                        escaped(pair.a), escaped(pair.b),
-                        pair.agreement.pValue < 0.05 ? " class=\"fails\"" : "",
-                        pair.agreement.pValue, 100 * pair.agreement.fraction);
-  return html + "</tbody></table>\n";
-}
-
 std::string dots(const std::string& name, const std::vector<vec3>& directions) {
   std::string svg = "<svg viewBox=\"0 0 200 100\">";
   for (const vec3& direction : directions) {
@@ -119,17 +54,17 @@ std::string dots(const std::string& name, const std::vector<vec3>& directions) {
         "stroke-width=\".5\"/>",
         200 * uv.x, 100 * uv.y);
   }
-  return fmt::format("<figure>{}</svg><figcaption><b>{}</b>{}</figcaption></figure>\n", svg,
-                     escaped(name),
-                     directions.empty() ? ": none, its rays find the probe by themselves" : "");
+  return fmt::format(
+      "<figure>{}</svg><figcaption><b>{}</b>{}</figcaption></figure>\n", svg, escaped(name),
+      directions.empty() ? ": no light samples; its BSDF samples hit the probe" : "");
 }
 
 std::string probeUri(const Probe& probe) {
-  const Image picture = probePreview(probe, 512);
+  const Image preview = probePreview(probe, 512);
   std::vector<uint8_t> bytes;
-  for (const float number : picture.texels)
+  for (const float number : preview.texels)
     bytes.push_back(uint8_t(std::lround(255 * linearToSrgb(number))));
-  return pngUri(picture.width, picture.height, 3, bytes);
+  return pngUri(preview.width, preview.height, 3, bytes);
 }
 
 std::string paragraphs(const std::vector<std::string>& texts) {
@@ -152,28 +87,28 @@ std::string verdictList(const Study& study, const StudyResults& results) {
 }
 
 std::string repeatsText(const StudyResults& results) {
-  size_t fewest = SIZE_MAX, maximum = 0;
+  size_t minimum = SIZE_MAX, maximum = 0;
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
-      fewest = std::min(fewest, cell.repeatSeconds.size());
+      minimum = std::min(minimum, cell.repeatSeconds.size());
       maximum = std::max(maximum, cell.repeatSeconds.size());
     }
-  return fewest < maximum ? fmt::format("{} to {}", fewest, maximum) : fmt::format("{}", maximum);
+  return minimum < maximum ? fmt::format("{} to {}", minimum, maximum) : fmt::format("{}", maximum);
 }
 
 std::string referenceText(const Study& study, const StudyResults& results) {
-  const std::string origin =
-      study.referenceFile.empty()
-          ? fmt::format("{} samples a pixel by {}", study.referenceSamples, study.referenceStrategy)
-          : study.referenceFile;
-  return fmt::format("{}, relative standard error {:.2g}% a pixel", origin,
+  const std::string origin = study.referenceFile.empty()
+                                 ? fmt::format("{} samples per pixel with {}",
+                                               study.referenceSamples, study.referenceStrategy)
+                                 : study.referenceFile;
+  return fmt::format("{}, relative standard error {:.2g}% per pixel", origin,
                      100 * results.referenceNoise);
 }
 
 }  // namespace
 
 std::string samplesPlot(const StudyResults& results) {
-  return plot(results, "error against samples", "samples a pixel", Ticks::Binary,
+  return plot(results, "error against samples", "samples per pixel", Ticks::Binary,
               [](const Cell& cell) { return cell.samples; });
 }
 
@@ -199,21 +134,24 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
   fill(page, "plots", samplesPlot(results) + secondsPlot(results));
   fill(page, "tableNote",
        escaped(fmt::format(
-           "At {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), {} being 1: of "
-           "two unbiased strategies, one of twice the efficiency needs half the time for the same "
-           "error. After +-: half an interval of 95%; not resolved: it holds 0. Slopes are of log "
-           "error against log samples: -1 for independent samples.",
+           "With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), relative to "
+           "{}: "
+           "of two unbiased strategies, one with twice the efficiency needs half the time for the "
+           "same error. The number after +- is half the 95% confidence interval; not significant: "
+           "the interval includes 0. Slopes are of log error against log samples: -1 for "
+           "independent samples.",
            at, study.baseline)));
-  fill(page, "table", table(study, results));
-  fill(page, "pairsNote",
-       escaped(fmt::format(
-           "Unbiased strategies must agree but for noise. Welch's t-test on each tile of {0} x {0} "
-           "pixels at {1}; p is the chance that the tile which differs most would do so by "
-           "accident, corrected for the number of tiles (Sidak). Of twenty such pairs one falls "
-           "below 0.05 by chance. Strategies of a relMSE above {2:g} are left out: they have not "
-           "met all the light yet.",
-           Agreement::kTile, at, kMaxNoiseOfPairs)));
-  fill(page, "pairs", pairsTable(results));
+  fill(page, "table", resultsHtml(study, results));
+  fill(
+      page, "pairsNote",
+      escaped(fmt::format(
+          "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
+          "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
+          "there is only noise, corrected for the number of tiles (Sidak). By chance one of twenty "
+          "pairs has p below 0.05. Strategies with a relMSE above {2:g} are excluded, because they "
+          "have not sampled all light yet.",
+          Agreement::kTile, at, kMaxNoiseOfPairs)));
+  fill(page, "pairs", pairsHtml(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
   fill(page, "probes", probes);
@@ -225,12 +163,12 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
                            machine.compiler, machine.processor, machine.threads, machine.system,
                            machine.date)));
   fill(page, "method",
-       "Strategies take turns (A B C A B C), so that a machine that drifts favours none; seconds "
-       "are "
-       "of rendering alone. Every render has a seed of its own, and the reference has others than "
-       "any of them. Every number is in <code>results.csv</code> and <code>results.json</code>, "
-       "every render in <code>renders/</code>.");
-  fill(page, "data", reportPictures(store, results).dump());
+       "Strategies alternate (A B C A B C), so that a machine whose speed drifts does not favour "
+       "any "
+       "of them. Seconds are render time alone. Every render has its own seed, and the reference "
+       "shares none of them. All numbers are in <code>results.csv</code> and "
+       "<code>results.json</code>, all renders in <code>renders/</code>.");
+  fill(page, "data", reportImages(store, results).dump());
   fill(page, "script", kReportScript);
   return page;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page people look at.
+// The report of a comparison: an HTML page.
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@
 namespace chromeball {
 
 struct ReportScene {
-  std::string name;  // what the page is about
+  std::string name;  // for the title
   const Probe* probe;
-  float exposure = 0;                                                 // stops, at first
-  std::vector<std::pair<std::string, std::vector<vec3>>> directions;  // that strategies sample
+  float exposure = 0;  // initial exposure of the images, in stops
+  std::vector<std::pair<std::string, std::vector<vec3>>> directions;  // sampled by each strategy
 };
 
 // SVG: relMSE against samples, or against seconds.
 std::string samplesPlot(const StudyResults& results);
 std::string secondsPlot(const StudyResults& results);
 
-// One HTML file that needs no other.
+// A self-contained HTML page.
 std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
                        const ReportScene& scene, const Machine& machine);
 

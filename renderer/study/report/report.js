@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report's moving parts: pictures to divide and flip, maps to read. `data` is described in
-// report_pictures.h.
+// The interactive parts of the report: images to divide and flip, maps to read. report_images.h
+// describes `data`.
 'use strict';
 
 const byId = id => document.getElementById(id);
@@ -26,10 +26,10 @@ async function pixelsOf(uri, width, height) {
   return context.getImageData(0, 0, width, height).data;
 }
 
-// Radiance, three floats a pixel, from mantissas and exponents.
-async function radianceOf(picture) {
+// Radiance, three floats per pixel, from mantissas and exponents.
+async function radianceOf(image) {
   const [rgb, exponent] = await Promise.all(
-      [picture.rgb, picture.exponent].map(uri => pixelsOf(uri, data.width, data.height)));
+      [image.rgb, image.exponent].map(uri => pixelsOf(uri, data.width, data.height)));
   const radiance = new Float32Array(3 * data.width * data.height);
   for (let i = 0; i < data.width * data.height; ++i) {
     const scale = exponent[4 * i] ? 2 ** (exponent[4 * i] - 136) : 0;
@@ -57,13 +57,13 @@ function pixelUnder(event, element, width, height) {
     x: Math.min(width - 1, Math.max(0, Math.floor((event.clientX - box.left) / box.width * width))),
     y: Math.min(height - 1,
                 Math.max(0, Math.floor((event.clientY - box.top) / box.height * height))),
-    share: Math.min(1, Math.max(0, (event.clientX - box.left) / box.width))
+    fraction: Math.min(1, Math.max(0, (event.clientX - box.left) / box.width))
   };
 }
 
 async function makeViewer() {
   const label = p => `${p.name}, ${+p.samples.toPrecision(4)} samples, ${p.seconds.toPrecision(3)} s`;
-  const pictures = await Promise.all([data.reference, ...data.pictures].map(
+  const images = await Promise.all([data.reference, ...data.images].map(
       async p => ({label: p.name ? label(p) : 'reference', radiance: await radianceOf(p)})));
   const canvas = document.querySelector('#viewer canvas'), context = canvas.getContext('2d');
   canvas.width = data.width;
@@ -73,15 +73,15 @@ async function makeViewer() {
 
   const choices = [byId('pictureA'), byId('pictureB')];
   choices.forEach((choice, i) => {
-    for (const p of pictures) choice.add(new Option(p.label));
-    choice.selectedIndex = i ? 0 : Math.min(1, pictures.length - 1);
+    for (const p of images) choice.add(new Option(p.label));
+    choice.selectedIndex = i ? 0 : Math.min(1, images.length - 1);
   });
-  let share = 0.5, flipped = null;  // flipped: 0 or 1 where one picture fills the frame
+  let fraction = 0.5, flipped = null;  // flipped: 0 or 1 if one image fills the frame
   const screens = [null, null];
-  const chosen = i => pictures[choices[i].selectedIndex];
+  const chosen = i => images[choices[i].selectedIndex];
 
   function draw() {
-    const edge = flipped === null ? Math.round(share * data.width) : flipped ? 0 : data.width;
+    const edge = flipped === null ? Math.round(fraction * data.width) : flipped ? 0 : data.width;
     context.putImageData(screens[0], 0, 0, 0, 0, edge, data.height);
     context.putImageData(screens[1], 0, 0, edge, 0, data.width - edge, data.height);
     byId('divider').style.left = 100 * edge / data.width + '%';
@@ -109,26 +109,26 @@ async function makeViewer() {
   canvas.onmousemove = event => {
     const at = pixelUnder(event, canvas, data.width, data.height), i = 3 * (at.y * data.width + at.x);
     const line = p => [0, 1, 2].map(c => p.radiance[i + c].toPrecision(3).padStart(9)).join(' ');
-    const off = p => {
+    const error = p => {
       let sum = 0;
       for (let c = 0; c < 3; ++c) {
-        const truth = pictures[0].radiance[i + c];
+        const truth = images[0].radiance[i + c];
         sum += (p.radiance[i + c] - truth) ** 2 / (truth ** 2 + 0.01) / 3;
       }
       return (100 * Math.sqrt(sum)).toPrecision(2) + '%';
     };
-    share = at.share;
+    fraction = at.fraction;
     flipped = null;
     draw();
-    showTip(event, `pixel ${at.x}, ${at.y}\nreference ${line(pictures[0])}\n` +
-        [0, 1].map(k => `${k ? 'right    ' : 'left     '} ${line(chosen(k))}  off ${off(chosen(k))}`)
+    showTip(event, `pixel ${at.x}, ${at.y}\nreference ${line(images[0])}\n` +
+        [0, 1].map(k => `${k ? 'right    ' : 'left     '} ${line(chosen(k))}  error ${error(chosen(k))}`)
             .join('\n'));
   };
   canvas.onmouseleave = event => showTip(event, '');
   expose();
 }
 
-// A map in false colours; `read` says what a level means.
+// A map in false colours; `read` describes the level of a pixel.
 async function makeMap(parent, uri, width, height, colors, caption, read) {
   const figure = document.createElement('figure'), canvas = document.createElement('canvas');
   canvas.width = width;
@@ -160,28 +160,28 @@ function makeLegend(id, colors, from, to) {
 const bold = text => Object.assign(document.createElement('b'), {textContent: text});
 const percent = x => +(100 * x).toPrecision(2) + '%';
 
-// Maps are decoded side by side.
+// Maps are decoded concurrently.
 async function makeMaps() {
   const maps = [];
-  const {most, decades} = data.errorScale;
-  makeLegend('errorLegend', data.heat, percent(most / 10 ** decades) + ' or less', percent(most));
-  for (const p of data.pictures)
+  const {max, decades} = data.errorScale;
+  makeLegend('errorLegend', data.heat, percent(max / 10 ** decades) + ' or less', percent(max));
+  for (const p of data.images)
     maps.push(makeMap(
         byId('errors'), p.error, data.width, data.height, data.heat,
         [bold(p.name), ` ${p.seconds.toPrecision(3)} s, ${p.budget}`],
         (level, at) => `pixel ${at.x}, ${at.y}\nerror ` +
-            (level ? percent(most * 10 ** ((level / 255 - 1) * decades)) : 'below the scale')));
+            (level ? percent(max * 10 ** ((level / 255 - 1) * decades)) : 'below the scale')));
 
   byId('biasPart').hidden = data.bias.length === 0;
-  makeLegend('biasLegend', data.signed, '-' + percent(data.biasScale.most),
-             '+' + percent(data.biasScale.most));
+  makeLegend('biasLegend', data.signed, '-' + percent(data.biasScale.max),
+             '+' + percent(data.biasScale.max));
   for (const b of data.bias)
     maps.push(makeMap(
         byId('bias'), b.map, data.width, data.height, data.signed,
         [bold(b.name), ` ${b.budget}`],
         (level, at) => `pixel ${at.x}, ${at.y}\n` +
-            (level === 128 ? 'no sure bias'
-                           : 'bias ' + percent((level - 128) / 127 * data.biasScale.most))));
+            (level === 128 ? 'bias not significant'
+                           : 'bias ' + percent((level - 128) / 127 * data.biasScale.max))));
 
   byId('zLegend').hidden = data.pairs.length === 0;
   makeLegend('zLegend', data.signed, `z = -${data.zScale}`, `+${data.zScale}`);

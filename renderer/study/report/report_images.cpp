@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDecades = 3;  // of the scale of errors
+constexpr double kDecades = 3;  // spanned by the scale of the error maps
 constexpr double kMaxZ = 5;
 
 std::string base64(std::span<const uint8_t> bytes) {
@@ -30,7 +30,7 @@ std::string base64(std::span<const uint8_t> bytes) {
   return text;
 }
 
-// Radiance with 8 bits of mantissa and a common exponent (Ward 1991).
+// Radiance with 8-bit mantissas and a shared exponent (Ward 1991).
 Json radianceUris(const Image& image) {
   std::vector<uint8_t> mantissas, exponents;
   for (int y = 0; y < image.height; ++y)
@@ -54,7 +54,7 @@ std::vector<Image> loadImages(const RenderStore& store, const Cell& cell) {
   return images;
 }
 
-// Per pixel: the root of the mean squared relative error over repeats and channels.
+// For each pixel the root of the mean squared relative error over repeats and channels.
 Image relativeError(std::span<const Image> repeats, const Image& reference) {
   Image error(reference.width, reference.height, 1);
   for (size_t i = 0; i < error.texels.size(); ++i) {
@@ -69,8 +69,8 @@ Image relativeError(std::span<const Image> repeats, const Image& reference) {
   return error;
 }
 
-// Per pixel: the relative bias of luminance; 0 where it is within two standard errors.
-Image sureBias(std::span<const Image> repeats, const Reference& reference) {
+// For each pixel the relative bias of luminance; 0 if it is within two standard errors.
+Image significantBias(std::span<const Image> repeats, const Reference& reference) {
   Image bias(reference.mean.width, reference.mean.height, 1);
   const double n = double(repeats.size());
   for (int y = 0; y < bias.height; ++y)
@@ -92,7 +92,7 @@ Image sureBias(std::span<const Image> repeats, const Reference& reference) {
   return bias;
 }
 
-template <class Level>  // number to [0, 255]
+template <class Level>  // maps a number to [0, 255]
 std::string mapUri(const Image& map, const Level& level) {
   std::vector<uint8_t> bytes;
   for (const float number : map.texels)
@@ -114,7 +114,7 @@ Json colorTable(const Color& color) {
   return table;
 }
 
-// The scale that shows all but the last hundredth of the numbers of all maps.
+// The end of a scale for all maps: the 99th percentile of the nonzero numbers, rounded up.
 double commonScale(const std::vector<Image>& maps) {
   std::vector<float> numbers;
   for (const Image& map : maps)
@@ -123,23 +123,23 @@ double commonScale(const std::vector<Image>& maps) {
   return roundUp(percentile(std::move(numbers), 0.99));
 }
 
-void addPictures(Json& json, const RenderStore& store, const StudyResults& results) {
+void addImages(Json& json, const RenderStore& store, const StudyResults& results) {
   std::vector<Image> errors;
-  json["pictures"] = Json::array();
+  json["images"] = Json::array();
   for (const Cell* cell : equalTimeCells(results)) {
     const std::vector<Image> repeats = loadImages(store, *cell);
     errors.push_back(relativeError(repeats, results.reference.mean));
-    Json picture = {{"name", cell->strategy},
-                    {"budget", cell->budget.label()},
-                    {"samples", cell->samples},
-                    {"seconds", cell->seconds.mean}};
-    picture.update(radianceUris(repeats[0]));
-    json["pictures"].push_back(std::move(picture));
+    Json image = {{"name", cell->strategy},
+                  {"budget", cell->budget.label()},
+                  {"samples", cell->samples},
+                  {"seconds", cell->seconds.mean}};
+    image.update(radianceUris(repeats[0]));
+    json["images"].push_back(std::move(image));
   }
   const double maximum = commonScale(errors);
-  json["errorScale"] = {{"most", maximum}, {"decades", kDecades}};
+  json["errorScale"] = {{"max", maximum}, {"decades", kDecades}};
   for (size_t i = 0; i < errors.size(); ++i)
-    json["pictures"][i]["error"] =
+    json["images"][i]["error"] =
         mapUri(errors[i], [&](float number) { return 255 * logLevel(number, maximum, kDecades); });
 }
 
@@ -149,11 +149,11 @@ void addBias(Json& json, const RenderStore& store, const StudyResults& results) 
   for (const StrategyResult& strategy : results.strategies) {
     if (strategy.unbiased || strategy.cells.empty()) continue;
     const Cell& cell = strategy.cells.back();
-    maps.push_back(sureBias(loadImages(store, cell), results.reference));
+    maps.push_back(significantBias(loadImages(store, cell), results.reference));
     json["bias"].push_back({{"name", strategy.name}, {"budget", cell.budget.label()}});
   }
   const double maximum = commonScale(maps);
-  json["biasScale"] = {{"most", maximum}};
+  json["biasScale"] = {{"max", maximum}};
   for (size_t i = 0; i < maps.size(); ++i)
     json["bias"][i]["map"] = mapUri(maps[i], signedLevel(maximum));
 }
@@ -182,14 +182,14 @@ std::vector<const Cell*> equalTimeCells(const StudyResults& results) {
   return cells;
 }
 
-Json reportPictures(const RenderStore& store, const StudyResults& results) {
+Json reportImages(const RenderStore& store, const StudyResults& results) {
   const Image& reference = results.reference.mean;
   Json json = {{"width", reference.width},
                {"height", reference.height},
                {"heat", colorTable([](int level) { return heatColor(level / 255.0); })},
                {"signed", colorTable([](int level) { return signedColor((level - 128) / 127.0); })},
                {"reference", radianceUris(reference)}};
-  addPictures(json, store, results);
+  addImages(json, store, results);
   addBias(json, store, results);
   json["zScale"] = kMaxZ;
   json["pairs"] = Json::array();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a comparison's report, as the page's script reads them.
+// The images and maps of a report, in the form that report.js reads.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,19 +9,27 @@
 
 namespace chromeball {
 
-// {width, height, heat, signed: colour tables of 256 [r, g, b],
-//  reference: {rgb, exponent},                         PNG data URIs: radiance in Ward's RGBE, as a
-//  pictures: [{name, budget, samples, seconds,           picture of mantissas and one of exponents
-//              rgb, exponent, error}],                 one a strategy, at about equal seconds
-//  errorScale: {most, decades},                        of `error`: the root of the mean over
-//  repeats
-//                                                        of the squared relative error, logarithmic
-//  bias: [{name, map, budget}], biasScale: {most},     of the approximating ones: signed, linear;
-//                                                        128 where it may be noise (2 sigma)
-//  pairs: [{a, b, map, width, height}], zScale}        z, one texel a tile
-nlohmann::ordered_json reportPictures(const RenderStore& store, const StudyResults& results);
+// JSON:
+//   width, height       of the images in pixels
+//   heat, signed        colour tables, 256 [r, g, b] each
+//   reference           {rgb, exponent}: PNG data URIs of radiance in Ward's RGBE, with mantissas
+//   and
+//                       exponents as separate images
+//   images              [{name, budget, samples, seconds, rgb, exponent, error}]: one render of
+//   each
+//                       strategy, all of about equal time. `error` is a map of the root of the mean
+//                       over repeats of the squared relative error, logarithmic
+//   errorScale          {max, decades} of these maps
+//   bias                [{name, map, budget}]: maps of the relative bias of approximating
+//   strategies,
+//                       linear, 128 where the bias is less than two standard errors
+//   biasScale           {max} of these maps
+//   pairs               [{a, b, map, width, height}]: maps of z, one texel per tile
+//   zScale              |z| at the ends of these maps
+nlohmann::ordered_json reportImages(const RenderStore& store, const StudyResults& results);
 
-// For every strategy the cell whose seconds are nearest to those that all can be compared at.
+// For each strategy the cell whose render time is nearest to the longest time that all strategies
+// reach.
 std::vector<const Cell*> equalTimeCells(const StudyResults& results);
 
 std::string pngUri(int width, int height, int channels, std::span<const uint8_t> bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in the probe a strategy looks for light.
+// The directions that a strategy samples, for display.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// Directions, in the world, that a strategy samples for a floor's point: all lights of a
-// constellation, some random ones of any other. Empty for a strategy that samples none.
+// World-space directions of the light samples at a point on a floor: all lights of a constellation,
+// 128 random samples of other strategies. Empty for a strategy without light samples.
 std::vector<vec3> sampledDirections(const LightingStrategy& strategy);
 
 }  // namespace chromeball

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/reference.h"
+
+#include "base/error.h"
+#include "image/io/read_image.h"
+
+namespace chromeball {
+namespace {
+
+// The mean of independent parts, with its squared standard error from their variance.
+Reference meanOfParts(const std::vector<Image>& parts) {
+  Reference reference{parts[0], parts[0]};
+  for (size_t i = 0; i < parts[0].texels.size(); ++i) {
+    std::vector<double> numbers;
+    for (const Image& part : parts) numbers.push_back(part.texels[i]);
+    const Estimate e = meanOf(numbers);
+    reference.mean.texels[i] = float(e.mean);
+    reference.squaredError.texels[i] = float(e.standardError * e.standardError);
+  }
+  return reference;
+}
+
+Reference readReference(const std::string& path, int width, int height) {
+  const ImageFile file = readImageFile(path);
+  const std::optional<Image> color = findColor(file);
+  if (!color) throwInput("--reference: {}: has no colour", path);
+  if (color->width != width || color->height != height)
+    throwInput("--reference: {} is {} x {}, but the renders are {} x {}; try --size {}x{}", path,
+               color->width, color->height, width, height, color->width, color->height);
+  const std::optional<Image> variance = findLayer(file, "variance");
+  return {*color, variance && variance->channels == 3 ? *variance : Image()};
+}
+
+}  // namespace
+
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height) {
+  if (!study.referenceFile.empty()) return readReference(study.referenceFile, width, height);
+  std::vector<Image> parts;
+  for (int part = 0; part < Study::kReferenceParts; ++part)
+    parts.push_back(store.find(study.referencePart(part)).value().image);
+  return meanOfParts(parts);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text in HTML and SVG.
+#pragma once
+
+#include <string>
+
+namespace chromeball {
+
+// Escapes & < and ", and drops control characters.
+std::string escaped(const std::string& text);
+
+}  // namespace chromeball
