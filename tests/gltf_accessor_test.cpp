@@ -197,8 +197,8 @@ TEST(GltfAccessor, RejectsIndicesOutOfRange) {
   EXPECT_EQ(refusal({0, 1, 3}),
             "meshes[0].primitives[0].indices: index 3 out of range (3 vertices)");
   EXPECT_EQ(refusal({0, 65535, 2}),
-            "meshes[0].primitives[0].indices: index 65535 means primitive restart, which glTF "
-            "forbids");
+            "meshes[0].primitives[0].indices: index 65535 is the primitive-restart value, "
+            "which glTF forbids");
 }
 
 TEST(GltfAccessor, RejectsPositionsThatAreNotFinite) {

@@ -199,7 +199,7 @@ TEST(GltfAnimation, InvalidAnimationsAreRejected) {
   EXPECT_EQ(refusal(json::object(), json::object()), "");
   EXPECT_TRUE(holds(refusal({{"sampler", 3}}, json::object()), "samplers[3] does not exist"));
   EXPECT_TRUE(holds(refusal({{"target", {{"node", 7}}}}, json::object()), "nodes[7]"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"input", 3}}), "not in the order of time"));
+  EXPECT_TRUE(holds(refusal(json::object(), {{"input", 3}}), "not in ascending order of time"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"output", 4}}), "not finite"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"output", 1}}), "1 components; it must have 3"));
   EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "CUBICSPLINE"}}), "do not match"));

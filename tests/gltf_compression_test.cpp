@@ -141,7 +141,7 @@ TEST(GltfCompression, InvalidMeshoptDataIsRejected) {
   EXPECT_TRUE(holds(refusal({{"buffer", 1}}), "buffers[1] does not exist"));
   EXPECT_TRUE(holds(refusal({{"byteLength", 4000}}), "which has"));
   EXPECT_TRUE(holds(refusal({{"count", -1}}), "not a whole number"));
-  EXPECT_TRUE(holds(refusal({{"count", 2000000000}}), "far more than the file holds"));
+  EXPECT_TRUE(holds(refusal({{"count", 2000000000}}), "out of proportion to the length"));
   EXPECT_TRUE(holds(refusal({{"count", 5000000}}), "damaged data"));
   EXPECT_TRUE(holds(refusal({{"count", 3}}), "do not fit"));
   EXPECT_TRUE(holds(refusal(json::object(), Data(60, 0)), "damaged data"));

@@ -138,7 +138,7 @@ TEST(Gltf, NodesMustFormTrees) {
   GltfWriter w;
   w.root["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, json::object()};
   EXPECT_EQ(w.refusal(),
-            "nodes[1].children: nodes[2] is a child of nodes[0] too; nodes must form trees");
+            "nodes[1].children: nodes[2] is also a child of nodes[0]; nodes must form trees");
   w.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
   EXPECT_EQ(w.refusal(), "nodes[0]: is its own ancestor; nodes must form trees");
   w.root["nodes"] = {{{"children", {5}}}};
