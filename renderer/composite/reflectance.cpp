@@ -82,7 +82,8 @@ class RepaintedIntegrator : public Integrator {
     MaterialPoint material = materialAt(scene, surface);
     material.baseColor = baseColor_;
     if (state.first) state.first->hit = true;
-    const Bsdf bsdf(material, surface, -state.ray.direction, tracer_.mirrorAlpha());
+    const Bsdf bsdf(material, surface, -state.ray.direction, tracer_.world().bsdfTables,
+                    tracer_.mirrorAlpha());
     if (!tracer_.scatter(state, surface, bsdf, context)) return state.radiance;
     context.sampler.startVertex(state.depth);
     const Rgb direct = std::exchange(state.radiance, Rgb(0));

@@ -6,18 +6,15 @@
 
 #include "integrate/mis.h"
 #include "scene/thin_wall.h"
-#include "shading/extended_bsdf.h"
 
 namespace chromeball {
 namespace {
 
-bool isDelta(const BsdfSample& sample) { return sample.pdf == 0; }
-
 // Whether a bounce carries light through a solid: all but reflection from the outside of a rough
 // surface.
 bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
-  return surface.material->isBody() && (isDelta(bounce) || !surface.frontFace ||
-                                        glm::dot(surface.geometricNormal, bounce.wi) < 0);
+  return surface.material->isBody() &&
+         (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
 // Whether the path passes the surface as if it were not there: a single-sided back, for the camera
@@ -123,7 +120,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   if constexpr (kLayered) {
     const bool transmission = isTransmission(surface, next);
     const bool ends = transmission ? state.transmissions == settings_.maxTransmissionDepth ||
-                                         (atLimit && !isDelta(next))
+                                         (atLimit && !next.isDelta)
                                    : atLimit;
     if (ends) return false;
     state.transmissions += transmission;
@@ -141,7 +138,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     state.media.follow(surface, next.wi);
   }
   state.pdf = next.pdf;
-  state.isDelta = isDelta(next);
+  state.isDelta = next.isDelta;
   state.lobes = next.lobes;
   state.ray = {surface.rayOrigin(next.wi), next.wi};
   return true;
@@ -157,10 +154,10 @@ bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& b
                                                   const Surface& surface,
                                                   const MaterialPoint& material,
                                                   PathContext& context) const {
-  const ExtendedBsdf extended(material, extendedMaterialAt(world_.scene, instance, surface),
-                              state.media.refractiveIndex(surface, state.throughput), surface,
-                              -state.ray.direction, mirrorAlpha_);
-  return scatterAs<true>(state, surface, Bsdf(extended), context);
+  const Bsdf bsdf(material, extendedMaterialAt(world_.scene, instance, surface),
+                  state.media.refractiveIndex(surface, state.throughput), surface,
+                  -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
+  return scatterAs<true>(state, surface, bsdf, context);
 }
 
 bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
@@ -195,8 +192,8 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   if (ends) return passAtLimit(scene, state, instance, surface);
   if (surface.material->extended) [[unlikely]]
     return scatterLayered(state, instance, surface, material, context);
-  return scatterAs<false>(state, surface,
-                          Bsdf(material, surface, -state.ray.direction, mirrorAlpha_), context);
+  const Bsdf bsdf(material, surface, -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
+  return scatterAs<false>(state, surface, bsdf, context);
 }
 
 bool PathTracer::isHiddenBack(const PathState& state, const Hit& hit) const {

@@ -9,7 +9,7 @@ namespace {
 // Luminance that a Lambertian surface reflects of the light, which is positive wherever a plain
 // BSDF reflects any; for layered BSDFs, which may transmit light, the luminance that they scatter.
 float importance(const DirectionSample& light, const LightPoint& point) {
-  if (point.bsdf && point.bsdf->isExtended()) [[unlikely]]
+  if (point.bsdf && point.bsdf->isLayered()) [[unlikely]]
     return luminance(light.irradiance * point.bsdf->evaluate(light.wi).fCos);
   return luminance(light.irradiance) * std::max(glm::dot(light.wi, point.normal), 0.0f);
 }

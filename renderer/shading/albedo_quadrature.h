@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tables of albedo have in common: where their nodes are, and the integral at a node.
+// What the tables of albedo share: the positions of their nodes, and the integral at a node.
 #pragma once
 
 #include <span>
@@ -7,14 +7,14 @@
 
 #include "base/hash.h"
 #include "math/sobol.h"
-#include "shading/energy_table.h"
 #include "shading/ggx.h"
 #include "shading/ggx_anisotropic.h"
+#include "shading/specular_albedo.h"
 
 namespace chromeball {
 
-// Perceptual roughness and cosine of the viewing angle at node i of `count`. Both crowd as t^2
-// towards smooth surfaces and grazing angles, where the albedo bends.
+// Perceptual roughness and cosine of the viewing angle at node i of `count`. Both go as t^2, so
+// that the nodes are dense at smooth surfaces and grazing angles, where the albedo is curved.
 inline float roughnessNode(int i, int count) {
   const float t = float(i) / float(count - 1);
   return std::max(t * t, 0.01f);
@@ -30,7 +30,8 @@ inline std::vector<vec2> quadraturePoints(uint32_t count) {
   return points;
 }
 
-// The mean over visible normals h of F(wo.h) G2/G1; `Alpha` is GGX's width, one or two.
+// The mean over visible normals h of F(wo.h) G2/G1 (Heitz 2018, "Sampling the GGX Distribution of
+// Visible Normals", eq. 19). `Alpha`: float, or vec2 for anisotropic GGX.
 template <class Alpha>
 SpecularAlbedo specularAlbedo(const vec3& wo, const Alpha& alpha, std::span<const vec2> points) {
   const float lambdaO = ggx::lambda(wo, alpha);

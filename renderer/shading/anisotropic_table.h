@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much light brushed metal reflects in one bounce: EnergyTable's sister for anisotropic GGX.
+// Albedo of anisotropic GGX reflection in one bounce, for energy compensation.
 #pragma once
 
-#include <vector>
-
-#include "math/vec.h"
-#include "shading/energy_table.h"
+#include "math/grid_table.h"
+#include "shading/specular_albedo.h"
 
 namespace chromeball {
 
-// Widths along and across the tangent (KHR_materials_anisotropy), for perceptual roughness and
-// strength in [0, 1].
-vec2 anisotropicAlpha(float roughness, float strength);
-
+// Over perceptual roughness, strength of the anisotropy, and the viewing direction's cosine and
+// azimuth. 16 x 9 x 16 x 7 nodes, 126 KB; takes 0.14 s of one core to build, on all cores.
 class AnisotropicTable {
  public:
-  // Tabulated by quadrature once a process, on first use, which must not be inside a parallel loop.
-  static const AnisotropicTable& get();
+  AnisotropicTable();
 
-  // Albedo for the viewing direction `wo`, the tangent along x.
+  // `wo`: viewing direction, unit, the tangent along x and the normal along z. Roughness and
+  // strength in [0, 1].
   SpecularAlbedo albedo(const vec3& wo, float roughness, float strength) const;
 
  private:
-  AnisotropicTable();
-  std::vector<SpecularAlbedo> cells_;  // kRoughnesses x kStrengths x kAngles x kAzimuths
+  static constexpr int kRoughnesses = 16, kStrengths = 9, kAngles = 16, kAzimuths = 7;
+  GridTable<SpecularAlbedo, kRoughnesses, kStrengths, kAngles, kAzimuths> grid_;
 };
 
 }  // namespace chromeball

@@ -1,58 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/brushed.h"
 
-#include "shading/anisotropic_table.h"
+#include "math/warp.h"
+#include "shading/fresnel.h"
 #include "shading/ggx_anisotropic.h"
 #include "shading/shading_normal.h"
 
 namespace chromeball {
 
 Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0, float strength,
-                 const vec3& tangent, const Surface& surface, const vec3& wo, float mirrorAlpha)
+                 const vec3& tangent, const Surface& surface, const vec3& wo,
+                 const BsdfTables& tables, float mirrorAlpha)
     : frame_(normalThatReflects(surface.normal, surface.geometricNormal, wo), tangent),
       geometricNormal_(surface.geometricNormal),
       wo_(frame_.toLocal(wo)),
-      alpha_(anisotropicAlpha(m.roughness, strength)),
+      alpha_(ggx::anisotropicAlpha(m.roughness, strength)),
       f0_(glm::mix(m.dielectricF0, metalF0, m.metallic)),
       f90_(glm::mix(m.dielectricF90, 1.0f, m.metallic)) {
   wo_.z = std::max(wo_.z, 1e-6f);
   lambdaO_ = ggx::lambda(wo_, alpha_);
   narrow_ = std::max(alpha_.x, alpha_.y) < mirrorAlpha;
-  const SpecularAlbedo once = AnisotropicTable::get().albedo(wo_, m.roughness, strength);
+  const SpecularAlbedo once = tables.anisotropic->albedo(wo_, m.roughness, strength);
   const float white = once.a + once.b;
-  const auto again = [white](const auto& f0) { return 1.0f + f0 * ((1 - white) / white); };
-  gain_ = again(f0_);
+  const auto gain = [white](const auto& f0) { return 1.0f + f0 * ((1 - white) / white); };
+  gain_ = gain(f0_);
 
-  const float coatF0 = maxComponent(m.dielectricF0);
-  surfaceAlbedo_ = (coatF0 * once.a + m.dielectricF90 * once.b) * again(coatF0);
+  const float dielectricF0 = maxComponent(m.dielectricF0);
+  surfaceAlbedo_ = (dielectricF0 * once.a + m.dielectricF90 * once.b) * gain(dielectricF0);
   diffuse_ = diffuse * (1 - surfaceAlbedo_);
   const float specular = luminance((f0_ * once.a + f90_ * once.b) * gain_);
   albedo_ = specular + luminance(diffuse_);
-  specularFraction_ = albedo_ > 0 ? specular / albedo_ : 1;
+  specularProbability_ = albedo_ > 0 ? specular / albedo_ : 1;
 }
 
 Rgb Brushed::fresnel(float cosine) const {
-  const float c = 1 - std::min(cosine, 1.0f), c2 = c * c;
-  return (f0_ + (f90_ - f0_) * (c2 * c2 * c)) * gain_;
+  return fresnelSchlick(f0_, f90_, std::min(cosine, 1.0f)) * gain_;
 }
 
-Bsdf::Value Brushed::evaluate(const vec3& wi, Lobes lobes) const {
+BsdfValue Brushed::evaluate(const vec3& wi, Lobes lobes) const {
   const vec3 local = frame_.toLocal(wi);
   if (local.z <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
-  Bsdf::Value v{Rgb(0), 0};
+  BsdfValue v{Rgb(0), 0};
   if (lobes == Lobes::Broad)
-    v = {diffuse_ * (local.z * kInvPi), (1 - specularFraction_) * local.z * kInvPi};
+    v = {diffuse_ * (local.z * kInvPi), (1 - specularProbability_) * local.z * kInvPi};
   if (narrow_ != (lobes == Lobes::Narrow)) return v;
   const vec3 h = glm::normalize(wo_ + local);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   v.fCos += fresnel(glm::dot(wo_, h)) * (d / (1 + lambdaO_ + ggx::lambda(local, alpha_)));
-  v.pdf += specularFraction_ * d / (1 + lambdaO_);
+  v.pdf += specularProbability_ * d / (1 + lambdaO_);
   return v;
 }
 
 bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
   out.lobes = Lobes::Broad;
-  if (lobe < specularFraction_) {
+  if (lobe < specularProbability_) {
     if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;

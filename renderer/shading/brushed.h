@@ -4,23 +4,28 @@
 
 #include "math/frame.h"
 #include "scene/surface.h"
-#include "shading/bsdf.h"
+#include "shading/bsdf_sample.h"
+#include "shading/bsdf_tables.h"
 
 namespace chromeball {
 
-// Anisotropic GGX over a diffuse base. What microfacets scatter again is put back into the same
-// lobe (Turquin 2019), and the base gets what the surface does not reflect towards the viewer: no
-// light is lost, but the diffuse part is not reciprocal.
+// One bounce off anisotropic GGX microfacets over a diffuse base. The specular lobe is scaled up by
+// the light that microfacets scatter more than once (Turquin 2019, "Practical multiple scattering
+// compensation for microfacet models"), 1 + F0 (1 - E) / E with E the white albedo of one bounce;
+// the base gets what the surface does not reflect towards the viewer. No light is lost, but the
+// diffuse part is not reciprocal.
 class Brushed {
  public:
-  // `tangent`: unit, along the grooves' wider highlight; diffuse albedo and metal's F0 as in Bsdf.
+  // `tangent`: unit, the direction in which the highlight is wider; `strength` in [0, 1]; the rest
+  // as for MetallicRoughness.
   Brushed(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0, float strength,
-          const vec3& tangent, const Surface& surface, const vec3& wo, float mirrorAlpha);
+          const vec3& tangent, const Surface& surface, const vec3& wo, const BsdfTables& tables,
+          float mirrorAlpha);
 
-  Bsdf::Value evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
+  BsdfValue evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
   bool has(Lobes lobes) const {
-    return lobes == Lobes::Narrow ? narrow_ : !narrow_ || specularFraction_ < 1;
+    return lobes == Lobes::Narrow ? narrow_ : !narrow_ || specularProbability_ < 1;
   }
   const vec3& normal() const { return frame_.z; }
   float albedo() const { return albedo_; }
@@ -36,9 +41,10 @@ class Brushed {
   float lambdaO_;
   bool narrow_;
   Rgb f0_, f90_;
-  Rgb gain_;     // on the specular lobe, for what it scatters again
-  Rgb diffuse_;  // times what passes the surface
-  float specularFraction_, albedo_, surfaceAlbedo_;
+  Rgb gain_;                   // of the specular lobe, for multiple scattering
+  Rgb diffuse_;                // times the fraction that passes the surface
+  float specularProbability_;  // of sampling the specular lobe
+  float albedo_, surfaceAlbedo_;
 };
 
 }  // namespace chromeball

@@ -1,41 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much light a rough specular surface reflects in one bounce: what energy compensation needs.
+// Albedo of isotropic GGX reflection in one bounce, for energy compensation.
 #pragma once
 
-#include <vector>
+#include "math/grid_table.h"
+#include "shading/specular_albedo.h"
 
 namespace chromeball {
 
-// Single-scattering GGX albedo under Schlick's Fresnel, which is linear in F0 and F90:
-//   albedo(mu) = F0 a(mu) + F90 b(mu),   mu the cosine of the viewing angle.
-// With F0 = F90 = 1 it falls short of 1 by what microfacets scatter again.
-struct SpecularAlbedo {
-  float a, b;
-};
-
+// Over perceptual roughness r = sqrt(alpha) and the cosine mu of the viewing angle. 32 x 64 nodes,
+// 16 KB; takes 0.12 s of one core to build, on all cores.
 class EnergyTable {
- public:
-  // Tabulated by quadrature once a process, on first use, which must not be inside a parallel loop.
-  static const EnergyTable& get();
+  static constexpr int kRoughnesses = 32, kAngles = 64;
+  using Grid = GridTable<SpecularAlbedo, kRoughnesses, kAngles>;
 
-  // One roughness (of perceptual roughness r = sqrt(alpha)), ready for any angle.
+ public:
+  EnergyTable();
+
+  // One roughness, ready for any angle. The table must outlive it.
   class Row {
    public:
     SpecularAlbedo at(float mu) const;
-    SpecularAlbedo average() const { return average_; }  // cosine-weighted: 2 int albedo mu dmu
+    SpecularAlbedo average() const { return average_; }  // cosine-weighted: 2 int E(mu) mu dmu
 
    private:
     friend class EnergyTable;
-    const SpecularAlbedo *low_, *high_;
-    float blend_;
+    Row(const Grid& grid, GridPosition roughness, const SpecularAlbedo& average)
+        : grid_(&grid), roughness_(roughness), average_(average) {}
+
+    const Grid* grid_;
+    GridPosition roughness_;
     SpecularAlbedo average_;
   };
   Row row(float roughness) const;
 
  private:
-  EnergyTable();
-  std::vector<SpecularAlbedo> cells_;     // kRoughnesses x kAngles
-  std::vector<SpecularAlbedo> averages_;  // kRoughnesses
+  Grid grid_;
+  GridTable<SpecularAlbedo, kRoughnesses> averages_;
 };
 
 }  // namespace chromeball

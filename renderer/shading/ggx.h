@@ -1,35 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GGX microfacet distribution (Walter et al. 2007) in the frame of the normal, +z.
+// The GGX microfacet distribution (Walter et al. 2007, "Microfacet Models for Refraction through
+// Rough Surfaces") in the frame of the normal, +z.
 #pragma once
 
 #include "math/warp.h"
 
 namespace chromeball::ggx {
 
-// Below this width the highlight is narrower than the sun by a factor of 50: a mirror.
+// A surface below this width is a mirror: its highlight is 50 times narrower than the sun.
 inline constexpr float kSmoothAlpha = 1e-4f;
 
-// D(h): pdf of microfacet normals per solid angle and projected area. `alpha` is the width,
-// the square of glTF's perceptual roughness. Written so that it holds for alpha down to 1e-4.
+// D(h): pdf of microfacet normals per solid angle and projected area (Walter et al. 2007, eq. 33).
+// `alpha` is the width, the square of glTF's perceptual roughness. This form of the equation is
+// accurate for alpha down to 1e-4.
 inline float distribution(const vec3& h, float alpha) {
   const float e = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
   return 1 / (kPi * alpha * alpha * e * e);
 }
 
-// Smith's Lambda for a direction at height z.
+// Smith's Lambda for a direction at height z (Heitz 2014, "Understanding the Masking-Shadowing
+// Function in Microfacet-Based BRDFs", eq. 72).
 inline float lambda(float z, float alpha) {
   const float z2 = z * z;
   return 0.5f * (std::sqrt(1 + alpha * alpha * (1 - z2) / z2) - 1);
 }
 inline float lambda(const vec3& w, float alpha) { return lambda(w.z, alpha); }
-// Height-correlated masking and shadowing of two directions, and of one.
+// Height-correlated masking and shadowing of two directions (Heitz 2014, eq. 99), and of one.
 inline float g2(float zo, float zi, float alpha) {
   return 1 / (1 + lambda(zo, alpha) + lambda(zi, alpha));
 }
 inline float g1(float z, float alpha) { return 1 / (1 + lambda(z, alpha)); }
 
-// A normal visible from wo, with pdf G1(wo) D(h) max(0, wo.h) / wo.z over solid angle.
-// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
+// A normal visible from wo, with pdf G1(wo) D(h) max(0, wo.h) / wo.z over solid angle
+// (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
 inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, vec2 u) {
   const vec3 stretched = glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
   const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// GGX stretched along the tangent, +x: as ggx.h, with a width for each of x and y.
+// Anisotropic GGX, wider along the tangent, +x: as ggx.h, stretched to a width for each of x and y
+// (Heitz 2014, "stretch invariance").
 #pragma once
 
 #include "math/warp.h"
 
 namespace chromeball::ggx {
+
+// Widths along and across the tangent, for perceptual roughness and strength in [0, 1]
+// (KHR_materials_anisotropy, "Implementation").
+inline vec2 anisotropicAlpha(float roughness, float strength) {
+  constexpr float kMin = 1e-3f;  // narrower lobes look the same: as thin as a line
+  const float alpha = std::max(roughness * roughness, kMin);
+  return {glm::mix(alpha, 1.0f, strength * strength), alpha};
+}
 
 inline float distribution(const vec3& h, vec2 alpha) {
   const float x = h.x / alpha.x, y = h.y / alpha.y, e = x * x + y * y + h.z * h.z;

@@ -2,24 +2,23 @@
 #include "shading/glass.h"
 
 #include "math/warp.h"
-#include "shading/dielectric.h"
+#include "shading/fresnel.h"
 #include "shading/ggx.h"
-#include "shading/glass_table.h"
 #include "shading/shading_normal.h"
 
 namespace chromeball {
 namespace {
 
-constexpr float kUnbending = 1e-3f;  // |eta - 1| below which facets turn nothing aside
+constexpr float kMinRefraction = 1e-3f;  // |eta - 1| below which light passes straight
 
-// By Fresnel's equations, at normal incidence.
+// Fresnel's reflectance at normal incidence.
 float normalReflectance(float eta) {
   const float r = (eta - 1) / (eta + 1);
   return r * r;
 }
 
-// F0 of KHR_materials_specular over that of an index of `front` against air. It holds for whatever
-// medium is around the body, so that next to one of nearly its own index the body vanishes.
+// F0 of KHR_materials_specular over F0 of the index `front` against air. The same ratio applies in
+// any surrounding medium, so that a body of nearly the index of its surroundings vanishes.
 float specularTint(const MaterialPoint& m, int channel, float front) {
   const float own = normalReflectance(front);
   return own > 0 ? m.dielectricF0[channel] / own : m.dielectricF90;
@@ -28,7 +27,7 @@ float specularTint(const MaterialPoint& m, int channel, float front) {
 }  // namespace
 
 Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface& surface,
-             const vec3& wo, float mirrorAlpha)
+             const vec3& wo, const BsdfTables& tables, float mirrorAlpha)
     : frame_(normalThatReflects(surface.normal, surface.geometricNormal, wo)),
       geometricNormal_(surface.geometricNormal),
       wo_(frame_.toLocal(wo)),
@@ -44,11 +43,11 @@ Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface
     slope_[c] = own < 1 ? (m.dielectricF90 - f0) / (1 - own) : 0;
     offset_[c] = f0 - slope_[c] * own;
   }
-  smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kUnbending;
+  smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kMinRefraction;
   lobes_ = smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad;
   lambdaO_ = ggx::lambda(wo_.z, alpha_);
   if (smooth_) return;
-  const GlassTable& table = GlassTable::get();
+  const GlassTable& table = *tables.glass;
   GlassAlbedo once = table.albedo(wo_.z, m.roughness, eta_.x);
   for (int c = 0; c < 3; ++c) {
     if (c > 0 && dispersive_) once = table.albedo(wo_.z, m.roughness, eta_[c]);
@@ -71,33 +70,34 @@ float Glass::albedo() const {
   return luminance(reflectance + (1.0f - reflectance) * tint_);
 }
 
-Bsdf::Value Glass::evaluate(const vec3& wi, Lobes lobes) const {
+BsdfValue Glass::evaluate(const vec3& wi, Lobes lobes) const {
   if (!has(lobes)) return {Rgb(0), 0};
   const vec3 local = frame_.toLocal(wi);
   const bool above = local.z > 0;
   if (local.z == 0 || above != (glm::dot(geometricNormal_, wi) > 0)) return {Rgb(0), 0};
   if (above) return reflect(local);
   if (!dispersive_) return refract(local, 0);
-  Bsdf::Value sum{Rgb(0), 0};
+  BsdfValue sum{Rgb(0), 0};
   for (int c = 0; c < 3; ++c) {
-    const Bsdf::Value v = refract(local, c);
+    const BsdfValue v = refract(local, c);
     sum.fCos[c] = v.fCos[c];
     sum.pdf += v.pdf / 3;
   }
   return sum;
 }
 
-Bsdf::Value Glass::reflect(const vec3& wi) const {
+// Walter et al. 2007, eq. 20.
+BsdfValue Glass::reflect(const vec3& wi) const {
   const vec3 h = glm::normalize(wo_ + wi);
   const Rgb reflectance = fresnel(std::min(glm::dot(wo_, h), 1.0f));
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   return {reflectance * (gain_ * d / (1 + lambdaO_ + ggx::lambda(wi.z, alpha_))),
-          reflectFraction(reflectance) * d / (1 + lambdaO_)};
+          reflectProbability(reflectance) * d / (1 + lambdaO_)};
 }
 
-// Walter et al. 2007, eq. 16, 17 and 21: h = -(wo + eta wi), and
+// Walter et al. 2007, eq. 16, 17 and 21: h = -(wo + eta wi) normalized, and
 //   dh/dwi = eta^2 |wi.h| / (wo.h + eta wi.h)^2.
-Bsdf::Value Glass::refract(const vec3& wi, int c) const {
+BsdfValue Glass::refract(const vec3& wi, int c) const {
   vec3 h = wo_ + eta_[c] * wi;
   h *= (h.z < 0 ? -1 : 1) / glm::length(h);
   const float woH = glm::dot(wo_, h), wiH = glm::dot(wi, h);
@@ -108,14 +108,14 @@ Bsdf::Value Glass::refract(const vec3& wi, int c) const {
   const Rgb reflectance = fresnel(std::min(woH, 1.0f));
   const float g2 = 1 / (1 + lambdaO_ + ggx::lambda(-wi.z, alpha_));
   return {tint_ * (1.0f - reflectance) * (gain_ * d * g2),
-          (1 - reflectFraction(reflectance)) * d / (1 + lambdaO_)};
+          (1 - reflectProbability(reflectance)) * d / (1 + lambdaO_)};
 }
 
 bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
   const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
   const float woH = glm::dot(wo_, h);
   const Rgb reflectance = fresnel(std::min(woH, 1.0f));
-  const float reflected = reflectFraction(reflectance);
+  const float reflected = reflectProbability(reflectance);
   vec3 local;
   Rgb weight;
   if (lobe < reflected) {
@@ -138,11 +138,7 @@ bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
   out.wi = frame_.toWorld(local);
   if ((local.z > 0) != (glm::dot(geometricNormal_, out.wi) > 0)) return false;
   out.lobes = lobes_;
-  if (smooth_) {
-    out.weight = weight;
-    out.pdf = 0;
-    return true;
-  }
+  if (smooth_) return completeDelta(weight, out);
   return completeSample(evaluate(out.wi, lobes_), out);
 }
 

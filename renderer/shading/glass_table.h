@@ -1,32 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much light a rough boundary between dielectrics scatters in one bounce: what Glass's energy
-// compensation needs.
+// Albedo of a rough boundary between dielectrics in one bounce, for energy compensation.
 #pragma once
 
-#include <vector>
+#include "math/grid_table.h"
 
 namespace chromeball {
 
-// Albedo in one bounce, reflection and refraction together, of GGX microfacets that lose nothing
-// themselves; below 1 by what they mask and would scatter again. They reflect all light beyond the
-// critical angle, and before it a share that is an affine function of Fresnel's, F:
+// Albedo in one bounce, reflection and refraction together, of GGX microfacets that absorb nothing;
+// below 1 by what they mask and would scatter again. They reflect all light beyond the critical
+// angle, and before it a fraction that is affine in Fresnel's reflectance F:
 //   reflectance = offset + slope F,   albedo = plain + offset a + slope b.
 struct GlassAlbedo {
   float plain, a, b;
   float at(float offset, float slope) const { return plain + offset * a + slope * b; }
+
+  friend GlassAlbedo mix(const GlassAlbedo& x, const GlassAlbedo& y, float t) {
+    return {glm::mix(x.plain, y.plain, t), glm::mix(x.a, y.a, t), glm::mix(x.b, y.b, t)};
+  }
 };
 
+// Over the index of refraction, perceptual roughness and the cosine of the viewing angle.
+// 49 x 20 x 40 nodes, 460 KB; takes 0.33 s of one core to build, on all cores.
 class GlassTable {
  public:
-  // Tabulated by quadrature once a process, on first use, which must not be inside a parallel loop.
-  static const GlassTable& get();
+  GlassTable();
 
-  // `mu`: cosine of the viewing angle; `eta` as in dielectric.h; perceptual roughness.
+  // `mu`: cosine of the viewing angle; `eta` as in fresnel.h; perceptual roughness in [0, 1].
   GlassAlbedo albedo(float mu, float roughness, float eta) const;
 
  private:
-  GlassTable();
-  std::vector<GlassAlbedo> cells_;  // kEtas x kRoughnesses x kAngles
+  static constexpr int kEtas = 49, kRoughnesses = 20, kAngles = 40;
+  GridTable<GlassAlbedo, kEtas, kRoughnesses, kAngles> grid_;
 };
 
 }  // namespace chromeball

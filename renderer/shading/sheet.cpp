@@ -6,7 +6,7 @@
 namespace chromeball {
 
 Sheet::Sheet(const Rgb& fraction, float roughness, const Surface& surface, const vec3& wo,
-             float mirrorAlpha)
+             const BsdfTables& tables, float mirrorAlpha)
     : frame_(surface.normal),
       geometricNormal_(surface.geometricNormal),
       wo_(wo),
@@ -19,11 +19,11 @@ Sheet::Sheet(const Rgb& fraction, float roughness, const Surface& surface, const
   localWo_.z = std::max(localWo_.z, 1e-6f);
   lambdaO_ = ggx::lambda(localWo_.z, alpha_);
   if (smooth_) return;
-  const SpecularAlbedo white = EnergyTable::get().row(roughness).at(localWo_.z);
+  const SpecularAlbedo white = tables.energy->row(roughness).at(localWo_.z);
   gain_ = 1 / (white.a + white.b);
 }
 
-Bsdf::Value Sheet::evaluate(const vec3& wi, Lobes lobes) const {
+BsdfValue Sheet::evaluate(const vec3& wi, Lobes lobes) const {
   vec3 local = frame_.toLocal(wi);
   if (!has(lobes) || local.z >= 0 || glm::dot(geometricNormal_, wi) >= 0) return {Rgb(0), 0};
   local.z = -local.z;
@@ -35,8 +35,9 @@ Bsdf::Value Sheet::evaluate(const vec3& wi, Lobes lobes) const {
 
 bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
   if (smooth_) {
-    out = {-wo_, fraction_, 0, lobes_};
-    return true;
+    out.wi = -wo_;
+    out.lobes = lobes_;
+    return completeDelta(fraction_, out);
   }
   const vec3 h = ggx::sampleVisibleNormal(localWo_, alpha_, u);
   vec3 local = 2 * glm::dot(localWo_, h) * h - localWo_;

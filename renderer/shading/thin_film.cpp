@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/thin_film.h"
 
-#include "shading/dielectric.h"
+#include "shading/fresnel.h"
 
 namespace chromeball {
 namespace {
 
-float schlick(float f0, float cosine) {
-  const float c = 1 - cosine, c2 = c * c;
-  return f0 + (1 - f0) * (c2 * c2 * c);
-}
-
-float f0Between(float a, float b) {
+// Fresnel's reflectance at normal incidence between media of these indices.
+float normalReflectance(float a, float b) {
   const float r = (a - b) / (a + b);
   return r * r;
 }
 
-// The fit of the CIE's colour matching functions by Gaussians (Belcour and Barla, section 4 and
-// supplemental material), transformed: the XYZ of cos(2 pi path / wavelength + shift) over a flat
-// spectrum, as linear Rec. 709. `path` in nanometres.
+// The XYZ of cos(2 pi path / wavelength + shift) over a flat spectrum, as linear Rec. 709: the
+// Fourier transform of Gaussians fitted to the CIE's colour matching functions (Belcour and Barla
+// 2017, section 4 and supplemental material). `path` in nanometres.
 Rgb sensitivity(float path, float shift) {
   const float phase = 2 * kPi * path * 1e-9f;
   const auto peak = [&](float value, float position, float variance) {
@@ -37,7 +33,7 @@ Rgb sensitivity(float path, float shift) {
 }  // namespace
 
 Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float cosine) {
-  // A vanishing film is air.
+  // A film is air as its thickness goes to 0 (KHR_materials_iridescence).
   const float film = glm::mix(1.0f, filmIor, glm::smoothstep(0.0f, 0.03f, thickness));
   const float sin2 = (1 - cosine * cosine) / (film * film);
   if (sin2 >= 1) return Rgb(1);
@@ -50,7 +46,7 @@ Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float
   for (int c = 0; c < 3; ++c) {
     const float root = std::sqrt(glm::clamp(baseF0[c], 0.0f, 0.9999f));
     const float base = (1 + root) / (1 - root);
-    const float r23 = schlick(f0Between(base, film), inside);
+    const float r23 = fresnelSchlick(normalReflectance(base, film), 1.0f, inside);
     const float shift = shift21 + (base < film ? kPi : 0);
     const float r123 = glm::clamp(r12 * r23, 1e-5f, 0.9999f);
     const float rs = passed * passed * r23 / (1 - r123);

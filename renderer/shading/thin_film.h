@@ -6,15 +6,16 @@
 
 namespace chromeball {
 
-// Reflectance under the cosine `cosine` of a film of index `filmIor`, `thickness` nanometres thick,
-// on a base of reflectance `baseF0` at normal incidence in air. Airy's sum of the first two orders,
-// with the eye's sensitivity integrated in Fourier space: Belcour and Barla 2017, "A Practical
-// Extension to Microfacet Theory for the Modeling of Varying Iridescence", as the extension has it;
-// but by Fresnel's equations where air meets the film, since Schlick's let a film of air reflect.
+// Reflectance of a film of index `filmIor` and `thickness` nanometres on a base of reflectance
+// `baseF0` at normal incidence in air, for the angle of incidence with cosine `cosine`. The first
+// two orders of Airy's sum, with the eye's sensitivity integrated in Fourier space (Belcour and
+// Barla 2017, "A Practical Extension to Microfacet Theory for the Modeling of Varying
+// Iridescence"), as in the extension; but with Fresnel's equations between air and film, since by
+// Schlick's approximation a film of air would reflect.
 Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float cosine);
 
-// The F0 with which Schlick's Fresnel term (F90 = 1) gives the film's reflectance under this
-// cosine: the film as a metallic-roughness lobe knows it.
+// The F0 with which Schlick's approximation (F90 = 1) gives the film's reflectance at this cosine:
+// the form in which a metallic-roughness lobe takes the film.
 Rgb thinFilmF0(const Rgb& baseF0, float filmIor, float thickness, float cosine);
 
 }  // namespace chromeball

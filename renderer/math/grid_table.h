@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A function tabulated at the nodes of a regular grid of any dimension.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// A position along one dimension of a grid: between nodes `low` and `low + 1`, at the fraction
+// `blend` in [0, 1] of the way.
+struct GridPosition {
+  int low;
+  float blend;
+
+  // `t`: 0 at the first of `nodes` nodes (at least 2), 1 at the last; clamped, and NaN counts as 0.
+  GridPosition(float t, int nodes) {
+    const float x = std::min(std::max(0.0f, t), 1.0f) * float(nodes - 1);
+    low = std::min(int(x), nodes - 2);
+    blend = x - float(low);
+  }
+};
+
+// `kNodes`: the number of nodes along each dimension, at least 2. Nodes that are neighbours in the
+// last dimension are neighbours in memory. Reading is safe from several threads.
+template <class Value, int... kNodes>
+class GridTable {
+ public:
+  static constexpr size_t kDimensions = sizeof...(kNodes);
+  static constexpr std::array<int, kDimensions> kSize{kNodes...};
+  using Position = std::array<GridPosition, kDimensions>;
+
+  GridTable() : values_((size_t(kNodes) * ...)) {}
+
+  // The value at the node with these indices.
+  Value& node(const std::array<int, kDimensions>& indices) {
+    size_t offset = 0;
+    for (size_t d = 0; d < kDimensions; ++d)
+      offset = offset * size_t(kSize[d]) + size_t(indices[d]);
+    return values_[offset];
+  }
+
+  // Multilinear interpolation, along the last dimension first, by mix(a, b, blend): glm's, or the
+  // function of this name beside the type Value.
+  Value interpolate(const Position& position) const { return mixAlong<0>(position, 0); }
+
+  // The same up to rounding, as the sum over the 2^kDimensions corners of weight times value.
+  Value weightedSum(const Position& position) const {
+    Value sum{};
+    for (size_t corner = 0; corner < size_t(1) << kDimensions; ++corner) {
+      size_t offset = 0;
+      float weight = 1;
+      for (size_t d = 0; d < kDimensions; ++d) {
+        const bool high = corner >> d & 1;
+        offset = offset * size_t(kSize[d]) + size_t(position[d].low + high);
+        weight *= high ? position[d].blend : 1 - position[d].blend;
+      }
+      sum += weight * values_[offset];
+    }
+    return sum;
+  }
+
+ private:
+  // `offset`: index of the line, plane, ... chosen by the dimensions before kDimension.
+  template <size_t kDimension>
+  Value mixAlong(const Position& position, size_t offset) const {
+    using glm::mix;
+    const auto [low, blend] = position[kDimension];
+    offset = offset * size_t(kSize[kDimension]) + size_t(low);
+    if constexpr (kDimension + 1 == kDimensions)
+      return mix(values_[offset], values_[offset + 1], blend);
+    else
+      return mix(mixAlong<kDimension + 1>(position, offset),
+                 mixAlong<kDimension + 1>(position, offset + 1), blend);
+  }
+
+  std::vector<Value> values_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What evaluating and sampling a BSDF return.
+#pragma once
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// Strategies that put lights in the probe's place would show these one by one in narrow lobes,
+// which therefore see the probe itself (LightingStrategy::mirrorAlpha). A BSDF is the sum of its
+// lobes of either kind, and each sum has its own samples, pdf and MIS weights.
+enum class Lobes {
+  Broad,
+  Narrow,  // GGX with alpha below the limit; also perfect mirrors, which evaluate() does not show
+};
+
+struct BsdfValue {
+  Rgb fCos;   // f times |cos| at the shading normal
+  float pdf;  // of sample(), over solid angle
+};
+
+struct BsdfSample {
+  vec3 wi;       // unit, away from the surface
+  Rgb weight;    // f |cos| / pdf, both of the lobes that were sampled
+  float pdf;     // over solid angle; 0 for a delta
+  Lobes lobes;   // that were sampled
+  bool isDelta;  // wi is the only direction of a perfect mirror or a smooth refraction
+};
+
+// Completes a sample in the direction out.wi, where out.lobes have `value`; false where the pdf is
+// 0. NaN passes, to be counted by the film.
+inline bool completeSample(const BsdfValue& value, BsdfSample& out) {
+  if (value.pdf <= 0) return false;
+  out.weight = value.fCos / value.pdf;
+  out.pdf = value.pdf;
+  out.isDelta = false;
+  return true;
+}
+
+// Completes a sample in the only direction of a delta lobe.
+inline bool completeDelta(const Rgb& weight, BsdfSample& out) {
+  out.weight = weight;
+  out.pdf = 0;
+  out.isDelta = true;
+  return true;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shading/bsdf_tables.h"
+
+#include <algorithm>
+
+namespace chromeball {
+namespace {
+
+// Textures scale the factors of a material by at most 1: what is 0 stays 0.
+bool needsEnergy(const Material& m) { return m.metallic > 0 || m.specular > 0 || m.extended; }
+bool needsAnisotropic(const Material& m) { return m.extended && m.extended->anisotropy > 0; }
+bool needsSheen(const Material& m) { return m.extended && !isBlack(m.extended->sheenColor); }
+bool needsGlass(const Material& m) { return m.isBody() && m.roughness > 0; }
+
+}  // namespace
+
+BsdfTables::BsdfTables(std::span<const Material> materials) {
+  if (std::ranges::any_of(materials, needsEnergy)) energy.emplace();
+  if (std::ranges::any_of(materials, needsAnisotropic)) anisotropic.emplace();
+  if (std::ranges::any_of(materials, needsSheen)) sheen.emplace();
+  if (std::ranges::any_of(materials, needsGlass)) glass.emplace();
+}
+
+}  // namespace chromeball

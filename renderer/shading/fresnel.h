@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reflection and refraction at a smooth boundary. `eta`: the index of refraction on the far side
+// over that on the near side, from which the light is seen.
+#pragma once
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+// Fresnel's equations: the fraction of unpolarised light that is reflected; 1 for total internal
+// reflection. `cosine`: of the angle of incidence, on the near side.
+inline float fresnelDielectric(float cosine, float eta) {
+  const float sin2 = (1 - cosine * cosine) / (eta * eta);  // on the far side, by Snell's law
+  if (sin2 >= 1) return 1;
+  const float beyond = std::sqrt(1 - sin2);
+  const float s = (cosine - eta * beyond) / (cosine + eta * beyond);
+  const float p = (eta * cosine - beyond) / (eta * cosine + beyond);
+  return 0.5f * (s * s + p * p);
+}
+
+// Schlick's approximation (Schlick 1994, "An Inexpensive BRDF Model for Physically-based
+// Rendering"), with the reflectance at normal and at grazing incidence.
+template <class T>
+T fresnelSchlick(const T& f0, const T& f90, float cosine) {
+  const float c = 1 - cosine, c2 = c * c;
+  return f0 + (f90 - f0) * (c2 * c2 * c);
+}
+
+// The direction (unit) in which light seen along wo is refracted at a facet with normal h
+// (wo.h > 0), by Snell's law. Undefined for total internal reflection.
+inline vec3 refracted(const vec3& wo, const vec3& h, float eta) {
+  const float cosine = glm::dot(wo, h);
+  const float beyond = std::sqrt(std::max(0.0f, 1 - (1 - cosine * cosine) / (eta * eta)));
+  return -wo / eta + (cosine / eta - beyond) * h;
+}
+
+}  // namespace chromeball
