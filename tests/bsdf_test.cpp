@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BSDF: its sampler, its energy, its reciprocity.
+// Plain BSDFs: their samplers, their energy, their reciprocity.
 #include <gtest/gtest.h>
 
+#include "all_tables.h"
 #include "math/sobol.h"
 #include "shading/bsdf.h"
 #include "shading/ggx.h"
@@ -30,7 +31,7 @@ constexpr float kRoughnesses[] = {0.2f, 0.4f, 0.7f, 1};
 constexpr float kMetals[] = {0, 0.5f, 1};
 constexpr float kAngles[] = {0, 30, 60, 80, 89};
 
-TEST(Ggx, visibleNormalsHaveTheirDensity) {
+TEST(Ggx, visibleNormalsHaveTheirPdf) {
   for (float alpha : {0.05f, 0.3f, 1.0f})
     for (float angle : {0.0f, 45.0f, 85.0f}) {
       const vec3 wo = directionAt(angle);
@@ -53,7 +54,7 @@ TEST(SlowBsdf, samplesItsPdfOverTheGrid) {
     for (float metallic : kMetals)
       for (float angle : kAngles) {
         const Bsdf bsdf(metallicRoughness(metallic, roughness, Rgb(0.8f, 0.5f, 0.2f)),
-                        flatSurface(), directionAt(angle));
+                        flatSurface(), directionAt(angle), allTables());
         const SphereTest test = testDirections(
             [&](int i) -> std::optional<vec3> {
               BsdfSample s;
@@ -67,7 +68,7 @@ TEST(SlowBsdf, samplesItsPdfOverTheGrid) {
       }
 }
 
-// Share of the light from a uniform white surrounding that is reflected: albedo by sampling.
+// Fraction of the light from a uniform white surrounding that is reflected, estimated by sampling.
 struct Albedo {
   double mean, error;
 };
@@ -89,7 +90,8 @@ TEST(SlowBsdf, whiteFurnaceLosesNothing) {
   for (float roughness : {0.0f, 0.005f, 0.02f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 0.93f, 1.0f})
     for (float metallic : kMetals)
       for (float angle : {0.0f, 20.0f, 45.0f, 70.0f, 80.0f, 86.0f, 89.0f}) {
-        const Bsdf bsdf(metallicRoughness(metallic, roughness), flatSurface(), directionAt(angle));
+        const Bsdf bsdf(metallicRoughness(metallic, roughness), flatSurface(), directionAt(angle),
+                        allTables());
         const Albedo a = albedo(bsdf, 1 << 17);
         EXPECT_NEAR(a.mean, 1, 0.005) << roughness << " " << metallic << " " << angle;
         EXPECT_LT(a.mean, 1 + 3e-3) << roughness << " " << metallic << " " << angle;
@@ -100,14 +102,36 @@ TEST(Bsdf, lambertIsExact) {
   MaterialPoint material = metallicRoughness(0, 1, Rgb(0.8f, 0.4f, 0.1f));
   material.dielectricF0 = Rgb(0);
   material.dielectricF90 = 0;
-  const Bsdf bsdf(material, flatSurface(), directionAt(50));
+  const Bsdf bsdf(material, flatSurface(), directionAt(50), allTables());
   for (float angle : {0.0f, 33.0f, 88.0f}) {
-    const Bsdf::Value v = bsdf.evaluate(directionAt(angle));
+    const BsdfValue v = bsdf.evaluate(directionAt(angle));
     EXPECT_NEAR(v.fCos.x, 0.8f * kInvPi * std::cos(angle * kPi / 180), 1e-6);
   }
   BsdfSample s;
   ASSERT_TRUE(bsdf.sample({0.3f, 0.4f}, 0.5f, s));
   EXPECT_EQ(s.weight, Rgb(0.8f, 0.4f, 0.1f));
+}
+
+// A material without specular reflection needs no tables.
+TEST(Bsdf, lambertNeedsNoTables) {
+  const BsdfTables none({});
+  const MaterialPoint matte{Rgb(0.5f), 0, 1, Rgb(0), 0};
+  const Bsdf bsdf(matte, flatSurface(), directionAt(50), none);
+  EXPECT_FALSE(bsdf.isLayered());
+  EXPECT_FALSE(bsdf.has(Lobes::Narrow));
+  EXPECT_NEAR(bsdf.evaluate({0, 0, 1}).fCos.x, 0.5f * kInvPi, 1e-6f);
+}
+
+// Only perfect mirrors are deltas.
+TEST(Bsdf, smoothSamplesAreDeltas) {
+  for (const float roughness : {0.0f, 0.005f, 0.02f, 0.5f}) {
+    const Bsdf bsdf(metallicRoughness(1, roughness), flatSurface(), directionAt(50), allTables());
+    BsdfSample s;
+    ASSERT_TRUE(bsdf.sample({0.3f, 0.4f}, 0.5f, s));
+    EXPECT_EQ(s.isDelta, roughness < 0.01f) << roughness;
+    EXPECT_EQ(s.pdf == 0, s.isDelta) << roughness;
+    if (s.isDelta) EXPECT_FALSE(bsdf.has(Lobes::Narrow)) << roughness;
+  }
 }
 
 TEST(Bsdf, isReciprocal) {
@@ -117,8 +141,8 @@ TEST(Bsdf, isReciprocal) {
       for (int i = 0; i < 200; ++i) {
         const vec3 a = squareToUniformHemisphere(random2(i, 0));
         const vec3 b = squareToUniformHemisphere(random2(i, 2));
-        const Rgb ab = Bsdf(material, flatSurface(), a).evaluate(b).fCos / b.z;
-        const Rgb ba = Bsdf(material, flatSurface(), b).evaluate(a).fCos / a.z;
+        const Rgb ab = Bsdf(material, flatSurface(), a, allTables()).evaluate(b).fCos / b.z;
+        const Rgb ba = Bsdf(material, flatSurface(), b, allTables()).evaluate(a).fCos / a.z;
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(ab[c], ba[c], 1e-3 * (ab[c] + 1e-3));
       }
     }
@@ -129,7 +153,7 @@ TEST(Bsdf, noColourOfDielectricGainsEnergy) {
     MaterialPoint material = metallicRoughness(0, 0.4f);
     material.dielectricF0 = color * 0.5f;
     for (float angle : kAngles) {
-      const Bsdf bsdf(material, flatSurface(), directionAt(angle));
+      const Bsdf bsdf(material, flatSurface(), directionAt(angle), allTables());
       Rgb sum(0);
       for (uint32_t i = 0; i < 8192; ++i) {
         BsdfSample s;
@@ -150,7 +174,7 @@ TEST(Bsdf, shadingNormalsNeitherBlackenNorLeak) {
     surface.normal = squareToUniformHemisphere(random2(i, 2));
     if (surface.normal.z < 0.3f) continue;
     for (float roughness : {0.0f, 0.1f, 0.5f}) {
-      const Bsdf bsdf(metallicRoughness(1, roughness), surface, wo);
+      const Bsdf bsdf(metallicRoughness(1, roughness), surface, wo, allTables());
       int passed = 0;
       for (int k = 0; k < 64; ++k) {
         BsdfSample s;

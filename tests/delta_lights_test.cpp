@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "all_tables.h"
 #include "base/error.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/methods.h"
@@ -13,7 +14,7 @@
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
-#include "shading/extended_bsdf.h"
+#include "shading/bsdf.h"
 #include "test_scene.h"
 
 namespace chromeball {
@@ -188,12 +189,6 @@ class ExtendedLightPoint {
     surface.geometricNormal = {0, 0, 1};
     surface.normal = glm::normalize(vec3(1, 0.5f, 0.8f));  // as a bump's; the coat has none
     surface.frontFace = true;
-    Material material;
-    material.roughness = roughness;
-    material.extended.emplace();
-    material.extended->transmission = transmission;
-    material.extended->thinWalled = thinWalled;
-    prepareExtendedBsdf(material);
     ExtendedPoint extended;
     extended.transmission = transmission;
     extended.thinWalled = thinWalled;
@@ -202,8 +197,7 @@ class ExtendedLightPoint {
     extended.clearcoatNormal = surface.geometricNormal;
     const vec3 wo = glm::normalize(vec3(0.3f, -0.2f, 1));
     const MaterialPoint tinted{Rgb(0.8f, 0.7f, 0.6f), 0, roughness, Rgb(0.04f), 1};
-    lobes_.emplace(tinted, extended, RefractiveIndex{Rgb(1.5f), 1.5f}, surface, wo, 0);
-    bsdf_.emplace(*lobes_);
+    bsdf_.emplace(tinted, extended, RefractiveIndex{Rgb(1.5f), 1.5f}, surface, wo, allTables());
     point_ = {vec3(0), bsdf_->normal(), &*bsdf_, 0, bsdf_->transmits()};
   }
   ExtendedLightPoint(const ExtendedLightPoint&) = delete;
@@ -219,7 +213,6 @@ class ExtendedLightPoint {
   }
 
  private:
-  std::optional<ExtendedBsdf> lobes_;
   std::optional<Bsdf> bsdf_;
   LightPoint point_;
 };

@@ -4,7 +4,7 @@
 
 #include "probe/rasterize.h"
 #include "probe/synth.h"
-#include "shading/dielectric.h"
+#include "shading/fresnel.h"
 #include "test_scene.h"
 
 namespace chromeball {

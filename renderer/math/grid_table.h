@@ -18,7 +18,8 @@ struct GridPosition {
 
   // `t`: 0 at the first of `nodes` nodes (at least 2), 1 at the last; clamped, and NaN counts as 0.
   GridPosition(float t, int nodes) {
-    const float x = std::min(std::max(0.0f, t), 1.0f) * float(nodes - 1);
+    const float inside = t > 0 ? t : 0;  // false for NaN
+    const float x = (inside < 1 ? inside : 1) * float(nodes - 1);
     low = std::min(int(x), nodes - 2);
     blend = x - float(low);
   }
@@ -47,20 +48,20 @@ class GridTable {
   // function of this name beside the type Value.
   Value interpolate(const Position& position) const { return mixAlong<0>(position, 0); }
 
-  // The same up to rounding, as the sum over the 2^kDimensions corners of weight times value.
-  Value weightedSum(const Position& position) const {
-    Value sum{};
-    for (size_t corner = 0; corner < size_t(1) << kDimensions; ++corner) {
-      size_t offset = 0;
+  // Calls visit(value, weight) for the 2^kDimensions corners around the position: the sum of weight
+  // times value is interpolate() up to rounding.
+  template <class Visit>
+  void forCorners(const Position& position, Visit&& visit) const {
+    for (int corner = 0; corner < 1 << kDimensions; ++corner) {
+      int offset = 0;
       float weight = 1;
       for (size_t d = 0; d < kDimensions; ++d) {
-        const bool high = corner >> d & 1;
-        offset = offset * size_t(kSize[d]) + size_t(position[d].low + high);
+        const int high = corner >> d & 1;
+        offset = offset * kSize[d] + position[d].low + high;
         weight *= high ? position[d].blend : 1 - position[d].blend;
       }
-      sum += weight * values_[offset];
+      visit(values_[size_t(offset)], weight);
     }
-    return sum;
   }
 
  private:

@@ -30,9 +30,15 @@ AnisotropicTable::AnisotropicTable() {
 
 SpecularAlbedo AnisotropicTable::albedo(const vec3& wo, float roughness, float strength) const {
   const float turns = atan2Turns(std::fabs(wo.y), std::fabs(wo.x));
-  return grid_.weightedSum(
+  SpecularAlbedo sum{0, 0};
+  grid_.forCorners(
       {GridPosition(std::sqrt(roughness), kRoughnesses), GridPosition(strength, kStrengths),
-       GridPosition(std::sqrt(wo.z), kAngles), GridPosition(4 * turns, kAzimuths)});
+       GridPosition(std::sqrt(wo.z), kAngles), GridPosition(4 * turns, kAzimuths)},
+      [&](const SpecularAlbedo& value, float weight) {
+        sum.a += weight * value.a;
+        sum.b += weight * value.b;
+      });
+  return sum;
 }
 
 }  // namespace chromeball

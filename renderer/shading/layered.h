@@ -29,7 +29,7 @@ class Layered {
   // As for MetallicRoughness.
   Layered(const MaterialPoint& material, const ExtendedPoint& extended,
           const RefractiveIndex& index, const Surface& surface, const vec3& wo,
-          const BsdfTables& tables, float mirrorAlpha);
+          const BsdfTables& tables, float mirrorAlpha = 0);
 
   BsdfValue evaluate(const vec3& wi, Lobes lobes = Lobes::Broad) const;
   bool sample(vec2 u, float lobe, BsdfSample& out) const;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// BSDFs of extended materials: their samplers, their energy, where they are reciprocal.
+// BSDFs of materials with extensions: their samplers, their energy, where they are reciprocal.
 #include <gtest/gtest.h>
 
+#include "all_tables.h"
 #include "math/sobol.h"
-#include "shading/dielectric.h"
-#include "shading/extended_bsdf.h"
+#include "shading/fresnel.h"
+#include "shading/layered.h"
 #include "shading/thin_film.h"
 #include "sphere_test.h"
 
@@ -36,9 +37,9 @@ struct Case {
   RefractiveIndex index{Rgb(1.5f), 1.5f};
   bool frontFace = true;
 
-  ExtendedBsdf from(float degrees, float mirrorAlpha = 0) const {
-    return ExtendedBsdf(material, extended, index, flatSurface(frontFace), directionAt(degrees),
-                        mirrorAlpha);
+  Layered from(float degrees, float mirrorAlpha = 0) const {
+    return Layered(material, extended, index, flatSurface(frontFace), directionAt(degrees),
+                   allTables(), mirrorAlpha);
   }
 };
 
@@ -79,7 +80,7 @@ ExtendedPoint filmed(float ior, float thickness) {
   return e;
 }
 
-// White in every part, so that nothing is to be lost.
+// White in every part: no light may be lost.
 std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
   std::vector<Case> cases;
   for (float r : roughnesses) {
@@ -133,13 +134,13 @@ std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
   return cases;
 }
 
-TEST(SlowExtendedBsdf, samplesItsPdfOverTheGrid) {
+TEST(SlowLayeredBsdf, samplesItsPdfOverTheGrid) {
   const std::vector<Case> cases = whiteCases({0.3f, 1});
   constexpr float kAngles[] = {25, 75};
   const int tests = int(cases.size() * std::size(kAngles));
   for (const Case& c : cases)
     for (float angle : kAngles) {
-      const ExtendedBsdf bsdf = c.from(angle);
+      const Layered bsdf = c.from(angle);
       const SphereTest test = testDirections(
           [&](int i) -> std::optional<vec3> {
             BsdfSample s;
@@ -152,7 +153,7 @@ TEST(SlowExtendedBsdf, samplesItsPdfOverTheGrid) {
     }
 }
 
-Rgb albedo(const ExtendedBsdf& bsdf, int samples) {
+Rgb albedo(const Layered& bsdf, int samples) {
   glm::dvec3 sum(0);
   for (int i = 0; i < samples; ++i) {
     BsdfSample s;
@@ -162,7 +163,7 @@ Rgb albedo(const ExtendedBsdf& bsdf, int samples) {
   return Rgb(sum / double(samples));
 }
 
-TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
+TEST(SlowLayeredBsdf, whiteFurnaceLosesNothing) {
   for (const Case& c : whiteCases({0, 0.02f, 0.1f, 0.25f, 0.5f, 0.8f, 1}))
     for (float angle : {0.0f, 30.0f, 60.0f, 80.0f, 88.0f}) {
       const Rgb a = albedo(c.from(angle), 1 << 13);
@@ -175,7 +176,7 @@ TEST(SlowExtendedBsdf, whiteFurnaceLosesNothing) {
 
 // KHR_materials_specular changes how much glass reflects, and so how much of it is masked; what it
 // does not reflect passes. Also at a boundary with another body, where the index is relative.
-TEST(SlowExtendedBsdf, glassOfAnySpecularStrengthLosesNothing) {
+TEST(SlowLayeredBsdf, glassOfAnySpecularStrengthLosesNothing) {
   struct Index {
     float ior, outer;
   };
@@ -208,13 +209,13 @@ TEST(SlowExtendedBsdf, glassOfAnySpecularStrengthLosesNothing) {
             }
 }
 
-TEST(ExtendedBsdf, weightsAreValueOverDensity) {
+TEST(LayeredBsdf, weightsAreValueOverPdf) {
   for (const Case& c : whiteCases({0.3f, 0.7f})) {
-    const ExtendedBsdf bsdf = c.from(50);
+    const Layered bsdf = c.from(50);
     for (int i = 0; i < 300; ++i) {
       BsdfSample s;
-      if (!bsdf.sample(random2(i, 0), random1(i, 2), s) || s.pdf == 0) continue;
-      const Bsdf::Value v = bsdf.evaluate(s.wi);
+      if (!bsdf.sample(random2(i, 0), random1(i, 2), s) || s.isDelta) continue;
+      const BsdfValue v = bsdf.evaluate(s.wi);
       ASSERT_NEAR(v.pdf, s.pdf, 1e-3f * s.pdf) << c.name;
       for (int k = 0; k < 3; ++k)
         ASSERT_NEAR(v.fCos[k] / v.pdf, s.weight[k], 1e-3f * (s.weight[k] + 1e-3f)) << c.name;
@@ -223,14 +224,14 @@ TEST(ExtendedBsdf, weightsAreValueOverDensity) {
 }
 
 // The limit decides which lobes see what, and changes none of them; samples are of one kind.
-TEST(ExtendedBsdf, broadAndNarrowLobesAreTheWhole) {
+TEST(LayeredBsdf, broadAndNarrowLobesAreTheWhole) {
   for (const float limit : {0.05f, 0.3f})
     for (const Case& c : whiteCases({0.1f, 0.4f, 0.8f})) {
-      const ExtendedBsdf whole = c.from(50), parts = c.from(50, limit);
+      const Layered whole = c.from(50), parts = c.from(50, limit);
       for (int i = 0; i < 200; ++i) {
         const vec3 wi = squareToUniformSphere(random2(i, 0));
-        const Bsdf::Value all = whole.evaluate(wi), broad = parts.evaluate(wi),
-                          narrow = parts.evaluate(wi, Lobes::Narrow);
+        const BsdfValue all = whole.evaluate(wi), broad = parts.evaluate(wi),
+                        narrow = parts.evaluate(wi, Lobes::Narrow);
         ASSERT_NEAR(broad.pdf + narrow.pdf, all.pdf, 1e-4f * all.pdf) << c.name;
         for (int k = 0; k < 3; ++k)
           ASSERT_NEAR(broad.fCos[k] + narrow.fCos[k], all.fCos[k], 1e-4f * all.fCos[k]) << c.name;
@@ -238,7 +239,7 @@ TEST(ExtendedBsdf, broadAndNarrowLobesAreTheWhole) {
         ASSERT_TRUE(broad.pdf == 0 || parts.has(Lobes::Broad)) << c.name;
         BsdfSample s;
         if (!parts.sample(random2(i, 0), random1(i, 2), s)) continue;
-        const Bsdf::Value own = parts.evaluate(s.wi, s.lobes);
+        const BsdfValue own = parts.evaluate(s.wi, s.lobes);
         ASSERT_NEAR(own.pdf, s.pdf, 1e-3f * s.pdf) << c.name;
         for (int k = 0; k < 3; ++k)
           ASSERT_NEAR(own.fCos[k] / own.pdf, s.weight[k], 1e-3f * (s.weight[k] + 1e-3f)) << c.name;
@@ -247,7 +248,7 @@ TEST(ExtendedBsdf, broadAndNarrowLobesAreTheWhole) {
 }
 
 // The coat lies on a body's outer side: from within there is none.
-TEST(ExtendedBsdf, bodiesHaveNoCoatFromInside) {
+TEST(LayeredBsdf, bodiesHaveNoCoatFromInside) {
   for (const float roughness : {0.0f, 0.4f})
     for (const bool frontFace : {true, false}) {
       Case bare{"", dielectric(roughness), transmissive(1, false)};
@@ -257,7 +258,7 @@ TEST(ExtendedBsdf, bodiesHaveNoCoatFromInside) {
       coat.extended.clearcoat = 1;
       coat.extended.clearcoatRoughness = 0.3f;
       coat.extended.clearcoatNormal = {0, 0, 1};
-      const ExtendedBsdf a = bare.from(40), b = coat.from(40);
+      const Layered a = bare.from(40), b = coat.from(40);
       bool same = true;
       for (int i = 0; i < 500; ++i) {
         const vec3 wi = squareToUniformSphere(random2(i, 0));
@@ -265,6 +266,36 @@ TEST(ExtendedBsdf, bodiesHaveNoCoatFromInside) {
       }
       EXPECT_EQ(same, !frontFace) << roughness;
     }
+}
+
+TEST(LayeredBsdf, smoothGlassAndSheetsAreDeltas) {
+  for (const bool thinWalled : {true, false})
+    for (const float roughness : {0.0f, 0.3f}) {
+      const Case c{"", dielectric(roughness), transmissive(1, thinWalled)};
+      const Layered bsdf = c.from(40);
+      int samples = 0;
+      for (int i = 0; i < 200; ++i) {
+        BsdfSample s;
+        if (!bsdf.sample(random2(i, 0), random1(i, 2), s)) continue;
+        ++samples;
+        ASSERT_EQ(s.isDelta, roughness == 0) << thinWalled;
+        ASSERT_EQ(s.pdf == 0, s.isDelta) << thinWalled;
+      }
+      EXPECT_GT(samples, 100) << thinWalled << " " << roughness;
+    }
+}
+
+// A base without specular reflection is a Lambert lobe, and needs no tables.
+TEST(LayeredBsdf, baseWithoutSpecularIsLambert) {
+  const BsdfTables none({});
+  const MaterialPoint matte{Rgb(0.8f), 0, 0.5f, Rgb(0), 0};
+  const Layered bsdf(matte, {}, {}, flatSurface(), directionAt(30), none);
+  const Lambert lambert(Rgb(0.8f), {0, 0, 1}, {0, 0, 1});
+  for (int i = 0; i < 100; ++i) {
+    const vec3 wi = squareToUniformSphere(random2(i, 0));
+    ASSERT_EQ(bsdf.evaluate(wi).fCos, lambert.evaluate(wi).fCos);
+    ASSERT_EQ(bsdf.evaluate(wi).pdf, lambert.evaluate(wi).pdf);
+  }
 }
 
 // Fresnel at normal incidence and at Brewster's angle, total reflection, and Snell's law.
@@ -287,7 +318,7 @@ TEST(Dielectric, followsFresnelAndSnell) {
 }
 
 // For basic radiance: f(a to b) / n_a^2 is the same both ways, where no energy is made up for.
-TEST(ExtendedBsdf, smootherGlassIsReciprocal) {
+TEST(LayeredBsdf, smootherGlassIsReciprocal) {
   constexpr float kIor = 1.5f, kRoughness = 0.2f;
   int compared = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -297,10 +328,10 @@ TEST(ExtendedBsdf, smootherGlassIsReciprocal) {
     if (above.z < 0.5f || below.z > -0.5f) continue;
     Surface back = flatSurface(false);
     back.normal = back.geometricNormal = {0, 0, -1};
-    const ExtendedBsdf in(dielectric(kRoughness, kIor), transmissive(1, false), {Rgb(kIor), kIor},
-                          flatSurface(), above, 0);
-    const ExtendedBsdf out(dielectric(kRoughness, kIor), transmissive(1, false),
-                           {Rgb(1 / kIor), kIor}, back, below, 0);
+    const Layered in(dielectric(kRoughness, kIor), transmissive(1, false), {Rgb(kIor), kIor},
+                     flatSurface(), above, allTables());
+    const Layered out(dielectric(kRoughness, kIor), transmissive(1, false), {Rgb(1 / kIor), kIor},
+                      back, below, allTables());
     const float f = in.evaluate(below).fCos.x / -below.z;
     const float g = out.evaluate(above).fCos.x / above.z;
     if (f < 1e-3f) continue;
@@ -312,7 +343,7 @@ TEST(ExtendedBsdf, smootherGlassIsReciprocal) {
 }
 
 // The film's colour takes light from the base's specular part or adds to it, never to the whole.
-TEST(ExtendedBsdf, filmsOnDielectricsGainNothing) {
+TEST(LayeredBsdf, filmsOnDielectricsGainNothing) {
   for (float thickness : {0.0f, 150.0f, 400.0f, 1000.0f})
     for (float angle : {0.0f, 45.0f, 80.0f}) {
       Case c{"", dielectric(0.3f), {}};
@@ -324,12 +355,12 @@ TEST(ExtendedBsdf, filmsOnDielectricsGainNothing) {
 }
 
 // Rounding makes cosines a little larger than 1.
-TEST(ExtendedBsdf, sheenIsFiniteStraightOn) {
+TEST(LayeredBsdf, sheenIsFiniteStraightOn) {
   Surface surface = flatSurface();
   surface.normal.z = 1 + 2e-7f;
   const vec3 wo(0, 0, 1);
-  const ExtendedBsdf bsdf(dielectric(0.5f), sheened(Rgb(1), 0.3f), {}, surface, wo, 0);
-  const Bsdf::Value v = bsdf.evaluate(wo);
+  const Layered bsdf(dielectric(0.5f), sheened(Rgb(1), 0.3f), {}, surface, wo, allTables());
+  const BsdfValue v = bsdf.evaluate(wo);
   EXPECT_TRUE(isFinite(v.fCos));
   EXPECT_TRUE(std::isfinite(v.pdf));
 }
@@ -356,18 +387,18 @@ TEST(ThinFilm, quarterWaveCoatingIsDark) {
 }
 
 // The highlight of a brushed surface is wide along the tangent, narrow across.
-TEST(ExtendedBsdf, brushedHighlightsSpreadAlongTheTangent) {
+TEST(LayeredBsdf, brushedHighlightsSpreadAlongTheTangent) {
   MaterialPoint metal = dielectric(0.3f);
   metal.metallic = 1;
-  const ExtendedBsdf bsdf(metal, brushed(0.8f), {}, flatSurface(), {0, 0, 1}, 0);
+  const Layered bsdf(metal, brushed(0.8f), {}, flatSurface(), {0, 0, 1}, allTables());
   const vec3 along = glm::normalize(vec3(0.4f, 0.4f, 1)),
              across = glm::normalize(vec3(0.4f, -0.4f, 1));
   EXPECT_GT(bsdf.evaluate(along).fCos.x, 10 * bsdf.evaluate(across).fCos.x);
 }
 
-TEST(ExtendedBsdf, sheetMirrorsItsHighlightBelow) {
-  const ExtendedBsdf bsdf(dielectric(0.4f), transmissive(1, true), {Rgb(1.5f), 1.5f}, flatSurface(),
-                          directionAt(30), 0);
+TEST(LayeredBsdf, sheetMirrorsItsHighlightBelow) {
+  const Layered bsdf(dielectric(0.4f), transmissive(1, true), {Rgb(1.5f), 1.5f}, flatSurface(),
+                     directionAt(30), allTables());
   // The brightest direction below is straight on.
   float maximum = 0, at = 0;
   for (float angle = 0; angle < 80; angle += 1) {
