@@ -190,8 +190,8 @@ TEST(Hostile, SizeBombsAreRejectedByTheirHeaders) {
   model.add("textures", {{"source", 0}});
   model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   addTriangle(model, {{"material", 0}});
-  expectRefused({"render", model.save(), "-o", folder / "out.exr"}, "bomb.jpg): 65500 x 65500",
-                kGibibyte);
+  expectRefused({"render", model.save(), "-o", folder / "out.exr"},
+                "bomb.jpg): damaged image: 65500 x 65500", kGibibyte);
 }
 
 // An EXR with `attributes` of name, type and content; `length` is the stated length of the last

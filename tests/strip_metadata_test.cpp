@@ -263,7 +263,7 @@ TEST(SlowStripMetadata, JpegFramesAreCheckedBeforeTheFileIsOpened) {
   large[frame + 1] = 0xc2;
   std::fill_n(large.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xff));
   large.resize(9 << 20);
-  expectRefused({"probe", "info", saved(folder / "large.jpg", large)}, "more than the", kSmall);
+  expectRefused({"probe", "info", saved(folder / "large.jpg", large)}, "exceed the limit", kSmall);
   EXPECT_THROW(decodeImage(large, "large"), InputError);
   // No frame, and a truncated one.
   EXPECT_EQ(reason(Bytes(jpeg.begin(), jpeg.begin() + std::ptrdiff_t(frame) + 8)),
