@@ -103,7 +103,7 @@ TEST_F(SlowCommandCompare, stoppedRunKeepsWhatItHas) {
   // The largest cells take minutes; by the time the bar says a per cent, smaller ones are done.
   const CommandResult result = runCommand(arguments, "% ");
   EXPECT_EQ(result.status, 130) << result.error;
-  EXPECT_NE(result.error.find("the same command goes on from there"), std::string::npos);
+  EXPECT_NE(result.error.find("the same command continues from there"), std::string::npos);
 }
 
 TEST_F(SlowCommandCompare, referenceFromAFileAndTimes) {
@@ -295,7 +295,7 @@ TEST_F(SlowCommandCompare, numbersHaveTheDigitsTheirErrorsAllow) {
   EXPECT_GT(found, 4) << table;
 }
 
-TEST_F(SlowCommandCompare, saysThatItLeavesThePlateOut) {
+TEST_F(SlowCommandCompare, warnsThatItIgnoresThePlate) {
   std::ofstream(folder_ / "scene.toml")
       << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n[composite]\nplate = 'probe.exr'\n"
          "local_scene = ['0']\n";
@@ -303,7 +303,7 @@ TEST_F(SlowCommandCompare, saysThatItLeavesThePlateOut) {
       runCommand({"compare", folder_ / "scene.toml", "--size", "8x8", "-o", dir(), "--quiet",
                   "--strategies", "bsdf", "--samples", "1", "--reference-samples", "8"});
   ASSERT_EQ(result.status, 0) << result.error;
-  EXPECT_NE(result.error.find("[composite] is left out"), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("[composite] is ignored"), std::string::npos) << result.error;
 }
 
 }  // namespace

@@ -228,12 +228,14 @@ TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
   // Too dark a probe cannot explain the plate.
   const CommandResult dark =
       render(scene(std::string(kGood) + "\nreflectance = \"plate\""), {"--probe-scale", "0.2"});
-  EXPECT_NE(dark.error.find("do plate and probe agree in exposure?"), std::string::npos);
+  EXPECT_NE(dark.error.find("do plate and probe agree in exposure?; try --probe-scale "),
+            std::string::npos)
+      << dark.error;
 
   refused(scene(std::string(kGood) + "\nreflectance = \"plat\""), "did you mean `plate`?");
   refused(scene(std::string(kGood) + "\nspecular = 2"), "`specular` must be a number from 0 to 1");
   expectRefused({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
-                "layer `reflectance` is found where");
+                "layer `reflectance` needs reflectance =");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
@@ -242,7 +244,7 @@ TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
   refused(scene(kGood, room + "max = [0.5, 5, 2]"), "the model must lie inside [surroundings]");
   refused(scene(kGood, room + "max = [-3, 5, 2]"), "`max` must be above `min`");
   refused(scene(kGood, room + "max = [2, 5, 2]\ncapture = [0, 6, 0]"), "lies outside");
-  refused(scene(kGood, "[surroundings]\nshape = \"cone\""), "not \"cone\"");
+  refused(scene(kGood, "[surroundings]\nshape = \"cone\""), "`shape`: `cone` is not known");
   refused(scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]"),
           "has no `radius`");
 }

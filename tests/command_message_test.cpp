@@ -64,9 +64,9 @@ TEST_F(SlowCommandMessage, NumbersThatAreNoneAreNamed) {
     all.insert(all.end(), words.begin(), words.end());
     expectRefused(all, reason);
   };
-  refused({"--noise", "much"}, "--noise: `much` is not a number");
-  refused({"--samples", "many"}, "--samples: `many` is not a whole number");
-  refused({"--samples", "1.5"}, "--samples: `1.5` is not a whole number");
+  refused({"--noise", "much"}, "--noise: `much` is not a finite number above 0");
+  refused({"--samples", "many"}, "--samples: `many` is not a whole number from 1 to");
+  refused({"--samples", "1.5"}, "--samples: `1.5` is not a whole number from 1 to");
   refused({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
 }
 

@@ -149,7 +149,7 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   for (const char* name : {"a.exr", "a.hdr", "a.pfm", "a.png"})
     options.insert(options.end(), {"-o", scene.out / name});
   const CommandResult result = scene.render(options);
-  EXPECT_TRUE(result.out.starts_with("3 samples a pixel")) << result.out;
+  EXPECT_TRUE(result.out.starts_with("3 samples per pixel")) << result.out;
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.hdr", "a.pfm", "a.png", "stats.json"}));
 

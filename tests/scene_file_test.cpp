@@ -31,7 +31,7 @@ class SceneFileTest : public testing::Test {
     std::ofstream(scenePath(), std::ios::binary) << toml;
     return readSceneFile(scenePath());
   }
-  // A line before the text, so that a line number of 1 is always wrong.
+  // The text begins on line 2, so that a line number of 1 is always wrong.
   SceneFile readWithModel(const std::string& toml) const {
     return read("model = '../ball.glb'\n" + toml);
   }
@@ -43,7 +43,7 @@ class SceneFileTest : public testing::Test {
     }
     return "(no error)";
   }
-  // The error is one line, says `line` of the scene file, and mentions all of `words`.
+  // The error is one line, names `line` of the scene file, and contains all of `words`.
   void expectError(const std::string& toml, int line, const std::vector<std::string>& words) const {
     const std::string error = errorOf(toml);
     const std::string location = fmt::format("{}:{}: ", scenePath(), line);
@@ -56,36 +56,35 @@ class SceneFileTest : public testing::Test {
   fs::path root_;
 };
 
-TEST_F(SceneFileTest, ModelAloneLeavesAllElseOpen) {
+TEST_F(SceneFileTest, AModelAloneGivesNoOtherSetting) {
   const SceneFile scene = readWithModel("");
   ASSERT_EQ(scene.models.size(), 1u);
   EXPECT_EQ(scene.models[0].file, (root_ / "ball.glb").string());
   EXPECT_EQ(scene.models[0].placement.point({1, 2, 3}), vec3(1, 2, 3));
-  EXPECT_FALSE(scene.cameraName || scene.camera || scene.probe || scene.probeMapping);
-  EXPECT_FALSE(scene.probeRotation || scene.probeScale || scene.strategy || scene.mis);
-  EXPECT_FALSE(scene.size || scene.samples || scene.maxDepth || scene.seed);
-  EXPECT_FALSE(scene.timeLimit || scene.noiseLimit);
-  EXPECT_TRUE(scene.outputs.empty() && scene.aovs.empty());
+  EXPECT_FALSE(scene.camera || scene.lens || scene.composite || scene.surroundings);
+  for (const Setting& setting : settingTable())
+    EXPECT_FALSE(scene.settings.has(setting.name())) << setting.name();
 }
 
 TEST_F(SceneFileTest, LightsDepthsAndSides) {
   const SceneFile scene = readWithModel(
       "[lighting]\nlights = 0.25\nlight_units = 'radiometric'\n"
       "[render]\nmax_transmission_depth = 12\nsingle_sided = 'light'");
-  EXPECT_EQ(scene.modelLights, 0.25f);
-  EXPECT_EQ(scene.lightUnits->name, "radiometric");
-  EXPECT_EQ(scene.maxTransmissionDepth, 12);
-  EXPECT_EQ(scene.singleSided->name, "light");
-  EXPECT_EQ(scene.singleSided->location, scenePath() + ":7");
-  EXPECT_EQ(readWithModel("[lighting]\nlights = 'off'").modelLights, 0.0f);
+  const Settings& s = scene.settings;
+  EXPECT_EQ(s.get<double>("lighting.lights"), 0.25);
+  EXPECT_EQ(s.get<std::string>("lighting.light_units"), "radiometric");
+  EXPECT_EQ(s.get<uint64_t>("render.max_transmission_depth"), 12u);
+  EXPECT_EQ(s.get<std::string>("render.single_sided"), "light");
+  EXPECT_EQ(s.location("render.single_sided"), scenePath() + ":7");
+  EXPECT_EQ(readWithModel("[lighting]\nlights = 'off'").settings.get<double>("lighting.lights"), 0);
   expectError("[lighting]\nlights = 'on'", 3, {"`lights` must be \"off\" or a factor"});
   expectError("[lighting]\nlights = -1", 3, {"`lights` must be \"off\" or a factor"});
   expectError("[render]\nmax_transmision_depth = 2", 3, {"max_transmission_depth"});
   expectError("light = 3", 2, {"`light` must be a table"});
 }
 
-// What fuzzing found: an assertion of the TOML library ended the process.
-TEST_F(SceneFileTest, HeadersThatAreNoKeysAreErrors) {
+// Fuzzing found that an assertion of the TOML library ended the process.
+TEST_F(SceneFileTest, InvalidHeadersAreErrors) {
   for (const char* header : {"[[&odel]]", "[[ &]]", "[&]", "[a.&]"})
     expectError(header, 2, {"not valid TOML", "&"});
 }
@@ -147,30 +146,34 @@ aovs = ["albedo", "depth"]
   EXPECT_EQ(scene.camera->position, vec3(0, 0, 5));
   EXPECT_EQ(scene.camera->back, vec3(0, 0, 1));
   EXPECT_FLOAT_EQ(scene.camera->fov, kPi / 2);
-  EXPECT_EQ(scene.probe, (root_ / "sky.exr").string());
-  EXPECT_EQ(scene.probeMapping->name, "lat-long");
-  EXPECT_EQ(scene.probeRotation, -30.f);
-  EXPECT_EQ(scene.probeScale, 2.5f);
-  EXPECT_EQ(scene.strategy->name, "median-cut:64");
-  EXPECT_EQ(scene.strategy->location, scenePath() + ":12");
-  EXPECT_EQ(scene.mis->name, "power");
-  EXPECT_EQ(scene.size->width, 800);
-  EXPECT_EQ(scene.size->height, 600);
-  EXPECT_EQ(scene.samples, 256u);
-  EXPECT_EQ(scene.maxDepth, 0);
-  EXPECT_EQ(scene.seed, 7u);
-  EXPECT_EQ(scene.timeLimit, 1.5);
-  EXPECT_EQ(scene.noiseLimit, 0.02);
-  const std::vector<std::string> outputs{(root_ / "scenes/out/a.exr").string(), "/b.png"};
-  EXPECT_EQ(scene.outputs, outputs);
-  ASSERT_EQ(scene.aovs.size(), 2u);
-  EXPECT_EQ(scene.aovs[1].name, "depth");
+  const Settings& s = scene.settings;
+  const auto text = [&](const char* name) { return s.get<std::string>(name); };
+  const auto number = [&](const char* name) { return s.get<double>(name); };
+  const auto count = [&](const char* name) { return s.get<uint64_t>(name); };
+  EXPECT_EQ(text("probe.file"), (root_ / "sky.exr").string());
+  EXPECT_EQ(text("probe.mapping"), "lat-long");
+  EXPECT_EQ(number("probe.rotation"), -30);
+  EXPECT_EQ(number("probe.scale"), 2.5);
+  EXPECT_EQ(text("lighting.strategy"), "median-cut:64");
+  EXPECT_EQ(s.location("lighting.strategy"), scenePath() + ":12");
+  EXPECT_EQ(text("lighting.mis"), "power");
+  EXPECT_EQ(s.get<ImageSize>("render.size").width, 800);
+  EXPECT_EQ(s.get<ImageSize>("render.size").height, 600);
+  EXPECT_EQ(count("render.samples"), 256u);
+  EXPECT_EQ(count("render.max_depth"), 0u);
+  EXPECT_EQ(count("render.seed"), 7u);
+  EXPECT_EQ(number("render.time"), 1.5);
+  EXPECT_EQ(number("render.noise"), 2);
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(s.get<Words>("output.file"), (Words{(root_ / "scenes/out/a.exr").string(), "/b.png"}));
+  EXPECT_EQ(s.get<Words>("output.aovs"), (Words{"albedo", "depth"}));
 }
 
 TEST_F(SceneFileTest, CameraAndOutputByName) {
   const SceneFile scene = readWithModel("camera.name = 'Front'\noutput.file = 'a.exr'\n");
-  EXPECT_EQ(scene.cameraName->name, "Front");
-  EXPECT_EQ(scene.outputs, std::vector{(root_ / "scenes/a.exr").string()});
+  EXPECT_EQ(scene.settings.get<std::string>("camera.name"), "Front");
+  EXPECT_EQ(scene.settings.get<std::vector<std::string>>("output.file"),
+            std::vector{(root_ / "scenes/a.exr").string()});
 }
 
 // T R S: (1, 2, 3) scaled by (2, 3, 4), turned 90 degrees about Y (z to x, x to -z), moved.
@@ -283,7 +286,7 @@ TEST_F(SceneFileTest, CompositeNeedsPlateAndLocalScene) {
   expectError("[composite]\nplate = 'none.exr'\nlocal_scene = 'a'\n", 3, {"no such file"});
 }
 
-TEST_F(SceneFileTest, FileThatIsNoSceneFileIsRefused) {
+TEST_F(SceneFileTest, InvalidFilesAreRefused) {
   EXPECT_THROW(readSceneFile((root_ / "none.toml").string()), InputError);
   EXPECT_THROW(readSceneFile(root_.string()), InputError);
   EXPECT_THROW(read("# " + std::string(size_t(5) << 20, 'x')), InputError);
@@ -293,7 +296,7 @@ TEST(SceneFileOfTheDemo, IsValidAndItsFilesAreThere) {
   for (const char* name : {"demo", "terrace"}) {
     const SceneFile scene = readSceneFile(std::string(kSourceDir) + "/scenes/" + name + ".toml");
     EXPECT_EQ(scene.models.size(), 1u);
-    EXPECT_TRUE(scene.probe && scene.samples);
+    EXPECT_TRUE(scene.settings.has("probe.file") && scene.settings.has("render.samples"));
     EXPECT_EQ(scene.composite.has_value(), name == std::string("terrace"));
   }
 }

@@ -160,9 +160,9 @@ TEST(SlowSingleSided, ABlackRoomIsSaidToBeOne) {
     return r.error;
   };
   const std::string asIs = render({});
-  EXPECT_NE(asIs.find("is black: single-sided walls"), std::string::npos) << asIs;
+  EXPECT_NE(asIs.find("are black: single-sided walls"), std::string::npos) << asIs;
   EXPECT_NE(asIs.find("--single-sided light"), std::string::npos) << asIs;
-  EXPECT_EQ(render({"--single-sided", "light"}).find("is black"), std::string::npos);
+  EXPECT_EQ(render({"--single-sided", "light"}).find("are black"), std::string::npos);
   expectRefused({"render", folder / "a.toml", "-o", folder / "b.pfm", "--single-sided", "ligth"},
                 "--single-sided: `ligth` is not known; did you mean `light`?");
 }

@@ -4,15 +4,26 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace chromeball {
 
+// The setting that resolves what an error or a message is about, by its name in the table of
+// settings (job/setting_table.h: "probe.scale"). The command prints the option that sets it.
+struct Remedy {
+  std::string setting;
+  std::string value;  // one that would do; empty: unknown
+};
+
 // The user's input is wrong: arguments, scene, model, probe (exit status 2). The message reads
 // "FILE[:LINE]: what is wrong, and what would be right".
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
+  InputError(const std::string& message, Remedy r) : runtime_error(message), remedy(std::move(r)) {}
+
+  std::optional<Remedy> remedy;
 };
 
 // Something failed while running, such as a full disk (exit status 1).

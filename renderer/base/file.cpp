@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -20,6 +21,12 @@ void checkReadable(const fs::path& path) {
   if (!fs::exists(status)) throwInput("{}: no such file", path.string());
   if (!fs::is_regular_file(status)) throwInput("{}: not a regular file", path.string());
   if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", path.string(), std::strerror(errno));
+}
+
+std::string lowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 std::vector<uint8_t> readFile(const fs::path& path) {

@@ -5,12 +5,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace chromeball {
 
 // Throws InputError unless the path is a readable regular file (a pipe or device might never end).
 void checkReadable(const std::filesystem::path& path);
+
+// ".exr" of "A.EXR": a file's extension in lower case; empty if it has none.
+std::string lowerExtension(const std::filesystem::path& path);
 
 // All bytes of a regular file. Throws InputError.
 std::vector<uint8_t> readFile(const std::filesystem::path& path);

@@ -28,17 +28,17 @@ bool takeLetter(std::string_view& text, char letter) {
 
 }  // namespace
 
-ImageSize parseSize(std::string_view text, std::string_view option) {
+ImageSize parseSize(std::string_view text, std::string_view location) {
   constexpr int kLargest = 65536;
   const auto inRange = [](int side) { return side >= 1 && side <= kLargest; };
   ImageSize size{};
   std::string_view rest = text;
   if (takeNumber(rest, size.width) && takeLetter(rest, 'x') && takeNumber(rest, size.height) &&
       rest.empty() && inRange(size.width) && inRange(size.height)) {
-    checkImageSize(option, size.width, size.height, 3);
+    checkImageSize(location, size.width, size.height, 3);
     return size;
   }
-  throwInput("{}: `{}` should be WIDTHxHEIGHT, each 1 to {}, as in 1024x512", option, text,
+  throwInput("{}: `{}` is not WIDTHxHEIGHT, each 1 to {}, as in 1024x512", location, text,
              kLargest);
 }
 
@@ -49,15 +49,15 @@ LightUnits parseLightUnits(const NamedSetting& setting) {
              didYouMean(setting.name, {"photometric", "radiometric"}));
 }
 
-std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view option) {
+std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location) {
   std::vector<double> numbers(count);
   std::string_view rest = text;
   for (size_t i = 0; i < count; ++i)
     if ((i > 0 && !takeLetter(rest, ',')) || !takeNumber(rest, numbers[i]) ||
         !std::isfinite(numbers[i]))
-      throwInput("{}: `{}` should be {} numbers with commas between them", option, text, count);
+      throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
   if (!rest.empty())
-    throwInput("{}: `{}` should be {} numbers with commas between them", option, text, count);
+    throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
   return numbers;
 }
 

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments that several subcommands take.
+// Values of settings and options from their text.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "job/scene_file.h"
-#include "probe/convert.h"
+#include "base/named_setting.h"
+#include "probe/mapping.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
 
-// "WxH", both 1 to 65536. Throws InputError that begins with `option`.
-ImageSize parseSize(std::string_view text, std::string_view option = "--size");
+// "WxH", both 1 to 65536. Throws InputError, begun by `location`.
+ImageSize parseSize(std::string_view text, std::string_view location);
 
-// "photometric" or "radiometric". Throws InputError that begins with the setting's place.
+// "photometric" or "radiometric". Throws InputError, begun by the setting's location.
 LightUnits parseLightUnits(const NamedSetting& setting);
 
-// "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError that begins with `option`.
-std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view option);
+// "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError, begun by `location`.
+std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a file, as a number.
+// A hash of a file's contents.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace chromeball {
 
-// A hash of a file's bytes. Throws InputError where it cannot be read.
+// A hash of a file's bytes. Throws InputError if it cannot be read.
 uint64_t fingerprint(const std::string& path);
 
 }  // namespace chromeball

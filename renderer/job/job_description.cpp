@@ -16,32 +16,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Options that leave the picture's radiance as it is. `time` and `noise` have rows of other names,
-// since a header has the noise that was reached.
-constexpr std::array kNotOfThePicture = {"help",  "output",  "stats",   "progress",
-                                         "quiet", "threads", "memory",  "samples",
-                                         "time",  "noise",   "tonemap", "exposure"};
-// Options of `compare` that choose what is compared; each render says its own.
-constexpr std::array kOfTheStudy = {"strategies",        "times",    "repeats",
-                                    "reference",         "baseline", "reference-samples",
-                                    "reference-strategy"};
-// Rows of a description that are the same picture's under other names, or that a study varies.
+// Rows that name the same contents by another path, or that a comparison varies itself.
 constexpr std::array kNotOfTheIdentity = {"scene",    "probe",       "files",
                                           "strategy", "noise-limit", "time-limit"};
 
-template <size_t N>
-bool isAmong(const std::array<const char*, N>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+Json toJson(const SettingValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* number = std::get_if<uint64_t>(&value)) return *number;
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return toText(value);
 }
 
-const char* nameOf(Mis mis) {
-  return mis == Mis::Off ? "off" : mis == Mis::Balance ? "balance" : "power";
-}
-
-const char* nameOf(SingleSided singleSided) {
-  return singleSided == SingleSided::Camera  ? "camera"
-         : singleSided == SingleSided::Light ? "light"
-                                             : "off";
+// The settings that change the image's radiance, under the names of their options.
+void describeSettings(const Settings& settings, Json& d) {
+  for (const Setting& setting : settingTable()) {
+    if (setting.option.empty() || setting.effect != Effect::Image) continue;
+    const std::optional<SettingValue> value = settings.value(setting.name());
+    if (!value || toText(*value) == "false") continue;
+    d[std::string(setting.option)] = toJson(*value);
+  }
 }
 
 // Row vectors: the numbers of a row are the image of a unit vector, those of the last row that of
@@ -91,40 +84,23 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
 
-void describeProbe(const RenderJob& job, const LoadedScene& loaded, Json& d) {
-  const SceneFile& file = job.file;
-  d["probe"] = *file.probe;
-  d["probe-mapping"] = file.probeMapping ? file.probeMapping->name : "auto";
-  d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
-}
-
 }  // namespace
 
-Json describeJob(const RenderOptions& options, const RenderJob& job, const LoadedScene& loaded) {
-  const SceneFile& file = job.file;
-  const RenderSettings& s = job.settings;
-  Json d = {{"scene", options.scene}};
-  if (file.probe) describeProbe(job, loaded, d);
-  d["probe-rotation"] = file.probeRotation.value_or(0);
-  d["probe-scale"] = file.probeScale.value_or(1);
-  d["size"] = fmt::format("{}x{}", s.width, s.height);
+Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
+  const Settings& settings = job.file.settings;
+  Json d = {{"scene", job.file.path}};
+  describeSettings(settings, d);
+  if (settings.has("probe.file"))
+    d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
+  else
+    d.erase("probe-mapping");
+  d["size"] = fmt::format("{}x{}", job.settings.width, job.settings.height);
   if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
   d["strategy"] = resolveStrategy(job.strategy.name);
-  d["mis"] = nameOf(s.mis);
-  d["max-depth"] = s.maxDepth;
-  d["max-transmission-depth"] = s.maxTransmissionDepth;
-  d["single-sided"] = nameOf(job.singleSided);
-  d["lights"] = file.modelLights.value_or(1);
-  d["light-units"] = file.lightUnits ? file.lightUnits->name : "photometric";
-  d["seed"] = s.seed;
-  if (s.clamp) d["clamp"] = *s.clamp;
-  for (const auto& [name, text] : options.given)
-    if (!d.contains(name) && !isAmong(kNotOfThePicture, name) && !isAmong(kOfTheStudy, name))
-      d[name] = text;
   d["files"] = loaded.files;
-  if (file.noiseLimit) d["noise-limit"] = 100 * *file.noiseLimit;
-  if (file.timeLimit) d["time-limit"] = *file.timeLimit;
-  describeCamera(s, loaded, d);
+  if (const auto noise = settings.getIfGiven<double>("render.noise")) d["noise-limit"] = *noise;
+  if (const auto time = settings.getIfGiven<double>("render.time")) d["time-limit"] = *time;
+  describeCamera(job.settings, loaded, d);
   return d;
 }
 
@@ -145,13 +121,12 @@ Metadata toMetadata(const Json& description) {
   return metadata;
 }
 
-std::string identityOf(const RenderOptions& options, const RenderJob& job,
-                       const LoadedScene& loaded) {
-  Json identity = describeJob(options, job, loaded);
+std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
+  Json identity = describeJob(job, loaded);
   for (const char* name : kNotOfTheIdentity) identity.erase(name);
   identity["threads"] =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  identity["contents of scene"] = fingerprint(options.scene);
+  identity["contents of scene"] = fingerprint(job.file.path);
   for (const std::string& file : loaded.files) {
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// On what, with what and when something was measured.
+// The machine, the program and the date of a measurement.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@ namespace chromeball {
 
 struct Machine {
   std::string processor, system, compiler, date;  // date: UTC
-  int threads = 0;                                // that this run uses
-  std::string command;                            // as a shell would take it
+  int threads = 0;                                // used by this run
+  std::string command;                            // quoted for a shell
 };
 Machine thisMachine();
 
-std::string commandLine();  // of this process, as a shell would take it
+std::string commandLine();  // of this process, quoted for a shell
 
 }  // namespace chromeball

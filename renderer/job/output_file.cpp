@@ -14,12 +14,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Files that exist are told apart by device and inode, others by where their names lead.
+// Compares existing files by device and inode, others by their canonical names.
 bool isSameFile(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
-  const fs::path placeOfA = fs::weakly_canonical(a, error);
-  return !error && placeOfA == fs::weakly_canonical(b, error) && !error;
+  const fs::path canonicalA = fs::weakly_canonical(a, error);
+  return !error && canonicalA == fs::weakly_canonical(b, error) && !error;
 }
 
 fs::path folderOf(const fs::path& file) {
@@ -34,7 +34,7 @@ void checkOutputFile(const std::string& path, const std::vector<std::string_view
   for (const std::string_view extension : extensions)
     known.append(known.empty() ? "" : " or ").append(extension);
   if (std::find(extensions.begin(), extensions.end(), file.extension()) == extensions.end())
-    throwInput("{}: the name should end in {}", path, known);
+    throwInput("{}: the name must end in {}", path, known);
   checkReplaceable(file);
 }
 
@@ -63,7 +63,7 @@ void checkSceneOutput(const std::string& path) {
 void makeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directory(folderOf(path), error);
-  if (error) throwRun("{}: cannot be made: {}", folderOf(path).string(), error.message());
+  if (error) throwRun("{}: cannot be created: {}", folderOf(path).string(), error.message());
 }
 
 void writeText(const std::string& path, std::string_view text) {

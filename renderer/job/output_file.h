@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where results go, checked before the work that makes them.
+// Output files, checked before the work that makes them.
 #pragma once
 
 #include <string>
@@ -12,12 +12,13 @@ namespace chromeball {
 // (base/file.h) does.
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions);
 
-// Throws InputError where an output is the same file as an input or as another output, by whatever
-// names and links. Empty names stand for files that were not asked for.
+// Throws InputError if an output is the same file as an input or as another output, also through
+// links. Empty names are ignored.
 void checkDistinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-// An image that a scene file names: as checkWritable (image/write.h), but the folder it lies in may
-// be missing from one that exists. makeFolder() then makes it, once nothing can be wrong any more.
+// For an image that a scene file names: as checkWritable (image/io/write_image.h), but the image's
+// folder may be missing from a folder that exists. makeFolder() then makes it, after all other
+// checks.
 void checkSceneOutput(const std::string& path);
 void makeFolder(const std::string& path);  // throws RunError
 

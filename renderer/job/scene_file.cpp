@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file.h"
 
-#include <climits>
-
+#include "base/file.h"
 #include "job/scene_file_composite.h"
 #include "job/scene_file_light.h"
 #include "job/toml_section.h"
@@ -12,10 +11,10 @@ namespace {
 
 glm::quat readRotation(const Entry& entry) {
   if (entry.isArrayOf(4)) {
-    const glm::quat q(entry.element(3).number(), entry.element(0).number(),
-                      entry.element(1).number(), entry.element(2).number());
+    const auto component = [&](size_t i) { return float(entry.element(i).number()); };
+    const glm::quat q(component(3), component(0), component(1), component(2));
     if (!(glm::length(q) > 1e-6f) || !std::isfinite(glm::length(q)))
-      entry.mustBe("a quaternion x, y, z, w of a length above 0");
+      entry.mustBe("a quaternion x, y, z, w of length above 0");
     return glm::normalize(q);
   }
   if (!entry.isArrayOf(3)) entry.mustBe("three angles in degrees or a quaternion x, y, z, w");
@@ -25,19 +24,16 @@ glm::quat readRotation(const Entry& entry) {
 }
 
 vec3 readScale(const Entry& entry) {
-  const vec3 scale = entry.node->is_array() ? entry.vector() : vec3(entry.number());
+  const vec3 scale = entry.isArray() ? entry.vector() : vec3(float(entry.number()));
   if (scale.x * scale.y * scale.z == 0) entry.mustBe("other than 0");
   return scale;
 }
 
 ModelEntry readModel(const Entry& entry) {
-  if (entry.node->is_string()) return {existing(entry), {}, {}};
+  if (entry.node->is_string()) return {existingFile(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
-  const Section model(entry.file, "model", *entry.node->as_table(),
-                      {"file", "translation", "rotation", "scale", "animation", "time", "variant"});
-  if (!model["file"]) failAt(model.location(), "[model] has no `file`");
-
-  ModelEntry result{existing(model["file"]), {}, {}};
+  const Section model(entry.file, "model", *entry.node->as_table());
+  ModelEntry result{existingFile(model.required("file")), {}, {}};
   Transform& placement = result.placement;
   if (const Entry e = model["rotation"]) placement.linear = glm::mat3_cast(readRotation(e));
   if (const Entry e = model["scale"]) {
@@ -62,7 +58,7 @@ void readLens(const Section& camera, SceneFile& scene) {
   if (!aperture || !focus)
     failAt((aperture ? aperture : focus).location(),
            "`aperture` (the lens's diameter) and `focus` (a distance) go together, in metres");
-  scene.lens = {float(aperture.positive()), float(focus.positive()), aperture.location()};
+  scene.lens = {float(aperture.number()), float(focus.number()), aperture.location()};
 }
 
 void readCamera(const Section& camera, SceneFile& scene) {
@@ -73,7 +69,6 @@ void readCamera(const Section& camera, SceneFile& scene) {
       if (const Entry e = camera[key])
         failAt(e.location(), "[camera] has `name`, a camera of the model; it cannot have `{}` too",
                key);
-    scene.cameraName = name.name();
     return;
   }
   const Entry orthographic = camera["orthographic"];
@@ -86,10 +81,7 @@ void readCamera(const Section& camera, SceneFile& scene) {
   if (orthographic && fovEntry)
     failAt(fovEntry.location(), "[camera] is `orthographic`; it has no `fov`");
   const vec3 up = upEntry ? upEntry.vector() : vec3(0, 1, 0);
-  const float fov = fovEntry ? glm::radians(float(fovEntry.number(
-                                   "degrees between 0 and 180",
-                                   [](double degrees) { return degrees > 0 && degrees < 180; })))
-                             : Camera().fov;
+  const float fov = fovEntry ? glm::radians(float(fovEntry.number())) : Camera().fov;
   if (fovEntry && fov < glm::radians(kPi))
     scene.warnings.push_back(fmt::format(
         "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
@@ -101,70 +93,38 @@ void readCamera(const Section& camera, SceneFile& scene) {
   }
   if (orthographic) {
     scene.camera->orthographic = true;
-    scene.camera->halfHeight = 0.5f * float(orthographic.positive());
+    scene.camera->halfHeight = 0.5f * float(orthographic.number());
   }
-}
-
-void readProbe(const Section& probe, SceneFile& scene) {
-  if (const Entry e = probe["file"]) scene.probe = existing(e);
-  if (const Entry e = probe["mapping"]) scene.probeMapping = e.name();
-  if (const Entry e = probe["rotation"]) scene.probeRotation = e.number();
-  if (const Entry e = probe["scale"])
-    scene.probeScale =
-        float(e.number("a finite number, 0 or above", [](double x) { return x >= 0; }));
-}
-
-void readLighting(const Section& lighting, SceneFile& scene) {
-  if (const Entry e = lighting["strategy"]) scene.strategy = e.name();
-  if (const Entry e = lighting["mis"]) scene.mis = e.name();
-  if (const Entry e = lighting["light_units"]) scene.lightUnits = e.name();
-  const Entry lights = lighting["lights"];
-  if (!lights) return;
-  const bool off = lights.node->is_string() && lights.text() == "off";
-  const auto isFactor = [](double x) { return x >= 0; };
-  scene.modelLights = off ? 0 : float(lights.number("\"off\" or a factor, 0 or above", isFactor));
-}
-
-void readRender(const Section& render, SceneFile& scene) {
-  if (const Entry e = render["size"]) {
-    if (!e.isArrayOf(2)) e.mustBe("[width, height]");
-    scene.size = {int(e.element(0).integer(1, 65536)), int(e.element(1).integer(1, 65536))};
-  }
-  if (const Entry e = render["samples"]) scene.samples = uint32_t(e.integer(1, kMaxSamples));
-  if (const Entry e = render["max_depth"]) scene.maxDepth = int(e.integer(0, kMaxDepth));
-  if (const Entry e = render["max_transmission_depth"])
-    scene.maxTransmissionDepth = int(e.integer(0, kMaxDepth));
-  if (const Entry e = render["single_sided"]) scene.singleSided = e.name();
-  if (const Entry e = render["seed"]) scene.seed = uint64_t(e.integer(0, INT64_MAX));
-  if (const Entry e = render["time"]) scene.timeLimit = e.positive();
-  if (const Entry e = render["noise"]) scene.noiseLimit = e.positive() / 100;
 }
 
 }  // namespace
 
 SceneFile readSceneFile(const std::string& path) {
   const toml::table table = parseToml(path);
-  const Section root(path, "", table,
+  const Section root(path, table,
                      {"model", "camera", "probe", "lighting", "light", "render", "output",
                       "composite", "surroundings"});
-
   SceneFile scene;
+  scene.path = path;
   forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
   if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
-  readCamera(root.section("camera", {"name", "position", "look_at", "up", "fov", "orthographic",
-                                     "aperture", "focus"}),
-             scene);
-  readProbe(root.section("probe", {"file", "mapping", "rotation", "scale"}), scene);
-  readLighting(root.section("lighting", {"strategy", "mis", "lights", "light_units"}), scene);
+  for (const char* section : {"camera", "probe", "lighting", "render", "output"})
+    root.section(section).read(scene.settings);
+  readCamera(root.section("camera"), scene);
   forEach(root["light"], [&](const Entry& e) { scene.lamps.push_back(readLamp(e)); });
-  readRender(root.section("render", {"size", "samples", "max_depth", "max_transmission_depth",
-                                     "single_sided", "seed", "time", "noise"}),
-             scene);
-  if (root["composite"]) scene.composite = readComposite(root);
-  if (root["surroundings"]) scene.surroundings = readSurroundings(root);
-  const Section output = root.section("output", {"file", "aovs"});
-  forEach(output["file"], [&](const Entry& e) { scene.outputs.push_back(resolved(e)); });
-  forEach(output["aovs"], [&](const Entry& e) { scene.aovs.push_back(e.name()); });
+  if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
+  if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));
+  return scene;
+}
+
+SceneFile openScene(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".toml") return readSceneFile(path);
+  if (extension != ".gltf" && extension != ".glb")
+    throwInput("{}: not a scene; give a scene file (.toml) or a model (.gltf, .glb)", path);
+  SceneFile scene;
+  scene.path = path;
+  scene.models.push_back({path, {}, {}});
   return scene;
 }
 

@@ -2,12 +2,13 @@
 // The sections [composite] and [surroundings] of a scene file.
 #pragma once
 
+#include "job/scene_file.h"
 #include "job/toml_section.h"
 
 namespace chromeball {
 
-// `root` is the whole file, which has the section. Both throw InputError.
-CompositeEntry readComposite(const Section& root);
-Surroundings readSurroundings(const Section& root);
+// Scalar keys go to `settings`. Both throw InputError.
+CompositeEntry readComposite(const Section& section, Settings& settings);
+Surroundings readSurroundings(const Section& section);
 
 }  // namespace chromeball

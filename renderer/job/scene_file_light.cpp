@@ -15,50 +15,25 @@ const std::vector<LampType> kTypes = {
     {"disc", {"direction", "radiance", "power", "radius"}},
 };
 
-std::vector<std::string_view> typeNames() {
-  std::vector<std::string_view> names;
-  for (const LampType& type : kTypes) names.push_back(type.name);
-  return names;
-}
-
-std::string listed(const std::vector<std::string_view>& keys) {
-  std::string list;
-  for (const std::string_view key : keys) (list += list.empty() ? "" : ", ") += key;
-  return list;
-}
-
 const LampType& typeOf(const Section& light) {
-  const Entry entry = light["type"];
-  if (!entry) failAt(light.location(), "[light] has no `type`: \"point\", \"spot\" or \"disc\"");
-  const std::string name = entry.text();
-  for (const LampType& type : kTypes)
-    if (type.name == name) return type;
-  failAt(entry.location(), "`type` {} is not known; {}", name, didYouMean(name, typeNames()));
+  const std::string name = light.required("type").choice();
+  return *std::find_if(kTypes.begin(), kTypes.end(),
+                       [&](const LampType& type) { return type.name == name; });
 }
 
 // A number for grey, or three.
 Rgb readColor(const Entry& entry) {
-  const Rgb color = entry.node->is_array() ? entry.vector() : Rgb(entry.number());
-  if (!glm::all(glm::greaterThanEqual(color, Rgb(0)))) entry.mustBe("0 or above");
-  return color;
+  return entry.isArray() ? entry.vector() : Rgb(float(entry.number()));
 }
 
 vec3 readDirection(const Section& light) {
-  const Entry entry = light["direction"];
-  if (!entry) failAt(light.location(), "[light] has no `direction`, where it shines");
+  const Entry entry = light.required("direction");
   const glm::dvec3 direction(entry.vector());
   if (!(glm::length(direction) > 0)) entry.mustBe("other than 0, 0, 0");
   return vec3(glm::normalize(direction));
 }
 
-double readAngle(const Entry& entry, double fallback, double minimum, double maximum) {
-  if (!entry) return fallback;
-  return entry.number(
-      fmt::format("degrees from {:g} to {:g}, between axis and edge", minimum, maximum),
-      [&](double x) { return x >= minimum && x <= maximum; });
-}
-
-// `key` as it is given, or the share `ofOneWatt` of `power`.
+// The value of `key`, or `ofOneWatt` times `power`.
 Rgb readStrength(const Section& light, std::string_view key, float ofOneWatt) {
   const Entry own = light[key], power = light["power"];
   if (own && power) failAt(power.location(), "[light] has `{}`; it cannot have `power` too", key);
@@ -71,22 +46,22 @@ PunctualLight readPunctual(const Section& light, bool isSpot) {
   lamp.kind = isSpot ? PunctualLight::Kind::Spot : PunctualLight::Kind::Point;
   if (isSpot) {
     lamp.direction = readDirection(light);
-    const double outer = readAngle(light["outer_angle"], 45, 0.01, 90);
-    const double inner = readAngle(light["inner_angle"], 0, 0, outer);
+    const Entry outerEntry = light["outer_angle"], innerEntry = light["inner_angle"];
+    const double outer = outerEntry ? outerEntry.number() : 45;
+    const double inner = innerEntry ? innerEntry.number({.min = 0, .max = outer}) : 0;
     lamp.cosOuter = float(std::cos(outer * kPiD / 180));
     lamp.cosInner = float(std::cos(inner * kPiD / 180));
   }
-  if (const Entry e = light["range"]) lamp.range = float(e.positive());
+  if (const Entry e = light["range"]) lamp.range = float(e.number());
   lamp.intensity = readStrength(light, "intensity", lamp.intensityOfOneWatt());
   return lamp;
 }
 
 DiscLamp readDisc(const Section& light) {
-  if (!light["radius"]) failAt(light.location(), "[light] has no `radius`");
   DiscLamp disc;
   disc.direction = readDirection(light);
-  disc.radius = float(light["radius"].positive());
-  // A Lambertian emitter of area A sends out pi A times its radiance.
+  disc.radius = float(light.required("radius").number());
+  // A Lambertian emitter of area A and radiance L has the radiant flux pi A L.
   disc.radiance = readStrength(light, "radiance", 1 / (kPi * kPi * disc.radius * disc.radius));
   return disc;
 }
@@ -95,19 +70,16 @@ DiscLamp readDisc(const Section& light) {
 
 Lamp readLamp(const Entry& entry) {
   if (!entry.node->is_table()) entry.mustBe("a table, [[light]]");
-  std::vector<std::string_view> keys = {"type", "name", "position"};
-  for (const LampType& type : kTypes) keys.insert(keys.end(), type.keys.begin(), type.keys.end());
-  const toml::table& table = *entry.node->as_table();
-  const Section light(entry.file, "light", table, keys);
+  const Section light(entry.file, "light", *entry.node->as_table());
   const LampType& type = typeOf(light);
-  for (const std::string_view key : keys) {
+  for (const std::string_view key : keysOf("light")) {
     const bool isCommon = key == "type" || key == "name" || key == "position";
     if (const Entry e = light[key];
         e && !isCommon && std::find(type.keys.begin(), type.keys.end(), key) == type.keys.end())
-      failAt(e.location(), "a {} light has no `{}`; it has {}", type.name, key, listed(type.keys));
+      failAt(e.location(), "a {} light has no `{}`; it has {}", type.name, key,
+             fmt::join(type.keys, ", "));
   }
-  if (!light["position"]) failAt(light.location(), "[light] has no `position`");
-  const vec3 position = light["position"].vector();
+  const vec3 position = light.required("position").vector();
   Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}};
   if (type.name == "disc")
     (lamp.disc = readDisc(light))->position = position;

@@ -3,10 +3,11 @@
 #pragma once
 
 #include "job/toml_section.h"
+#include "scene/lamp.h"
 
 namespace chromeball {
 
-// One table. Throws InputError.
+// Reads one table. Throws InputError.
 Lamp readLamp(const Entry& entry);
 
 }  // namespace chromeball

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/toml_section.h"
 
+#include <cfloat>
+
 #include "base/file.h"
 
 namespace chromeball {
@@ -8,15 +10,152 @@ namespace {
 
 constexpr size_t kMaxFileBytes = size_t(4) << 20;
 
+std::string describe(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
+  if (node.is_table()) return "a table";
+  if (node.is_boolean()) return "a boolean";
+  return "a date or time";
+}
+
+// What one number of the setting must be.
+std::string expectedNumber(Setting setting, const Range& range) {
+  if (setting.type == SettingType::Compound) setting.type = SettingType::Number;
+  setting.range = range;
+  return expected(setting);
+}
+
 }  // namespace
 
-std::string resolved(const Entry& entry) {
+void Entry::mustBe(std::string_view what) const {
+  failAt(location(), "`{}` must be {}, not {}", key, what, describe(*node));
+}
+
+std::string Entry::text() const {
+  if (!node->is_string() || node->as_string()->get().empty()) mustBe("a string");
+  return node->as_string()->get();
+}
+
+std::string Entry::choice() const {
+  const std::string name = text();
+  checkSetting(*setting,
+               setting->type == SettingType::Choices ? SettingValue(std::vector<std::string>{name})
+                                                     : SettingValue(name),
+               fmt::format("{}: `{}`", location(), key));
+  return name;
+}
+
+bool Entry::flag() const {
+  if (!node->is_boolean()) mustBe(expected(*setting));
+  return node->as_boolean()->get();
+}
+
+uint64_t Entry::integer() const {
+  const auto* number = node->as_integer();
+  if (!number || number->get() < 0 || !setting->range.contains(double(number->get()))) {
+    Setting whole = *setting;
+    whole.type = SettingType::Integer;
+    mustBe(expected(whole));
+  }
+  return uint64_t(number->get());
+}
+
+double Entry::number() const { return number(setting->range); }
+
+double Entry::number(const Range& range) const {
+  const auto number = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!number || !(std::abs(*number) <= FLT_MAX) || !range.contains(*number))
+    mustBe(expectedNumber(*setting, range));
+  return *number;
+}
+
+vec3 Entry::vector() const {
+  if (!isArrayOf(3)) mustBe("three numbers");
+  return {element(0).number(), element(1).number(), element(2).number()};
+}
+
+SettingValue Entry::value() const {
+  switch (setting->type) {
+    case SettingType::Flag:
+      return flag();
+    case SettingType::Integer:
+      return integer();
+    case SettingType::Number:
+      return number();
+    case SettingType::Factor:
+      return node->is_string() && text() == "off" ? 0.0 : number();
+    case SettingType::Choice:
+      return choice();
+    case SettingType::Choices: {
+      std::vector<std::string> names;
+      forEach(*this, [&](const Entry& e) { names.push_back(e.choice()); });
+      return names;
+    }
+    case SettingType::Name:
+      return text();
+    case SettingType::File:
+      return existingFile(*this);
+    case SettingType::Files: {
+      std::vector<std::string> paths;
+      forEach(*this, [&](const Entry& e) { paths.push_back(resolvedPath(e)); });
+      return paths;
+    }
+    case SettingType::Size:
+      if (!isArrayOf(2)) mustBe(expected(*setting));
+      return ImageSize{int(element(0).integer()), int(element(1).integer())};
+    case SettingType::Compound:
+      break;
+  }
+  throw std::logic_error("a compound setting has its own reader: " + setting->name());
+}
+
+Section::Section(const std::string& file, std::string section, const toml::table& table)
+    : file_(file), name_(std::move(section)), table_(table) {
+  checkKeys(keysOf(name_));
+}
+
+Section::Section(const std::string& file, const toml::table& table,
+                 const std::vector<std::string_view>& keys)
+    : file_(file), table_(table) {
+  checkKeys(keys);
+}
+
+void Section::checkKeys(const std::vector<std::string_view>& known) const {
+  for (const auto& [key, node] : table_)
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
+             key.str(), name_.empty() ? "" : " in [" + name_ + "]", didYouMean(key.str(), known));
+}
+
+Entry Section::required(std::string_view key) const {
+  const Entry entry = (*this)[key];
+  if (!entry) failAt(location(), "[{}] has no `{}`", name_, key);
+  return entry;
+}
+
+Section Section::section(std::string_view key) const {
+  static const toml::table kEmpty;
+  const Entry entry = (*this)[key];
+  if (entry && !entry.node->is_table()) entry.mustBe("a table");
+  return Section(file_, std::string(key), entry ? *entry.node->as_table() : kEmpty);
+}
+
+void Section::read(Settings& settings) const {
+  for (const Setting& setting : settingTable())
+    if (setting.section == name_ && setting.type != SettingType::Compound)
+      if (const Entry entry = (*this)[setting.key])
+        settings.set(setting.name(), entry.value(), entry.location());
+}
+
+std::string resolvedPath(const Entry& entry) {
   const auto folder = std::filesystem::path(entry.file).parent_path();
   return (folder / entry.text()).lexically_normal().string();
 }
 
-std::string existing(const Entry& entry) {
-  const std::string path = resolved(entry);
+std::string existingFile(const Entry& entry) {
+  const std::string path = resolvedPath(entry);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
     failAt(entry.location(), "`{}`: no such file: {} (paths are relative to the scene file)",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subcommands of `chromeball`, one file each. Each adds itself to the command line; its
-// callback throws InputError or RunError, which main turns into one line and an exit status.
+// callback throws InputError or RunError.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,5 +13,6 @@ void addProbeCommand(CLI::App& app);  // info, convert, synth, irradiance
 void addImageCommand(CLI::App& app);  // view, error
 void addLightsCommand(CLI::App& app);
 void addLightsErrorCommand(CLI::App& app);
+void addReferenceCommand(CLI::App& app);
 
 }  // namespace chromeball

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
 
 #include "base/error.h"
 #include "commands.h"
+#include "job/job.h"
 #include "job/job_description.h"
 #include "job/machine.h"
 #include "job/output_file.h"
 #include "lighting/methods.h"
+#include "messages.h"
 #include "progress_bar.h"
 #include "scene_options.h"
 #include "study/reference.h"
@@ -20,6 +20,7 @@
 #include "study/result_tables.h"
 #include "study/study_run.h"
 #include "study/verdict.h"
+#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 std::atomic<bool> interrupted = false;
 
 struct Arguments {
-  RenderOptions scene;
+  SceneOptions scene;
   std::vector<std::string> strategies{"all"};
   std::vector<int> samples;
   std::vector<double> times;
@@ -53,7 +54,7 @@ std::vector<std::string> resolveStrategies(const std::vector<std::string>& given
   return names;
 }
 
-void sortOut(std::vector<Budget>& budgets) {
+void sortUnique(std::vector<Budget>& budgets) {
   std::sort(budgets.begin(), budgets.end());
   budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
 }
@@ -70,12 +71,12 @@ std::vector<Budget> planBudgets(const Arguments& a) {
     budgets.push_back({true, seconds});
   }
   if (budgets.empty()) budgets = {{false, 1}, {false, 4}, {false, 16}, {false, 64}};
-  sortOut(budgets);
+  sortUnique(budgets);
   return budgets;
 }
 
-// Enough for the reference's variance to be small beside that of any strategy half as good as its
-// own; nobody knows how many samples a budget of seconds will hold.
+// Enough samples for the reference's variance to be small against that of any strategy half as good
+// as its own. The number of samples in a budget of seconds is unknown.
 int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
   constexpr int kTimes = 16, kMin = 1024;
   if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
@@ -97,19 +98,19 @@ Study planStudy(const Arguments& a) {
   study.repeats = a.repeats;
   study.baseline = a.baseline.empty() ? study.strategies.front() : resolveStrategy(a.baseline);
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
-    throwInput("--baseline: `{}` is not one of the strategies that are compared", a.baseline);
+    throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
   if (!a.reference.empty() && a.referenceSamples)
     throwInput("--reference-samples: the reference is a file; give one or the other");
   study.referenceStrategy = resolveStrategy(a.referenceStrategy);
-  planReferenceSamples(a, study.budgets);  // refuses what cannot be
+  planReferenceSamples(a, study.budgets);  // throws for an invalid number
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
   if (fs::exists(a.folder) && !fs::is_directory(a.folder))
     throwInput("--output: {} is a file; give a folder", a.folder);
   return study;
 }
 
-// The results show what runs before this one left in the folder as well.
+// The results also show the renders that earlier runs left in the folder.
 void showStored(Study& study, const RenderStore& store) {
   study.shownStrategies = study.strategies;
   study.shownBudgets = study.budgets;
@@ -118,16 +119,16 @@ void showStored(Study& study, const RenderStore& store) {
     if (std::count(names.begin(), names.end(), key.strategy) == 0) names.push_back(key.strategy);
     study.shownBudgets.push_back(key.budget);
   }
-  sortOut(study.shownBudgets);
+  sortUnique(study.shownBudgets);
 }
 
 void checkReference(const StudyRun& run, const Study& study) {
   if (study.referenceFile.empty() && !run.strategy(kReference).unbiased())
-    throwInput("--reference-strategy: `{}` is biased; a reference must not be",
+    throwInput("--reference-strategy: `{}` is biased; a reference must be unbiased",
                study.referenceStrategy);
 }
 
-// The files of a report; its renders are read again, never overwritten.
+// The files of a report. Its renders are not outputs: they are read again, never overwritten.
 struct ReportFiles {
   explicit ReportFiles(const fs::path& folder)
       : csv((folder / "results.csv").string()),
@@ -146,18 +147,19 @@ void checkOutputs(const ReportFiles& files, const Arguments& a, const LoadedScen
 }
 
 void compare(const Arguments& a) {
-  RenderJob job = planJob(a.scene);
+  SceneFile scene = openScene(a.scene.scene);
+  const bool hadComposite = scene.composite.has_value();
+  scene.composite.reset();
+  scene.settings.erase("output.aovs");
+  RenderJob job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
-  std::optional<tbb::global_control> threads;
-  if (a.scene.threads > 0)
-    threads.emplace(tbb::global_control::max_allowed_parallelism, a.scene.threads);
+  const ThreadLimit threads(a.scene.settings);
   const LoadedScene loaded = loadScene(job);
   const ReportFiles files(a.folder);
   checkOutputs(files, a, loaded);
-  job.settings.aovs.clear();
   job.settings.noiseLimit.reset();
   study.seed = job.settings.seed;
-  study.identity = identityOf(a.scene, job, loaded);
+  study.identity = identityOf(job, loaded);
 
   const RenderStore store(study, {job.settings.width, job.settings.height});
   showStored(study, store);
@@ -166,10 +168,10 @@ void compare(const Arguments& a) {
   checkReference(run, study);
   if (!study.referenceFile.empty())
     loadReference(study, store, job.settings.width, job.settings.height);
-  sayNotes(job, loaded, a.scene.quiet);
-  if (job.file.composite)
+  print(loaded.messages, a.scene.quiet());
+  if (hadComposite)
     warn(
-        fmt::format("{}: [composite] is left out: strategies are compared on the whole model, "
+        fmt::format("{}: [composite] is ignored: strategies are compared on the whole model, "
                     "without the plate",
                     a.scene.scene));
 
@@ -178,7 +180,7 @@ void compare(const Arguments& a) {
     return studyResults(study, store, loadReference(study, store, s.width, s.height));
   };
   ReportScene about{
-      fs::path(a.scene.scene).filename().string(), &loaded.probe, a.scene.exposure, {}};
+      fs::path(a.scene.scene).filename().string(), &loaded.probe, job.display.exposure, {}};
   for (const std::string& name : study.strategies)
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
@@ -192,19 +194,19 @@ void compare(const Arguments& a) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const bool whole = [&] {
-    ProgressBar bar(a.scene.progress || (ProgressBar::isTerminal() && !a.scene.quiet));
+    ProgressBar bar(a.scene.showsProgress());
     return run.run([&](double fraction) { bar.update(fraction); }, [&] { write(results()); },
                    interrupted);
   }();
   if (!whole)
     throw Interrupted(
         fmt::format("interrupted; {} of {} renders are in {}, and the same command "
-                    "goes on from there",
+                    "continues from there",
                     run.stored(), run.total(), study.folder));
   const StudyResults all = results();
   write(all);
   for (const std::string& warning : all.warnings) warn(warning);
-  if (a.scene.quiet) return;
+  if (a.scene.quiet()) return;
   fmt::print("{}", resultsTable(study, all));
   for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
 }
@@ -214,26 +216,29 @@ void compare(const Arguments& a) {
 void addCompareCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   Arguments& a = *arguments;
-  CLI::App* command = app.add_subcommand(
-      "compare", "What each lighting strategy costs and gains: error, bias and time of a scene");
-  addSceneOptions(*command, a.scene);
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare lighting strategies on a scene: error, bias and time");
+  addSceneOptions(*command, a.scene, SceneCommand::Compare);
   command->footer(strategyHelp());
-  command->add_option("--strategies", a.strategies, "NAME or NAME:COUNT, with commas; or all")
-      ->delimiter(',');
-  command->add_option("--samples", a.samples, "Samples a pixel: 1,4,16,64")->delimiter(',');
-  command->add_option("--times", a.times, "Seconds a render: 1,2,4")->delimiter(',');
-  command->add_option("--repeats", a.repeats, "Independent renders of each, 3 or more")
-      ->capture_default_str();
-  command->add_option("--reference", a.reference, "Picture that is taken for the truth");
-  command->add_option("--reference-samples", a.referenceSamples,
-                      "Where it is made on the spot: samples a pixel");
-  command->add_option("--reference-strategy", a.referenceStrategy, "and by which strategy")
-      ->capture_default_str();
-  command->add_option("--baseline", a.baseline, "Strategy of efficiency 1 (the first)");
   command
-      ->add_option("-o,--output", a.folder,
-                   "Folder of the report; one that holds a part of "
-                   "this comparison is continued")
+      ->add_option("--strategies", a.strategies, "NAME or NAME:COUNT, separated by commas; or all")
+      ->delimiter(',');
+  command->add_option("--samples", a.samples, "Samples per pixel: 1,4,16,64")->delimiter(',');
+  command->add_option("--times", a.times, "Seconds per render: 1,2,4")->delimiter(',');
+  command
+      ->add_option("--repeats", a.repeats,
+                   "Independent renders of each strategy and budget, 3 or more")
+      ->capture_default_str();
+  command->add_option("--reference", a.reference, "Reference image; else it is rendered");
+  command->add_option("--reference-samples", a.referenceSamples,
+                      "Samples per pixel of a reference that is rendered");
+  command
+      ->add_option("--reference-strategy", a.referenceStrategy,
+                   "Strategy of a reference that is rendered")
+      ->capture_default_str();
+  command->add_option("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
+  command
+      ->add_option("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
       ->required();
   command->callback([arguments] { compare(*arguments); });
 }

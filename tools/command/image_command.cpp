@@ -5,7 +5,7 @@
 namespace chromeball {
 
 void addImageCommand(CLI::App& app) {
-  CLI::App* image = app.add_subcommand("image", "Look at images, and compare them.");
+  CLI::App* image = app.add_subcommand("image", "View and compare images.");
   image->require_subcommand(1);
   addImageErrorCommand(*image);
   addImageViewCommand(*image);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/suggest.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
@@ -25,13 +26,12 @@ struct Arguments {
   bool json = false, flip = false;
 };
 
-// What is printed.
 struct Findings {
   ImageError error;
   std::optional<double> flip;  // mean
 };
 
-// JSON has no infinity: null there.
+// JSON has no infinity or NaN: null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json toJson(const Findings& findings) {
@@ -61,8 +61,8 @@ void print(const Findings& findings) {
   if (findings.flip) fmt::print("flip            {:.6g}\n", *findings.flip);
   if (const auto& z = error.zScores)
     fmt::print(
-        "z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (0.27% by noise), of {} "
-        "numbers; the largest {:.3g}, by noise with a chance of {:.2g}\n",
+        "z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (expected 0.27%), of {} "
+        "numbers; maximum {:.3g}, p-value {:.2g}\n",
         z->mean, z->standardDeviation, 100 * z->fractionBeyond3, z->count, z->largest, z->pValue);
 }
 
@@ -73,26 +73,26 @@ struct Side {
   explicit Side(const std::string& path) {
     const ImageFile file = readImageFile(path);
     std::optional<Image> found = findColor(file);
-    if (!found) throwInput("{}: has no colour", path);
+    if (!found) throwInput("{}: has no color", path);
     color = *std::move(found);
     variance = findLayer(file, "variance");
   }
   const Image* varianceOrNull() const { return variance ? &*variance : nullptr; }
 };
 
-// Integer files hold what a screen shows; for others FLIP looks at several exposures.
-bool isForScreens(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+// Integer files are display-referred; FLIP compares others at several exposures.
+bool isDisplayReferred(const std::string& path) {
+  const std::string extension = lowerExtension(path);
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
 Image flipOf(const Arguments& arguments, const Side& a, const Side& b) {
-  return isForScreens(arguments.a) && isForScreens(arguments.b) ? flip(b.color, a.color)
-                                                                : hdrFlip(b.color, a.color);
+  return isDisplayReferred(arguments.a) && isDisplayReferred(arguments.b)
+             ? flip(b.color, a.color)
+             : hdrFlip(b.color, a.color);
 }
 
-// A false-colour picture, and what its colours mean.
+// A false-color image; prints its scale.
 void writeMap(const Arguments& arguments, const Image& map) {
   constexpr double kDecades = 3, kMaxZ = 5;
   const bool logarithmic = arguments.map == "relative";
@@ -123,7 +123,7 @@ void run(const Arguments& arguments) {
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
   const Side a(arguments.a), b(arguments.b);
   if (a.color.width != b.color.width || a.color.height != b.color.height)
-    throwInput("{}: is {} x {}, but {} is {} x {}; only images of one size can be compared",
+    throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be compared",
                arguments.a, a.color.width, a.color.height, arguments.b, b.color.width,
                b.color.height);
   Findings findings{imageError(a.color, b.color, a.varianceOrNull(), b.varianceOrNull()),
@@ -153,17 +153,18 @@ void run(const Arguments& arguments) {
 
 void addImageErrorCommand(CLI::App& image) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = image.add_subcommand("error", "How far image A is from the reference B.");
-  command->add_option("A", arguments->a, "the image")->required();
-  command->add_option("B", arguments->b, "the reference")->required();
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->add_flag(
-      "--flip", arguments->flip,
-      "also what one sees flipping between them (Andersson et al. 2020, 2021), 0 to 1");
-  command->add_option("-o,--output", arguments->output, "write a false-colour difference .png");
+  CLI::App* command =
+      image.add_subcommand("error", "The error of image A against the reference B.");
+  command->add_option("A", arguments->a, "The image")->required();
+  command->add_option("B", arguments->b, "The reference image")->required();
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->add_flag("--flip", arguments->flip,
+                    "Also the perceived difference FLIP (Andersson et al. 2020, 2021), 0 to 1");
+  command->add_option("-o,--output", arguments->output, "Write the error in false colors, .png");
   command
-      ->add_option("--map", arguments->map,
-                   "of what: relative (error), z (in sigmas, needs variance layers) or flip")
+      ->add_option(
+          "--map", arguments->map,
+          "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip")
       ->capture_default_str();
   command->callback([arguments] { run(*arguments); });
 }

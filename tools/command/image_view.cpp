@@ -20,14 +20,14 @@ struct Arguments {
   float exposure = 0;
 };
 
-// A damaged file's names may hold anything.
+// The names in a damaged file may hold control characters.
 std::string printable(std::string text) {
   for (char& c : text)
     if (uint8_t(c) < ' ' || c == 127) c = '?';
   return text;
 }
 
-// Which colour stands for what.
+// Prints which color stands for which name.
 void printLegend(const Image& ids, const std::map<int, std::string>& names) {
   constexpr size_t kMax = 64;
   std::set<int> present;
@@ -57,7 +57,7 @@ Image viewOf(const std::string& path, const std::string& layer) {
     const std::vector<std::string> names = layerNames(file);
     const std::vector<std::string_view> known(names.begin(), names.end());
     throwInput("{}: has no layer `{}`; {}", path, layer,
-               known.empty() ? "it has only its colour" : didYouMean(layer, known));
+               known.empty() ? "it has only its color" : didYouMean(layer, known));
   }
   if (isOfIds(layer)) printLegend(*image, readManifest(file.metadata, layer));
   return layerView(layer, *std::move(image));
@@ -67,7 +67,8 @@ void run(const Arguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
-  if (!std::isfinite(transform.exposure)) throwInput("--exposure: should be a number of stops");
+  if (!std::isfinite(transform.exposure))
+    throwInput("--exposure: must be a finite number of stops");
   writeImage(
       arguments.out,
       arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer),
@@ -78,15 +79,18 @@ void run(const Arguments& arguments) {
 
 void addImageViewCommand(CLI::App& image) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = image.add_subcommand("view", "Make an image that a screen can show.");
-  command->add_option("IN", arguments->in, "the image")->required();
-  command->add_option("OUT", arguments->out, "the image to write, .png")->required();
-  command->add_option("--exposure", arguments->exposure, "stops: radiance times 2^STOPS");
-  command->add_option("--tonemap", arguments->tone, "none, reinhard, aces, neutral or filmic")
+  CLI::App* command = image.add_subcommand("view", "Convert an image for display.");
+  command->add_option("IN", arguments->in, "The image")->required();
+  command->add_option("OUT", arguments->out, "The image to write, .png")->required();
+  command->add_option("--exposure", arguments->exposure, "Stops: radiance times 2^STOPS");
+  command
+      ->add_option("--tonemap", arguments->tone,
+                   fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")))
       ->capture_default_str();
   command->add_option("--layer", arguments->layer,
-                      "albedo, normal (-1..1 as 0..1), depth (near is white), node and material (a "
-                      "colour each, printed with its name), variance, samples, ...");
+                      "A layer in place of the color: albedo, normal (-1..1 as 0..1), depth (near "
+                      "is white), node and "
+                      "material (one color each, printed with its name), variance, samples, ...");
   command->callback([arguments] { run(*arguments); });
 }
 

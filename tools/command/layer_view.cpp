@@ -10,7 +10,7 @@
 namespace chromeball {
 namespace {
 
-constexpr float kBackground = 1e9f;  // far enough to mean that nothing was hit
+constexpr float kBackground = 1e9f;  // distances beyond this mean that nothing was hit
 
 Rgb toLinear(const Color8& color) {
   Rgb linear;
@@ -18,7 +18,8 @@ Rgb toLinear(const Color8& color) {
   return linear;
 }
 
-template <class Color>  // of a texel's numbers
+// `color` maps a texel's channels to its color.
+template <class Color>
 Image colored(const Image& layer, const Color& color) {
   Image view(layer.width, layer.height, 3);
   for (int y = 0; y < view.height; ++y)
@@ -26,7 +27,7 @@ Image colored(const Image& layer, const Color& color) {
   return view;
 }
 
-float mostFinite(const Image& layer, int channel) {
+float maxFinite(const Image& layer, int channel) {
   float maximum = 0;
   for (size_t i = channel; i < layer.texels.size(); i += layer.channels)
     if (std::isfinite(layer.texels[i])) maximum = std::max(maximum, layer.texels[i]);
@@ -54,19 +55,19 @@ Image varianceView(const Image& variance) {
   const double maximum = roundUp(percentile(std::move(errors), 0.99));
   return colored(variance, [&](const float* v) {
     const float e = error(v);
-    if (!std::isfinite(e)) return Rgb(1);  // nothing is known
+    if (!std::isfinite(e)) return Rgb(1);  // unknown
     return toLinear(heatColor(logLevel(e, maximum, kDecades)));
   });
 }
 
 Image samplesView(const Image& samples) {
-  const float maximum = mostFinite(samples, 0);
+  const float maximum = maxFinite(samples, 0);
   return colored(samples, [&](const float* n) { return toLinear(heatColor(*n / maximum)); });
 }
 
 Image invalidView(Image invalid) {
   for (int c = 0; c < invalid.channels; ++c) {
-    const float maximum = mostFinite(invalid, c);
+    const float maximum = maxFinite(invalid, c);
     for (size_t i = c; i < invalid.texels.size(); i += invalid.channels)
       invalid.texels[i] /= maximum;
   }

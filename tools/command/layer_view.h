@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render's layers as pictures that people can read.
+// A render's layers as images for display.
 #pragma once
 
 #include <map>
@@ -10,14 +10,14 @@
 
 namespace chromeball {
 
-// What a screen should show (linear, [0, 1] where it is no radiance) of a layer, by its name:
-//   depth           nearest white, farthest nearly black; where nothing was hit, black
+// The image to display (linear; [0, 1] unless it is radiance) for a layer of this name:
+//   depth           nearest white, farthest nearly black, black if nothing was hit
 //   normal          -1..1 as 0..1
-//   node, material  a colour of its own for each number, 0 black
-//   variance        standard error of the luminance, in false colours over three decades
-//   samples         in false colours, the most frequented pixel brightest
-//   invalid         each cause (R, G, B) in proportion to its most frequent pixel
-// Others stay as they are.
+//   node, material  one color for each number, 0 black
+//   variance        standard error of the luminance, in false colors over three decades
+//   samples         in false colors, relative to the maximum
+//   invalid         each cause (R, G, B) relative to its maximum
+// Others are unchanged.
 Image layerView(const std::string& name, Image layer);
 
 bool isOfIds(const std::string& name);  // node or material

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line: finds the subcommand, and turns every failure into one line and an exit status.
+// The command line: runs the subcommand, and turns every error into one line and an exit status.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "commands.h"
+#include "messages.h"
 #include "option_typos.h"
 
 namespace {
@@ -24,7 +25,7 @@ int report(int status, std::string message) {
   return status;
 }
 
-// The subcommands that were named, outermost first; at least the program itself.
+// The program and the subcommands given, outermost first.
 std::vector<const CLI::App*> namedCommands(const CLI::App& app) {
   std::vector<const CLI::App*> commands{&app};
   while (!commands.back()->get_subcommands().empty())
@@ -46,7 +47,7 @@ std::string describeConversion(const CLI::App& command, const std::string& error
                                       : "a number");
 }
 
-// CLI11's error as one of ours; where a word was not understood, with the nearest that would be.
+// CLI11's error in our form; for an unknown word, with the nearest known one.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> commands = namedCommands(app);
   const CLI::App& command = *commands.back();
@@ -66,10 +67,10 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
     for (const std::string& name : option->get_lnames())
       if (isOption) names.push_back("--" + name);
   for (const CLI::App* subcommand : command.get_subcommands(nullptr))
-    if (!isOption) names.push_back(subcommand->get_name());
+    if (!isOption && !subcommand->get_group().empty()) names.push_back(subcommand->get_name());
   const std::vector<std::string_view> known(names.begin(), names.end());
   const std::string option = word.substr(0, word.find('='));
-  const std::string_view ours = isOption ? ourOption(option) : "";
+  const std::string_view ours = isOption ? equivalentOption(option) : "";
   if (std::find(known.begin(), known.end(), ours.substr(0, ours.find(' '))) != known.end())
     return fmt::format("unknown option `{}`; did you mean `{}`?", option, ours);
   return fmt::format("unknown {} `{}`; {}",
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
   addImageCommand(app);
   addLightsCommand(app);
   addLightsErrorCommand(app);
+  addReferenceCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -102,11 +104,11 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, no more
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the size limit is a failed write
   try {
     return run(argc, argv);
   } catch (const InputError& error) {
-    return report(kBadInput, error.what());
+    return report(kBadInput, error.what() + inWords(error.remedy));
   } catch (const Interrupted& error) {
     return report(kInterrupted, error.what());
   } catch (const std::bad_alloc&) {

@@ -8,13 +8,13 @@
 namespace chromeball {
 namespace {
 
-struct Slips {
+struct Equivalents {
   std::string_view option;
-  std::string_view names;  // each between spaces
+  std::string_view names;  // of other renderers, each between spaces
 };
 
-// Of Blender, Cycles, Mitsuba, pbrt, LuxCore, Arnold, appleseed and image tools.
-constexpr auto kSlips = std::to_array<Slips>({
+// From Blender, Cycles, Mitsuba, pbrt, LuxCore, Arnold, appleseed and image tools.
+constexpr auto kEquivalents = std::to_array<Equivalents>({
     {"--samples N",
      " spp s sample-count num-samples nsamples samples-per-pixel pixel-samples pixelsamples "
      "aa-samples sample iterations passes "},
@@ -52,12 +52,12 @@ constexpr auto kSlips = std::to_array<Slips>({
 
 }  // namespace
 
-std::string_view ourOption(std::string_view option) {
+std::string_view equivalentOption(std::string_view option) {
   const std::string_view name =
       option.substr(std::min(option.find_first_not_of('-'), option.size()));
   const std::string word = ' ' + std::string(name) + ' ';
-  for (const Slips& slips : kSlips)
-    if (slips.names.find(word) != std::string_view::npos) return slips.option;
+  for (const Equivalents& e : kEquivalents)
+    if (e.names.find(word) != std::string_view::npos) return e.option;
   return {};
 }
 

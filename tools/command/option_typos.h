@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other renderers call our options.
+// Option names of other renderers.
 #pragma once
 
 #include <string_view>
 
 namespace chromeball {
 
-// How this program says what `option` ("--spp", "-s") says elsewhere: "--samples N". Empty where it
-// is no name we know.
-std::string_view ourOption(std::string_view option);
+// Our option for another renderer's ("--spp", "-s"): "--samples N". Empty if that is unknown.
+std::string_view equivalentOption(std::string_view option);
 
 }  // namespace chromeball

@@ -5,7 +5,7 @@
 namespace chromeball {
 
 void addProbeCommand(CLI::App& app) {
-  CLI::App* probe = app.add_subcommand("probe", "Look at, convert and make light probes.");
+  CLI::App* probe = app.add_subcommand("probe", "Inspect, convert and make light probes.");
   probe->require_subcommand(1);
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);

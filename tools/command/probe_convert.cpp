@@ -21,7 +21,7 @@ struct Arguments {
 // The mapping and size of the output. Of a cross or strip given no size, the upright form is made.
 std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& latLong) {
   if (!arguments.size.empty()) {
-    const ImageSize size = parseSize(arguments.size);
+    const ImageSize size = parseSize(arguments.size, "--size");
     if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
       return {*mapping, size};
   }

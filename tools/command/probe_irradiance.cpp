@@ -24,7 +24,7 @@ void run(const Arguments& arguments) {
     throwInput("--method: unknown method `{}`; {}", arguments.method,
                didYouMean(arguments.method, {"exact", "sh"}));
   const std::optional<ImageSize> given =
-      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size));
+      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
   const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.in))
     fmt::print(stderr, "chromeball: {}\n", warning);

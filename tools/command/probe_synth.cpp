@@ -92,7 +92,7 @@ void run(const Arguments& arguments) {
   checkRange("--ground-albedo", arguments.sky.groundAlbedo, 0, 1);
   checkRange("--sun-elevation", arguments.sky.sunElevation, 0, 90);
   checkRange("--turbidity", arguments.sky.turbidity, 2, 10);
-  writeImage(arguments.out, maker->second(arguments, parseSize(arguments.size)));
+  writeImage(arguments.out, maker->second(arguments, parseSize(arguments.size, "--size")));
 }
 
 }  // namespace

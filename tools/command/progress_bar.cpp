@@ -32,14 +32,15 @@ void ProgressBar::update(double fraction) {
   if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
-  const double gone = std::chrono::duration<double>(now - start_).count();
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
   if (std::isnan(fraction)) {
-    fmt::print(stderr, "\rrendering  {} gone\x1b[K", clockTime(gone));
+    fmt::print(stderr, "\rrendering  {} elapsed\x1b[K", clockTime(elapsed));
   } else {
     const int full = int(fraction * kWidth);
-    fmt::print(stderr, "\rrendering  [{}{}] {:3.0f}%  {} gone, {} left\x1b[K",
+    fmt::print(stderr, "\rrendering  [{}{}] {:3.0f}%  {} elapsed, {} remaining\x1b[K",
                std::string(full, '#'), std::string(kWidth - full, '.'), 100 * fraction,
-               clockTime(gone), fraction > 0 ? clockTime(gone * (1 - fraction) / fraction) : "?");
+               clockTime(elapsed),
+               fraction > 0 ? clockTime(elapsed * (1 - fraction) / fraction) : "?");
   }
   std::fflush(stderr);
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A progress bar on standard error: share done, time gone and time left.
+// A progress bar on standard error: fraction done, time elapsed and time remaining.
 #pragma once
 
 #include <chrono>
 
 namespace chromeball {
 
-// Draws only where shown; at most ten times a second.
+// Draws only if `shown`, at most ten times a second.
 class ProgressBar {
  public:
   explicit ProgressBar(bool shown);
   ~ProgressBar();  // clears the line
 
-  // `fraction` of the work done, in [0, 1]; NaN where only the time gone is known.
+  // `fraction` of the work done, in [0, 1]; NaN if it is unknown.
   void update(double fraction);
 
-  static bool isTerminal();  // is standard error one?
+  static bool isTerminal();  // whether standard error is one
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -5,15 +5,17 @@
 
 #include <algorithm>
 
+#include "base/file.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
 
-// Of a coarse grid of pixels, those whose rays meet a surface first, or its back; those of them
-// that are black, and whose surface is single-sided.
+// Counts over a coarse grid of pixels.
 struct Seen {
-  int surfaces = 0, black = 0, blackSingleSided = 0;
+  int surfaces = 0;          // a surface is visible, from the front or back
+  int black = 0;             // of these: the pixel is black
+  int blackSingleSided = 0;  // of these: the surface is single-sided
 };
 
 bool isSingleSided(const Scene& scene, const Hit& hit) {
@@ -40,8 +42,7 @@ Seen lookAround(const LoadedScene& loaded, const Accel& accel, const Image& mean
   return seen;
 }
 
-}  // namespace
-
+// The likely cause if nearly every visible surface is black, or most are and single-sided.
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
                                     const RenderResult& result) {
   constexpr float kDark = 1e-4f;  // of the probe's mean
@@ -51,23 +52,24 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
   const Seen seen = lookAround(loaded, accel, mean, dark);
   if (result.interrupted || seen.black == 0 || seen.black < kMax * seen.surfaces)
     return std::nullopt;
-  const std::string what =
-      fmt::format("{:.0f}% of what the camera sees is black: ", 100.0 * seen.black / seen.surfaces);
+  const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ",
+                                       100.0 * seen.black / seen.surfaces);
   const bool lets = std::any_of(loaded.scene.materials.begin(), loaded.scene.materials.end(),
                                 [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * seen.blackSingleSided > seen.black)
     return what +
-           "single-sided walls, through which the camera may look, keep the light out; "
-           "--single-sided light lets it in, and [[light]] in a scene file adds lamps";
+           "single-sided walls, which the camera sees through, block the light; "
+           "try --single-sided light, or add lamps with [[light]] in a scene file";
   if (seen.black < kNearlyAll * seen.surfaces) return std::nullopt;
-  return what + "no light reaches it; [[light]] in a scene file adds lamps";
+  return what + "no light reaches them; add lamps with [[light]] in a scene file";
 }
 
+// The exposure to try if most pixels of a .png are clipped.
 std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loaded,
                                     const RenderResult& result) {
-  const bool isShown = std::any_of(job.outputs.begin(), job.outputs.end(),
-                                   [](const std::string& path) { return path.ends_with(".png"); });
-  if (!isShown) return std::nullopt;
+  const bool hasPng = std::any_of(job.outputs.begin(), job.outputs.end(),
+                                  [](const auto& path) { return lowerExtension(path) == ".png"; });
+  if (!hasPng) return std::nullopt;
   const Image mean = result.film.mean();
   std::vector<float> brightest;
   size_t clipped = 0;
@@ -80,10 +82,52 @@ std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loa
   const auto high = brightest.begin() + std::ptrdiff_t(brightest.size() * 9 / 10);
   std::nth_element(brightest.begin(), high, brightest.end());
   std::string hint =
-      fmt::format("{:.0f}% of the .png's pixels are clipped; --exposure {:.0f} shows them",
+      fmt::format("{:.0f}% of the .png's pixels are clipped; try --exposure {:.0f}",
                   100 * double(clipped) / double(brightest.size()), std::floor(-std::log2(*high)));
-  if (!loaded.scene.lights.empty()) hint += ", --lights FACTOR dims the model's lights";
+  if (!loaded.scene.lights.empty()) hint += ", or dim the model's lights with --lights FACTOR";
   return hint;
+}
+
+void addDepthCut(const char* option, int depth, double fraction, Messages& messages) {
+  constexpr double kMinFraction = 0.01;
+  if (fraction > kMinFraction)
+    messages.push_back({Message::Kind::Warning,
+                        fmt::format("{} {} cut about {:.2g}% of the light; a higher one finds it",
+                                    option, depth, 100 * fraction)});
+}
+
+void addMissingLight(const RenderJob& job, const RenderResult& result, Messages& messages) {
+  const auto warning = [&](std::string text) {
+    messages.push_back({Message::Kind::Warning, std::move(text)});
+  };
+  if (const InvalidSamples& invalid = result.invalid; invalid.total())
+    warning(fmt::format(
+        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
+        "first at pixel ({}, {}); --aov invalid shows where",
+        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
+        invalid.of(Defect::Negative), invalid.x, invalid.y));
+  if (result.clamped.count)
+    warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the image's light",
+                        result.clamped.count, 100 * result.clamped.fractionRemoved()));
+  const DepthCut& cut = result.depthCut;
+  addDepthCut("--max-depth", job.settings.maxDepth, cut.fraction(cut.byDepth), messages);
+  addDepthCut("--max-transmission-depth", job.settings.maxTransmissionDepth,
+              cut.fraction(cut.byTransmission), messages);
+}
+
+}  // namespace
+
+Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
+                        const PreparedScene& prepared, const JobResult& result) {
+  Messages messages;
+  addMissingLight(job, result.render, messages);
+  messages.insert(messages.end(), result.messages.begin(), result.messages.end());
+  if (job.composite) return messages;
+  if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
+    messages.push_back({Message::Kind::Warning, *why});
+  if (const auto why = whyWhite(job, loaded, result.render))
+    messages.push_back({Message::Kind::Note, *why});
+  return messages;
 }
 
 }  // namespace chromeball

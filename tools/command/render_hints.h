@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user should know of a picture on which little is to be seen.
+// What a user should know about a rendered image, with the options that help.
 #pragma once
 
-#include <optional>
-#include <string>
-
-#include "integrate/render.h"
-#include "job/load_scene.h"
+#include "job/run_job.h"
 
 namespace chromeball {
 
-// Where nearly every surface that the camera sees is black, or most are and single-sided: a line
-// that says the likely cause.
-std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const RenderResult& result);
-
-// Where most of a tone mapped picture is clipped: a line that says what would show it.
-std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loaded,
-                                    const RenderResult& result);
+// The messages of `result`, and of what its numbers show: samples left out, clamped light, light
+// beyond the maximum depths, images that are nearly black or mostly clipped.
+Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
+                        const PreparedScene& prepared, const JobResult& result);
 
 }  // namespace chromeball

@@ -1,52 +1,94 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_options.h"
 
-namespace chromeball {
+#include "job/settings_page.h"
+#include "progress_bar.h"
 
-void addSceneOptions(CLI::App& command, RenderOptions& o) {
-  command.parse_complete_callback([&command, &o] {
-    for (const CLI::Option* option : command.get_options())
-      if (option->count() > 0)
-        o.given.push_back({option->get_single_name(), CLI::detail::join(option->results(), ",")});
-  });
-  command.add_option("scene", o.scene, "Scene file (.toml) or model (.gltf, .glb)")->required();
-  command.add_option("--probe", o.probe, "Light probe: .hdr, .exr or .pfm (else the model's own)");
-  command.add_option("--probe-mapping", o.mapping,
-                     "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
-  command.add_option("--probe-rotation", o.rotation,
-                     "Degrees the environment turns, counter-clockwise from above");
-  command.add_option("--probe-scale", o.scale, "Factor on the probe's radiance");
-  command.add_option("--size", o.size, "WxH in pixels");
-  command.add_option("--mis", o.mis, "off, balance or power");
-  command.add_option("--max-depth", o.maxDepth, "Bounces: 0 emission, 1 direct light, ... (8)");
-  command.add_option("--max-transmission-depth", o.maxTransmissionDepth,
-                     "Bounces in and on bodies of glass, which --max-depth does not count (64)");
-  command.add_option("--single-sided", o.singleSided,
-                     "What single-sided surfaces hide from behind: themselves from the camera and "
-                     "mirrors (camera), from all light too (light), or nothing (off)");
-  command.add_option("--lights", o.lights,
-                     "The models' own lights: off, or a factor on them (1); not on lamps that are "
-                     "surfaces");
-  command.add_option("--light-units", o.lightUnits,
-                     "Of the models' lights: photometric (683 lm/W, as Blender's), or radiometric "
-                     "(1 cd is 1 W/sr)");
-  command.add_option("--camera", o.camera, "Name of one of the model's cameras, or of its node");
-  command.add_option("--animation", o.animation, "Show the models in the pose of this animation");
-  command.add_option("--animation-time", o.animationTime, "at this time, in seconds (0)");
-  command.add_option("--variant", o.variant, "Show the models in this variant of their materials");
-  command.add_option("--seed", o.seed, "Another seed, another independent picture (0)")
-      ->check([](const std::string& text) {
-        return text.starts_with('-') ? "`" + text + "` is not a whole number, 0 or more" : "";
-      });
-  command.add_option("--threads", o.threads, "Number of threads (all)");
-  command.add_option("--tonemap", o.tonemap, "For .png: none, reinhard, aces, neutral or filmic");
-  command.add_option("--exposure", o.exposure, "For .png: stops");
-  command.add_option("--memory", o.memory,
-                     "Refuse pictures that take more than this, in GB (0.8 times the machine's)");
-  command.add_flag("--allow-external", o.allowExternal,
-                   "Let models name files outside their own folders");
-  command.add_flag("--progress", o.progress, "Show progress even where it is no terminal");
-  command.add_flag("--quiet", o.quiet, "Show neither progress nor notes; warnings stay");
+namespace chromeball {
+namespace {
+
+// Breaks lines before `width` characters.
+std::string wrapped(const std::string& text, size_t width) {
+  std::string lines;
+  size_t column = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(' ', begin), text.size());
+    const size_t length = end - begin;
+    if (column > 0) {
+      const bool fits = column + 1 + length <= width;
+      lines += fits ? ' ' : '\n';
+      column = fits ? column + 1 : 0;
+    }
+    lines.append(text, begin, length);
+    column += length;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+// The setting's help, its choices and its default.
+std::string helpOf(const Setting& setting) {
+  constexpr size_t kWidth = 68;
+  std::string text(setting.help);
+  if (setting.choices) text += fmt::format(" Names: {}.", fmt::join(setting.choices(), ", "));
+  if (setting.type != SettingType::Flag)
+    text += fmt::format(" (default: {})", defaultText(setting));
+  return wrapped(text, kWidth);
+}
+
+std::string titleOf(const Setting& setting) {
+  // Options without a key join the sections of related keys.
+  const std::string_view title = setting.section.empty() && setting.effect == Effect::Image
+                                     ? "Render"
+                                 : setting.effect == Effect::Display ? "Output"
+                                                                     : "";
+  if (!title.empty()) return std::string(title);
+  for (const SettingSection& section : settingSections())
+    if (section.name == setting.section) return std::string(section.title);
+  throw std::logic_error("a setting has no section");
+}
+
+bool isList(const Setting& setting) {
+  return setting.type == SettingType::Choices || setting.type == SettingType::Files;
+}
+
+void addOption(CLI::App& app, const Setting& setting, Settings& settings) {
+  const std::string name = "--" + std::string(setting.option);
+  const std::string names = setting.letter ? fmt::format("-{},{}", setting.letter, name) : name;
+  const auto set = [&setting, &settings, name](const CLI::results_t& words) {
+    settings.set(setting.name(), parseSetting(setting, words, name), name);
+    return true;
+  };
+  if (setting.type == SettingType::Flag) {
+    app.add_flag_callback(
+           names, [set] { set({"true"}); }, helpOf(setting))
+        ->group(titleOf(setting));
+    return;
+  }
+  CLI::Option* option = app.add_option(names, set, helpOf(setting));
+  option->type_name(std::string(setting.argument))->group(titleOf(setting));
+  if (isList(setting)) option->take_all();
+}
+
+}  // namespace
+
+bool SceneOptions::showsProgress() const {
+  return settings.get<bool>("progress") || (ProgressBar::isTerminal() && !quiet());
+}
+
+void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command) {
+  app.add_option("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
+      ->type_name("SCENE")
+      ->required();
+  for (const Setting& setting : settingTable())
+    if (!setting.option.empty() && (command == SceneCommand::Render || !setting.renderOnly))
+      addOption(app, setting, options.settings);
+  app.get_formatter()->column_width(32);
+}
+
+std::string optionText(const Setting& setting, const std::string& value) {
+  const std::string argument = value.empty() ? std::string(setting.argument) : value;
+  return fmt::format("--{}{}{}", setting.option, argument.empty() ? "" : " ", argument);
 }
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/picture_memory.h"
+#include "job/image_memory.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-double pictureBytes(const RenderSettings& settings) {
+double imageBytes(const RenderSettings& settings) {
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
   for (Aov aov : settings.aovs) {
     const double channels = std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
@@ -17,7 +17,7 @@ double pictureBytes(const RenderSettings& settings) {
     texels += channels * sizeof(float);
   }
   // Estimating the noise takes three fields of errors, two of luminances and the variance; later
-  // the layers stand beside the file's texels.
+  // the layers and the texels of the file exist together.
   constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
   const double maximum = std::max(kNoise, 2 * texels);
   return double(settings.width) * settings.height *

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that say how noisy a picture is.
+// The noise of an image.
 #pragma once
 
 #include "film/noise.h"
 
 namespace chromeball {
 
-struct PictureNoise {
+struct ImageNoise {
   double noise, median, p95;  // fractions (film/noise.h)
-  Image variance;             // of each pixel, RGB
+  Image variance;             // of each pixel's mean, RGB
 
-  explicit PictureNoise(const PixelErrors& errors) {
+  explicit ImageNoise(const PixelErrors& errors) {
     const std::vector<glm::dvec4> squared = squaredStandardErrors(errors);
     const NoiseQuantiles quantiles = noiseQuantiles(errors, squared);
     noise = estimateNoise(errors).noise;

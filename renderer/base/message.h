@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the library tells its user beside its results. It prints nothing itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+struct Message {
+  enum class Kind {
+    Note,     // what was detected or chosen
+    Warning,  // what may spoil the image
+  };
+  Kind kind;
+  std::string text;  // one line, without a full stop
+  std::optional<Remedy> remedy = {};
+};
+
+using Messages = std::vector<Message>;
+
+}  // namespace chromeball

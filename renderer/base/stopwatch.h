@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elapsed time.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+namespace chromeball {
+
+class Stopwatch {
+ public:
+  // Seconds since the last call, or since construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace chromeball

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of a job that puts objects into a photograph.
+#pragma once
+
+#include "composite/compose.h"
+#include "composite/render_composite.h"
+#include "job/scene_file.h"
+
+namespace chromeball {
+
+struct RenderJob;
+struct LoadedScene;
+
+struct CompositePlan {
+  Image plate;  // of the image's size
+  CompositeMode mode = CompositeMode::Difference;
+  // Where the local scene's reflectance comes from.
+  enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
+  int iterations = 1;  // of Reflectance::Plate
+  Passes passes = Passes::One;
+  std::vector<Aov> layers;  // all the requested ones; RenderSettings::aovs keeps the first hit's
+};
+
+// Reads the plate of the job's [composite] section. The image takes the plate's size unless the job
+// has another. Throws InputError.
+void planComposite(RenderJob& job);
+
+// Separates objects from local scene, and gives the local scene its reflectance and gloss. Throws
+// InputError.
+void prepareLocalScene(const RenderJob& job, LoadedScene& loaded);
+
+}  // namespace chromeball

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The memory that an image takes, known before it is allocated.
+#pragma once
+
+#include "integrate/render.h"
+
+namespace chromeball {
+
+// Peak memory of the film, the layers and the output images, in bytes.
+double imageBytes(const RenderSettings& settings);
+
+// The default limit: 0.8 times the machine's memory, or the process's limit if that is less. Bytes.
+double memoryBudget();
+
+}  // namespace chromeball

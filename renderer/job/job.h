@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything a program needs to render a scene file:
+//
+//   RenderJob job = planJob(openScene("scene.toml"));
+//   LoadedScene loaded = loadScene(job);
+//   JobResult result = renderJob(job, loaded);
+//   const Image& image = result.color();   // linear RGB, row 0 at the top
+//
+// All of these throw InputError or RunError (base/error.h); none prints or writes anything.
+#pragma once
+
+#include "job/load_scene.h"
+#include "job/render_job.h"
+#include "job/run_job.h"
+#include "job/scene_file.h"

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a job's images and statistics go.
+#pragma once
+
+#include "base/message.h"
+#include "job/render_job.h"
+
+namespace chromeball {
+
+// Checks before the work that the outputs can be written. Returns warnings of settings without
+// effect on them. Throws InputError or RunError.
+Messages checkOutputs(const RenderJob& job);
+
+// Call when all files are read (`inputs`; the scene file itself is added) and no other input error
+// can occur. Throws InputError if an output would overwrite an input, and makes the folders that
+// the scene file names for its images.
+void prepareOutputs(const RenderJob& job, std::vector<std::string> inputs);
+
+}  // namespace chromeball

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_report.h"
+
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include "job/id_manifest.h"
+#include "job/job_description.h"
+#include "job/machine.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+uint64_t peakMemoryBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+json describe(const CompositeReport& report) {
+  json j = {
+      {"composite", {{"objects", report.coverage}, {"darker_than_black", report.darkerThanBlack}}}};
+  if (const auto& r = report.reflectance)
+    j["reflectance"] = {{"pixels", r->pixels},
+                        {"clamped", r->clampedFraction},
+                        {"exposure_ratio", r->exposureRatio},
+                        {"last_change", r->lastChange}};
+  return j;
+}
+
+json describe(const RenderResult& result) {
+  const DepthCut& cut = result.depthCut;
+  return {
+      {"samples_per_pixel", result.samples},
+      {"width", result.film.width()},
+      {"height", result.film.height()},
+      {"rays",
+       {{"camera", result.rays.camera},
+        {"shadow", result.rays.shadow},
+        {"bounce", result.rays.bounce}}},
+      {"invalid_samples", result.invalid.total()},
+      {"invalid",
+       {{"nan", result.invalid.of(Defect::Nan)},
+        {"infinite", result.invalid.of(Defect::Infinite)},
+        {"negative", result.invalid.of(Defect::Negative)}}},
+      {"clamped",
+       {{"samples", result.clamped.count}, {"light_removed", result.clamped.fractionRemoved()}}},
+      {"depth_cut",
+       {{"max_depth", cut.fraction(cut.byDepth)},
+        {"max_transmission_depth", cut.fraction(cut.byTransmission)}}},
+      {"interrupted", result.interrupted},
+  };
+}
+
+}  // namespace
+
+json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
+                const PhaseSeconds& seconds) {
+  json j = {
+      {"version", CHROMEBALL_VERSION},
+      {"command", commandLine()},
+      {"job", describeJob(job, loaded)},
+      {"scene", job.file.path},
+      {"strategy", resolveStrategy(job.strategy.name)},
+      {"seed", job.settings.seed},
+      {"max_depth", job.settings.maxDepth},
+      {"max_transmission_depth", job.settings.maxTransmissionDepth},
+      {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
+      {"seconds",
+       {{"load", seconds.load},
+        {"build", seconds.build},
+        {"prepare", seconds.prepare},
+        {"render", seconds.render},
+        {"write", seconds.write}}},
+      {"noise", result.noise.noise},  // NaN becomes null
+      {"noise_median", result.noise.median},
+      {"noise_p95", result.noise.p95},
+      {"triangles", loaded.scene.triangleCount()},
+      {"scene_bytes", loaded.scene.byteCount()},
+      {"texture_bytes", loaded.scene.texelByteCount()},
+      {"peak_memory_bytes", peakMemoryBytes()},
+  };
+  j.update(describe(result.render));
+  if (result.composite) j.update(describe(*result.composite));
+  return j;
+}
+
+Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const JobResult& result) {
+  const RayCounts& rays = result.render.rays;
+  Metadata metadata = toMetadata(describeJob(job, loaded));
+  metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
+  metadata["command"] = commandLine();
+  metadata["samples"] = int(result.render.samples);
+  metadata["seconds"] = float(result.seconds);
+  metadata["rays"] = std::to_string(rays.camera + rays.shadow + rays.bounce);
+  metadata["noise"] = float(result.noise.noise);
+  metadata["noise_median"] = float(result.noise.median);
+  metadata["noise_p95"] = float(result.noise.p95);
+  if (job.settings.clamp)
+    metadata["clamp_light_removed"] = float(result.render.clamped.fractionRemoved());
+  metadata.merge(idManifests(result.image, loaded.scene));
+  return metadata;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render reports about itself: its statistics and the attributes of its EXR file.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "job/run_job.h"
+
+namespace chromeball {
+
+// Seconds that the phases of a job take.
+struct PhaseSeconds {
+  double load = 0, build = 0, prepare = 0, render = 0, write = 0;
+};
+
+// The statistics of `chromeball render --stats`: the job (job_description.h), samples, rays,
+// seconds, noise, memory. Numbers that are unknown are null.
+nlohmann::json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
+                          const PhaseSeconds& seconds);
+
+// The attributes of the EXR file: the job, and the noise, samples, rays and seconds of the render.
+Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const JobResult& result);
+
+}  // namespace chromeball

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/load_messages.h"
+
+#include <algorithm>
+
+#include "base/file.h"
+#include "job/image_memory.h"
+
+namespace chromeball {
+namespace {
+
+class Collector {
+ public:
+  void note(std::string text) { messages_.push_back({Message::Kind::Note, std::move(text)}); }
+  void warn(std::string text) { messages_.push_back({Message::Kind::Warning, std::move(text)}); }
+  Messages take() { return std::move(messages_); }
+
+ private:
+  Messages messages_;
+};
+
+bool hasBodies(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
+    return scene.materials[size_t(i.material)].isBody();
+  });
+}
+
+void addMemory(const RenderSettings& s, Collector& messages) {
+  constexpr double kMinBytes = 1e9;
+  if (const double bytes = imageBytes(s); bytes > kMinBytes)
+    messages.note(fmt::format("an image of {}x{} takes {:.3g} GB of memory", s.width, s.height,
+                              bytes * 1e-9));
+}
+
+void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
+  const std::string& model = job.file.models.front().file;
+  if (scene.environment)
+    messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
+  else if (const size_t count = scene.lights.size())
+    messages.note(fmt::format("{}: no probe; lit by the model's {} light{}", model, count,
+                              count == 1 ? "" : "s"));
+}
+
+void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
+  for (const std::string& line : warnings(probe, path)) messages.warn(line);
+  if (!probe.detected) return;
+  const std::string_view mapping = mappingName(probe.mapping);
+  messages.note(fmt::format("{}: detected as {} {} probe because {}", path,
+                            mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
+}
+
+void addPlate(const std::string& path, Collector& messages) {
+  const std::string extension = lowerExtension(path);
+  const bool isLinear =
+      extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".pfm";
+  if (!isLinear) messages.note(fmt::format("{}: decoded from sRGB", path));
+}
+
+}  // namespace
+
+Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
+                      const std::vector<std::string>& modelWarnings) {
+  const Scene& scene = loaded.scene;
+  Collector messages;
+  for (const std::string& line : job.file.warnings) messages.warn(line);
+  for (const std::string& line : modelWarnings) messages.warn(line);
+  for (const std::string& line : scene.notes) messages.note(line);
+  if (!scene.lights.empty() && hasBodies(scene))
+    messages.warn(
+        "lights without extent do not shine through bodies of glass, which refract their light: "
+        "what stands behind is in full shadow; light from a lamp with a surface passes");
+  addMemory(job.settings, messages);
+  const Settings& settings = job.file.settings;
+  if (const auto probe = settings.getIfGiven<std::string>("probe.file"))
+    addProbe(*probe, loaded.loadedProbe, messages);
+  else
+    addLights(job, scene, messages);
+  if (job.composite) addPlate(settings.get<std::string>("composite.plate"), messages);
+  return messages.take();
+}
+
+}  // namespace chromeball

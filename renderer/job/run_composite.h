@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders a job with [composite].
+#pragma once
+
+#include "job/run_job.h"
+
+namespace chromeball {
+
+// Finds the local scene's reflectance where the job asks for it, then renders the composite.
+JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
+                          const PreparedScene& prepared, const Progress& progress,
+                          const std::atomic<bool>& stop);
+
+}  // namespace chromeball

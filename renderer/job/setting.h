@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// One setting of a render: its names, type, range and meaning.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// Flag: bool. Integer: uint64_t. Number and Factor: double. Choice, Name and File: string. Choices
+// and Files: a list of strings. Size: ImageSize.
+using SettingValue =
+    std::variant<bool, uint64_t, double, std::string, std::vector<std::string>, ImageSize>;
+
+enum class SettingType {
+  Flag,
+  Integer,   // whole, in the range
+  Number,    // finite as a float, in the range
+  Factor,    // the same; "off" is 0
+  Choice,    // one of the choices
+  Choices,   // one or several of the choices
+  Name,      // a string; the code that uses it knows which are valid
+  File,      // an existing file
+  Files,     // one or several files to write
+  Size,      // width and height in pixels
+  Compound,  // a structured key with its own reader; `form` describes it
+};
+
+// Of an Integer, a Number or the elements of a Compound.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool excludesMin = false, excludesMax = false;
+
+  bool contains(double x) const {
+    return (excludesMin ? x > min : x >= min) && (excludesMax ? x < max : x <= max);
+  }
+};
+
+// What a setting changes.
+enum class Effect {
+  Image,    // the pixels' radiance: part of a job's description
+  Limit,    // how many samples are taken
+  Display,  // how a .png shows the radiance
+  Run,      // nothing in the image
+};
+
+struct Setting {
+  std::string_view section;        // of the scene file; empty: none
+  std::string_view key;            // empty: the command line only
+  std::string_view option;         // without dashes; empty: the scene file only
+  char letter = 0;                 // short form of the option
+  std::string_view argument = {};  // name of the option's argument in --help: "N", "SECONDS"
+  SettingType type;
+  std::string_view form = {};  // of a Compound: "three numbers"
+  Range range = {};
+  std::string_view unit = {};
+  std::string fallback = {};     // the default, as the option takes it; empty: none
+  std::string_view absent = {};  // without a default: what applies instead
+  std::vector<std::string_view> (*choices)() = nullptr;  // listed also for a Name
+  std::string_view help;
+  Effect effect = Effect::Image;
+  bool renderOnly =
+      false;  // no option of `chromeball compare`, which varies it or has no use for it
+
+  // "render.samples"; the option if there is no key.
+  std::string name() const;
+};
+
+// What a valid value is: "a whole number from 1 to 20", "a finite number above 0 (seconds)".
+std::string expected(const Setting& setting);
+
+// The value of an option's arguments (none for a flag). Throws InputError, begun by `location`.
+SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,
+                          const std::string& location);
+
+// Throws InputError, begun by `location`, for a value of another type or out of range.
+void checkSetting(const Setting& setting, const SettingValue& value, const std::string& location);
+
+// As an option takes it.
+std::string toText(const SettingValue& value);
+
+}  // namespace chromeball

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the table of settings.
+#pragma once
+
+#include "job/setting_table.h"
+
+namespace chromeball {
+
+std::vector<Setting> sceneRows();      // [[model]], [camera], [probe], [lighting]
+std::vector<Setting> lightRows();      // [[light]]
+std::vector<Setting> renderRows();     // [render], [output]
+std::vector<Setting> compositeRows();  // [composite], [surroundings]
+std::vector<Setting> commandRows();    // options without a key
+
+inline constexpr Range kPositive{.min = 0, .excludesMin = true};
+inline constexpr Range kNotNegative{.min = 0};
+
+}  // namespace chromeball

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/tonemap.h"
+#include "job/setting_rows.h"
+
+namespace chromeball {
+
+std::vector<Setting> commandRows() {
+  using enum SettingType;
+  return {
+      {.option = "clamp",
+       .argument = "RADIANCE",
+       .type = Number,
+       .range = kPositive,
+       .absent = "no sample is clamped",
+       .help = "Scales samples down whose largest channel exceeds this; biased.",
+       .renderOnly = true},
+      {.option = "transparent",
+       .type = Flag,
+       .help = "Hides the probe from the camera, and writes alpha.",
+       .renderOnly = true},
+      {.option = "two-pass",
+       .type = Flag,
+       .help = "Renders a composite as the difference of two renders: slow, the reference for the "
+               "single pass.",
+       .renderOnly = true},
+      {.option = "tonemap",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "none",
+       .choices = [] { return toneOperatorNames(); },
+       .help = "Tone operator of a .png.",
+       .effect = Effect::Display},
+      {.option = "exposure",
+       .argument = "STOPS",
+       .type = Number,
+       .unit = "stops",
+       .fallback = "0",
+       .help = "Exposure of a .png: radiance times 2^STOPS.",
+       .effect = Effect::Display},
+      {.option = "allow-external",
+       .type = Flag,
+       .help = "Lets models name files outside their own folders."},
+      {.option = "memory",
+       .argument = "GB",
+       .type = Number,
+       .range = kPositive,
+       .unit = "GB",
+       .absent = "0.8 times the machine's memory",
+       .help = "Refuses images that take more than this.",
+       .effect = Effect::Run},
+      {.option = "threads",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0, .max = 65536},
+       .fallback = "0",
+       .help = "Number of threads; 0 is one for each core. It does not change the image.",
+       .effect = Effect::Run},
+      {.option = "stats",
+       .argument = "FILE.json",
+       .type = Name,
+       .absent = "none",
+       .help = "Writes times, rays, noise and the job's settings to this file.",
+       .effect = Effect::Run,
+       .renderOnly = true},
+      {.option = "progress",
+       .type = Flag,
+       .help = "Shows progress also if standard error is not a terminal.",
+       .effect = Effect::Run},
+      {.option = "quiet",
+       .type = Flag,
+       .help = "Shows neither progress nor notes; warnings stay.",
+       .effect = Effect::Run},
+  };
+}
+
+}  // namespace chromeball

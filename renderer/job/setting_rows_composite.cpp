@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/setting_rows.h"
+
+namespace chromeball {
+namespace {
+
+using Names = std::vector<std::string_view>;
+using enum SettingType;
+
+void addComposite(std::vector<Setting>& rows) {
+  const auto add = [&](Setting row) {
+    row.section = "composite";
+    rows.push_back(std::move(row));
+  };
+  add({.key = "plate",
+       .type = File,
+       .absent = "required",
+       .help = "The photograph: linear .exr, .hdr, .pfm; others are decoded from sRGB."});
+  add({.key = "local_scene",
+       .type = Compound,
+       .form = "a node's name, or several",
+       .absent = "required",
+       .help = "Nodes that stand for real things, with everything below them; the model's other "
+               "nodes are put into the photograph."});
+  add({.key = "mode",
+       .type = Choice,
+       .fallback = "difference",
+       .choices =
+           [] {
+             return Names{"difference", "ratio"};
+           },
+       .help = "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj."});
+  add({.key = "reflectance",
+       .type = Choice,
+       .fallback = "model",
+       .choices =
+           [] {
+             return Names{"model", "plate", "flat"};
+           },
+       .help = "The local scene's base color: the model's, found from the plate by rendering, or "
+               "found from the plate by the exact irradiance of a flat local scene."});
+  add({.key = "iterations",
+       .type = Integer,
+       .range = {.min = 1, .max = 20},
+       .fallback = "2",
+       .help =
+           "Iterations of `reflectance = \"plate\"`; one suffices if no part of the local scene "
+           "sees another."});
+  add({.key = "specular",
+       .type = Number,
+       .range = {.min = 0, .max = 1},
+       .absent = "the model's gloss; 1 if `roughness` is given",
+       .help = "Strength of the local scene's gloss; 1 is an index of refraction of 1.5."});
+  add({.key = "roughness",
+       .type = Number,
+       .range = {.min = 0, .max = 1},
+       .absent = "the model's gloss; 0.2 if `specular` is given",
+       .help = "Roughness of the local scene's gloss, as in glTF."});
+}
+
+void addSurroundings(std::vector<Setting>& rows) {
+  const auto add = [&](Setting row) {
+    row.section = "surroundings";
+    rows.push_back(std::move(row));
+  };
+  const auto point = [&](std::string_view key, std::string_view absent, std::string_view help) {
+    add({.key = key,
+         .type = Compound,
+         .form = "three numbers",
+         .unit = "metres",
+         .absent = absent,
+         .help = help});
+  };
+  add({.key = "shape",
+       .type = Choice,
+       .absent = "required",
+       .choices =
+           [] {
+             return Names{"box", "sphere", "model"};
+           },
+       .help = "A box or a sphere that holds the whole model, or a model of the room."});
+  point("min", "required for a box", "The box's corner with the smallest coordinates.");
+  point("max", "required for a box", "The box's corner with the largest coordinates.");
+  point("center", "required for a sphere", "The sphere's center.");
+  add({.key = "radius",
+       .type = Compound,
+       .form = "a number",
+       .range = kPositive,
+       .unit = "metres",
+       .absent = "required for a sphere",
+       .help = "The sphere's radius."});
+  add({.key = "file",
+       .type = File,
+       .absent = "required for a model",
+       .help = "A glTF file of the room, of which only the shape counts."});
+  point("capture", "the middle; required for a model", "Where the probe was captured, inside.");
+}
+
+}  // namespace
+
+std::vector<Setting> compositeRows() {
+  std::vector<Setting> rows;
+  addComposite(rows);
+  addSurroundings(rows);
+  return rows;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/setting_rows.h"
+
+namespace chromeball {
+
+std::vector<Setting> lightRows() {
+  using enum SettingType;
+  std::vector<Setting> rows;
+  const auto add = [&](Setting row) {
+    row.section = "light";
+    rows.push_back(std::move(row));
+  };
+  const std::string_view color = "a number (grey), or three";
+  add({.key = "type",
+       .type = Choice,
+       .absent = "required",
+       .choices =
+           [] {
+             return std::vector<std::string_view>{"point", "spot", "disc"};
+           },
+       .help = "The kind of lamp."});
+  add({.key = "name",
+       .type = Name,
+       .fallback = "light",
+       .help = "Name of the lamp's node, for `local_scene`."});
+  add({.key = "position",
+       .type = Compound,
+       .form = "three numbers",
+       .unit = "metres",
+       .absent = "required",
+       .help = "Where the lamp is."});
+  add({.key = "direction",
+       .type = Compound,
+       .form = "three numbers",
+       .absent = "required for a spot or disc",
+       .help = "Where a spot or disc shines; of any length but 0."});
+  add({.key = "intensity",
+       .type = Compound,
+       .form = color,
+       .range = kNotNegative,
+       .unit = "W/sr",
+       .absent = "from `power`",
+       .help = "Radiant intensity of a point or spot light, on the axis of a spot."});
+  add({.key = "radiance",
+       .type = Compound,
+       .form = color,
+       .range = kNotNegative,
+       .unit = "W/(m^2 sr)",
+       .absent = "from `power`",
+       .help = "Radiance of a disc."});
+  add({.key = "power",
+       .type = Compound,
+       .form = color,
+       .range = kNotNegative,
+       .unit = "watts",
+       .absent = "none",
+       .help = "Radiant flux, in place of `intensity` or `radiance`."});
+  add({.key = "range",
+       .type = Compound,
+       .form = "a number",
+       .range = kPositive,
+       .unit = "metres",
+       .absent = "unlimited",
+       .help = "Distance at which a point or spot light fades to 0 (KHR_lights_punctual)."});
+  add({.key = "inner_angle",
+       .type = Compound,
+       .form = "a number from 0 to `outer_angle`",
+       .unit = "degrees",
+       .absent = "0",
+       .help = "Angle from a spot's axis up to which it has its full intensity."});
+  add({.key = "outer_angle",
+       .type = Compound,
+       .form = "a number",
+       .range = {.min = 0.01, .max = 90},
+       .unit = "degrees",
+       .absent = "45",
+       .help = "Angle from a spot's axis at which its light ends."});
+  add({.key = "radius",
+       .type = Compound,
+       .form = "a number",
+       .range = kPositive,
+       .unit = "metres",
+       .absent = "required for a disc",
+       .help = "Radius of a disc."});
+  return rows;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/render.h"
+#include "job/setting_rows.h"
+
+namespace chromeball {
+namespace {
+
+using Names = std::vector<std::string_view>;
+using enum SettingType;
+
+Names layers() {
+  Names names;
+  for (const AovInfo& info : allAovs()) names.push_back(info.name);
+  return names;
+}
+
+void addRender(std::vector<Setting>& rows) {
+  const RenderSettings usual;
+  const auto add = [&](Setting row) {
+    row.section = "render";
+    rows.push_back(std::move(row));
+  };
+  add({.key = "size",
+       .option = "size",
+       .argument = "WxH",
+       .type = Size,
+       .range = {.min = 1, .max = 65536},
+       .unit = "pixels",
+       .absent = "the plate's; else 600 pixels high, with the aspect ratio of the model's camera",
+       .help = "Width and height of the image."});
+  add({.key = "samples",
+       .option = "samples",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 1, .max = kMaxSamples},
+       .fallback = std::to_string(usual.samples),
+       .help = "Samples per pixel; with a limit on time or noise, their maximum (then unlimited by "
+               "default).",
+       .effect = Effect::Limit,
+       .renderOnly = true});
+  add({.key = "time",
+       .option = "time",
+       .argument = "SECONDS",
+       .type = Number,
+       .range = kPositive,
+       .unit = "seconds",
+       .absent = "no limit",
+       .help = "Stops after about this time.",
+       .effect = Effect::Limit,
+       .renderOnly = true});
+  add({.key = "noise",
+       .option = "noise",
+       .argument = "PERCENT",
+       .type = Number,
+       .range = kPositive,
+       .unit = "percent",
+       .absent = "no limit",
+       .help = "Stops when the upper end of the noise's 95% interval is below this.",
+       .effect = Effect::Limit,
+       .renderOnly = true});
+  add({.key = "max_depth",
+       .option = "max-depth",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0, .max = kMaxDepth},
+       .fallback = std::to_string(usual.maxDepth),
+       .help = "Maximum number of bounces: 0 emission only, 1 direct light, ..."});
+  add({.key = "max_transmission_depth",
+       .option = "max-transmission-depth",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0, .max = kMaxDepth},
+       .fallback = std::to_string(usual.maxTransmissionDepth),
+       .help = "Maximum number of bounces in and on bodies of glass, which are not counted as "
+               "other bounces."});
+  add({.key = "single_sided",
+       .option = "single-sided",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "camera",
+       .choices =
+           [] {
+             return Names{"camera", "light", "off"};
+           },
+       .help = "Backs of single-sided surfaces are invisible to the camera and mirrors (camera), "
+               "pass all light (light), or are like fronts (off)."});
+  add({.key = "seed",
+       .option = "seed",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0},
+       .fallback = "0",
+       .help = "Another seed gives another independent image."});
+}
+
+void addOutput(std::vector<Setting>& rows) {
+  rows.push_back({.section = "output",
+                  .key = "file",
+                  .option = "output",
+                  .letter = 'o',
+                  .argument = "FILE",
+                  .type = Files,
+                  .absent = "required for `render`",
+                  .help = "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly.",
+                  .effect = Effect::Run,
+                  .renderOnly = true});
+  rows.push_back({.section = "output",
+                  .key = "aovs",
+                  .option = "aov",
+                  .argument = "NAME,...",
+                  .type = Choices,
+                  .absent = "none",
+                  .choices = layers,
+                  .help = "Layers of the .exr beside the color. l_obj, l_noobj, difference and "
+                          "reflectance are those of a composite.",
+                  .renderOnly = true});
+}
+
+}  // namespace
+
+std::vector<Setting> renderRows() {
+  std::vector<Setting> rows;
+  addRender(rows);
+  addOutput(rows);
+  return rows;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of settings, and everything that comes from it.
+#include "job/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "base/error.h"
+#include "integrate/render.h"
+#include "job/render_job.h"
+#include "job/settings_page.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::vector<const Setting*> scalars() {
+  std::vector<const Setting*> rows;
+  for (const Setting& setting : settingTable())
+    if (setting.type != SettingType::Compound) rows.push_back(&setting);
+  return rows;
+}
+
+// Texts of an option, and whether they are valid.
+struct Sample {
+  std::string text;
+  bool valid;
+};
+
+std::string decimal(double x) {
+  return x == std::floor(x) ? fmt::format("{:.0f}", x) : fmt::format("{}", x);
+}
+
+std::vector<Sample> samplesOf(const Setting& s) {
+  std::vector<Sample> samples;
+  const auto limit = [&](double at, bool excluded, double beyond) {
+    if (!std::isfinite(at)) return;
+    samples.push_back({decimal(at), !excluded});
+    samples.push_back({decimal(at + beyond), false});
+  };
+  switch (s.type) {
+    case SettingType::Integer:
+      limit(s.range.min, false, -1);
+      limit(s.range.max, false, 1);
+      samples.push_back({"1.5", false});
+      samples.push_back({"many", false});
+      samples.push_back({"2x", false});
+      break;
+    case SettingType::Factor:
+      samples.push_back({"off", true});
+      samples.push_back({"on", false});
+      [[fallthrough]];
+    case SettingType::Number:
+      limit(s.range.min, s.range.excludesMin, -0.001);
+      limit(s.range.max, s.range.excludesMax, 0.001);
+      samples.push_back({"0.25", true});
+      for (const char* text : {"nan", "inf", "1e300", "much", "", "1 2"})
+        samples.push_back({text, false});
+      break;
+    case SettingType::Choice:
+    case SettingType::Choices:
+      for (const std::string_view name : s.choices()) samples.push_back({std::string(name), true});
+      samples.push_back({"nonsense", false});
+      break;
+    case SettingType::Size:
+      samples = {{"1x1", true},  {"800x600", true}, {"0x9", false},     {"9x-1", false},
+                 {"800", false}, {"8by6", false},   {"65537x1", false}, {"8x6x", false}};
+      break;
+    case SettingType::Flag:
+      samples = {{"true", true}, {"false", true}, {"perhaps", false}};
+      break;
+    default:
+      samples = {{"something", true}};
+  }
+  return samples;
+}
+
+TEST(Settings, EveryRowIsComplete) {
+  std::set<std::string> names, options;
+  for (const Setting& s : settingTable()) {
+    SCOPED_TRACE(s.name());
+    EXPECT_TRUE(names.insert(s.name()).second) << "two rows of this name";
+    if (!s.option.empty()) {
+      EXPECT_TRUE(options.insert(std::string(s.option)).second);
+    }
+    EXPECT_TRUE(s.help.ends_with('.'));
+    EXPECT_EQ(s.section.empty(), s.key.empty());
+    EXPECT_FALSE(s.key.empty() && s.option.empty());
+    EXPECT_EQ(s.type == SettingType::Compound, !s.form.empty());
+    if (s.type == SettingType::Choice || s.type == SettingType::Choices) {
+      EXPECT_TRUE(s.choices);
+    }
+    if (!s.option.empty() && s.type != SettingType::Flag) {
+      EXPECT_FALSE(s.argument.empty());
+    }
+    if (s.type != SettingType::Flag) {
+      EXPECT_NE(s.fallback.empty(), s.absent.empty());
+    }
+    bool hasSection = false;
+    for (const SettingSection& section : settingSections()) hasSection |= section.name == s.section;
+    EXPECT_TRUE(hasSection);
+    if (!s.fallback.empty()) {
+      EXPECT_EQ(toText(parseSetting(s, {s.fallback}, "")), s.fallback);
+    }
+  }
+}
+
+TEST(Settings, EveryOptionTakesItsRangeAndNothingElse) {
+  for (const Setting* s : scalars())
+    for (const auto& [text, valid] : samplesOf(*s)) {
+      try {
+        const SettingValue value = parseSetting(*s, {text}, "--it");
+        EXPECT_TRUE(valid) << s->name() << " took `" << text << "`";
+        if (s->type != SettingType::Factor) {
+          EXPECT_EQ(toText(value), text) << s->name();
+        }
+      } catch (const InputError& error) {
+        EXPECT_FALSE(valid) << error.what();
+        EXPECT_TRUE(std::string(error.what()).starts_with("--it: ")) << error.what();
+      }
+    }
+}
+
+class SettingsInAFile : public testing::Test {
+ protected:
+  SettingsInAFile() {
+    for (const char* name : {"ball.glb", "sky.exr", "something"})
+      std::ofstream(folder_ / name) << "x";
+  }
+
+  // "" without an error.
+  std::string errorOf(const std::string& toml) const {
+    std::ofstream(path_) << toml;
+    try {
+      readSceneFile(path_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  // A scene file in which the only mistake can be `value`, on the last line.
+  static std::string sceneWith(const Setting& s, const std::string& value) {
+    const std::string key = fmt::format("{} = {}\n", s.key, value);
+    const bool isModel = s.section == "model";
+    std::string toml = isModel ? "[[model]]\n" : "model = 'ball.glb'\n";
+    if (isModel && s.key != "file") toml += "file = 'ball.glb'\n";
+    if (isModel) return toml + key;
+    toml += s.section == "light" ? "[[light]]\n" : fmt::format("[{}]\n", s.section);
+    const auto add = [&](const char* other, const char* line) {
+      if (s.key != other) toml += fmt::format("{} = {}\n", other, line);
+    };
+    if (s.section == "camera" && s.key != "name") {
+      add("position", "[0, 0, 5]"), add("look_at", "[0, 0, 0]");
+      if (s.key == "aperture" || s.key == "focus") add("aperture", "1"), add("focus", "1");
+    }
+    if (s.section == "light") {
+      const bool spot = s.key.ends_with("_angle"), disc = s.key == "radius" || s.key == "radiance";
+      add("type", spot ? "'spot'" : disc || s.key == "direction" ? "'disc'" : "'point'");
+      add("position", "[0, 1, 0]");
+      if (spot || disc) add("direction", "[0, -1, 0]");
+      if (disc || s.key == "direction") add("radius", "1");
+      if (!disc && s.key != "intensity" && s.key != "direction") add("power", "1");
+      if (s.key == "radius" || s.key == "direction") add("power", "1");
+    }
+    if (s.section == "composite") add("plate", "'sky.exr'"), add("local_scene", "'ground'");
+    if (s.section == "surroundings") {
+      const bool sphere = s.key == "radius" || s.key == "center", room = s.key == "file";
+      add("shape", sphere ? "'sphere'" : room ? "'model'" : "'box'");
+      if (sphere) add("center", "[0, 0, 0]"), add("radius", "1");
+      if (room) add("capture", "[0, 0, 0]");
+      if (!sphere && !room) add("min", "[-1, -1, -1]"), add("max", "[1, 1, 1]");
+    }
+    return toml + key;
+  }
+
+  TemporaryFolder folder_;
+  const std::string path_ = folder_ / "scene.toml";
+};
+
+std::string asToml(const Setting& s, const std::string& text) {
+  switch (s.type) {
+    case SettingType::Size:
+      return text == "1x1" ? "[1, 1]" : text == "800x600" ? "[800, 600]" : "'" + text + "'";
+    case SettingType::Integer:
+    case SettingType::Number:
+    case SettingType::Factor:
+    case SettingType::Flag:
+      if (!text.empty() && text.find_first_not_of("0123456789.-+einfa") == std::string::npos &&
+          text.find("ff") == std::string::npos)
+        return text;
+      [[fallthrough]];
+    default:
+      return "'" + text + "'";
+  }
+}
+
+TEST_F(SettingsInAFile, EveryKeyTakesItsRangeAndNothingElse) {
+  for (const Setting* s : scalars()) {
+    if (s->key.empty() || s->key == "shape" || (s->section == "light" && s->key == "type"))
+      continue;
+    for (const auto& [text, valid] : samplesOf(*s)) {
+      const std::string toml = sceneWith(*s, asToml(*s, text)), error = errorOf(toml);
+      EXPECT_EQ(error.empty(), valid) << s->name() << " with " << text << ": " << error << toml;
+    }
+  }
+}
+
+TEST_F(SettingsInAFile, WrongTypesNameLineAndKey) {
+  for (const Setting& s : settingTable()) {
+    if (s.key.empty()) continue;
+    const std::string toml = sceneWith(s, "1979-05-27");
+    const auto line = std::count(toml.begin(), toml.end(), '\n');
+    const std::string error = errorOf(toml);
+    EXPECT_TRUE(error.starts_with(fmt::format("{}:{}: `{}` must be ", path_, line, s.key)))
+        << s.name() << ": " << error;
+  }
+}
+
+TEST_F(SettingsInAFile, CompoundsTakeTheirRange) {
+  for (const Setting& s : settingTable()) {
+    const bool isNumber = s.form.starts_with("a number");
+    if (s.type != SettingType::Compound || !isNumber || !std::isfinite(s.range.min)) continue;
+    { EXPECT_EQ(errorOf(sceneWith(s, "0.5")), "") << s.name(); }
+    EXPECT_NE(errorOf(sceneWith(s, decimal(s.range.min - 0.5))), "") << s.name();
+    if (s.range.excludesMin) {
+      EXPECT_NE(errorOf(sceneWith(s, decimal(s.range.min))), "") << s.name();
+    }
+    if (std::isfinite(s.range.max)) {
+      EXPECT_NE(errorOf(sceneWith(s, decimal(s.range.max + 0.5))), "") << s.name();
+    }
+  }
+}
+
+TEST_F(SettingsInAFile, GivenOverFileOverDefault) {
+  std::ofstream(path_)
+      << "model = 'ball.glb'\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
+         "[render]\nsamples = 5\nnoise = 2\nmax_depth = 3\nseed = 9\n";
+  const RenderJob byFile = planJob(openScene(path_));
+  EXPECT_EQ(byFile.settings.samples, 5u);
+  EXPECT_EQ(byFile.settings.noiseLimit, 0.02);
+  EXPECT_TRUE(byFile.file.camera);
+  EXPECT_EQ(byFile.file.settings.location("render.seed"), path_ + ":9");
+
+  Settings over;
+  over.set("render.seed", uint64_t(7));
+  over.parse("render.time", "1.5");
+  over.set("camera.name", std::string("Front"), "--camera");
+  const RenderJob job = planJob(openScene(path_), over);
+  EXPECT_EQ(job.settings.seed, 7u);
+  EXPECT_EQ(job.settings.maxDepth, 3);
+  EXPECT_EQ(job.settings.timeLimit, 1.5);
+  EXPECT_FALSE(job.settings.noiseLimit) << "samples, time and noise are one decision";
+  EXPECT_EQ(job.settings.samples, kMaxSamples);
+  EXPECT_FALSE(job.file.camera);
+}
+
+TEST(Settings, DefaultsAreTheIntegratorsOwn) {
+  SceneFile scene;
+  scene.models.push_back({"a.glb", {}, {}});
+  const RenderSettings planned = planJob(scene).settings, usual;
+  EXPECT_EQ(planned.samples, usual.samples);
+  EXPECT_EQ(planned.maxDepth, usual.maxDepth);
+  EXPECT_EQ(planned.maxTransmissionDepth, usual.maxTransmissionDepth);
+  EXPECT_EQ(planned.seed, usual.seed);
+  EXPECT_EQ(planned.mis, usual.mis);
+  EXPECT_EQ(planned.hideProbe, usual.hideProbe);
+  EXPECT_EQ(planned.clamp, usual.clamp);
+  EXPECT_TRUE(planned.aovs.empty());
+}
+
+TEST(Settings, ProgramsAreToldTheirMistakes) {
+  Settings settings;
+  EXPECT_THROW(settings.has("render.sampels"), std::logic_error);
+  EXPECT_THROW(settings.get<double>("render.samples"), std::logic_error);
+  EXPECT_THROW(settings.get<std::string>("probe.file"), std::logic_error) << "has no default";
+  EXPECT_THROW(settings.set("render.samples", uint64_t(0)), InputError);
+  EXPECT_THROW(settings.set("render.samples", 1.0), InputError);
+  EXPECT_THROW(settings.parse("lighting.mis", "powr"), InputError);
+}
+
+TEST(Settings, EveryMappingIsOne) {
+  for (const std::string_view name : settingNamed("probe.mapping").choices()) {
+    const ImageSize size = name == "cube-strip"   ? ImageSize{6, 1}
+                           : name == "cube-cross" ? ImageSize{4, 3}
+                           : name == "lat-long"   ? ImageSize{4, 2}
+                                                  : ImageSize{4, 4};
+    EXPECT_EQ(parseMapping(name, size.width, size.height, "").has_value(), name != "auto") << name;
+  }
+}
+
+TEST(Settings, TheReferencePageIsUpToDate) {
+  EXPECT_EQ(fileContents(std::string(kSourceDir) + "/docs/scene-file.md"), settingsPage())
+      << "run: build/chromeball reference > docs/scene-file.md";
+}
+
+TEST(CommandSettings, HelpShowsEveryOptionWithItsDefaultAndNames) {
+  std::string help = runCommand({"render", "--help"}).out;
+  const auto isSpace = [](char a, char b) { return a == ' ' && b == ' '; };
+  std::replace(help.begin(), help.end(), '\n', ' ');
+  help.erase(std::unique(help.begin(), help.end(), isSpace), help.end());
+  for (const Setting& s : settingTable()) {
+    if (s.option.empty()) continue;
+    {
+      EXPECT_NE(help.find(fmt::format("--{} {}", s.option, s.argument)), std::string::npos)
+          << s.option;
+    }
+    EXPECT_NE(help.find(s.help), std::string::npos) << s.option;
+    if (s.type != SettingType::Flag) {
+      EXPECT_NE(help.find(fmt::format("(default: {})", defaultText(s))), std::string::npos)
+          << s.option;
+    }
+    if (s.choices) {
+      EXPECT_NE(help.find(fmt::format("{}", fmt::join(s.choices(), ", "))), std::string::npos)
+          << s.option;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chromeball
