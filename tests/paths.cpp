@@ -2,4 +2,5 @@
 #include "paths.h"
 
 const char kSourceDir[] = CHROMEBALL_SOURCE_DIR;
+const char kBuildDir[] = CHROMEBALL_BUILD_DIR;
 const char kCommand[] = CHROMEBALL_COMMAND;

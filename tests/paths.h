@@ -2,5 +2,6 @@
 // Where the build put things.
 #pragma once
 
-extern const char kSourceDir[];  // of the project
+extern const char kSourceDir[];  // the project
+extern const char kBuildDir[];   // this build
 extern const char kCommand[];    // the executable

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders a scene file to an array of floats and prints the image's size and its mean colour.
+#include <chromeball/base/error.h>
+#include <chromeball/job/load_scene.h>
+
+#include <atomic>
+#include <cstdio>
+#include <vector>
+
+int main(int argc, char** argv) try {
+  if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
+  chromeball::RenderOptions options;
+  options.scene = argv[1];
+  chromeball::RenderJob job = chromeball::planJob(options);
+  const chromeball::LoadedScene loaded = chromeball::loadScene(job);
+  const chromeball::Accel accel(loaded.scene);
+  const auto lighting = chromeball::makeLighting(job.strategy, job.settings.mis, loaded);
+  const std::atomic<bool> stop = false;
+  const chromeball::Image image =
+      chromeball::render(
+          loaded.scene, accel, loaded.camera, *lighting, job.settings, [](double) {}, stop)
+          .film.mean();
+
+  // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
+  const std::vector<float>& radiance = image.texels;
+  double sum[3] = {};
+  for (size_t i = 0; i < radiance.size(); ++i) sum[i % 3] += radiance[i];
+  const double pixels = double(image.width) * image.height;
+  std::printf("%d %d %.9g %.9g %.9g\n", image.width, image.height, sum[0] / pixels, sum[1] / pixels,
+              sum[2] / pixels);
+} catch (const chromeball::InputError& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}

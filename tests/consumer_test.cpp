@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library as others use it: tests/consumer, a project of its own, built against an installed
+// copy and configured with this source tree as its subdirectory.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "image/io/read.h"
+#include "paths.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSkipped = "the build is instrumented, or has no install rules";
+constexpr bool kCanInstall = CHROMEBALL_INSTALLS && !CHROMEBALL_INSTRUMENTED;
+
+std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+// Runs a shell command. Returns what it prints; a failure fails the test with the whole output.
+std::string run(const std::string& command) {
+  const TemporaryFolder folder;
+  const int status = std::system((command + " > " + folder / "out" + " 2>&1").c_str());
+  const std::string output = fileContents(folder / "out");
+  EXPECT_EQ(status, 0) << command << "\n" << output;
+  return output;
+}
+
+std::string configureConsumer(const std::string& folder, const std::string& option) {
+  return run(quoted(CHROMEBALL_CMAKE) + " -G 'Unix Makefiles' -S " +
+             quoted(std::string(kSourceDir) + "/tests/consumer") + " -B " + quoted(folder) +
+             " -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=" + quoted(CHROMEBALL_COMPILER) +
+             " " + quoted(option));
+}
+
+std::string writeScene(const TemporaryFolder& folder) {
+  const std::string root = std::string(kSourceDir) + "/";
+  std::ofstream(folder / "scene.toml") << "model = \"" << root << "scenes/models/pillars.gltf\"\n"
+                                       << "[probe]\nfile = \"" << root << "probes/dusk.exr\"\n"
+                                       << "[render]\nsize = [24, 16]\nsamples = 4\n";
+  return folder / "scene.toml";
+}
+
+TEST(SlowConsumer, RendersWithAnInstalledLibraryAsTheCommandDoes) {
+  if (!kCanInstall) GTEST_SKIP() << kSkipped;
+  const TemporaryFolder prefix, folder;
+  const std::string installed = prefix / "", build = folder / "build";
+  run(quoted(CHROMEBALL_CMAKE) + " --install " + quoted(kBuildDir) + " --prefix " +
+      quoted(installed));
+  configureConsumer(build, "-DCMAKE_PREFIX_PATH=" + installed);
+  run(quoted(CHROMEBALL_CMAKE) + " --build " + quoted(build));
+
+  const std::string scene = writeScene(folder);
+  std::istringstream printed(run(quoted(build + "/consumer") + " " + quoted(scene)));
+  run(quoted(installed + "/bin/chromeball") + " render " + quoted(scene) + " -o " +
+      quoted(folder / "command.exr"));
+  const Image image = readImage(folder / "command.exr");
+  glm::dvec3 sum(0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += glm::dvec3(image.rgb(x, y));
+
+  int width = 0, height = 0;
+  glm::dvec3 mean(0);
+  printed >> width >> height >> mean.x >> mean.y >> mean.z;
+  EXPECT_EQ(width, 24);
+  EXPECT_EQ(height, 16);
+  // Not to the bit: the consumer is compiled without FMA, and may contribute inline functions.
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(mean[c], sum[c] / (width * height), 1e-5 * mean[c]) << "channel " << c;
+}
+
+TEST(SlowConsumer, InstalledFilesAreComplete) {
+  if (!kCanInstall) GTEST_SKIP() << kSkipped;
+  const TemporaryFolder prefix;
+  run(quoted(CHROMEBALL_CMAKE) + " --install " + quoted(kBuildDir) + " --prefix " +
+      quoted(prefix / ""));
+  for (const char* file :
+       {"bin/chromeball", "share/man/man1/chromeball.1", "share/doc/chromeball/LICENSE",
+        "share/bash-completion/completions/chromeball", "share/zsh/site-functions/_chromeball",
+        "share/fish/vendor_completions.d/chromeball.fish", "include/chromeball/film/film.h"})
+    EXPECT_TRUE(fs::exists(prefix / file)) << file;
+}
+
+// Every installed header, with nothing but the public dependencies.
+TEST(SlowConsumer, InstalledHeadersCompile) {
+  if (!kCanInstall) GTEST_SKIP() << kSkipped;
+  const TemporaryFolder prefix;
+  run(quoted(CHROMEBALL_CMAKE) + " --install " + quoted(kBuildDir) + " --prefix " +
+      quoted(prefix / ""));
+  const fs::path include = prefix / "include";
+  std::ofstream source(prefix / "all.cpp");
+  int headers = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(include / "chromeball"))
+    if (entry.is_regular_file()) {
+      source << "#include <" << entry.path().lexically_relative(include).generic_string() << ">\n";
+      EXPECT_EQ(fileContents(entry.path()).find("#include \""), std::string::npos) << entry.path();
+      ++headers;
+    }
+  source.close();
+  EXPECT_GT(headers, 100);
+  run(quoted(CHROMEBALL_COMPILER) +
+      " -std=c++20 -fsyntax-only -Wall -Werror -DGLM_FORCE_SILENT_WARNINGS -DGLM_FORCE_XYZW_ONLY "
+      "-I " +
+      quoted(include) + " " + quoted(prefix / "all.cpp"));
+}
+
+// Compiles the consumer's own source alone; the library would take minutes, and is the same.
+TEST(SlowConsumer, ConfiguresAndCompilesWithTheSourceTreeAsSubdirectory) {
+  const TemporaryFolder folder;
+  const std::string build = folder / "build";
+  configureConsumer(build, "-DCHROMEBALL_SOURCE=" + std::string(kSourceDir));
+  run(quoted(CHROMEBALL_CMAKE) + " --build " + quoted(build) + " --target chromeball_headers");
+  run("make -C " + quoted(build) + " main.o");
+  const std::string targets =
+      run(quoted(CHROMEBALL_CMAKE) + " --build " + quoted(build) + " --target help");
+  EXPECT_NE(targets.find("chromeball_renderer"), std::string::npos);
+  for (const char* ours : {"... tests\n", "... benchmarks\n", "... make_demo\n"})
+    EXPECT_EQ(targets.find(ours), std::string::npos) << ours << "is built for others too";
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+# How this project's own targets are compiled and linked. Projects that link chromeball::renderer
+# inherit none of these options: no public header's layout depends on them (GLM is used without its
+# SIMD types; Eigen and Embree do not occur in public headers).
+
+# NaN keeps its meaning: no -ffast-math. The two flags below change no result: maths functions need
+# not set errno, and floating-point operations need not keep the order in which they would trap.
+set(chromeball_compile_options
+    -march=${CHROMEBALL_ARCH} -fno-math-errno -fno-trapping-math
+    -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+set(chromeball_link_options)
+
+if(CHROMEBALL_WERROR)
+  list(APPEND chromeball_compile_options -Werror)
+endif()
+if(CHROMEBALL_SANITIZE)  # -fno-sanitize-recover: a finding of UBSan fails the test that caused it
+  list(APPEND chromeball_compile_options -fsanitize=${CHROMEBALL_SANITIZE}
+       -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  list(APPEND chromeball_link_options -fsanitize=${CHROMEBALL_SANITIZE})
+endif()
+if(CHROMEBALL_FUZZ)
+  list(APPEND chromeball_compile_options -fsanitize=fuzzer-no-link,address,undefined
+       -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+       -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/ignored.txt)
+  list(APPEND chromeball_link_options -fsanitize=address,undefined)
+endif()
+
+set(without_precompiled_headers
+    $<OR:$<BOOL:${CMAKE_DISABLE_PRECOMPILE_HEADERS}>,$<STREQUAL:$<TARGET_PROPERTY:PRECOMPILE_HEADERS>,>>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND chromeball_compile_options "$<${without_precompiled_headers}:SHELL:-include ${PROJECT_SOURCE_DIR}/tools/cmake/gcc12_false_warnings.h>")
+endif()
+
+function(chromeball_compile target)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE ${chromeball_compile_options})
+  target_link_options(${target} PRIVATE ${chromeball_link_options})
+endfunction()
+
+# A target of this project that uses the library's sources by their paths from renderer/.
+function(chromeball_internal_target target)
+  chromeball_compile(${target})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/renderer)
+  target_compile_definitions(${target} PRIVATE CHROMEBALL_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${target} PRIVATE chromeball_renderer)
+endfunction()

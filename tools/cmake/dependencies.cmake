@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# Libraries of others. chromeball-config.cmake.in repeats those that a consumer needs.
+find_package(fmt REQUIRED)
+find_package(glm REQUIRED)
+
+find_package(embree 4 CONFIG QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3.13 CONFIG REQUIRED)
+endif()
+# Debian's CMake package of OpenImageIO also requires its programs and Python module; the file for
+# pkg-config requires the library alone.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(Draco REQUIRED IMPORTED_TARGET draco)
+find_package(meshoptimizer CONFIG REQUIRED)
+find_package(TBB REQUIRED)
+find_package(TinyGLTF REQUIRED)
+
+# Headers only
+find_package(Eigen3 REQUIRED)
+find_package(Boost REQUIRED)  # Math's distributions
+find_package(nlohmann_json REQUIRED)
+
+if(NOT CHROMEBALL_FUZZ AND (CHROMEBALL_COMMAND OR CHROMEBALL_TESTS))
+  find_package(CLI11 REQUIRED)
+endif()
+if(NOT CHROMEBALL_FUZZ AND CHROMEBALL_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(NOT CHROMEBALL_FUZZ AND CHROMEBALL_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+enable_testing()
+include(GoogleTest)
+file(GLOB test_sources CONFIGURE_DEPENDS tests/*.cpp)
+add_executable(tests ${test_sources})
+chromeball_internal_target(tests)
+target_include_directories(tests PRIVATE tests)
+target_link_libraries(tests PRIVATE nlohmann_json::nlohmann_json TBB::tbb GTest::gtest GTest::gtest_main)
+target_precompile_headers(tests PRIVATE <gtest/gtest.h> <nlohmann/json.hpp> <fmt/format.h>)
+set_property(SOURCE tests/paths.cpp PROPERTY COMPILE_DEFINITIONS
+             CHROMEBALL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+             CHROMEBALL_BUILD_DIR="${PROJECT_BINARY_DIR}"
+             CHROMEBALL_COMMAND="$<TARGET_FILE:chromeball>")
+set_property(SOURCE tests/consumer_test.cpp PROPERTY COMPILE_DEFINITIONS
+             CHROMEBALL_CMAKE="${CMAKE_COMMAND}" CHROMEBALL_COMPILER="${CMAKE_CXX_COMPILER}"
+             CHROMEBALL_INSTALLS=$<BOOL:${CHROMEBALL_INSTALL}>
+             CHROMEBALL_INSTRUMENTED=$<NOT:$<STREQUAL:${CHROMEBALL_SANITIZE},>>)
+add_dependencies(tests chromeball)
+gtest_discover_tests(tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
