@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one-way flow of the source tree: who may include whom, and which single place sees each
-// third-party library.
+// The layout of the source tree: which folder may include which, which one folder includes each
+// third-party library, what the top level holds, and the licence of every file.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folder of renderer/: the folders it may include besides itself. A folder within another is a room
-// of its own; a parent that may include it says so.
+// Folder of renderer/: the folders it may include besides itself. A folder within another has a row
+// of its own, and neither includes the other unless its row says so.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"base", {}},
     {"math", {"base"}},
@@ -51,7 +51,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"base", "math", "image", "image/io", "probe", "lighting", "measure", "job", "study"}},
 };
 
-// Header of a library: the only place that may include it, as the start of the path.
+// Header of a library: the only folder or file that may include it, as the start of its path.
 const std::map<std::string, std::string> kSeenBy = {
     {"rtcore.h", "renderer/trace/"},
     {"OpenImageIO/", "renderer/image/io/"},
@@ -65,13 +65,13 @@ const std::map<std::string, std::string> kSeenBy = {
     {"CLI/", "tools/command/"},
 };
 
-// What is wrong with the includes of the file `path` (relative to the project), one line each.
+// The faults of the includes of the file `path` (relative to the project), one line each.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   static const std::regex kInclude(R"((?:^|\n)\s*#\s*include\s*([<"])([^>"]+)[>"])");
-  static const std::regex kRoom("renderer/(.+)/[^/]*");
-  std::smatch room;
-  const bool inLibrary = std::regex_match(path, room, kRoom);
+  static const std::regex kFolder("renderer/(.+)/[^/]*");
+  std::smatch folder;
+  const bool inLibrary = std::regex_match(path, folder, kFolder);
 
   for (std::sregex_iterator match(text.begin(), text.end(), kInclude), end; match != end; ++match) {
     const std::string header = (*match)[2];
@@ -80,13 +80,13 @@ std::vector<std::string> violations(const std::string& path, const std::string& 
         found.push_back(path + " includes " + header + ": only " + location + " may");
     if (!inLibrary || (*match)[1] == "<") continue;
 
-    const std::string from = room[1], to = header.substr(0, header.rfind('/'));
+    const std::string from = folder[1], to = header.substr(0, header.rfind('/'));
     if (!kMayInclude.contains(from)) {
-      found.push_back(path + ": the house has no room renderer/" + from);
+      found.push_back(path + ": renderer/" + from + " has no row in kMayInclude");
     } else if (header.find('/') == std::string::npos) {
       found.push_back(path + " includes " + header + ": write the path from renderer/");
     } else if (to != from && !kMayInclude.at(from).contains(to)) {
-      found.push_back(path + " includes " + header + ": " + from + " may not look into " + to);
+      found.push_back(path + " includes " + header + ": " + from + " may not include " + to);
     }
   }
   return found;
@@ -98,7 +98,7 @@ std::string contents(const fs::path& path) {
   return text.str();
 }
 
-TEST(House, CheckFindsWhatItShould) {
+TEST(House, IncludeCheckFindsFaults) {
   const auto count = [](const char* path, const char* text) {
     return violations(path, text).size();
   };
@@ -121,24 +121,53 @@ TEST(House, CheckFindsWhatItShould) {
             0u);
 }
 
-TEST(House, IncludesGoOneWay) {
+// The project's source and text files, relative to its folder; generated folders are left out.
+std::vector<fs::path> projectFiles(const std::set<std::string>& extensions) {
   const fs::path root = kSourceDir;
-  int files = 0;
-  for (const char* folder : {"renderer", "tools", "tests"})
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-      const std::string extension = entry.path().extension().string();
-      if (extension != ".h" && extension != ".cpp") continue;
-      ++files;
-      const std::string path = entry.path().lexically_relative(root).generic_string();
-      for (const auto& violation : violations(path, contents(entry.path())))
-        ADD_FAILURE() << violation;
-    }
-  EXPECT_GT(files, 10) << "the source tree is not where it was";
+  std::vector<fs::path> files;
+  for (const char* folder : {".ci", "renderer", "tools", "tests", "scenes", "probes", "docs"}) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file() && extensions.contains(entry.path().extension().string()))
+        files.push_back(entry.path().lexically_relative(root));
+  }
+  return files;
 }
 
-TEST(House, TopLevelHoldsOnlyItsRooms) {
-  const std::set<std::string> allowed = {"renderer", "tools",  "tests",          "scenes",
-                                         "docs",     "probes", "CMakeLists.txt", "README.md"};
+TEST(House, IncludesGoOneWay) {
+  const std::vector<fs::path> files = projectFiles({".h", ".cpp"});
+  for (const fs::path& path : files)
+    for (const auto& violation : violations(path.generic_string(), contents(kSourceDir / path)))
+      ADD_FAILURE() << violation;
+  EXPECT_GT(files.size(), 10u) << "the source tree is not where it was";
+}
+
+TEST(House, SourcesNameTheirLicenceAtTheTop) {
+  static const std::regex kSpdx(
+      "(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n");
+  std::vector<fs::path> files =
+      projectFiles({".h", ".cpp", ".in", ".cmake", ".sh", ".py", ".js", ".bash", ".fish", ".1"});
+  files.insert(files.end(), {"CMakeLists.txt", "tests/consumer/CMakeLists.txt", ".ci/run"});
+  for (const fs::path& path : files) {
+    EXPECT_TRUE(std::regex_search(contents(kSourceDir / path), kSpdx,
+                                  std::regex_constants::match_continuous))
+        << path << ": the first line (after #!) must be SPDX-License-Identifier: Apache-2.0";
+  }
+}
+
+TEST(House, TopLevelHoldsOnlyWhatIsListed) {
+  const std::set<std::string> allowed = {"renderer",
+                                         "tools",
+                                         "tests",
+                                         "scenes",
+                                         "probes",
+                                         "docs",
+                                         "CMakeLists.txt",
+                                         "README.md",
+                                         "LICENSE",
+                                         "CHANGELOG.md",
+                                         "CMakePresets.json",
+                                         "CONTRIBUTING.md"};
   for (const auto& entry : fs::directory_iterator(kSourceDir)) {
     const std::string name = entry.path().filename().string();
     const bool generated = entry.is_directory() && (name.starts_with("build") || name == "out");

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+# Written by tools/scripts/manual.py; edits are lost.
+_chromeball() {
+  local current=${COMP_WORDS[COMP_CWORD]} command='' words='' options=''
+  ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
+  case $command in
+    probe|image) ((COMP_CWORD > 2)) && command+=" ${COMP_WORDS[2]}" ;;
+  esac
+  case $command in
+    '')
+      words='render compare probe image lights lights-error'
+      options='--help --version' ;;
+    'render')
+      options='--help --probe --probe-mapping --probe-rotation --probe-scale --size --mis --max-depth --max-transmission-depth --single-sided --lights --light-units --camera --animation --animation-time --variant --seed --threads --tonemap --exposure --memory --allow-external --progress --quiet --output --samples --time --noise --strategy --aov --clamp --stats --two-pass --transparent' ;;
+    'compare')
+      options='--help --probe --probe-mapping --probe-rotation --probe-scale --size --mis --max-depth --max-transmission-depth --single-sided --lights --light-units --camera --animation --animation-time --variant --seed --threads --tonemap --exposure --memory --allow-external --progress --quiet --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output' ;;
+    'probe')
+      words='info convert synth irradiance'
+      options='--help' ;;
+    'probe info')
+      options='--help --mapping --json' ;;
+    'probe convert')
+      options='--help --to --from --size --rotation' ;;
+    'probe synth')
+      options='--help --size --radiance --texel --direction --slope --sun-elevation --sun-azimuth --turbidity --ground-albedo --no-sun' ;;
+    'probe irradiance')
+      options='--help --size --method --mapping' ;;
+    'image')
+      words='error view'
+      options='--help' ;;
+    'image error')
+      options='--help --json --flip --output --map' ;;
+    'image view')
+      options='--help --exposure --tonemap --layer' ;;
+    'lights')
+      options='--help --method --count --output --light-units --preview --max-error --ambient --seed --mapping' ;;
+    'lights-error')
+      options='--help --methods --counts --normals --csv --plot --seed --mapping' ;;
+  esac
+  [[ $current == -* ]] && words=$options
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+}
+# File names where there is nothing else to offer.
+complete -o default -F _chromeball chromeball
