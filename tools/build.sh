@@ -1,23 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what the build needs and this machine lacks (Debian and Ubuntu, as root or with sudo),
-# then builds everything into build/, or one target (--target NAME). Other arguments go to the
-# configure step (-DNAME=VALUE).
+# Installs the packages that the build needs and this machine lacks (Debian and Ubuntu, as root or
+# with sudo), then builds everything into build/, or one target (--target NAME). --packages-only stops
+# after the packages. Other arguments go to the configure step (-DNAME=VALUE).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 target=()
+build=1
 if [[ ${1:-} == --target ]]; then
   target=(--target "$2")
   shift 2
+elif [[ ${1:-} == --packages-only ]]; then
+  build=0
 fi
 
 packages=(build-essential cmake pkg-config
-  libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libtomlplusplus-dev libcli11-dev
-  libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
+  libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev
+  libtomlplusplus-dev libcli11-dev libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libeigen3-dev
+  libboost-dev libgtest-dev libbenchmark-dev)
 
 needs() {
-  echo "chromeball needs these packages (Debian's names), and could not install them here:" >&2
+  echo "chromeball needs these packages (Debian's names), and cannot install them here:" >&2
   echo "  $*" >&2
   exit 1
 }
@@ -43,7 +47,9 @@ if command -v dpkg-query >/dev/null; then
   fi
 fi
 
-# One compiler may want 1.5 GiB.
+((build)) || exit 0
+
+# A compiler process may take 1.5 GiB.
 memory=$(awk '/^MemAvailable/ { print int($2 / 1572864) }' /proc/meminfo 2>/dev/null || echo 1)
 jobs=$(nproc 2>/dev/null || echo 1)
 ((jobs <= memory)) || jobs=$((memory > 0 ? memory : 1))

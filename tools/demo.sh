@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds and renders the demo scene. Arguments go to `chromeball render` (--samples 32: a quick look).
+# Builds the command and renders the demo scene to out/. Arguments go to `chromeball render`
+# (--samples 32 for a quick look).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 tools/build.sh --target chromeball
 mkdir -p out
 build/chromeball render scenes/demo.toml -o out/demo.exr -o out/demo.png --tonemap neutral "$@"
-echo "The pictures: $PWD/out/demo.png (tone mapped), $PWD/out/demo.exr (radiance)"
+echo "Wrote $PWD/out/demo.png (tone mapped) and $PWD/out/demo.exr (radiance)"

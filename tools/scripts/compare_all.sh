@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The comparisons of tools/RESULTS.md: every strategy, on two scenes under four probes. The first
-# argument is the folder for the reports (out/compare); other arguments go to `chromeball compare`.
-# Galileo's Tomb and Grace Cathedral are looked for in $CHROMEBALL_DATA/probes/debevec, or
-# ../shared/data there, and left out where they are absent. A run that was stopped is continued.
+# Runs the comparisons of tools/RESULTS.md: every strategy, two scenes, four probes. The first
+# argument is the folder for the reports (default out/compare); other arguments go to
+# `chromeball compare`. Galileo's Tomb and Grace Cathedral are read from probes/debevec in
+# $CHROMEBALL_DATA (default ../shared/data), and skipped if absent. A run that was stopped continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -23,7 +23,7 @@ compare() {  # MODEL PROBE options
 }
 
 for probe in "$folder/sun.exr" "$folder/overcast.exr" "$data/galileo_probe.hdr" "$data/grace_probe.hdr"; do
-  [[ -e $probe ]] || { echo "no $probe" >&2; continue; }
+  [[ -e $probe ]] || { echo "skipped: no $probe" >&2; continue; }
   compare pillars.gltf "$probe" --size 96x64 --repeats 4 --reference-samples 1024 "$@"
   compare still-life.glb "$probe" --max-depth 1 --size 72x48 --repeats 3 --reference-samples 768 "$@"
 done

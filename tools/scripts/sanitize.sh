@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# What AddressSanitizer, UBSan and ThreadSanitizer find, in builds of their own (tests/ENVELOPE.md):
-#   tools/scripts/sanitize.sh address [ARGUMENTS FOR GOOGLETEST]   the tests, and the command where they run it
-#   tools/scripts/sanitize.sh thread [MODEL...]                    renders and the other commands that use threads
-# Both take the packages that tools/build.sh installs.
+# Runs the program under sanitizers, in builds of its own (presets asan and tsan; tests/ENVELOPE.md):
+#   tools/scripts/sanitize.sh address [GOOGLETEST ARGUMENT...]  AddressSanitizer and UBSan: all tests,
+#                                                               and the command where they run it
+#   tools/scripts/sanitize.sh thread [MODEL...]                 ThreadSanitizer: renders, and the other
+#                                                               commands that use threads
+# Both need the packages that tools/build.sh installs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 mode=${1:?address or thread}
@@ -11,12 +13,12 @@ shift
 build=$PWD/build/$mode
 suppressions=$PWD/tests/sanitizers
 
-configureAndBuild() {  # SANITIZERS OPTIMISATION TARGET
-  cmake -S . -B "$build" -DCHROMEBALL_SANITIZE="$1" -DCMAKE_CXX_FLAGS_RELEASE="$2" >/dev/null
-  cmake --build "$build" --parallel "$(nproc)" --target "$3"
+configureAndBuild() {  # PRESET TARGET
+  cmake --preset "$1" >/dev/null
+  cmake --build "$build" --parallel "$(nproc)" --target "$2"
 }
 
-# An instrumented oneTBB from Debian's sources, since what synchronises our threads must be seen.
+# oneTBB from Debian's sources, instrumented: ThreadSanitizer must see how it synchronises threads.
 buildOneTbb() {
   local work=$build/onetbb
   [[ -e $work/libtbb.so.12 ]] && return
@@ -34,17 +36,17 @@ buildOneTbb() {
 
 case $mode in
 address)
-  configureAndBuild address,undefined -O2 tests
+  configureAndBuild asan tests
   LSAN_OPTIONS=suppressions=$suppressions/leak.txt UBSAN_OPTIONS=print_stacktrace=1 \
     "$build/tests" "$@"
   ;;
 thread)
   buildOneTbb
-  configureAndBuild thread -O1 chromeball
+  configureAndBuild tsan chromeball
   out=$build/out
   mkdir -p "$out"
   export LD_LIBRARY_PATH=$build/onetbb
-  # To files, since a reader that silences a library's messages would silence reports as well.
+  # Reports go to files: our readers redirect standard error, which would hide them.
   export TSAN_OPTIONS="suppressions=$suppressions/thread.txt log_path=$out/report"
   rm -f "$out"/report*
   render() { "$build/chromeball" render "$@" --threads 4 --samples 4 --quiet -o "$out/a.exr"; }

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error and time of chromeball and of Cycles for the same picture; see versus_cycles.sh.
+"""Error and time of chromeball and of Cycles for the same image; see versus_cycles.sh.
 
-relMSE is measured against a reference by the same renderer, so that a small difference between
-the two (a filter, a Fresnel term) does not count as noise; the table's last line says how far
-apart the references are. A reference has noise too, which makes each relMSE larger by the factor
-1 + samples / reference samples: the same for both, so the ratio keeps. Only rendering is timed:
-no loading, no building of the BVH or of the probe's tables. With relMSE ~ 1/samples, relMSE x
-seconds does not depend on the number of samples, and the ratio of the two renderers' products
-says how many times longer one takes for the error of the other.
+Each renderer's relMSE is measured against its own reference, so that small differences between the
+two (a filter, a Fresnel term) do not count as noise; the last line of the table compares the
+references. The noise of a reference increases each relMSE by the factor 1 + samples / reference
+samples, the same for both renderers, so their ratio is unaffected. Only rendering is timed: no
+loading, no building of the BVH or of the probe's tables. relMSE is proportional to 1/samples, so
+relMSE x seconds does not depend on the number of samples; the ratio of the two products is the
+ratio of the times that the renderers need for the same error.
 """
 import argparse
 import hashlib
@@ -32,7 +32,7 @@ def arguments():
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--reference-samples", type=int, default=4096)
     parser.add_argument("--depth", type=int, default=5, help="scattering events")
-    parser.add_argument("--seeds", type=int, default=5, help="pictures by each renderer")
+    parser.add_argument("--seeds", type=int, default=5, help="images by each renderer")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--strategy", default="auto", help="chromeball's")
     return parser.parse_args()
@@ -66,8 +66,8 @@ class Cycles:
     def render(options, model, output, samples, seed):
         """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
         log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1,
-                  "--python", ROOT / "tools" / "scripts" / "cycles_picture.py", "--", model, options.probe, output,
-                  options.size, samples, seed, options.threads, options.depth)
+                  "--python", ROOT / "tools" / "scripts" / "cycles_render.py", "--", model,
+                  options.probe, output, options.size, samples, seed, options.threads, options.depth)
         clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
         times = {}
         for hours, minutes, seconds, event in clock.findall(log):
@@ -75,8 +75,8 @@ class Cycles:
         return times["Finished"] - times["Sample 0/"]
 
 
-def error(picture, reference):
-    return json.loads(run(CHROMEBALL, "image", "error", picture, reference, "--json"))
+def error(image, reference):
+    return json.loads(run(CHROMEBALL, "image", "error", image, reference, "--json"))
 
 
 def reference(options, renderer, model):
@@ -99,13 +99,13 @@ def compare(options, scene):
     references = {r: reference(options, r, model) for r in renderers}
     errors, seconds = {r: [] for r in renderers}, {r: [] for r in renderers}
     for seed in range(1, options.seeds + 1):
-        for r in renderers:  # in turns, so that a change of the machine's speed meets both
-            picture = WORK / f"{r.name}-{scene}.exr"
-            seconds[r].append(r.render(options, model, picture, options.samples, seed))
-            errors[r].append(error(picture, references[r])["relmse"])
+        for r in renderers:  # in turns: a change of the machine's speed affects both
+            image = WORK / f"{r.name}-{scene}.exr"
+            seconds[r].append(r.render(options, model, image, options.samples, seed))
+            errors[r].append(error(image, references[r])["relmse"])
 
     width, height = map(int, options.size.split("x"))
-    print(f"\n{scene}: {options.probe.name}, {options.size}, {options.samples} samples a pixel, "
+    print(f"\n{scene}: {options.probe.name}, {options.size}, {options.samples} samples per pixel, "
           f"depth {options.depth}, {options.threads} threads, {options.seeds} seeds, "
           f"references of {options.reference_samples} samples")
     print(f"{'':12}{'relMSE':>12}{'seconds':>10}{'Msamples/s':>12}{'relMSE x s':>12}")
@@ -118,7 +118,7 @@ def compare(options, scene):
     apart = error(references[Chromeball], references[Cycles])
     ratio = product[Cycles] / product[Chromeball]
     print(f"Cycles takes {ratio:.2f} times as long for the same error. "
-          f"References differ by {100 * apart['bias']:+.3f}% in their means, "
+          f"The references differ by {100 * apart['bias']:+.3f}% in their means, "
           f"relMSE {apart['relmse']:.2e}.", flush=True)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Renders the still life under a probe with chromeball and with Cycles (Debian's Blender 3.4, which
-# is installed where it may), and prints how long each takes for how much error. See --help.
+# is installed if missing), and prints each one's error and time. See --help.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

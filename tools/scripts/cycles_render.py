@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders one picture with Cycles. Runs inside Blender 3.4:
-blender --background --factory-startup --python cycles_picture.py -- MODEL.glb PROBE.exr OUT.exr
+"""Renders one image with Cycles. Runs inside Blender 3.4:
+blender --background --factory-startup --python cycles_render.py -- MODEL.glb PROBE.exr OUT.exr
         WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
 
 The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1
-for direct light. Materials are taken for what the glTF file says: Lambertian, a conductor, or
-smooth glass of index 1.5.
+for direct light. Materials become what the glTF file states: Lambertian, a conductor, or smooth
+glass of index 1.5.
 """
 import json
 import math
@@ -15,7 +15,7 @@ import sys
 import bpy
 import numpy
 
-# The importer of Blender 3.4 wants names that NumPy 1.24 has dropped.
+# The importer of Blender 3.4 uses names that NumPy 1.24 removed.
 for alias, kind in {"bool": bool, "int": int, "float": float, "object": object}.items():
     if alias not in numpy.__dict__:
         setattr(numpy, alias, kind)
@@ -71,8 +71,8 @@ def light_with_probe():
     nodes, links = world.node_tree.nodes, world.node_tree.links
     texture = nodes.new("ShaderNodeTexEnvironment")
     texture.image = bpy.data.images.load(probe)
-    texture.image.colorspace_settings.name = "Non-Color"  # linear, as it is
-    # Blender's map has +X in its centre; glTF's -Z is Blender's +Y.
+    texture.image.colorspace_settings.name = "Non-Color"  # linear
+    # The centre of Blender's map looks along +X; glTF's -Z is Blender's +Y.
     turn = nodes.new("ShaderNodeMapping")
     turn.vector_type = "POINT"
     turn.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
@@ -92,7 +92,7 @@ def configure():
     cycles.samples, cycles.seed = int(samples), int(seed)
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type = "BOX"
-    bounces = int(depth) - 1  # Cycles counts those after the first
+    bounces = int(depth) - 1  # Cycles counts bounces after the first event
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
     cycles.transmission_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
