@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # A fuzz target reads its seeds first; `ctest -L fuzz` runs each for a minute. OpenImageIO keeps
 # error messages for ever, so leaks are not reported. -close_fd_mask=2 is needed since our readers
-# redirect standard error (image/io/quiet.h), which would silence the fuzzer's own reports.
+# redirect standard error, which would silence the fuzzer's own reports.
 enable_testing()
 file(GLOB fuzz_sources CONFIGURE_DEPENDS tests/fuzz/*.cpp)
 foreach(source ${fuzz_sources})

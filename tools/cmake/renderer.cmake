@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library: chromeball_renderer here, chromeball::renderer for others.
 file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
-if(CHROMEBALL_FUZZ)  # the readers are enough
+if(CHROMEBALL_FUZZ)  # the readers, and what they refer to
   list(FILTER renderer_sources INCLUDE REGEX
-       "/renderer/(base|math|image|probe|scene)/|renderer/job/(scene_file|toml_section)")
+       "/renderer/(base|math|image|probe|scene|shading|lighting|film)/|renderer/job/(scene_file|setting|toml_section|arguments)")
 endif()
 add_library(chromeball_renderer ${renderer_sources})
 add_library(chromeball::renderer ALIAS chromeball_renderer)
