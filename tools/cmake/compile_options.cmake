@@ -25,6 +25,11 @@ if(CHROMEBALL_FUZZ)
   list(APPEND chromeball_link_options -fsanitize=address,undefined)
 endif()
 
+# GCC without optimisation rejects Eigen's use of intrinsics where headers are precompiled.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Debug")
+  set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
+endif()
+
 set(without_precompiled_headers
     $<OR:$<BOOL:${CMAKE_DISABLE_PRECOMPILE_HEADERS}>,$<STREQUAL:$<TARGET_PROPERTY:PRECOMPILE_HEADERS>,>>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

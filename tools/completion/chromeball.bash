@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Written by tools/scripts/manual.py; edits are lost.
 _chromeball() {
-  local current=${COMP_WORDS[COMP_CWORD]} command='' words='' options=''
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local command='' words='' options=''
   ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
   case $command in
     probe|image) ((COMP_CWORD > 2)) && command+=" ${COMP_WORDS[2]}" ;;
@@ -36,6 +37,8 @@ _chromeball() {
       options='--help --method --count --output --light-units --preview --max-error --ambient --seed --mapping' ;;
     'lights-error')
       options='--help --methods --counts --normals --csv --plot --seed --mapping' ;;
+  esac
+  case "$command $previous" in
   esac
   [[ $current == -* ]] && words=$options
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/chromeball.1 and the completion files of tools/completion/ from the --help of
-build/chromeball. Run it after a change to a command or an option; a test compares the names."""
+build/chromeball, or of another executable: manual.py [COMMAND]. Run it after a change to a command
+or an option; a test compares the names."""
 import pathlib
 import re
 import subprocess
+import sys
 from dataclasses import dataclass, field
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-COMMAND = ROOT / 'build/chromeball'
+COMMAND = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / 'build/chromeball'
 SPDX = 'SPDX-License-Identifier: Apache-2.0'
 WRITTEN = 'Written by tools/scripts/manual.py; edits are lost.'
 
@@ -17,9 +19,14 @@ WRITTEN = 'Written by tools/scripts/manual.py; edits are lost.'
 class Entry:
     """One line of --help: an option, a positional argument or a subcommand."""
     names: list
-    argument: str  # 'TEXT', '' for flags
+    argument: str  # 'FILE', '' for flags
     notes: str     # 'REQUIRED', 'Excludes: ...'
     description: str = ''
+
+    def choices(self):
+        """The names that the description ends with: '... off, balance, power. [balance]'."""
+        found = re.search(r'(?:^|[.:;] )([\w-]+(?:, [\w-]+)+)\. \[[^\]]*\]$', self.description)
+        return found[1].split(', ') if found and self.argument.startswith('NAME') else []
 
 
 @dataclass
@@ -35,7 +42,7 @@ class Command:
 
 def parse_entry(text):
     names, _, rest = text.partition(' ')
-    match = re.match(r'((?:TEXT|INT|UINT|FLOAT|NUMBER|BOOLEAN)\S*(?: \.\.\.)?)? ?(.*)', rest)
+    match = re.match(r'((?!REQUIRED|Excludes:|Needs:)\S+(?: \.\.\.)?)? ?(.*)', rest)
     return Entry(names.split(','), match[1] or '', match[2])
 
 
@@ -69,6 +76,10 @@ def sentence(text):
     text = text.rstrip('.')
     starts_with_names = re.match(r'[\w:-]+,', text)  # "auto, lat-long, ..."
     return text if starts_with_names else text[:1].upper() + text[1:]
+
+
+def paragraph(text):
+    return sentence(text) + ('' if text.endswith(']') else '.')
 
 
 # The man page
@@ -125,7 +136,7 @@ def man_entry(entry):
     names = ', '.join(rf'\fB{man(name)}\fR' for name in entry.names)
     argument = rf' \fI{man(entry.argument)}\fR' if entry.argument else ''
     notes = f' ({man(entry.notes.lower())})' if entry.notes else ''
-    return f'.TP\n{names}{argument}{notes}\n{man(sentence(entry.description))}.\n'
+    return f'.TP\n{names}{argument}{notes}\n{man(paragraph(entry.description))}\n'
 
 
 def man_page(program, version):
@@ -140,7 +151,10 @@ def man_page(program, version):
         words = ' '.join(['chromeball', *command.words, *(e.names[0].upper() for e in positionals)])
         text += f'.SS {man(words)}\n{man(sentence(command.about))}.\n'
         for title, entries in command.sections:
-            text += ''.join(man_entry(e) for e in entries if '--help' not in e.names)
+            entries = [e for e in entries if '--help' not in e.names]
+            if entries and title not in ('Positionals', 'Options'):
+                text += f'.PP\n\\fI{man(title)}\\fR\n'
+            text += ''.join(man_entry(e) for e in entries)
     return text + MAN_TAIL
 
 
@@ -148,6 +162,12 @@ def man_page(program, version):
 
 def long_names(command):
     return [n for e in command.options() for n in e.names if n.startswith('--')]
+
+
+def bash_values(program):
+    return ''.join(f"    '{' '.join([*command.words, name])}') words='{' '.join(e.choices())}' ;;\n"
+                   for command in all_commands(program) for e in command.options() if e.choices()
+                   for name in e.names)
 
 
 def bash_completion(program):
@@ -161,13 +181,16 @@ def bash_completion(program):
     return f'''# {SPDX}
 # {WRITTEN}
 _chromeball() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} command='' words='' options=''
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}}
+  local command='' words='' options=''
   ((COMP_CWORD > 1)) && command=${{COMP_WORDS[1]}}
   case $command in
     {groups}) ((COMP_CWORD > 2)) && command+=" ${{COMP_WORDS[2]}}" ;;
   esac
   case $command in
 {cases}  esac
+  case "$command $previous" in
+{bash_values(program)}  esac
   [[ $current == -* ]] && words=$options
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
 }}
@@ -184,7 +207,8 @@ def zsh_arguments(command):
     lines = []
     for entry in command.options():
         about = re.sub(r'([\[\]:\\])', r'\\\1', sentence(entry.description))
-        value = ':value:_files' if entry.argument else ''
+        values = f"({' '.join(entry.choices())})" if entry.choices() else '_files'
+        value = f':value:{values}' if entry.argument else ''
         repeated = '*' if '...' in entry.argument else ''
         lines += [quoted(f'{repeated}{name}[{about}]{value}') for name in entry.names]
     return ' \\\n        '.join(['_arguments', *lines, "'*:file:_files'"])
@@ -244,6 +268,8 @@ def fish_completion(program):
             names = ' '.join(f'-l {n[2:]}' if n.startswith('--') else f'-s {n[1:]}'
                              for n in entry.names)
             value = ' -r' if entry.argument else ''
+            if entry.choices():
+                value = f" -x -a {quoted(' '.join(entry.choices()))}"
             lines.append(f'{start} {names}{value} -d {quoted(sentence(entry.description))}')
     return '\n'.join(lines) + '\n'
 
