@@ -29,7 +29,7 @@ void repairTangents(Mesh& mesh);
 
 // Computes tangents from the UV coordinates of the normal map, one for each vertex. Splits vertices
 // whose triangles differ in handedness. Precondition: the mesh has normals.
-void computeTangents(Mesh& mesh, std::vector<vec2> uv);
+void computeTangents(Mesh& mesh, const std::vector<vec2>& uv);
 
 // Applies an affine transform. Normals are transformed by the inverse transpose. If the transform
 // mirrors, the winding of the triangles and the sign of the tangents are inverted, so that front

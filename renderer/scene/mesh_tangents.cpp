@@ -57,7 +57,7 @@ Contribution contributionOf(const Mesh& mesh, const std::vector<vec2>& uv, const
 
 }  // namespace
 
-void computeTangents(Mesh& mesh, std::vector<vec2> uv) {
+void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
   const size_t vertexCount = mesh.positions.size();
   std::vector<std::array<dvec3, 2>> sums(vertexCount, {dvec3(0), dvec3(0)});
   std::vector<std::array<bool, 2>> has(vertexCount, {false, false});

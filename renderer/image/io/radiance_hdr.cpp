@@ -47,7 +47,7 @@ class Reader {
     const std::string_view rest(reinterpret_cast<const char*>(bytes_.data()) + position_,
                                 bytes_.size() - position_);
     const size_t end = rest.find('\n');
-    if (end == std::string_view::npos || end > 4096) fail("the Radiance header does not end");
+    if (end > 4096) fail("the Radiance header does not end");  // npos too
     position_ += end + 1;
     return rest.substr(0, end);
   }
