@@ -13,12 +13,12 @@ int main(int argc, char** argv) try {
   options.scene = argv[1];
   chromeball::RenderJob job = chromeball::planJob(options);
   const chromeball::LoadedScene loaded = chromeball::loadScene(job);
-  const chromeball::Accel accel(loaded.scene);
+  const chromeball::World world(loaded.scene);
   const auto lighting = chromeball::makeLighting(job.strategy, job.settings.mis, loaded);
   const std::atomic<bool> stop = false;
   const chromeball::Image image =
       chromeball::render(
-          loaded.scene, accel, loaded.camera, *lighting, job.settings, [](double) {}, stop)
+          world, loaded.camera, *lighting, job.settings, [](double) {}, stop)
           .film.mean();
 
   // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
