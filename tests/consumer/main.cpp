@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene file to an array of floats and prints the image's size and its mean colour.
 #include <chromeball/base/error.h>
-#include <chromeball/job/load_scene.h>
+#include <chromeball/job/job.h>
 
-#include <atomic>
 #include <cstdio>
 #include <vector>
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
-  chromeball::RenderOptions options;
-  options.scene = argv[1];
-  chromeball::RenderJob job = chromeball::planJob(options);
-  const chromeball::LoadedScene loaded = chromeball::loadScene(job);
-  const chromeball::World world(loaded.scene);
-  const auto lighting = chromeball::makeLighting(job.strategy, job.settings.mis, loaded);
-  const std::atomic<bool> stop = false;
-  const chromeball::Image image =
-      chromeball::render(
-          world, loaded.camera, *lighting, job.settings, [](double) {}, stop)
-          .film.mean();
+  chromeball::RenderJob job = chromeball::planJob(chromeball::openScene(argv[1]));
+  chromeball::LoadedScene loaded = chromeball::loadScene(job);
+  const chromeball::JobResult result = chromeball::renderJob(job, loaded);
 
   // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
+  const chromeball::Image& image = result.color();
   const std::vector<float>& radiance = image.texels;
   double sum[3] = {};
   for (size_t i = 0; i < radiance.size(); ++i) sum[i % 3] += radiance[i];
