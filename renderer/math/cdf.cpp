@@ -22,7 +22,7 @@ double CdfRows::setRow(int row, std::span<const double> weights) {
     sum += weights[i];
     if (weights[i] > 0) last = i;
   }
-  // Rounding must not leave a gap below 1 that falls to a column of zero weight.
+  // Without this, rounding could leave a gap below 1 in which a column of zero weight is sampled.
   for (int i = last + 1; i <= columns_; ++i) cdf[i] = 1;
 
   int column = 0;

@@ -6,8 +6,8 @@
 
 namespace chromeball {
 
-// Columns x, y, z of the rotation that takes local +z to the normal.
-// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+// Columns x, y, z of the rotation that takes local +z to the normal (Duff et al. 2017, "Building an
+// Orthonormal Basis, Revisited").
 struct Frame {
   vec3 x, y, z;
 
@@ -18,7 +18,8 @@ struct Frame {
     y = {b, sign + z.y * z.y * a, -z.y};
   }
 
-  // With local +x along the tangent, as far as it is at right angles to the normal.
+  // With local +x along the component of the tangent that is perpendicular to the normal; any x if
+  // there is none.
   Frame(const vec3& normal, const vec3& tangent) : Frame(normal) {
     const vec3 along = tangent - normal * glm::dot(normal, tangent);
     const float length2 = glm::dot(along, along);

@@ -8,9 +8,10 @@
 
 namespace chromeball {
 
-// The unit normals of the 20 * 4^subdivisions faces of an icosahedron, each of whose triangles was
-// cut in four at the middles of its edges, pushed out to the sphere, `subdivisions` times. Five
-// give the 20480 normals of Madsen and Laursen 2007. The set is its own mirror image in the origin.
+// The unit normals of the 20 * 4^subdivisions faces of a subdivided icosahedron: each step splits
+// every triangle into four at the midpoints of its edges and projects these onto the sphere. Five
+// steps give the 20480 normals of Madsen and Laursen 2007. With each normal the set contains its
+// opposite.
 std::vector<vec3> icosphereNormals(int subdivisions);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The random numbers of one path. They depend on (pixel, sample, dimension, seed) only.
+// The random numbers of one path, a function of (pixel, sample, dimension, seed).
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace chromeball {
 
-// Which dimensions a path uses for what. Blocks of eight keep every vertex's decisions in the same
-// two 4D groups of the table, however many numbers its material and light really take.
+// The dimensions that a path uses, with how many numbers each purpose takes. Every vertex has a
+// block of eight, two 4D groups of the table, however many its material and light use.
 namespace dimension {
 inline constexpr int kPixel = 0;     // 2: position in the pixel
 inline constexpr int kLens = 2;      // 2
@@ -25,10 +25,10 @@ inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
 inline constexpr int kPerVertex = 8;
 }  // namespace dimension
 
-// Numbers for the samples of one pixel. The table's points are shared by all pixels; each pixel and
-// dimension moves them by its own XOR (a random digital shift), which keeps their stratification
-// and makes each point uniform. A table's worth of samples is a block; every block has its own
-// shifts and is thus an independent randomisation.
+// Numbers for the samples of one pixel. All pixels share the table's points; each pixel and
+// dimension XORs them with a random number of its own (a random digital shift), which preserves
+// their stratification and makes each point uniform. A block is as many samples as the table has
+// points; every block has its own shifts, and so is an independent randomisation.
 class PixelSampler {
  public:
   PixelSampler(const SobolTable& table, uint64_t seed)
@@ -47,7 +47,7 @@ class PixelSampler {
     index_ = indexInBlock;
     base_ = 0;
   }
-  // Dimensions asked for from here on are the vertex's.
+  // Later dimensions are relative to the vertex's block.
   void startVertex(int depth) { base_ = dimension::kVertex + depth * dimension::kPerVertex; }
 
   uint32_t bits(int d) const {
@@ -56,15 +56,15 @@ class PixelSampler {
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: plain random numbers
   }
   float get1(int d) const { return toUnit(bits(d)); }
-  // To 53 bits, the lower ones plain random numbers: for choices among more than 2^24.
+  // With 53 bits, of which the lower ones are plain random numbers: to choose among more than 2^24.
   double getFine1(int d) const {
-    constexpr uint64_t kPurpose = 0x66696e65;  // apart from other uses of the key
+    constexpr uint64_t kPurpose = 0x66696e65;  // separates this from other uses of the key
     const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
     return (double(bits(d)) + double(low) * 0x1p-21) * 0x1p-32;
   }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
-  // A key, to be hashed, for decisions outside the path's own dimensions (stochastic alpha).
+  // A key to hash for decisions that have no dimension of their own (stochastic alpha).
   uint32_t sampleKey() const {
     return uint32_t(key_) ^ (index_ * 0x9e3779b9u + uint32_t(base_) * 0x85ebca6bu);
   }

@@ -12,14 +12,15 @@ namespace chromeball {
 // (direction numbers of Joe and Kuo 2008).
 uint32_t sobol(uint32_t index, int dimension);
 
-// Nested uniform (Owen) scrambling of a 32-bit fraction (Laine and Karras 2011, with the constants
-// of Vegdahl 2021): every prefix of bits permutes the ones below it.
+// Nested uniform (Owen) scrambling of a 32-bit fraction: every prefix of bits chooses a permutation
+// of the bits below it (Laine and Karras 2011, "Stratified Sampling for Stochastic Transparency",
+// with the constants of Vegdahl 2021).
 uint32_t owenScramble(uint32_t fraction, uint32_t seed);
 
 // Points [0, 2^k) of a sequence with any number of dimensions. Four consecutive dimensions are one
-// scrambled 4D Sobol sequence; the groups of four are padded, each visiting its points in an
-// independent nested-uniform order (Burley 2020). Any aligned block of 2^j indices is as well
-// distributed as the first 2^j.
+// scrambled 4D Sobol sequence; the groups of four are padded: each visits its points in an
+// independent nested-uniform order (Burley 2020, "Practical Hash-based Owen Scrambling"). Any
+// aligned block of 2^j indices is as well distributed as the first 2^j.
 class SobolTable {
  public:
   SobolTable(uint32_t points, int dimensions, uint64_t seed);  // points: a power of two

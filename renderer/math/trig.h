@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles in turns (1 = 360 degrees), by polynomials. The C library's versions cost more than a
-// tenth of a render; these stay below 5e-8 turns (a texel of a 16k probe is 6e-5) and keep NaN.
+// Trigonometry by polynomials, for angles in turns (1 = 360 degrees). The C library's functions
+// took more than a tenth of a render's time. The error of atan2 is below 5e-8 turns (a texel of a
+// 16k probe is 6e-5). NaN propagates.
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors, colours and the constants everything shares. Linear Rec. 709 throughout.
+// Vectors, colours and shared constants. Colours are linear Rec. 709 throughout.
 //
-// std::max and std::min, not fmax and fmin: without -ffast-math those are calls.
+// Use std::max and std::min: fmax and fmin are function calls without -ffast-math.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warps from the unit square to directions and triangles, each beside its pdf and its inverse.
-// z is the pole of every hemisphere. Densities are over solid angle.
+// Hemispheres are about +z. Pdfs are over solid angle.
 #pragma once
 
 #include "math/trig.h"
@@ -30,7 +30,8 @@ inline vec3 squareToUniformHemisphere(vec2 u) { return unitVector(1 - u.y, u.x);
 inline float squareToUniformHemispherePdf(const vec3& v) { return v.z >= 0 ? 0.5f * kInvPi : 0; }
 inline vec2 uniformHemisphereToSquare(const vec3& v) { return {azimuthTurns(v), 1 - v.z}; }
 
-// Pdf cos(theta)/pi: the height over the disc of radius sqrt(u.y) (Malley's method).
+// Pdf cos(theta)/pi: lifts a uniform point of the unit disc, at radius sqrt(u.y), to the hemisphere
+// (Malley's method).
 inline vec3 squareToCosineHemisphere(vec2 u) {
   float sine, cosine;
   sinCosTurns(u.x, sine, cosine);
@@ -42,8 +43,8 @@ inline vec2 cosineHemisphereToSquare(const vec3& v) {
   return {azimuthTurns(v), v.x * v.x + v.y * v.y};
 }
 
-// Barycentric coordinates (of the second and third vertex), uniform over the triangle's area
-// (pdf 1/area). Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+// Barycentric coordinates (of the second and third vertex), uniform over the triangle's area, pdf
+// 1/area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
 inline vec2 squareToTriangle(vec2 u) {
   if (u.y > u.x) return {u.x / 2, u.y - u.x / 2};
   return {u.x - u.y / 2, u.y / 2};
