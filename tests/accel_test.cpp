@@ -89,7 +89,7 @@ Leaks bounceAround(const Scene& scene, int rays) {
 }
 
 // Moves every instance; Accel then traces them as instances, not as part of the whole.
-void location(Scene& scene, const Transform& transform) {
+void place(Scene& scene, const Transform& transform) {
   for (Instance& instance : scene.instances) instance.toWorld = transform;
 }
 
@@ -121,7 +121,7 @@ TEST(Accel, ClosedInstancesDoNotLeak) {
   for (const float scale : {1e-4f, 1.0f, 1e4f}) {
     std::array shapes{boxScene(1, vec3(0)), sphereScene(0.5f, vec3(2))};
     for (Scene& scene : shapes) {
-      location(scene, {turned(scale), 3 * scale * vec3(1, -2, 0.5f)});
+      place(scene, {turned(scale), 3 * scale * vec3(1, -2, 0.5f)});
       const Leaks leaks = bounceAround(scene, 50000);
       EXPECT_EQ(leaks.escaped, 0) << scale;
       EXPECT_EQ(leaks.stuck, 0) << scale;
@@ -178,7 +178,7 @@ TEST(Accel, RaysAtEdgesDoNotEnterClosedBodies) {
     Scene ball, instance;
     addSphere(ball, addMaterial(ball, lambert(Rgb(0.5f))), vec3(0.3f, 0.2f, 0.1f) * size, size, 12);
     addSphere(instance, addMaterial(instance, lambert(Rgb(0.5f))), vec3(0), size, 12);
-    location(instance, {turned.linear, size * turned.translation});
+    place(instance, {turned.linear, size * turned.translation});
     for (const Scene* scene : {&ball, &instance}) {
       const Aimed aimed = aimAtEdges(*scene, 5 * size, kRays);
       EXPECT_GT(aimed.hits, kRays);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "composite/layers.h"
 #include "composite/render_composite.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
@@ -99,7 +100,7 @@ TEST(Composite, IsThePlateWhereObjectsChangeNothing) {
     EXPECT_EQ(r.mean.texels, plate.texels) << strategy;
     for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
       EXPECT_EQ(compose(r.film, r.mean, plate, mode).color.texels, plate.texels) << strategy;
-    EXPECT_GT(luminance(meanColor(ingredient(r.film, Aov::WithoutObjects))), 0.1f);
+    EXPECT_GT(luminance(meanColor(compositeLayer(r.film, CompositeLayer::WithoutObjects))), 0.1f);
   }
 }
 
@@ -119,7 +120,7 @@ TEST(Composite, SeesObjectsThroughHiddenBacks) {
   const Image plate = noisyPlate(16, 16);
   std::vector<Image> alphas;
   for (const Passes passes : {Passes::One, Passes::Two})
-    alphas.push_back(ingredient(
+    alphas.push_back(compositeLayer(
         composite(w, probe, "importance", smallRender(16, 16, 16, 3), plate, passes).film,
         Aov::Alpha));
   EXPECT_EQ(*alphas[0].at(8, 8), 1);
@@ -159,7 +160,7 @@ TEST(Composite, ChangesNothingBehindAWall) {
   const Image plate = noisyPlate(32, 32);
   const CompositeRender r =
       composite(w, Probe(sunnyProbe()), "importance", smallRender(32, 32, 32, 6), plate);
-  const Image difference = ingredient(r.film, Aov::Difference);
+  const Image difference = compositeLayer(r.film, CompositeLayer::Difference);
   int changed = 0;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x)
@@ -182,19 +183,19 @@ TEST(Composite, BothWorldsArePlainRenders) {
 
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
-  for (Aov aov : {Aov::WithObjects, Aov::WithoutObjects}) {
+  for (CompositeLayer aov : {CompositeLayer::WithObjects, CompositeLayer::WithoutObjects}) {
     Worlds alone = stillLife();
     alone.scene.materials.back().emission = Rgb(0);
-    if (aov == Aov::WithoutObjects)
+    if (aov == CompositeLayer::WithoutObjects)
       alone.scene.instances.resize(size_t(std::ranges::count(w.isObject, false)));
     const World world(alone.scene);
     const Image plain = render(
                             world, w.camera, *lighting, settings, [](double) {}, stop)
                             .film.mean();
-    const Image ours = ingredient(r.film, aov);
+    const Image ours = compositeLayer(r.film, aov);
     for (size_t i = 0; i < plain.texels.size(); ++i)
       ASSERT_NEAR(ours.texels[i], plain.texels[i], 1e-5f * (1 + plain.texels[i]))
-          << aovInfo(aov).name << " " << i;
+          << int(aov) << " " << i;
   }
 }
 
@@ -250,7 +251,7 @@ TEST(Composite, LampsShineOnNearMirrorsWhateverTheStrategy) {
     RenderSettings settings = smallRender(24, 16, 64, 3);
     settings.mis = mis;
     const CompositeRender r = composite(w, dim, strategy, settings, noisyPlate(24, 16));
-    return luminance(meanColor(ingredient(r.film, Aov::Difference)));
+    return luminance(meanColor(compositeLayer(r.film, CompositeLayer::Difference)));
   };
   const float expected = difference("importance", Mis::Balance);
   EXPECT_GT(expected, 0.01f);
@@ -281,7 +282,7 @@ TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
       const RenderSettings settings = smallRender(kSize, kSize, 16, 5, 40 + uint64_t(repeat));
       const CompositeRender r = composite(w, Probe(sunnyProbe()), "importance", settings,
                                           noisyPlate(kSize, kSize), passes);
-      const Image difference = ingredient(r.film, Aov::Difference);
+      const Image difference = compositeLayer(r.film, CompositeLayer::Difference);
       for (size_t i = 0; i < pixels.size(); ++i) pixels[i].push_back(difference.texels[i]);
     }
     for (const auto& repeats : pixels)
@@ -417,7 +418,7 @@ TEST(Composite, FollowsTheFormulas) {
   const Rgb ratio = compose(film, mean, plate, CompositeMode::Ratio).color.rgb(0, 0);
   const Rgb expected = 0.25f * Rgb(2, 4, 6) + 0.75f * plate.rgb(0, 0) * 0.4f;
   EXPECT_LT(glm::length(ratio - expected), 1e-6f);
-  EXPECT_EQ(*ingredient(film, Aov::Alpha).at(0, 0), 0.25f);
+  EXPECT_EQ(*compositeLayer(film, CompositeLayer::Alpha).at(0, 0), 0.25f);
 }
 
 // Below a thousandth of the picture's mean L_noobj the ratio is the difference; from twice that on
@@ -473,7 +474,7 @@ TEST(Composite, AlphaIsFractional) {
   w.areObjectsFromHere();
   const CompositeRender r = composite(w, Probe(constantProbe({8, 4}, Rgb(1))), "importance",
                                       smallRender(4, 4, 1024, 1), Image(4, 4, 3));
-  const Image alpha = ingredient(r.film, Aov::Alpha);
+  const Image alpha = compositeLayer(r.film, CompositeLayer::Alpha);
   const float expected[4] = {0.3f, 0.3f, 0.15f, 0};
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) EXPECT_NEAR(*alpha.at(x, y), expected[x], 0.06f) << x;

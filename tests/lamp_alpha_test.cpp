@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "composite/compose.h"
+#include "composite/layers.h"
 #include "composite/render_composite.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
@@ -121,7 +122,7 @@ TEST(LampAlpha, CompositesCountIt) {
     const CompositeRender r = renderComposite(
         world, camera, *lighting, Image(8, 8, 3), settings, Passes::One, false, [](double) {},
         stop);
-    return meanColor(ingredient(r.film, Aov::Difference)).y;
+    return meanColor(compositeLayer(r.film, CompositeLayer::Difference)).y;
   };
   const float whole = change(lampOfAlpha(AlphaMode::Opaque, 1));
   EXPECT_NEAR(change(lampOfAlpha(AlphaMode::Blend, 0.3f)) / whole, 0.3f, 0.02f);

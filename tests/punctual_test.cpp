@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "composite/compose.h"
+#include "composite/layers.h"
 #include "composite/render_composite.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
@@ -171,8 +172,8 @@ TEST(Punctual, ShineOnBothWorldsOfAComposite) {
     const CompositeRender r = renderComposite(
         world, above(), *lighting, Image(kSize, kSize, 3), settings, passes, true, [](double) {},
         stop);
-    const Image with = ingredient(r.film, Aov::WithObjects);
-    const Image without = ingredient(r.film, Aov::WithoutObjects);
+    const Image with = compositeLayer(r.film, CompositeLayer::WithObjects);
+    const Image without = compositeLayer(r.film, CompositeLayer::WithoutObjects);
     const Image whole = picture(scene, 64, 1, kSize);
     int shadowed = 0;
     for (int y = 0; y < kSize; ++y)

@@ -83,28 +83,4 @@ PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& compo
   return errors;
 }
 
-Image ingredient(const DifferentialFilm& film, Aov aov) {
-  Image image(film.width(), film.height(), aov == Aov::Alpha ? 1 : 3);
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) {
-      const DifferentialPixel p = film.at(x, y);
-      const double count = std::max(p.count, 1.0);
-      switch (aov) {
-        case Aov::WithObjects:
-          image.setRgb(x, y, Rgb((p.objects + p.local + p.difference) / count));
-          break;
-        case Aov::WithoutObjects:
-          image.setRgb(x, y, Rgb((p.local + p.behind) / count));
-          break;
-        case Aov::Difference:
-          image.setRgb(x, y, Rgb(p.difference / count));
-          break;
-        default:
-          *image.at(x, y) = float(p.covered / count);
-          break;
-      }
-    }
-  return image;
-}
-
 }  // namespace chromeball

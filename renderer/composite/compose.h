@@ -3,7 +3,6 @@
 #pragma once
 
 #include "composite/differential_film.h"
-#include "film/aov.h"
 #include "film/noise.h"
 #include "image/image.h"
 
@@ -31,9 +30,5 @@ Composite compose(const DifferentialFilm& film, const Image& mean, const Image& 
 // first order, L_noobj taken as known.
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors);
-
-// What the composite is made of: Aov::WithObjects (L_obj), Aov::WithoutObjects (L_noobj),
-// Aov::Difference ((1 - alpha) (L_obj - L_noobj)) or Aov::Alpha.
-Image ingredient(const DifferentialFilm& film, Aov aov);
 
 }  // namespace chromeball

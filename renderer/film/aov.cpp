@@ -15,19 +15,12 @@ constexpr float kNoDepth = 1e10f;
 }  // namespace
 
 const std::vector<AovInfo>& allAovs() {
-  static const std::vector<AovInfo> infos{{Aov::Albedo, "albedo", "RGB"},
-                                          {Aov::Normal, "normal", "XYZ"},
-                                          {Aov::Depth, "depth", "Z"},
-                                          {Aov::Alpha, "alpha", "A"},
-                                          {Aov::Variance, "variance", "RGB"},
-                                          {Aov::Samples, "samples", ""},
-                                          {Aov::Material, "material", ""},
-                                          {Aov::Node, "node", ""},
-                                          {Aov::WithObjects, "l_obj", "RGB"},
-                                          {Aov::WithoutObjects, "l_noobj", "RGB"},
-                                          {Aov::Difference, "difference", "RGB"},
-                                          {Aov::Reflectance, "reflectance", "RGB"},
-                                          {Aov::Invalid, "invalid", "RGB"}};
+  static const std::vector<AovInfo> infos{
+      {Aov::Albedo, "albedo", "RGB"},     {Aov::Normal, "normal", "XYZ"},
+      {Aov::Depth, "depth", "Z"},         {Aov::Alpha, "alpha", "A"},
+      {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
+      {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
+      {Aov::Invalid, "invalid", "RGB"}};
   return infos;
 }
 
@@ -46,7 +39,7 @@ AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
     : width_(width), height_(height) {
   const size_t pixels = size_t(width) * height;
   for (Aov aov : wanted) {
-    if (aov == Aov::Variance || aov == Aov::Samples || isOfComposite(aov)) continue;
+    if (aov == Aov::Variance || aov == Aov::Samples) continue;
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
     sums_.push_back({aov, channels, std::vector<double>(pixels * channels)});
   }
@@ -85,7 +78,7 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
         *to += 1;
         break;
       default:
-        break;  // known otherwise
+        break;  // not of the first hit
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary output variables: what else there is to know of a pixel.
+// Arbitrary output variables (AOVs): layers beside a render's colour.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// What a camera ray met first.
+// The first surface that a camera ray meets.
 struct FirstHit {
   bool hit = false;
   float depth = 0;  // metres along the camera's axis (planar depth, not the ray's length)
@@ -21,27 +21,11 @@ struct FirstHit {
 
 // The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
 //   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
-//   alpha           share that hit something    material, node  index + 1 at the first sample that
+//   alpha           fraction that hit one       material, node  index + 1 at the first sample that
 //                                               hit; else 0 (a mean of numbers would mean nothing)
-//   l_obj, l_noobj, difference    radiance with the objects, without, and what they change
-//   reflectance                   of the local scene (these four: of composites only)
 //   variance        squared standard error of the pixel (Film)        samples  their number (Film)
-//   invalid         number of samples left out: R those with a NaN, G infinite, B negative ones
-enum class Aov {
-  Albedo,
-  Normal,
-  Depth,
-  Alpha,
-  Variance,
-  Samples,
-  Material,
-  Node,
-  WithObjects,
-  WithoutObjects,
-  Difference,
-  Reflectance,
-  Invalid
-};
+//   invalid         number of excluded samples: R with a NaN, G infinite, B negative
+enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node, Invalid };
 
 struct AovInfo {
   Aov aov;
@@ -50,12 +34,11 @@ struct AovInfo {
 };
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);
-inline bool isOfComposite(Aov aov) { return aov >= Aov::WithObjects && aov <= Aov::Reflectance; }
 // `location` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& location);
 
-// Gathers those that come from the first hit, and the defects. Sums are doubles: in float they
-// would stall after some million samples.
+// Gathers the layers of the first hit, and the counts of excluded samples. Sums are doubles: in
+// float they would stall after some million samples.
 class AovFilm {
  public:
   AovFilm(int width, int height, const std::vector<Aov>& wanted);

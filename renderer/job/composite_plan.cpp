@@ -33,13 +33,12 @@ void planComposite(RenderJob& job) {
 
   composite.reflectance = reflectanceNamed(s.get<std::string>("composite.reflectance"));
   composite.iterations = int(s.get<uint64_t>("composite.iterations"));
-  composite.layers = job.settings.aovs;
-  const bool wantsReflectance =
-      std::count(composite.layers.begin(), composite.layers.end(), Aov::Reflectance) > 0;
-  if (wantsReflectance && composite.reflectance == CompositePlan::Reflectance::Model)
+  composite.layers = s.get<std::vector<std::string>>("output.aovs");
+  if (std::ranges::count(composite.layers, "reflectance") > 0 &&
+      composite.reflectance == CompositePlan::Reflectance::Model)
     throwInput("{}: layer `reflectance` needs reflectance = \"plate\" or \"flat\" in [composite]",
                job.file.composite->location);
-  std::erase_if(job.settings.aovs, [](Aov aov) { return aov == Aov::Alpha || isOfComposite(aov); });
+  std::erase(job.settings.aovs, Aov::Alpha);  // a composite's alpha is a layer of its own
 }
 
 void prepareLocalScene(const RenderJob& job, LoadedScene& loaded) {

@@ -18,7 +18,7 @@ struct CompositePlan {
   enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
   int iterations = 1;  // of Reflectance::Plate
   Passes passes = Passes::One;
-  std::vector<Aov> layers;  // all the requested ones; RenderSettings::aovs keeps the first hit's
+  std::vector<std::string> layers;  // names of all that were requested
 };
 
 // Reads the plate of the job's [composite] section. The image takes the plate's size unless the job

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "composite/layers.h"
 #include "job/arguments.h"
 
 namespace chromeball {
@@ -54,12 +55,15 @@ void merge(SceneFile& file, const Settings& over) {
   applyToModels(over, file.settings, file.models);
 }
 
+// Those of plain renders; a composite's own are in CompositePlan.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
   const std::string location = file.settings.location("output.aovs");
   for (const auto& name : file.settings.get<std::vector<std::string>>("output.aovs")) {
-    layers.push_back(aovFromName(name, location));
-    if (isOfComposite(layers.back()) && !file.composite)
+    const CompositeLayerInfo* composite = findCompositeLayer(name);
+    if (!composite || composite->layer == CompositeLayer::Alpha)
+      layers.push_back(aovFromName(name, location));
+    else if (!file.composite)
       throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", location,
                  name);
   }

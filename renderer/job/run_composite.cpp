@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "composite/layers.h"
 #include "composite/reflectance.h"
 #include "probe/irradiance.h"
 
@@ -34,19 +35,17 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
 }
 
-Layer layerOf(Aov aov, const LoadedScene& loaded, const CompositeRender& render,
+Layer layerOf(const std::string& name, const LoadedScene& loaded, const CompositeRender& render,
               const Image& variance) {
+  if (const CompositeLayerInfo* own = findCompositeLayer(name))
+    return {own->name, own->channels,
+            own->layer == CompositeLayer::Reflectance ? loaded.projection->colors()
+                                                      : compositeLayer(render.film, own->layer)};
+  const Aov aov = aovFromName(name, "output.aovs");
   const AovInfo& info = aovInfo(aov);
   switch (aov) {
-    case Aov::WithObjects:
-    case Aov::WithoutObjects:
-    case Aov::Difference:
-    case Aov::Alpha:
-      return {info.name, info.channels, ingredient(render.film, aov)};
     case Aov::Variance:
       return {info.name, info.channels, variance};
-    case Aov::Reflectance:
-      return {info.name, info.channels, loaded.projection->colors()};
     case Aov::Samples:
       return {info.name, info.channels, render.result.film.sampleCounts()};
     default:
@@ -96,8 +95,7 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   if (solves)
     report.reflectance = solveReflectance(
         job, loaded, prepared, [&](double fraction) { progress(fraction / 2); }, stop);
-  const bool needsBehind =
-      std::count(plan.layers.begin(), plan.layers.end(), Aov::WithoutObjects) > 0;
+  const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
       *prepared.world, loaded.camera, *prepared.lighting, plan.plate, job.settings, plan.passes,
       needsBehind, [&](double fraction) { progress(solves ? (1 + fraction) / 2 : fraction); },
@@ -109,8 +107,8 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   ImageNoise noise(compositeErrors(rendered.film, composite, std::move(rendered.errors)));
   OutputImage image;
   image.layers.push_back({"", "RGB", composite.color});
-  for (Aov aov : plan.layers)
-    image.layers.push_back(layerOf(aov, loaded, rendered, noise.variance));
+  for (const std::string& name : plan.layers)
+    image.layers.push_back(layerOf(name, loaded, rendered, noise.variance));
   Messages messages = warningsOf(report, job.file.settings.get<double>("probe.scale"));
   return {std::move(image), std::move(rendered.result), std::move(noise), std::move(report),
           std::move(messages)};

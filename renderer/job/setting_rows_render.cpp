@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "composite/layers.h"
 #include "integrate/render.h"
 #include "job/setting_rows.h"
 
@@ -11,6 +12,8 @@ using enum SettingType;
 Names layers() {
   Names names;
   for (const AovInfo& info : allAovs()) names.push_back(info.name);
+  for (const CompositeLayerInfo& info : compositeLayers())
+    if (info.layer != CompositeLayer::Alpha) names.push_back(info.name);
   return names;
 }
 
