@@ -23,15 +23,18 @@ T multipleScattering(const T& f0, const T& f90, float meanAlbedo) {
 MetallicRoughness::MetallicRoughness(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
                                      const Surface& surface, const vec3& wo,
                                      const BsdfTables& tables, float mirrorAlpha)
-    : frame_(normalThatReflects(surface.normal, surface.geometricNormal, wo)),
+    : frame_(surface.normal),
       geometricNormal_(surface.geometricNormal),
-      wo_(frame_.toLocal(wo)),
       alpha_(m.roughness * m.roughness),
       smooth_(alpha_ < ggx::kSmoothAlpha),
       narrow_(smooth_ || alpha_ < mirrorAlpha),
       f0_(glm::mix(m.dielectricF0, metalF0, m.metallic)),
       f90_(glm::mix(m.dielectricF90, 1.0f, m.metallic)),
       energy_(tables.energy->row(m.roughness)) {
+  // Not in the list above, where the compiler would fuse other multiplications and additions:
+  // images would change in their last bits.
+  frame_ = Frame(normalThatReflects(surface.normal, surface.geometricNormal, wo));
+  wo_ = frame_.toLocal(wo);
   wo_.z = std::max(wo_.z, 1e-6f);
   const SpecularAlbedo toViewer = energy_.at(wo_.z), mean = energy_.average();
   const float meanAlbedo = mean.a + mean.b;
@@ -60,10 +63,13 @@ MetallicRoughness::MetallicRoughness(const MaterialPoint& m, const Rgb& diffuse,
 
 BsdfValue MetallicRoughness::evaluate(const vec3& wi, Lobes lobes) const {
   if (glm::dot(normal(), wi) <= 0 || glm::dot(geometricNormal_, wi) <= 0) return {Rgb(0), 0};
-  const vec3 local = frame_.toLocal(wi);
+  return evaluateLocal(frame_.toLocal(wi), lobes);
+}
+
+BsdfValue MetallicRoughness::evaluateLocal(const vec3& wi, Lobes lobes) const {
   BsdfValue v{Rgb(0), 0};
   if (lobes == Lobes::Broad) {
-    const float cosine = local.z;
+    const float cosine = wi.z;
     const SpecularAlbedo toLight = energy_.at(cosine);
     v.fCos =
         (diffuse_ * (1 - dielectric_.albedo(toLight)) + multiple_ * (1 - toLight.a - toLight.b)) *
@@ -73,11 +79,11 @@ BsdfValue MetallicRoughness::evaluate(const vec3& wi, Lobes lobes) const {
   if (smooth_ || narrow_ != (lobes == Lobes::Narrow)) return v;
 
   // Walter et al. 2007, eq. 20: f = F D G2 / (4 cos cos). The pdf: D G1 / (4 wo.z).
-  const vec3 h = glm::normalize(wo_ + local);
+  const vec3 h = glm::normalize(wo_ + wi);
   const float d = ggx::distribution(h, alpha_) / (4 * wo_.z);
   const float lambdaO = ggx::lambda(wo_.z, alpha_);
   v.fCos += fresnelSchlick(f0_, f90_, std::min(glm::dot(wo_, h), 1.0f)) *
-            (d / (1 + lambdaO + ggx::lambda(local.z, alpha_)));
+            (d / (1 + lambdaO + ggx::lambda(wi.z, alpha_)));
   v.pdf += specularProbability_ * d / (1 + lambdaO);
   return v;
 }

@@ -53,6 +53,8 @@ class MetallicRoughness {
     }
   };
 
+  BsdfValue evaluateLocal(const vec3& wi, Lobes lobes) const;  // wi in the frame
+
   Frame frame_;
   vec3 geometricNormal_;
   vec3 wo_;  // in the frame
