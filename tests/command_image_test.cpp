@@ -169,7 +169,7 @@ TEST(SlowCommandImage, BadInputIsRefused) {
   const std::string a = folder / "a.exr", png = folder / "a.png";
   writeImage(a, filled(2, 2, 3, 1));
   writeImage(folder / "b.exr", filled(3, 2, 3, 1));
-  expectRefused({"image", "error", a, folder / "b.exr"}, "one size");
+  expectRefused({"image", "error", a, folder / "b.exr"}, "same size");
   expectRefused({"image", "error", a}, "B");
   expectRefused({"image", "error", a, folder / "none.exr"}, "no such file");
   expectRefused({"image", "error", a, a, "--map", "z", "-o", png}, "--aov variance");

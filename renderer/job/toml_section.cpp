@@ -131,7 +131,9 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
 
 Entry Section::required(std::string_view key) const {
   const Entry entry = (*this)[key];
-  if (!entry) failAt(location(), "[{}] has no `{}`", name_, key);
+  if (!entry)
+    failAt(location(), "[{}] has no `{}`{}", name_, key,
+           entry.setting->choices ? ": " + expected(*entry.setting) : "");
   return entry;
 }
 
