@@ -122,7 +122,7 @@ TEST(Composite, SeesObjectsThroughHiddenBacks) {
   for (const Passes passes : {Passes::One, Passes::Two})
     alphas.push_back(compositeLayer(
         composite(w, probe, "importance", smallRender(16, 16, 16, 3), plate, passes).film,
-        Aov::Alpha));
+        CompositeLayer::Alpha));
   EXPECT_EQ(*alphas[0].at(8, 8), 1);
   EXPECT_EQ(alphas[0].texels, alphas[1].texels);
 }
