@@ -22,8 +22,10 @@ target_include_directories(chromeball_renderer PRIVATE renderer)
 target_include_directories(chromeball_renderer SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
 target_link_libraries(chromeball_renderer
   PUBLIC fmt::fmt glm::glm
-  PRIVATE TBB::tbb embree PkgConfig::OpenImageIO PkgConfig::WebP PkgConfig::Draco
-          TinyGLTF::TinyGLTF meshoptimizer::meshoptimizer
+  # tinygltf before Draco: Debian's libdraco exports a tinygltf of another version, whose functions
+  # would take the place of those that our calls were compiled for.
+  PRIVATE TBB::tbb embree PkgConfig::OpenImageIO PkgConfig::WebP TinyGLTF::TinyGLTF PkgConfig::Draco
+          meshoptimizer::meshoptimizer
           # Headers only: a static library's consumers need not find them.
           $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
           $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
