@@ -57,7 +57,7 @@ template <class Radiance>
 Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
   const CameraRays rays(camera, float(kWidth) / kHeight);
   const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * (kDepth + 1), 1);
-  PathContext context{.sampler = PixelSampler(table, 1), .log = log};
+  PathContext context{.sampler = PixelSampler(table, 1), .clamp = Clamp(), .log = log};
   PixelSampler& sampler = context.sampler;
   Rgb sum(0);
   for (int y = 0; y < kHeight; ++y)

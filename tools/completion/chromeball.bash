@@ -12,9 +12,9 @@ _chromeball() {
       words='render compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --probe --probe-mapping --probe-rotation --probe-scale --size --mis --max-depth --max-transmission-depth --single-sided --lights --light-units --camera --animation --animation-time --variant --seed --threads --tonemap --exposure --memory --allow-external --progress --quiet --output --samples --time --noise --strategy --aov --clamp --stats --two-pass --transparent' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --allow-external --output --aov --tonemap --exposure --memory --threads --stats --progress --quiet' ;;
     'compare')
-      options='--help --probe --probe-mapping --probe-rotation --probe-scale --size --mis --max-depth --max-transmission-depth --single-sided --lights --light-units --camera --animation --animation-time --variant --seed --threads --tonemap --exposure --memory --allow-external --progress --quiet --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output' ;;
+      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --threads --progress --quiet' ;;
     'probe')
       words='info convert synth irradiance'
       options='--help' ;;
