@@ -282,7 +282,7 @@ TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
     all.insert(all.end(), options.begin(), options.end());
     expectRefused(all, reason);
   };
-  refused({"--lights", "-1"}, "--lights: -1 is neither `off` nor a factor, 0 or above");
+  refused({"--lights", "-1"}, "--lights: `-1` is not \"off\" or a factor, 0 or more");
   refused({"--lights", "on"}, "--lights");
   refused({"--light-units", "lux"}, "--light-units: `lux` is not known");
 }

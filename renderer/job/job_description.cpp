@@ -142,7 +142,7 @@ std::string differenceOf(const std::string& stored, const std::string& own) {
   for (const auto& [name, ignored] : names.items()) {
     if (was.value(name, Json()) == is.value(name, Json())) continue;
     if (name.starts_with("contents of")) return fmt::format("the {} changed", name);
-    const auto text = [&](const Json& identity) {
+    const auto text = [&name = name](const Json& identity) {
       if (!identity.contains(name)) return std::string("not given");
       const Json& value = identity.at(name);
       return value.is_string() ? value.get<std::string>() : value.dump();

@@ -47,7 +47,7 @@ Strategy strata(const Probe& probe, Mis, int count) {
 }
 
 // A method whose strategy replaces the probe by its lights, made with seed 0.
-LightingMethod replacing(std::string_view name, std::string_view summary, Lights lights) {
+LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights) {
   const auto makeStrategy = [make = lights.make](const Probe& probe, Mis, int count) {
     const MadeLights made = make(probe.latLong(), {.count = count});
     return std::make_unique<DeltaLights>(probe, made.lights, made.ambient.value_or(Rgb(0)));
