@@ -9,7 +9,11 @@ namespace chromeball {
 
 class Stopwatch {
  public:
-  // Seconds since the last call, or since construction.
+  // Seconds since the last lap, or since construction.
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_).count();
+  }
+  // The same, and starts the next lap.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double>(now - std::exchange(last_, now)).count();

@@ -19,7 +19,9 @@ class DifferentialFilm {
  public:
   enum Layer { kCoverage, kObjects, kBehind, kLocal, kDifference, kLayers };
 
-  static std::vector<Accumulation> layers() { return {kLayers, Accumulation::Sum}; }
+  static std::vector<Accumulation> layers() {
+    return std::vector<Accumulation>(kLayers, Accumulation::Sum);
+  }
 
   explicit DifferentialFilm(LayerFilm film) : film_(std::move(film)) {}
 

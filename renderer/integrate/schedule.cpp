@@ -2,7 +2,6 @@
 #include "integrate/schedule.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace chromeball {
@@ -13,14 +12,9 @@ constexpr uint32_t kMinForNoise = 16;     // samples per pixel before an estimat
 constexpr uint32_t kMaxInTheDark = 4096;  // samples per pixel before a black image is final
 constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples before it
 
-double now() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
-Schedule::Schedule(const RenderSettings& settings) : settings_(settings), start_(now()) {}
+Schedule::Schedule(const RenderSettings& settings) : settings_(settings) {}
 
 uint32_t Schedule::next(uint32_t done, const Film& film) {
   if (done == 0) return std::min(kFirstPass, settings_.samples);
@@ -32,13 +26,13 @@ uint32_t Schedule::next(uint32_t done, const Film& film) {
 }
 
 double Schedule::progress(double samples) const {
-  if (settings_.timeLimit) return std::min(1.0, (now() - start_) / *settings_.timeLimit);
+  if (settings_.timeLimit) return std::min(1.0, elapsed_.seconds() / *settings_.timeLimit);
   if (settings_.noiseLimit) return std::nan("");
   return samples / settings_.samples;
 }
 
 double Schedule::untilTime(uint32_t done) const {
-  const double affordable = done * *settings_.timeLimit / (now() - start_);
+  const double affordable = done * *settings_.timeLimit / elapsed_.seconds();
   return affordable < done * (1 + kMinGrowth) ? 0 : affordable;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/stopwatch.h"
 #include "film/film.h"
 #include "integrate/render_settings.h"
 
@@ -26,7 +27,7 @@ class Schedule {
   double untilNoise(uint32_t done, const Film& film);
 
   const RenderSettings& settings_;
-  double start_;
+  Stopwatch elapsed_;
   struct {
     uint32_t samples = 0;
     double noise = 0;

@@ -66,8 +66,7 @@ struct Setting {
   std::vector<std::string_view> (*choices)() = nullptr;  // listed also for a Name
   std::string_view help;
   Effect effect = Effect::Image;
-  bool renderOnly =
-      false;  // no option of `chromeball compare`, which varies it or has no use for it
+  bool renderOnly = false;  // `chromeball compare` has no such option: it varies it or ignores it
 
   // "render.samples"; the option if there is no key.
   std::string name() const;

@@ -21,8 +21,7 @@ std::span<const SettingSection> settingSections() {
   static constexpr SettingSection sections[] = {
       {"model", "model", "Models",
        "One or several glTF files: `model = \"a.glb\"`, `model = [\"a.glb\", \"b.glb\"]`, or "
-       "tables "
-       "`[[model]]` with the keys below. A model is scaled, then rotated, then moved."},
+       "tables `[[model]]` with the keys below. A model is scaled, then rotated, then moved."},
       {"camera", "[camera]", "Camera",
        "A camera of the model by `name`, or one of its own: `position` and `look_at`, and `up`, "
        "`fov` or `orthographic`. Without either, the model's first camera renders, or one that "
@@ -32,8 +31,8 @@ std::span<const SettingSection> settingSections() {
       {"lighting", "[lighting]", "Lighting", "How the scene's light is sampled."},
       {"light", "[[light]]", "Lamps",
        "One table for each lamp. A point light has `intensity` or `power`, and perhaps a `range`; "
-       "a "
-       "spot also `direction`, `inner_angle` and `outer_angle`; a disc has `direction`, `radius`, "
+       "a spot also `direction`, `inner_angle` and `outer_angle`; a disc has `direction`, "
+       "`radius`, "
        "and `radiance` or `power`, and is a surface like others: a polygon of 128 sides with its "
        "exact area that shines to one side."},
       {"render", "[render]", "Render",
@@ -45,8 +44,7 @@ std::span<const SettingSection> settingSections() {
        "made."},
       {"composite", "[composite]", "Composite",
        "Differential rendering: puts the model's nodes into a photograph, except those of the "
-       "local "
-       "scene, which stand for what is in the photograph."},
+       "local scene, which stand for what is in the photograph."},
       {"surroundings", "[surroundings]", "Surroundings",
        "The surface at a finite distance that the probe is mapped onto, as seen from `capture`."},
       {"", "The command line only", "Run", "These settings are options without a key."},

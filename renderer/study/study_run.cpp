@@ -2,17 +2,10 @@
 #include "study/study_run.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "base/stopwatch.h"
 
 namespace chromeball {
-namespace {
-
-double now() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
                    const RenderSettings& settings)
@@ -24,10 +17,10 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
       renders_(study.renders()) {
   const auto build = [&](const std::string& name, const std::string& strategy,
                          const char* location) {
-    const double start = now();
+    const Stopwatch watch;
     Built& built = built_[name];
     built.strategy = makeLighting({strategy, location}, settings.mis, loaded);
-    built.prepareSeconds = now() - start;
+    built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
   if (study.referenceFile.empty())
@@ -70,9 +63,9 @@ double StudyRun::estimatedSecondsMissing(size_t from) const {
 
 void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
                          const std::atomic<bool>& stop) {
-  const double start = now();
+  const Stopwatch watch;
   const RenderResult result = render(key, progress, stop);
-  const double seconds = now() - start;
+  const double seconds = watch.seconds();
   if (result.interrupted) return;
   Built& built = built_.at(key.strategy);
   built.secondsPerSample = seconds / std::max(1u, result.samples);
@@ -86,10 +79,10 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
 
 void StudyRun::warmUp(const std::atomic<bool>& stop) {
   for (auto& [name, built] : built_) {
-    const double start = now();
+    const Stopwatch watch;
     render(
         {name, {false, 1}, 0}, [](double) {}, stop);
-    built.secondsPerSample = now() - start;
+    built.secondsPerSample = watch.seconds();
     if (stop) return;
   }
 }
@@ -105,7 +98,7 @@ bool StudyRun::run(const Progress& progress, const std::function<void()>& finish
     if (!present_[i]) {
       if (stop) return false;
       const double expected = estimatedSeconds(key), left = estimatedSecondsMissing(i + 1);
-      const double start = now();
+      const Stopwatch watch;
       renderOne(
           key,
           [&](double fraction) {
@@ -113,7 +106,7 @@ bool StudyRun::run(const Progress& progress, const std::function<void()>& finish
           },
           stop);
       if (stop) return false;
-      spent += now() - start;
+      spent += watch.seconds();
       present_[i] = true;
     }
     const bool last = i + 1 == renders_.size() || !(renders_[i + 1].budget == key.budget);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights-error PROBE --methods a,b,c --counts 2,4,8,...
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "commands.h"
 #include "job/output_file.h"
 #include "lighting/fit/light_error.h"
@@ -43,11 +43,11 @@ int subdivisionsFor(int normals) {
 
 Row measure(const std::string& method, const Image& latLong, const LightRequest& request,
             std::span<const vec3> normals, std::span<const dvec3> irradiance) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const MadeLights made = makeLights(method, latLong, request);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const double seconds = watch.seconds();
   const auto lit = irradianceOf(made.lights, made.ambient.value_or(Rgb(0)), normals);
-  return {method, *request.count, made.lights.size(), lightError(lit, irradiance), seconds.count()};
+  return {method, *request.count, made.lights.size(), lightError(lit, irradiance), seconds};
 }
 
 std::string formatCsv(const std::vector<Row>& rows) {
