@@ -7,7 +7,7 @@ namespace chromeball {
 namespace {
 
 // Lamps of the scene light narrow lobes too; the probe does not (LightingStrategy::mirrorAlpha).
-Bsdf::Value narrowLobes(const Bsdf& bsdf, const vec3& wi) {
+BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
   if (!bsdf.has(Lobes::Narrow)) return {Rgb(0), 0};
   return bsdf.evaluate(wi, Lobes::Narrow);
 }
@@ -50,7 +50,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
   lighting_.sample(vertex.point, context.sampler, samples);
   Rgb light(0);
   for (const DirectionSample& s : samples) {
-    const Bsdf::Value bsdf = vertex.bsdf.evaluate(s.wi);
+    const BsdfValue bsdf = vertex.bsdf.evaluate(s.wi);
     if (isBlack(bsdf.fCos)) continue;
     // Nothing absorbs over an infinite distance, so the medium does not count.
     const Rgb passed = visibility({vertex.surface.rayOrigin(s.wi), s.wi}, context, {});
@@ -69,8 +69,8 @@ Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
   const float distance = glm::length(to);
   if (!(distance > surface.rayOffset)) return Rgb(0);
   const vec3 wi = to / distance;
-  const Bsdf::Value broad = vertex.bsdf.evaluate(wi);
-  const Bsdf::Value narrow = narrowLobes(vertex.bsdf, wi);
+  const BsdfValue broad = vertex.bsdf.evaluate(wi);
+  const BsdfValue narrow = narrowLobes(vertex.bsdf, wi);
   if (isBlack(broad.fCos) && isBlack(narrow.fCos)) return Rgb(0);
 
   const Instance& instance = world_.scene.instances[emitter.instance];

@@ -32,6 +32,12 @@ std::string shellWord(const std::string& argument) {
   return result + "'";
 }
 
+#ifdef __clang__
+constexpr const char* kCompiler = "clang++ " __clang_version__;
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
 }  // namespace
 
 std::string commandLine() {
@@ -49,7 +55,7 @@ Machine thisMachine() {
   uname(&name);
   machine.system = lineIn("/etc/os-release", "PRETTY_NAME", '=') + ", " + name.sysname + " " +
                    name.release + ", " + name.machine;
-  machine.compiler = "g++ " __VERSION__;
+  machine.compiler = kCompiler;
   const std::time_t now = std::time(nullptr);
   char date[32];
   std::strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", std::gmtime(&now));

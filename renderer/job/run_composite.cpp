@@ -71,7 +71,7 @@ Messages warningsOf(const CompositeReport& report, double probeScale) {
         {Message::Kind::Warning,
          fmt::format("{:.1f}% of the local scene's pixels need an albedo above 1 and were clamped: "
                      "the plate is {:.3g} times as bright as the model's own reflectance makes it; "
-                     "do plate and probe agree in exposure?",
+                     "plate and probe may differ in exposure",
                      100 * r->clampedFraction, r->exposureRatio),
          Remedy{"probe.scale", fmt::format("{:.2g}", probeScale * r->exposureRatio)}});
   if (report.darkerThanBlack)
@@ -79,7 +79,7 @@ Messages warningsOf(const CompositeReport& report, double probeScale) {
         {Message::Kind::Warning,
          fmt::format(
              "{} pixels would be negative, since the objects take more light than the plate "
-             "has there, and are black: do plate and probe agree in exposure?",
+             "has there, and are black: plate and probe may differ in exposure",
              report.darkerThanBlack)});
   return messages;
 }

@@ -13,7 +13,7 @@ namespace chromeball {
 inline constexpr uint32_t kMaxSamples = 2'000'000'000;
 inline constexpr int kMaxDepth = 1'000'000;
 
-// To add a setting, add a row here (setting_table*.cpp) and read it where it takes effect. A
+// To add a setting, add a row (setting_rows_*.cpp) and read it where it takes effect. A
 // Compound also needs a reader (scene_file*.cpp).
 const std::vector<Setting>& settingTable();
 

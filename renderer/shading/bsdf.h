@@ -32,8 +32,6 @@ static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && Scat
 // A material pays for its own member of the set alone.
 class Bsdf {
  public:
-  using Value = BsdfValue;
-
   // Of a plain material: Lambert if it has no specular reflection. `wo`: unit, towards the viewer;
   // the surface's normals are on its side. A specular lobe is narrow if its alpha (roughness
   // squared) is below `mirrorAlpha`. The tables must outlive the BSDF.
