@@ -39,7 +39,13 @@ int addMaterial(GlbWriter& glb, const Object& object) {
                      {"roughnessFactor", object.roughness}}}};
   if (object.texture >= 0)
     material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", object.texture}};
-  if (object.lambertian) material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  if (object.glass) {
+    material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0}};
+    material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+  } else if (object.lambertian) {
+    material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  }
   if (object.glow > 0) {
     material["emissiveFactor"] = {1, 0.5, 0.18};
     material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", object.glow}};

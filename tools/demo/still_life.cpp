@@ -54,11 +54,10 @@ std::vector<Object> stillLife() {
 void makePlain(std::vector<Object>& objects, Finish finish) {
   for (Object& object : objects) {
     const bool metal = object.metallic > 0, polished = metal && object.roughness < 0.3f;
+    const bool conducts = metal && finish == Finish::Conductors;
     object.glow = 0;
-    object.roughness = 1;
-    object.metallic = 0;
-    if (metal && finish == Finish::Conductors)
-      object.metallic = 1, object.roughness = std::max(object.roughness, 0.2f);
+    object.metallic = conducts;
+    object.roughness = conducts ? std::max(object.roughness, 0.2f) : 1;
     object.glass = polished && finish == Finish::Glass;
   }
   objects[0].color = {0.5f, 0.38f, 0.26f};  // the table, which has no texture here
