@@ -49,15 +49,15 @@ AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
 }
 
 void AovFilm::add(int x, int y, const FirstHit& first) {
-  const size_t at = pixel(x, y);
-  ++samples_[at];
+  const size_t index = pixel(x, y);
+  ++samples_[index];
   if (!first.hit) return;
-  const bool isFirst = hits_[at]++ == 0;
+  const bool isFirst = hits_[index]++ == 0;
   const auto addRgb = [](double* to, const vec3& v) {
     for (int c = 0; c < 3; ++c) to[c] += v[c];
   };
   for (Sum& sum : sums_) {
-    double* to = &sum.sums[at * sum.channels];
+    double* to = &sum.sums[index * sum.channels];
     switch (sum.aov) {
       case Aov::Albedo:
         addRgb(to, first.albedo);
@@ -78,7 +78,7 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
         *to += 1;
         break;
       default:
-        break;  // not of the first hit
+        break;  // Variance, Samples and Invalid do not depend on the first hit
     }
   }
 }
@@ -93,12 +93,12 @@ Image AovFilm::finished(Aov aov) const {
     if (sum.aov != aov) continue;
     Image image(width_, height_, sum.channels);
     for (size_t i = 0; i < image.texels.size(); ++i) {
-      const size_t at = i / sum.channels;
-      double fraction = 1;
-      if (aov == Aov::Depth) fraction = hits_[at];
+      const size_t index = i / sum.channels;
+      double divisor = 1;
+      if (aov == Aov::Depth) divisor = hits_[index];
       if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
-        fraction = std::max(samples_[at], 1u);  // a render may stop before any
-      image.texels[i] = fraction > 0 ? float(sum.sums[i] / fraction) : kNoDepth;
+        divisor = std::max(samples_[index], 1u);  // an interrupted render may have no samples
+      image.texels[i] = divisor > 0 ? float(sum.sums[i] / divisor) : kNoDepth;
     }
     return image;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary output variables (AOVs): layers beside a render's colour.
+// Arbitrary output variables (AOVs): additional layers of a render.
 #pragma once
 
 #include <string>
@@ -19,12 +19,15 @@ struct FirstHit {
   int material = -1, node = -1;
 };
 
-// The names are those of the command line and of the EXR's layers. Means over a pixel's samples:
-//   albedo, normal  0 where nothing is hit      depth  over samples that hit something; else 1e10
-//   alpha           fraction that hit one       material, node  index + 1 at the first sample that
-//                                               hit; else 0 (a mean of numbers would mean nothing)
-//   variance        squared standard error of the pixel (Film)        samples  their number (Film)
-//   invalid         number of excluded samples: R with a NaN, G infinite, B negative
+// The names are those of the command line and of the EXR layers. Values per pixel:
+//   albedo, normal  mean over all samples; a sample without a hit counts as 0
+//   depth           mean over the samples with a hit; 1e10 if none
+//   alpha           fraction of samples with a hit
+//   variance        squared standard error of the pixel (Film)
+//   samples         number of samples (Film)
+//   material, node  index + 1, of the first sample with a hit (indices cannot be averaged); 0 if
+//                   none
+//   invalid         number of excluded samples: R NaN, G infinite, B negative
 enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node, Invalid };
 
 struct AovInfo {
@@ -37,15 +40,15 @@ const AovInfo& aovInfo(Aov aov);
 // `location` (an option, or FILE:LINE) begins the InputError thrown for an unknown name.
 Aov aovFromName(const std::string& name, const std::string& location);
 
-// Gathers the layers of the first hit, and the counts of excluded samples. Sums are doubles: in
-// float they would stall after some million samples.
+// Accumulates the layers of the first hit and the counts of excluded samples. Sums are in double:
+// a float sum stops growing after some million samples.
 class AovFilm {
  public:
   AovFilm(int width, int height, const std::vector<Aov>& wanted);
 
   bool empty() const { return sums_.empty(); }
 
-  // Adds a sample, or the defect of one. Concurrently for different pixels.
+  // Adds a sample, or the defect of one. Thread-safe for different pixels.
   void add(int x, int y, const FirstHit& first);
   void add(int x, int y, Defect defect);
 
@@ -61,7 +64,7 @@ class AovFilm {
 
   int width_, height_;
   std::vector<Sum> sums_;
-  std::vector<uint32_t> samples_, hits_;  // number of samples, and of those that hit something
+  std::vector<uint32_t> samples_, hits_;  // per pixel: samples, and samples with a hit
 };
 
 }  // namespace chromeball

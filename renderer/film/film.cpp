@@ -46,9 +46,9 @@ PixelErrors Film::errors() const {
     const glm::dvec3 sum = p.sums[0] + p.sums[1];
     const glm::dvec3 difference = p.sums[0] / n0 - p.sums[1] / n1;
     const glm::dvec4 mean(sum / n, luminance(sum / n));
-    const glm::dvec4 apart(difference, luminance(difference));
-    // The variance of the mean of n0 and n1 samples is n0 n1 / n^2 times that of the difference.
-    errors.halves[i] = apart * apart * (n0 * n1 / (n * n));
+    const glm::dvec4 differences(difference, luminance(difference));
+    // Var(mean of all n samples) = n0 n1 / n^2 Var(difference of the means of the halves).
+    errors.halves[i] = differences * differences * (n0 * n1 / (n * n));
     errors.scatter[i] = glm::max(p.sumOfSquares / n - mean * mean, 0.0) / (n - 1);
   }
   return errors;

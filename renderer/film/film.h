@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the render has found so far: per pixel the mean, and how far it may be off.
+// Accumulates samples: the mean of each pixel and an estimate of its error.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace chromeball {
 
-// Sums over samples of a pixel, in double: a million samples of 1e10 beside 1e-8 neither stall nor
-// overflow. Squares are of red, green, blue and luminance.
+// Sums over the samples of a pixel. In double, so that sums of a million samples of radiance
+// between 1e-8 and 1e10 neither stop growing nor overflow.
 struct SampleSums {
   uint32_t count = 0;
   glm::dvec3 sum{0};
-  glm::dvec4 sumOfSquares{0};
+  glm::dvec4 sumOfSquares{0};  // of red, green, blue and luminance
 
   void add(const Rgb& radiance) {
     const glm::dvec3 rgb(radiance);
@@ -30,9 +30,10 @@ struct SampleSums {
 
 // Box filter: a pixel is the mean of the samples inside it.
 //
-// The samples of a pixel belong to two halves, each a quasi-random sequence with a randomisation of
-// its own. However many samples there are, the halves are independent, so their difference tells
-// the error of their mean without bias; the samples' scatter alone would overstate it.
+// The samples of a pixel are split into two halves, each a quasi-random sequence with its own
+// randomisation. The halves are independent for any number of samples, so the squared difference of
+// their means gives an unbiased estimate of the pixel's variance. The sample variance alone would
+// overestimate it, because quasi-random samples are not independent.
 class Film {
  public:
   static constexpr int kHalves = 2;
@@ -42,7 +43,7 @@ class Film {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Concurrently for different pixels.
+  // Thread-safe for different pixels.
   void add(int x, int y, int half, const SampleSums& samples);
 
   Image mean() const;          // RGB radiance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that are no radiance. They are counted by cause and pixel, and left out of every mean.
+// Samples that are NaN, infinite or negative. They are counted and excluded from all means.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace chromeball {
 
 enum class Defect { Nan, Infinite, Negative };
 
-// The first of the causes that holds for a channel; nullopt for radiance. `isSigned`: negative
-// values are an answer and no mistake.
+// The defect of a sample, tested in the order of the enum; nullopt if it is valid. `isSigned`:
+// negative values are valid.
 inline std::optional<Defect> defectOf(const Rgb& radiance, bool isSigned) {
   const auto any = [&](auto holds) {
     return holds(radiance.x) || holds(radiance.y) || holds(radiance.z);
@@ -26,7 +26,7 @@ inline std::optional<Defect> defectOf(const Rgb& radiance, bool isSigned) {
 
 struct InvalidSamples {
   std::array<uint64_t, 3> counts{};  // by Defect
-  int x = -1, y = -1;                // the first pixel in reading order that has one
+  int x = -1, y = -1;                // the first affected pixel in scanline order
 
   uint64_t of(Defect defect) const { return counts[size_t(defect)]; }
   uint64_t total() const { return counts[0] + counts[1] + counts[2]; }

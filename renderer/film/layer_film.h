@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an integrator's samples carry beside radiance, gathered per pixel.
+// Per-pixel accumulation of the additional layers of an integrator's samples.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace chromeball {
 
 enum class Accumulation { Sum, Maximum };
 
-// `layers` RGB values a pixel, in double: in float, sums would stall after some million samples.
+// One RGB value per pixel and layer. In double: a float sum stops growing after some million
+// samples.
 class LayerFilm {
  public:
   LayerFilm(int width, int height, std::vector<Accumulation> layers);
@@ -21,9 +22,10 @@ class LayerFilm {
   int height() const { return height_; }
   bool empty() const { return layers_.empty(); }
 
-  // Adds one sample: one value a layer. Concurrently for different pixels.
+  // Adds one sample: one value per layer. Thread-safe for different pixels.
   void add(int x, int y, std::span<const Rgb> sample);
-  // Adds the values of another film of the same shape, whose layers are sums; not its counts.
+  // Adds the values of another film of the same size and layers, all of them sums; leaves the
+  // counts unchanged.
   void addValues(const LayerFilm& other);
 
   uint32_t count(int x, int y) const { return counts_[pixel(x, y)]; }  // samples
@@ -40,7 +42,7 @@ class LayerFilm {
   int width_, height_;
   std::vector<Accumulation> layers_;
   std::vector<uint32_t> counts_;
-  std::vector<glm::dvec3> values_;  // pixel by pixel
+  std::vector<glm::dvec3> values_;  // [pixel][layer]
 };
 
 }  // namespace chromeball

@@ -9,10 +9,10 @@ namespace chromeball {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kReach = 3;        // windows are 7 x 7 pixels
-constexpr double kKnown = 0.25;  // relative error of a luminance that counts as known
+constexpr int kReach = 3;                   // windows are 7 x 7 pixels
+constexpr double kMaxRelativeError = 0.25;  // of a luminance that is used as a reference
 
-// Calls visit(j) for the pixels of the window around (x, y), itself included.
+// Calls visit(j) for all pixels of the window around (x, y), the centre included.
 template <class Visit>
 void forWindow(int width, int height, int x, int y, const Visit& visit) {
   for (int v = std::max(0, y - kReach); v <= std::min(height - 1, y + kReach); ++v)
@@ -26,13 +26,13 @@ double meanOf(const std::vector<double>& values) {
   return sum / double(std::max<size_t>(values.size(), 1));
 }
 
-// What a pixel's error is compared with: its luminance, and at least a hundredth of the picture's.
-// Where the pixel's own samples leave its luminance open, as a firefly does, that of the window:
-// else the error of rare light would be divided by the luminance of those few pixels that met it.
+// The divisor of a pixel's relative error: its luminance, and at least 0.01 of the image's mean. If
+// the pixel's own luminance is too uncertain (a firefly), at most the mean of the window: otherwise
+// the errors of fireflies would be divided by their own luminance and seem small.
 double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) {
   const size_t i = size_t(y) * size_t(errors.width) + size_t(x);
   double reference = errors.luminances[i];
-  if (errors.halves[i].w > kKnown * kKnown * reference * reference) {
+  if (errors.halves[i].w > kMaxRelativeError * kMaxRelativeError * reference * reference) {
     double sum = 0, count = 0;
     forWindow(errors.width, errors.height, x, y,
               [&](size_t j) { sum += errors.luminances[j], ++count; });
@@ -41,50 +41,50 @@ double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) 
   return std::max(reference, 0.01 * mean);
 }
 
-// Which part of the mean of a window's rare light a pixel takes at least: nothing where its pixels
-// scatter alike, all where a few of them hold most of the scatter. `concentration` is 1 where all
-// scatter alike, and the number of pixels where one does it all.
-double fractionOfMean(double concentration) {
+// The fraction of the window's mean error from outliers that is a lower bound for each pixel: 0 if
+// the scatter is even over the window, 1 if a few pixels hold most of it. `concentration` =
+// n sum(s^2) / sum(s)^2 is 1 for even scatter, and n if one of n pixels has all of it.
+double outlierFraction(double concentration) {
   constexpr double kEven = 4, kRare = 8;  // an edge between noise and none gives 2
   return std::clamp((concentration - kEven) / (kRare - kEven), 0.0, 1.0);
 }
 
-// Whether most of what the pixel shows comes from a few of its samples. (Of an edge between bright
-// and dark all samples tell.)
-bool hasMetRareLight(const PixelErrors& e, size_t j) {
-  return e.scatter[j].w > kKnown * kKnown * e.luminances[j] * e.luminances[j];
+// Whether a few samples dominate the pixel's mean. (False for a pixel on an edge between bright and
+// dark, where all samples contribute.)
+bool hasOutliers(const PixelErrors& e, size_t j) {
+  return e.scatter[j].w > kMaxRelativeError * kMaxRelativeError * e.luminances[j] * e.luminances[j];
 }
 
-// Of a pixel of which something is known. `logScatter`: binary logarithms of the luminances'
-// scatter.
+// The pixel must have an estimate. `logScatter`: binary logarithms of the luminances' scatter.
 glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>& logScatter, int x,
                                 int y) {
   const size_t i = size_t(y) * size_t(e.width) + size_t(x);
-  glm::dvec4 ratio(0), weight(0), rareHalves(0);
-  double rareScatter = 0, rareSquared = 0, count = 0;
+  glm::dvec4 ratio(0), weight(0), outlierHalves(0);
+  double outlierScatter = 0, outlierSquares = 0, count = 0;
   forWindow(e.width, e.height, x, y, [&](size_t j) {
     if (std::isnan(e.halves[j].w)) return;
     ++count;
-    if (hasMetRareLight(e, j)) {
-      rareHalves += e.halves[j];
-      rareScatter += e.scatter[j].w;
-      rareSquared += e.scatter[j].w * e.scatter[j].w;
+    if (hasOutliers(e, j)) {
+      outlierHalves += e.halves[j];
+      outlierScatter += e.scatter[j].w;
+      outlierSquares += e.scatter[j].w * e.scatter[j].w;
     }
-    const double apart = logScatter[j] - logScatter[i], alike = 1 / (1 + apart * apart);
-    if (!(alike > 0)) return;  // one of the two does not scatter
+    const double logRatio = logScatter[j] - logScatter[i];
+    const double similarity = 1 / (1 + logRatio * logRatio);
+    if (!(similarity > 0)) return;  // the scatter of one of the two pixels is 0
     for (int c = 0; c < 4; ++c)
       if (e.scatter[j][c] > 0) {
-        ratio[c] += alike * e.halves[j][c] / e.scatter[j][c];
-        weight[c] += alike;
+        ratio[c] += similarity * e.halves[j][c] / e.scatter[j][c];
+        weight[c] += similarity;
       }
   });
-  double minimum = 0;
-  if (e.scatter[i].w > 0 && rareScatter > 0)
-    minimum = fractionOfMean(count * rareSquared / (rareScatter * rareScatter));
+  double minFraction = 0;
+  if (e.scatter[i].w > 0 && outlierScatter > 0)
+    minFraction = outlierFraction(count * outlierSquares / (outlierScatter * outlierScatter));
   glm::dvec4 squared;
   for (int c = 0; c < 4; ++c) {
     const double own = e.scatter[i][c] * (weight[c] > 0 ? ratio[c] / weight[c] : 1);
-    squared[c] = std::max(own, minimum * rareHalves[c] / count);
+    squared[c] = std::max(own, minFraction * outlierHalves[c] / count);
   }
   return squared;
 }
