@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warps from the unit square to directions and triangles, each beside its pdf and its inverse.
+// Warps from the unit square to directions and triangles, each with its pdf and its inverse.
 // Hemispheres are about +z. Pdfs are over solid angle.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// The unit vector at height z and azimuth in turns.
+// The unit vector with the given z and azimuth, in turns.
 inline vec3 unitVector(float z, float azimuthTurns) {
   float sine, cosine;
   sinCosTurns(azimuthTurns, sine, cosine);

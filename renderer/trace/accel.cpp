@@ -74,8 +74,8 @@ RTCRay embreeRay(const Ray& ray, RayMask mask) {
   return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.tMax, mask, 0, 0};
 }
 
-// Embree knows no coordinates beyond 1.8e18, and as Debian builds it ends the program at a ray
-// beyond them or with a NaN.
+// Embree supports coordinates up to 1.8e18. The Debian build of Embree aborts the program for a ray
+// beyond that, or with a NaN.
 bool isTraceable(const Ray& ray) {
   constexpr float kFarthest = 1e18f;
   const vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
@@ -84,9 +84,10 @@ bool isTraceable(const Ray& ray) {
 
 RTCScene newScene(RTCDevice device, bool hasFilter) {
   RTCScene scene = rtcNewScene(device);
-  // Robust: no ray slips between two triangles that share an edge.
+  // Robust: no ray passes between two triangles that share an edge.
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  // Spatial splits may report a hit to the shadow filter twice, which would darken it twice.
+  // The spatial splits of HIGH may report a hit to the shadow filter twice, which would apply its
+  // transmittance twice.
   rtcSetSceneBuildQuality(scene, hasFilter ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
@@ -134,7 +135,7 @@ void Accel::release() {
 RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
   const Mesh& mesh = scene.meshes[index];
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads 16 bytes a vertex, past the end of an array of vec3: it gets its own copy.
+  // Copied, because Embree reads 16 bytes per vertex, past the end of an array of vec3.
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(vec3), mesh.positions.size());
   if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
@@ -208,25 +209,25 @@ bool Accel::closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const 
   return true;
 }
 
-// Finds the triangle in front of that of `hit` at an edge that the ray grazes (trace/edge.h), up to
-// three triangles at a corner. Triangles that share an edge are about equally far away; other hits
+// Replaces `hit` by the triangle in front of it if the ray grazes an edge (trace/edge.h); repeated
+// up to three times, for corners. Triangles that share an edge are at similar distances; other hits
 // of the turned ray are ignored.
-void Accel::settleEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const {
-  for (int i = 0; i < 3 && isBesideEdge(hit); ++i) {
-    const auto turned = aimedInside(described_, ray, hit);
-    Hit before;
-    if (!turned || !closest(*turned, key, mask, before) ||
-        (before.triangle == hit.triangle && before.instance == hit.instance) ||
-        std::fabs(before.distance - hit.distance) > 0.5f * hit.distance)
+void Accel::resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const {
+  for (int i = 0; i < 3 && isNearEdge(hit); ++i) {
+    const auto turned = turnedOffEdges(described_, ray, hit);
+    Hit front;
+    if (!turned || !closest(*turned, key, mask, front) ||
+        (front.triangle == hit.triangle && front.instance == hit.instance) ||
+        std::fabs(front.distance - hit.distance) > 0.5f * hit.distance)
       return;
     ray = *turned;
-    hit = before;
+    hit = front;
   }
 }
 
 bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask) const {
   if (!closest(ray, key, mask, hit)) return false;
-  settleEdge(ray, key, mask, hit);
+  resolveEdge(ray, key, mask, hit);
   return true;
 }
 
@@ -234,7 +235,7 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
                                RayMask mask) const {
   assert(rays.size() <= kPacket && keys.size() == rays.size());
   Packet hits;
-  if (hasAlpha_) {  // the filters answer one ray at a time
+  if (hasAlpha_) {  // the filters process one ray at a time
     for (size_t i = 0; i < rays.size(); ++i)
       if (Hit hit; intersect(rays[i], keys[i], hit, mask)) hits[i] = hit;
     return hits;
@@ -263,7 +264,7 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
                r.hit.primID[i],
                {r.hit.u[i], r.hit.v[i]},
                r.ray.tfar[i]};
-    settleEdge(rays[i], keys[i], mask, *hits[i]);
+    resolveEdge(rays[i], keys[i], mask, *hits[i]);
   }
   return hits;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closest surface along a ray, and the transmittance of a shadow ray.
+// Closest hits of rays and transmittance of shadow rays.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ struct RTCSceneTy;
 
 namespace chromeball {
 
-// Embree's hierarchy over a scene's instances. A mesh with several instances is built once.
-// Surfaces with alpha (masked or blended) are resolved here, so that the path loop never sees them,
-// and smooth thin walls let shadow rays pass; scenes without them have no filter functions.
+// Embree's BVH over a scene's instances. A mesh with several instances is built once. Filter
+// functions handle alpha (masked and blended surfaces), so that the path loop need not, and let
+// shadow rays pass smooth thin walls; scenes without such surfaces have no filter functions.
 class Accel {
  public:
-  // `masks`: by instance; every instance is of all classes where it is empty. The scene must
-  // outlive this. Throws RunError.
+  // `masks`: by instance; empty: kAllInstances for each. The scene must outlive this. Throws
+  // RunError.
   explicit Accel(const Scene& scene, const std::vector<RayMask>& masks = {});
   ~Accel();
   Accel(const Accel&) = delete;
@@ -34,26 +34,26 @@ class Accel {
     return masks_.empty() ? kAllInstances : masks_[instance];
   }
 
-  // The closest hit; none for a ray with NaN or coordinates beyond 1e18. `key` is the random number
-  // that decides whether a blended surface lets the ray pass, with probability 1 - alpha.
+  // The closest hit; none for a ray with a NaN or coordinates beyond 1e18. `key` seeds the random
+  // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask = kAllInstances) const;
 
-  // The closest hits of coherent rays, such as those through one pixel; faster than one by one.
-  // `keys` as above, one for each ray.
+  // The closest hits of coherent rays, such as those through one pixel; faster than single rays.
+  // `keys`: one per ray, as above.
   static constexpr int kPacket = 8;
   using Packet = std::array<std::optional<Hit>, kPacket>;
   Packet intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
                    RayMask mask = kAllInstances) const;
 
-  // The fraction of light that passes along the ray up to tMax: 0, 1, or the product over the
-  // blended surfaces (1 - alpha) and smooth thin walls (scene/thin_wall.h) on the way. A ray
-  // towards a light passes the front of a surface whose back lets light through (material.h).
+  // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
+  // (1 - alpha) and smooth thin walls (scene/thin_wall.h). The ray points towards the light; it
+  // passes the front of a surface with Material::backLetsLightThrough().
   Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances) const;
 
  private:
   void build(const Scene& scene);
   bool closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const;
-  void settleEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
+  void resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
   void release();
   RTCGeometryTy* meshGeometry(const Scene& scene, int mesh) const;
   RTCSceneTy* meshScene(const Scene& scene, int mesh);
@@ -63,7 +63,7 @@ class Accel {
   RTCSceneTy* scene_ = nullptr;
   std::vector<RayMask> masks_;           // by instance; empty: all
   std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null for a mesh of one instance
-  std::vector<bool> needsFilter_;        // by mesh: whether an instance lets some light pass
+  std::vector<bool> needsFilter_;        // by mesh: whether any instance lets light pass
   bool hasFilter_ = false, hasAlpha_ = false;
 };
 

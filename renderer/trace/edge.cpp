@@ -6,11 +6,11 @@
 
 namespace chromeball {
 
-std::optional<Ray> aimedInside(const Scene& scene, const Ray& ray, const Hit& hit) {
+std::optional<Ray> turnedOffEdges(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Instance& instance = scene.instances[hit.instance];
   const Mesh& mesh = scene.meshes[instance.mesh];
   const Triangle& triangle = mesh.triangles[hit.triangle];
-  std::array<vec3, 3> corners;  // as the ray sees them: from its origin, at right angles to it
+  std::array<vec3, 3> corners;  // relative to the origin, projected perpendicular to the ray
   for (int i = 0; i < 3; ++i) {
     const vec3 away = instance.point(mesh.positions[triangle[i]]) - ray.origin;
     corners[i] = away - glm::dot(away, ray.direction) * ray.direction;
@@ -18,7 +18,7 @@ std::optional<Ray> aimedInside(const Scene& scene, const Ray& ray, const Hit& hi
   const vec2& b = hit.barycentric;
   const std::array weights{1 - b.x - b.y, b.x, b.y};
 
-  // Of a hit point: coordinates are sums of the origin's and the distance's, each rounded twice.
+  // Bound on the rounding error of a hit point, origin + distance * direction.
   const vec3 origin = glm::abs(ray.origin);
   const float rounding =
       2 * std::numeric_limits<float>::epsilon() * (origin.x + origin.y + origin.z + hit.distance);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that meet a triangle so close to its edge that rounding decides which side of it they pass.
+// Rays that hit a triangle so close to an edge that rounding decides which side they pass.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,20 @@
 
 namespace chromeball {
 
-// Whether `aimedInside` may have an answer: a cheap test that few hits pass. It overlooks edges of
-// triangles that the ray sees so small, or so nearly edge-on, that rounding is a hundredth of their
-// height: 25 um from 1 m.
-inline bool isBesideEdge(const Hit& hit) {
+// A cheap test before turnedOffEdges(). It misses edges of triangles so small, or seen so nearly
+// edge-on, that the rounding error exceeds 1% of their projected height: heights below 25 um at 1
+// m.
+inline bool isNearEdge(const Hit& hit) {
   const vec2& b = hit.barycentric;
   return std::min({b.x, b.y, 1 - b.x - b.y}) < 0.01f;
 }
 
-// Where two triangles of a body share an edge and one stands before the other, a ray that grazes
-// the edge can miss the near one by a rounding and meet the far one from behind: from inside the
-// body, whose light would leak out. The ray turned, by a few roundings, to meet the triangle of
-// `hit` clear of its edges, where whatever stands before it is met first. None where the hit is
-// clear already, or so near that this would turn the ray by more than 1e-3.
-std::optional<Ray> aimedInside(const Scene& scene, const Ray& ray, const Hit& hit);
+// A ray that grazes the edge between a front-facing and a back-facing triangle of a body can miss
+// the front-facing one by a rounding error and hit the other one from inside the body, so that
+// light leaks out. This function turns the ray, by a few rounding errors, towards the inside of the
+// triangle of `hit`, so that the turned ray hits the front-facing triangle first. Returns nullopt
+// if the hit is not at an edge, or if the hit is so close that the ray would turn by more than
+// 1e-3.
+std::optional<Ray> turnedOffEdges(const Scene& scene, const Ray& ray, const Hit& hit);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows which Embree this is: 3.13 or 4.
+// Hides the differences between Embree 3.13 and Embree 4.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -10,8 +10,7 @@
 
 namespace chromeball {
 
-// What a query carries to the filter functions. The Embree part comes first, so that a filter can
-// cast back.
+// The context that Embree passes to the filter functions.
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 inline void initQueryContext(QueryContext& context) { rtcInitRayQueryContext(&context); }

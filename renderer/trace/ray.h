@@ -8,8 +8,7 @@
 
 namespace chromeball {
 
-// A set of classes of instances. Every instance has a mask of the classes that it belongs to; a ray
-// with a mask meets the instances that share a class with it.
+// A bit mask. A ray hits the instances whose mask has a bit in common with its own.
 using RayMask = uint32_t;
 inline constexpr RayMask kAllInstances = ~0u;
 

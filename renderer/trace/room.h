@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surroundings that are a model of the room.
+// Surroundings given by a model of the room.
 #pragma once
 
 #include "scene/surroundings.h"
@@ -7,16 +7,16 @@
 
 namespace chromeball {
 
-// The triangles of a model, of which only the shape counts. They need be neither convex nor closed:
-// through an opening a ray meets a sphere so far away that it is the distant probe.
+// Uses only the geometry of a model; it need be neither convex nor closed. A ray that leaves
+// through an opening hits a sphere so large that the probe seems infinitely distant.
 class Room : public Walls {
  public:
-  // `capture`: where the probe was taken. Throws InputError (beginning with `location`) for a model
-  // without triangles, or one whose bounds do not hold `capture`.
+  // `capture`: the position at which the probe was captured. Throws InputError (message beginning
+  // with `location`) if the model has no triangles or its bounds do not contain `capture`.
   Room(Scene model, const vec3& capture, const std::string& location);
 
-  // A wall that is nearer than 1e-4 of the room's size is passed: points
-  // of the scene lie on it, and on either side by a rounding error.
+  // Ignores walls closer than 1e-4 of the room's size: points of the scene lie on walls, and by
+  // rounding errors on either side of them.
   Surroundings::Point behind(const vec3& origin, const vec3& direction) const override;
 
   bool isSeen(const vec3& point, const vec3& from) const override;
