@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A limit to what a sample may show, where the user asks for one: an error with a name and a size.
+// An optional upper bound on the radiance of a sample (`clamp`). The bias is measured and reported.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// What a limit took away.
+// Number of clamped samples, and the energy removed from them.
 struct ClampedSamples {
   uint64_t count = 0;
   double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
@@ -25,8 +25,8 @@ class Clamp {
  public:
   explicit Clamp(std::optional<float> limit = {}) : limit_(limit) {}
 
-  // The radiance, or difference of two, scaled down until no channel exceeds the limit either way;
-  // the hue stays. What is not finite stays as it is, to be counted as invalid.
+  // The radiance (or difference of radiances) scaled so that no channel exceeds the limit in
+  // absolute value; the hue stays. Non-finite values pass unchanged, to be counted as invalid.
   Rgb operator()(const Rgb& radiance) {
     if (!limit_ || !isFinite(radiance)) return radiance;
     const float largest = maxComponent(glm::abs(radiance));

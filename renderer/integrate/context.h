@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a thread that traces paths needs of its own.
+// The mutable state of one thread that traces paths.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ struct RayCounts {
   }
 };
 
-// The rays of a thread's paths in order, for benchmarks that trace the same rays again.
+// The rays that a thread traces, in order, for benchmarks that trace the same rays again.
 struct RayLog {
   struct Entry {
     Ray ray;
@@ -35,10 +35,11 @@ struct PathContext {
   std::vector<DirectionSample> lightSamples;  // scratch; keeps its capacity
   RayCounts counts;
   DepthCut depthCut;
-  Clamp clamp;                 // applied by integrators to what they return
-  std::vector<Rgb> layers;     // of the current sample (Integrator::layers)
-  bool shadowsDiffer = false;  // a shadow ray found another transmittance in PathSettings::compared
-  RayLog* log = nullptr;       // null: no log
+  Clamp clamp;              // integrators apply it to the radiance that they return
+  std::vector<Rgb> layers;  // of the current sample (Integrator::layers)
+  // The transmittance of a shadow ray differs between PathSettings::visible and ::compared.
+  bool shadowsDiffer = false;
+  RayLog* log = nullptr;  // null: no log
 };
 
 }  // namespace chromeball

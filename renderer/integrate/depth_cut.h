@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that the limits of depth cut from a render.
+// Estimate of the energy lost to the depth limits of a render.
 #pragma once
 
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace chromeball {
 
-// Sums of luminance over paths. `byDepth` and `byTransmission` are unbiased estimates of what paths
-// would find beyond the limit that they reach first, within the bounces that
-// PathTracer::estimateDepthCut() adds.
+// Sums of luminance over paths. `byDepth` and `byTransmission` are unbiased estimates of the light
+// beyond the limit that a path reaches first (maxDepth or maxTransmissionDepth), up to the number
+// of extra bounces of PathTracer::estimateDepthCut().
 struct DepthCut {
   double found = 0, byDepth = 0, byTransmission = 0;
 
@@ -24,7 +24,7 @@ struct DepthCut {
     found += other.found, byDepth += other.byDepth, byTransmission += other.byTransmission;
   }
 
-  // Fraction of all light, found or not.
+  // `cut` as a fraction of all light, found and cut.
   double fraction(double cut) const {
     return cut > 0 ? cut / (found + byDepth + byTransmission) : 0;
   }

@@ -6,7 +6,8 @@
 namespace chromeball {
 namespace {
 
-// Lamps of the scene light narrow lobes too; the probe does not (LightingStrategy::mirrorAlpha).
+// Narrow lobes receive light samples from lamps, but not from the probe
+// (LightingStrategy::mirrorAlpha).
 BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
   if (!bsdf.has(Lobes::Narrow)) return {Rgb(0), 0};
   return bsdf.evaluate(wi, Lobes::Narrow);
@@ -26,9 +27,9 @@ Rgb DirectLight::visibility(const Ray& ray, PathContext& context,
   const Rgb passed = visibility(ray, settings_.visible, lamp);
   const bool differs = settings_.compared != settings_.visible;
   const bool lampIsHidden = lamp && !(world_.accel.mask(*lamp) & settings_.compared);
-  // A ray that passes all instances whole also passes some of them whole.
+  // `compared` is a subset of `visible`: a ray unoccluded in `visible` is unoccluded there too.
   if (differs && (passed != Rgb(1) || lampIsHidden)) [[unlikely]] {
-    // Blended surfaces met in another order make a product that is rounded otherwise.
+    // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
     const Rgb other = visibility(ray, settings_.compared, lamp);
     context.shadowsDiffer |= maxComponent(glm::abs(other - passed)) > kRounding;
@@ -52,7 +53,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
   for (const DirectionSample& s : samples) {
     const BsdfValue bsdf = vertex.bsdf.evaluate(s.wi);
     if (isBlack(bsdf.fCos)) continue;
-    // Nothing absorbs over an infinite distance, so the medium does not count.
+    // No Media::transmittance here: it is 1 over an infinite distance.
     const Rgb passed = visibility({vertex.surface.rayOrigin(s.wi), s.wi}, context, {});
     if (isBlack(passed)) continue;
     const float weight = s.isDelta ? 1 : lightSampleWeight(settings_.mis, s.pdf, bsdf.pdf);
@@ -76,13 +77,13 @@ Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
   const Instance& instance = world_.scene.instances[emitter.instance];
   const Surface source =
       surfaceAt(world_.scene, instance, emitter.triangle, emitter.barycentric, -wi);
-  // A ray sampled from the BSDF meets the lamp with probability alpha.
+  // A BSDF-sampled ray hits the lamp with probability alpha.
   const Rgb radiance = emittedRadiance(world_.scene, instance, source, -wi) *
                        surfaceAlpha(world_.scene, instance, emitter.triangle, emitter.barycentric);
   const float cosine = glm::dot(source.geometricNormal, -wi);
   if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
 
-  // From one offset point to the other, so that neither surface shadows itself.
+  // Between offset points, so that neither surface shadows itself.
   const vec3 origin = surface.rayOrigin(wi), target = source.rayOrigin(-wi);
   const float length = glm::length(target - origin);
   const Rgb passed = transmittance(vertex, {origin, (target - origin) / length, length}, context,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Next-event estimation: the light that reaches one vertex of a path straight from its sources.
+// Next-event estimation: direct light at one vertex of a path.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace chromeball {
 
-// The vertex that light is estimated at.
+// The path vertex at which direct light is estimated.
 struct Vertex {
   const LightPoint& point;
   const Surface& surface;
@@ -23,14 +23,15 @@ struct Vertex {
   const Media& media;  // on the viewer's side
 };
 
-// Reflected radiance towards the viewer of light samples, weighted against BSDF samples by MIS.
+// Radiance scattered towards the viewer, estimated by light samples with their MIS weights against
+// BSDF samples.
 class DirectLight {
  public:
   // `world` and `lighting` must outlive this.
   DirectLight(const World& world, const LightingStrategy& lighting, const PathSettings& settings)
       : world_(world), lighting_(lighting), settings_(settings) {}
 
-  // From the probe, by the strategy's samples; for broad lobes only.
+  // From the probe, with the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
   // From one point on an emissive triangle. World::emitters must not be null.
   Rgb emitter(const Vertex& vertex, PathContext& context) const;
@@ -38,8 +39,8 @@ class DirectLight {
   Rgb punctual(const Vertex& vertex, PathContext& context) const;
 
  private:
-  // Fraction of light that passes a shadow ray from the vertex: surfaces between, and absorption
-  // in the medium. `lamp`: the instance that the ray ends at.
+  // Transmittance of a shadow ray from the vertex: occluders, and absorption in the medium. `lamp`:
+  // the instance at which the ray ends.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                     std::optional<uint32_t> lamp = {}) const;
   Rgb visibility(const Ray& ray, PathContext& context, std::optional<uint32_t> lamp) const;

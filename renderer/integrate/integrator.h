@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render estimates: light that arrives along camera rays.
+// Integrators estimate the radiance that arrives along camera rays.
 #pragma once
 
 #include <optional>
@@ -11,18 +11,18 @@
 
 namespace chromeball {
 
-// A camera ray through pixel (x, y), and the first surface that it meets.
+// A camera ray through pixel (x, y) and its closest hit.
 struct CameraSample {
   int x, y;
   Ray ray;
   std::optional<Hit> hit;
-  Beam beam{};                // around the ray, where the scene has textures to filter
-  FirstHit* first = nullptr;  // to be filled; null: not wanted
+  Beam beam{};                // the ray's footprint, for texture filtering
+  FirstHit* first = nullptr;  // output; null: not wanted
 
   PathState path() const { return {.ray = ray, .beam = beam, .first = first}; }
 };
 
-// A sample of a pixel: radiance, or the defect that excludes it.
+// A sample of a pixel. A defect excludes it from the mean.
 struct Sample {
   Rgb radiance{0};
   std::optional<Defect> defect;
@@ -35,18 +35,18 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // One sample of a pixel; called concurrently. Fills context.layers, one value for each of
-  // layers(), which are 0 at the start.
+  // One sample of a pixel. Writes context.layers: one value per layer of layers(), initially 0.
+  // Called concurrently, with one context per thread.
   virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
 
-  // The layers of its samples, which the film gathers (RenderResult::layers).
+  // How the film accumulates each layer (RenderResult::layers).
   virtual std::vector<Accumulation> layers() const { return {}; }
 
-  // The instances that camera rays see.
+  // The instances visible to camera rays.
   virtual RayMask visible() const { return kAllInstances; }
 };
 
-// Path tracing of the whole scene.
+// Path tracing of all instances.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const PathTracer& tracer) : tracer_(tracer) {}

@@ -4,13 +4,14 @@
 namespace chromeball {
 namespace {
 
-// KHR_materials_dispersion: red bends less and blue more, by (ior - 1) / Abbe number between them.
+// KHR_materials_dispersion: the index rises from red to blue by (ior - 1) / Abbe number, where
+// dispersion = 20 / Abbe number.
 Rgb indexByChannel(const Material& m) {
   const float half = (m.ior - 1) * 0.025f * m.extended->dispersion;
   return glm::max(Rgb(m.ior - half, m.ior, m.ior + half), Rgb(1));
 }
 
-// The one channel that is not black; -1 where there are several.
+// The index of the only nonzero channel; -1 unless exactly one channel is nonzero.
 int onlyChannel(const Rgb& c) {
   if (int(c.x != 0) + int(c.y != 0) + int(c.z != 0) != 1) return -1;
   return c.x != 0 ? 0 : c.y != 0 ? 1 : 2;
@@ -30,12 +31,12 @@ RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) 
   if (const int c = onlyChannel(throughput); c >= 0) own = Rgb(own[c]);
   const bool isFull = count_ == int(bodies_.size());
   if (s.frontFace) {
-    if (isFull) return {Rgb(1), m.ior};  // one too many: it is not there
+    if (isFull) return {Rgb(1), m.ior};  // not tracked: no refraction
     const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
     return {own / outer, m.ior};
   }
   const int location = find(&m);
-  // Within another, or never entered for lack of a place: nothing changes.
+  // Still inside a body that was entered later, or not tracked on entry: no refraction.
   if (location >= 0 ? location < count_ - 1 : isFull) return {Rgb(1), m.ior};
   const float outer = location > 0 ? bodies_[size_t(location - 1)]->ior : 1;
   return {outer / own, m.ior};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of glass that a path is inside of.
+// The stack of dielectric bodies (glass) that contain the current path vertex.
 #pragma once
 
 #include <array>
@@ -9,24 +9,26 @@
 
 namespace chromeball {
 
-// Bodies may lie within each other; where they overlap, the one entered last counts. Air surrounds
-// them all, and the camera starts in it. More than four at once count as four.
+// Bodies may be nested. Where they overlap, the one entered last determines the medium. The camera
+// is in air, outside all bodies. At most four bodies are tracked; any further one is ignored.
 class Media {
  public:
   bool inside() const { return count_ > 0; }
 
-  // Share of light that passes `distance` metres of the medium here. Nothing absorbs without end:
-  // what leaves an open mesh for the surroundings is left whole.
+  // Transmittance exp(-attenuation * distance) of the current medium; `distance` in metres. 1 for
+  // an infinite distance: a ray that leaves an open mesh must not lose the probe's light.
   Rgb transmittance(float distance) const {
     if (count_ == 0 || !std::isfinite(distance)) return Rgb(1);
     return glm::exp(-distance * bodies_[size_t(count_ - 1)]->extended->attenuation);
   }
 
-  // The indices on both sides of the boundary of a body. Each channel has its own where the medium
-  // disperses light (KHR_materials_dispersion); but light that is down to one channel has one.
+  // The relative refractive index at a body's boundary. Per channel for a dispersive medium
+  // (KHR_materials_dispersion), unless `throughput` has a single nonzero channel: then that
+  // channel's index.
   RefractiveIndex refractiveIndex(const Surface& boundary, const Rgb& throughput) const;
 
-  // Follows a ray that leaves a surface towards `wi`: where it is refracted, into the body or out.
+  // Updates the stack for a ray that leaves `surface` in direction `wi`: a refracted ray enters or
+  // leaves the body, a reflected ray changes nothing.
   Media& follow(const Surface& surface, const vec3& wi);
 
  private:

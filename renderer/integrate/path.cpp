@@ -10,40 +10,40 @@
 namespace chromeball {
 namespace {
 
-// Whether a bounce carries light through a solid: all but reflection from the outside of a rough
-// surface.
+// Whether maxTransmissionDepth limits the bounce: all bounces at a solid body, except reflection
+// from the outside of a rough surface.
 bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
   return surface.material->isBody() &&
          (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
-// Whether the path passes the surface as if it were not there: a single-sided back, for the camera
-// and in mirrors.
+// Whether the ray ignores the surface: the back of a single-sided one, seen by the camera or in a
+// mirror.
 bool isHiddenFrom(const PathState& state, const Surface& surface) {
   return state.isDelta && !surface.frontFace && surface.material->hidesBack();
 }
 
-// A single-sided surface adds light that arrives at its back to what its front reflects. The path
-// follows one of the two at random, with twice the throughput; true: what lies behind the front.
-// Shadow rays pass the front as well, so light samples keep competing with the ray.
+// The front of a single-sided surface reflects light and also passes light that arrives at its
+// back. The path follows one of the two at random, with twice the throughput. Returns true to
+// continue behind the front; the MIS weights stay valid, because shadow rays pass the front too.
 bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
                    const PixelSampler& sampler) {
   if (state.isDelta || !surface.frontFace || !surface.material->backLetsLightThrough())
     return false;
-  constexpr uint64_t kPurpose = 0x6f6e6577;  // a stream of its own
+  constexpr uint64_t kPurpose = 0x6f6e6577;  // separate random stream
   state.throughput *= 2;
   return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
 }
 
-// Takes the path straight through a smooth thin wall. Shadow rays from `state.from` pass it too, so
-// light samples taken there keep competing with the ray.
+// Continues the path straight through a smooth thin wall. `state.from` and its pdf stay, because
+// shadow rays from there pass the wall too.
 void passStraight(PathState& state, const Surface& surface) {
   state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
   ++state.straight;
 }
 
-// For a path without bounces left: what passes straight through a surface still belongs to the
-// vertex before. False where nothing does.
+// For a path without bounces left: continues straight through the surface, since light from behind
+// it is direct light of the previous vertex. Returns false if nothing passes.
 bool passAtLimit(const Scene& scene, PathState& state, const Instance& instance,
                  const Surface& surface) {
   if (!surface.material->extended) return false;
@@ -99,7 +99,7 @@ template <bool kLayered>
 bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                            PathContext& context) const {
   const PixelSampler& sampler = context.sampler;
-  // At the limit only a smooth solid passes light on; no light sample could find that.
+  // At the limit only smooth solids transmit light; light samples could not find that.
   const bool atLimit = state.bounces() == settings_.maxDepth;
   const LightPoint before = state.from;
   state.from = {surface.position, bsdf.normal(), &bsdf, state.depth, bsdf.transmits()};
@@ -112,7 +112,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
       if (world_.punctual) state.radiance += state.throughput * direct_.punctual(vertex, context);
     }
   }
-  state.from.bsdf = nullptr;  // it does not outlive the vertex
+  state.from.bsdf = nullptr;  // its lifetime ends with the vertex
 
   BsdfSample next;
   if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
@@ -149,7 +149,7 @@ bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& b
   return scatterAs<false>(state, surface, bsdf, context);
 }
 
-// Out of line, so that plain materials do not pay for layered ones.
+// Not inlined, so that layered materials do not slow down plain ones.
 [[gnu::noinline]] bool PathTracer::scatterLayered(PathState& state, const Instance& instance,
                                                   const Surface& surface,
                                                   const MaterialPoint& material,
@@ -169,7 +169,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   const Scene& scene = world_.scene;
   const Instance& instance = scene.instances[hit->instance];
   state.length += hit->distance;
-  // The beam does not widen at rough surfaces, so that textures seen by reflection stay sharp.
+  // Rough reflection does not widen the beam; textures seen by reflection stay sharp.
   const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
   const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
                                     -state.ray.direction, crossSection);
@@ -215,21 +215,21 @@ std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<H
   return hit;
 }
 
-// Of the paths that reach a limit, one in kEvery is followed from there twice with the same random
-// numbers: with the limits as they are, and with kFarther more bounces.
+// Continues one in kInterval of the paths that reach a limit twice with the same random numbers:
+// with the given limits, and with kExtraBounces more bounces. The difference is the light cut off.
 [[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit,
                                                PathContext& context) const {
-  constexpr uint32_t kEvery = 64;
-  constexpr int kFarther = 256;
-  constexpr uint64_t kPurpose = 0x637574;  // a stream of its own
+  constexpr uint32_t kInterval = 64;
+  constexpr int kExtraBounces = 256;
+  constexpr uint64_t kPurpose = 0x637574;  // separate random stream
   state.cutIsEstimated = true;
-  if (hash(context.sampler.sampleKey(), kPurpose) % kEvery != 0) return;
+  if (hash(context.sampler.sampleKey(), kPurpose) % kInterval != 0) return;
   PathSettings limited = settings_;
   limited.estimateDepthCut = false;
   PathSettings farther = limited;
-  farther.maxDepth = std::min(settings_.maxDepth, INT_MAX - kFarther) + kFarther;
+  farther.maxDepth = std::min(settings_.maxDepth, INT_MAX - kExtraBounces) + kExtraBounces;
   farther.maxTransmissionDepth =
-      std::min(settings_.maxTransmissionDepth, INT_MAX - kFarther) + kFarther;
+      std::min(settings_.maxTransmissionDepth, INT_MAX - kExtraBounces) + kExtraBounces;
 
   PathState rest = state;
   rest.radiance = Rgb(0);
@@ -241,7 +241,8 @@ std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<H
   const float cut = found(farther) - found(limited);
   context.counts = counted;
   context.sampler.startVertex(state.depth);
-  if (std::isfinite(cut)) context.depthCut.add(state.bounces() == settings_.maxDepth, kEvery * cut);
+  if (std::isfinite(cut))
+    context.depthCut.add(state.bounces() == settings_.maxDepth, kInterval * cut);
 }
 
 void PathTracer::estimateDepthCut(PathState& state, const std::optional<Hit>& hit,

@@ -13,31 +13,32 @@
 
 namespace chromeball {
 
-// A path between two vertices, or before its first.
+// The state of a path before its next vertex.
 struct PathState {
   Ray ray;
-  Rgb radiance{0};    // found so far
-  Rgb throughput{1};  // of what is found next
-  LightPoint from{};  // where the ray starts; unused for camera rays
-  // No light sample competes with the ray: it comes from the camera or a delta lobe.
+  Rgb radiance{0};    // accumulated so far
+  Rgb throughput{1};  // weight of the radiance found at the next vertex
+  LightPoint from{};  // origin of the ray; unused for camera rays
+  // The ray comes from the camera or a delta lobe: light sampling could not find its direction.
   bool isDelta = true;
-  float pdf = 0;  // of the ray's direction at `from`, over solid angle; unless isDelta
-  Lobes lobes = Lobes::Narrow;  // that the ray was sampled from; the camera counts as a mirror
+  float pdf = 0;                // of the ray's direction at `from`, over solid angle; if !isDelta
+  Lobes lobes = Lobes::Narrow;  // the lobes that were sampled; camera rays count as a mirror's
   int depth = 0;                // of the next vertex
-  int straight = 0;       // vertices passed without a change of direction; they are no bounces
-  int transmissions = 0;  // bounces in and on solid glass, limited by maxTransmissionDepth
-  bool cutIsEstimated = false;  // estimateDepthCut() has seen the path
-  Media media;                  // that the ray is in
-  float length = 0;             // metres from the camera
-  Beam beam{};                  // around the camera's ray, where textures are filtered
-  FirstHit* first = nullptr;    // filled at the first surface seen; null: not wanted
+  int straight = 0;             // vertices passed without a change of direction; not bounces
+  int transmissions = 0;        // bounces in and on solid glass, limited by maxTransmissionDepth
+  bool cutIsEstimated = false;  // estimateDepthCut() has processed this path
+  Media media;                  // the medium of the ray
+  float length = 0;             // of the path from the camera, metres
+  Beam beam{};                  // footprint of the camera ray, for texture filtering
+  FirstHit* first = nullptr;    // output, written at the first visible surface; null: not wanted
 
-  // Bounces that maxDepth limits.
+  // The number of bounces that maxDepth limits.
   int bounces() const { return depth - straight - transmissions; }
 };
 
-// Estimates radiance along paths. Immutable and shared by all threads; what changes is in PathState
-// and PathContext. `Hit` arguments are what the state's ray meets first, nullopt for nothing.
+// Estimates radiance along paths. Immutable and shared by all threads; mutable state is in
+// PathState and PathContext. `Hit` arguments are the closest hit of the state's ray, nullopt if it
+// escapes.
 class PathTracer {
  public:
   // `world` and `lighting` must outlive this.
@@ -46,29 +47,29 @@ class PathTracer {
   // Radiance towards the camera along the ray of `start`.
   Rgb radiance(const PathState& start, const std::optional<Hit>& hit, PathContext& context) const;
 
-  // The state's radiance plus what the rest of the path finds.
+  // state.radiance plus the radiance found along the rest of the path.
   Rgb follow(PathState state, std::optional<Hit> hit, PathContext& context) const;
 
-  // One vertex: adds what is found there to the state's radiance and moves on to the next ray.
-  // Returns false where the path ends. estimateDepthCut() is to be called before it.
+  // Processes one vertex: adds its emission and direct light to state.radiance and samples the next
+  // ray. Returns false where the path ends. Call estimateDepthCut() first.
   bool vertex(PathState& state, const std::optional<Hit>& hit, PathContext& context) const;
 
-  // The part of vertex() after emission, with the BSDF given: direct light, and the next direction.
+  // The part of vertex() after emission, for a given BSDF: direct light and the next direction.
   bool scatter(PathState& state, const Surface& surface, const Bsdf& bsdf,
                PathContext& context) const;
 
-  // What the emission of `surface` adds to the state's radiance.
+  // The MIS-weighted contribution of the emission of `surface` to state.radiance.
   Rgb foundEmission(const PathState& state, const Surface& surface, const Instance& instance) const;
 
-  // Where the path is about to reach a limit of depth, adds an estimate of the light beyond it to
-  // the context, for a fraction of the paths. The state's radiance does not change.
+  // At a depth limit, for a fraction of the paths: adds an estimate of the light beyond the limit
+  // to context.depthCut. state.radiance does not change.
   void estimateDepthCut(PathState& state, const std::optional<Hit>& hit,
                         PathContext& context) const;
 
   std::optional<Hit> closestHit(const Ray& ray, PathContext& context) const;
 
-  // Moves a camera path past back faces that the camera does not see (--single-sided), to just
-  // before the first surface that it does see; returns that hit.
+  // Moves a camera path past back faces that the camera does not see (--single-sided); returns the
+  // hit of the first visible surface.
   std::optional<Hit> skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                      PathContext& context) const;
   bool isHiddenBack(const PathState& state, const Hit& hit) const;
@@ -78,7 +79,7 @@ class PathTracer {
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
-  Rgb escapedRadiance(const PathState& state) const;  // where the ray meets nothing
+  Rgb escapedRadiance(const PathState& state) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
                       const MaterialPoint& material, PathContext& context) const;
   template <bool kLayered>
@@ -93,12 +94,12 @@ class PathTracer {
   DirectLight direct_;
 };
 
-// Russian roulette: ends a path at random in proportion to its throughput; survivors are weighted
-// up by as much, so that the estimate stays unbiased. The first two bounces always continue.
+// Russian roulette with survival probability min(largest throughput channel, 1); survivors are
+// divided by it, so that the estimate stays unbiased. The first two bounces always survive.
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
   const float survival = std::min(maxComponent(throughput), 1.0f);
-  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN goes on, to be counted
+  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN survives: is counted
   throughput /= survival;
   return true;
 }

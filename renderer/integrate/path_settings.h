@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What limits paths, and what they can see.
+// Depth limits, MIS and visibility settings of paths.
 #pragma once
 
 #include "lighting/strategy.h"
@@ -7,7 +7,7 @@
 
 namespace chromeball {
 
-// Enough for every path through a few vessels, one behind another.
+// Enough for paths through several glass vessels in a row.
 inline constexpr int kDefaultTransmissionDepth = 64;
 
 struct PathSettings {
@@ -15,10 +15,10 @@ struct PathSettings {
   int maxDepth = 8;  // 0: emission seen by the camera; 1: direct light; ...
   int maxTransmissionDepth = kDefaultTransmissionDepth;  // bounces in solid glass, beside maxDepth
   bool hideProbe = false;                                // from the camera
-  bool estimateDepthCut = true;     // estimate what the limits of depth cut off
-  RayMask visible = kAllInstances;  // the instances that exist for the paths
-  // Where it differs from `visible`: shadow rays are traced there too, and
-  // PathContext::shadowsDiffer reports where the two disagree.
+  bool estimateDepthCut = true;     // estimate the light beyond the depth limits
+  RayMask visible = kAllInstances;  // all rays of the paths ignore other instances
+  // If it differs from `visible`, shadow rays are traced with both masks, and
+  // PathContext::shadowsDiffer is set if their transmittances differ.
   RayMask compared = visible;
 };
 

@@ -18,10 +18,11 @@ namespace {
 
 constexpr int kTile = 16;
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
-// Deeper vertices carry too little for stratification to show; they take plain random numbers.
+// Deeper vertices contribute too little to profit from stratification; they use independent random
+// numbers.
 constexpr int kTabulatedVertices = 6;
 
-// The number of a pixel's first `samples` that belong to a half.
+// How many of a pixel's first `samples` samples belong to the half.
 uint32_t samplesOf(int half, uint32_t samples) {
   return samples / 2 + (half == 0 ? samples % 2 : 0);
 }
@@ -51,7 +52,7 @@ class Renderer {
                          .layers = std::vector<Rgb>(integrator_.layers().size())}};
         }) {}
 
-  // Takes samples [done, wanted) of every pixel. `progress` receives the fraction of the pass.
+  // Takes samples [done, wanted) of every pixel. Reports the completed fraction of the pass.
   void pass(uint32_t done, uint32_t wanted, const Progress& progress,
             const std::atomic<bool>& stop) {
     const Beam beam = beamOfPass(wanted);
@@ -86,8 +87,8 @@ class Renderer {
   }
 
  private:
-  // Textures are filtered for the pixel's final number of samples; where that is open, for the
-  // number after this pass, so that textures sharpen with the samples.
+  // The filter width of textures depends on the final number of samples per pixel. If a time or
+  // noise limit leaves that open, the number after this pass is used.
   Beam beamOfPass(uint32_t wanted) const {
     if (world_.scene.textures.empty()) return {};
     const bool open = settings_.timeLimit || settings_.noiseLimit;
@@ -100,7 +101,7 @@ class Renderer {
       for (int x = left; x < std::min(left + kTile, settings_.width); ++x) visit(x, y);
   }
 
-  // Makes the camera's rays of the samples from `begin` on, as many as fit.
+  // Generates and traces the camera rays of samples [begin, end), up to one packet.
   Accel::Packet cameraHits(PixelSampler& sampler, int x, int y, uint32_t begin, uint32_t end,
                            std::array<Ray, Accel::kPacket>& rays) const {
     std::array<uint32_t, Accel::kPacket> keys;
@@ -121,8 +122,8 @@ class Renderer {
                                   integrator_.visible());
   }
 
-  // The samples of one half among the pixel's [done, wanted). A half that outgrows the table goes
-  // on with it, newly randomised.
+  // Takes those of the pixel's samples [done, wanted) that belong to `half`. Beyond the table's
+  // size, the table is used again with another randomisation.
   void renderHalf(Worker& worker, int x, int y, int half, uint32_t done, uint32_t wanted,
                   const Beam& beam) {
     const uint32_t end = samplesOf(half, wanted);
@@ -136,7 +137,7 @@ class Renderer {
     }
   }
 
-  // Samples [begin, end) of the sampler's table.
+  // Takes samples [begin, end) of the sampler's table.
   SampleSums renderSamples(Worker& worker, int x, int y, uint32_t begin, uint32_t end,
                            const Beam& beam) {
     FirstHit first;

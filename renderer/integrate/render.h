@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one render loop: every pixel's samples, in tiles, on all threads.
+// The render loop: takes the samples of all pixels, in tiles, on all threads.
 #pragma once
 
 #include <atomic>
@@ -26,10 +26,9 @@ struct RenderResult {
   bool interrupted = false;
 };
 
-// Renders until the limit of samples, time or noise is reached, or `stop` is set. Passes over the
-// whole picture start with a few samples per pixel and double, so that a coarse picture exists
-// early. The result depends on the settings alone, not on the number of threads (except under a
-// time limit).
+// Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers
+// the whole image; the first takes a few samples per pixel, each later one doubles them. The result
+// does not depend on the number of threads (except under a time limit).
 RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a picture is sampled, whatever the scene.
+// Image size, sampling limits and path settings of a render.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct RenderSettings {
   uint32_t samples = 256;            // per pixel, >= 1; the maximum where a limit below is set
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
-  int maxDepth = 8;                  // this and the next: as in PathSettings
+  int maxDepth = 8;                  // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;

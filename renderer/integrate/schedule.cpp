@@ -36,7 +36,8 @@ double Schedule::untilTime(uint32_t done) const {
   return affordable < done * (1 + kMinGrowth) ? 0 : affordable;
 }
 
-// Noise falls as samples^-rate: 1/2 for independent samples, up to 1 for quasi-random ones.
+// Noise is proportional to samples^-rate; rate is 1/2 for independent samples, up to 1 for
+// quasi-random ones.
 double Schedule::untilNoise(uint32_t done, const Film& film) {
   const Noise noise = film.noise();
   if (std::isnan(noise.noise)) return done < kMaxInTheDark ? INFINITY : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many samples a pixel has after each pass of a render.
+// The number of samples per pixel after each pass of a render.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,19 @@
 
 namespace chromeball {
 
-// The first pass takes a few samples per pixel; later passes double them, until a limit is near.
+// The first pass takes a few samples per pixel; each later pass doubles them, or takes fewer if a
+// limit is near.
 class Schedule {
  public:
-  // Time limits count from here. `settings` must outlive this.
+  // Starts the clock of the time limit. `settings` must outlive this.
   explicit Schedule(const RenderSettings& settings);
 
-  // Samples per pixel after the pass that follows `done` samples; at most `done` at the end.
+  // Samples per pixel after the next pass, given `done` samples so far. A value <= done means that
+  // the render is finished.
   uint32_t next(uint32_t done, const Film& film);
 
-  // Fraction of the work done after `samples`; NaN where only the noise decides.
+  // Completed fraction after `samples` samples per pixel; NaN under a noise limit without a time
+  // limit.
   double progress(double samples) const;
 
  private:
@@ -31,7 +34,7 @@ class Schedule {
   struct {
     uint32_t samples = 0;
     double noise = 0;
-  } last_;  // estimate
+  } last_;  // the previous estimate of noise
 };
 
 }  // namespace chromeball

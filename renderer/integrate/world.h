@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene made ready for light transport.
+// A scene with its acceleration structure and light tables.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@
 
 namespace chromeball {
 
-// What all renders of a scene share, whatever lights it: the acceleration structure, and a table of
-// each kind of light and of material that the scene has.
+// Data that all renders of a scene share, independent of the lighting strategy: the acceleration
+// structure, and tables for the kinds of light and material that occur in the scene.
 struct World {
-  // `masks`: of the instances, for rays that see a part of the scene (trace/ray.h); empty: every
-  // ray sees all. `described` must outlive this. Throws RunError.
+  // `masks`: by instance, for rays that see part of the scene (trace/ray.h); empty: all rays see
+  // all instances. `described` must outlive this. Throws RunError.
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {});
 
   const Scene& scene;
