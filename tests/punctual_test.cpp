@@ -30,15 +30,15 @@ PunctualLight lampAt(vec3 position, Rgb intensity) {
 
 TEST(Punctual, InverseSquareAndRange) {
   PunctualLight light = lampAt({0, 3, 0}, Rgb(18, 9, 0));
-  const PunctualSample s = shine(light, {0, 0, 0});
+  const PunctualSample s = incidentLight(light, {0, 0, 0});
   EXPECT_EQ(s.wi, vec3(0, 1, 0));
   EXPECT_EQ(s.distance, 3);
   EXPECT_NEAR(glm::distance(s.irradiance, Rgb(2, 1, 0)), 0, 1e-6);
   light.range = 6;
-  EXPECT_NEAR(shine(light, vec3(0)).irradiance.x, 2 * (1 - 1.0 / 16), 1e-6);
-  EXPECT_EQ(shine(light, {0, -3, 0}).irradiance, Rgb(0));
-  EXPECT_EQ(shine(light, {0, -9, 0}).irradiance, Rgb(0));
-  EXPECT_EQ(shine(light, light.position).irradiance, Rgb(0));  // no direction, no light
+  EXPECT_NEAR(incidentLight(light, vec3(0)).irradiance.x, 2 * (1 - 1.0 / 16), 1e-6);
+  EXPECT_EQ(incidentLight(light, {0, -3, 0}).irradiance, Rgb(0));
+  EXPECT_EQ(incidentLight(light, {0, -9, 0}).irradiance, Rgb(0));
+  EXPECT_EQ(incidentLight(light, light.position).irradiance, Rgb(0));  // no direction, no light
 }
 
 TEST(Punctual, DirectionalIsTheSameEverywhere) {
@@ -47,9 +47,9 @@ TEST(Punctual, DirectionalIsTheSameEverywhere) {
   light.direction = {0, -1, 0};
   light.intensity = Rgb(5);
   for (const vec3& p : {vec3(0), vec3(1e6f, -3, 2)}) {
-    EXPECT_EQ(shine(light, p).irradiance, Rgb(5));
-    EXPECT_EQ(shine(light, p).wi, vec3(0, 1, 0));
-    EXPECT_TRUE(std::isinf(shine(light, p).distance));
+    EXPECT_EQ(incidentLight(light, p).irradiance, Rgb(5));
+    EXPECT_EQ(incidentLight(light, p).wi, vec3(0, 1, 0));
+    EXPECT_TRUE(std::isinf(incidentLight(light, p).distance));
   }
 }
 
@@ -59,7 +59,7 @@ TEST(Punctual, SpotFadesBetweenItsCones) {
   light.cosInner = 0.9f;
   light.cosOuter = 0.5f;
   const auto at = [&](float cosine) {  // at unit distance, off the axis -Z
-    return shine(light, {std::sqrt(1 - cosine * cosine), 0, -cosine}).irradiance.x;
+    return incidentLight(light, {std::sqrt(1 - cosine * cosine), 0, -cosine}).irradiance.x;
   };
   EXPECT_NEAR(at(1), 1, 1e-6);
   EXPECT_NEAR(at(0.91f), 1, 1e-5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The luminance field in blocks of cells, each of which can be sampled on its own.
+// The luminance field divided into blocks of cells that can be sampled separately.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace chromeball {
 
-// Sums along rows of cells and along columns of blocks serve all blocks. At most 32 x 16 blocks.
+// At most 32 x 16 blocks. All blocks share the running sums along rows of cells and along columns
+// of blocks.
 class BlockedField {
  public:
   explicit BlockedField(const Probe& probe);

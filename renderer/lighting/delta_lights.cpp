@@ -6,8 +6,8 @@
 namespace chromeball {
 namespace {
 
-// Luminance that a Lambertian surface reflects of the light, which is positive wherever a plain
-// BSDF reflects any; for layered BSDFs, which may transmit light, the luminance that they scatter.
+// Irradiance x cosine, as luminance: positive wherever a plain BSDF reflects light. For layered
+// BSDFs, which may transmit light, irradiance x BSDF x cosine.
 float importance(const DirectionSample& light, const LightPoint& point) {
   if (point.bsdf && point.bsdf->isLayered()) [[unlikely]]
     return luminance(light.irradiance * point.bsdf->evaluate(light.wi).fCos);
@@ -30,8 +30,8 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
     out.insert(out.end(), lights_.begin(), lights_.end());
     return;
   }
-  // Systematic resampling by importance. Candidates go to `out` first, with their importance in
-  // `pdf`; those which are chosen then replace them.
+  // Systematic resampling by importance. The candidates are first stored in `out`, with their
+  // importance in `pdf`; then the chosen ones overwrite them.
   const size_t first = out.size();
   float total = 0;
   for (const DirectionSample& light : lights_)

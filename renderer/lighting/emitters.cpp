@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-// Mean over the texels of the slot's texture.
+// Mean of value(texel) over the texels of the slot's texture.
 template <class Value>
 double meanOfTexels(const Scene& scene, const TextureSlot& slot, const Value& value) {
   const Texture& texture = scene.textures[slot.texture];
@@ -19,22 +19,22 @@ double meanOfTexels(const Scene& scene, const TextureSlot& slot, const Value& va
   return sum / (double(grid.width) * grid.height);
 }
 
-// Mean share of the material that is there. Not less than kMin where any may be: filters and
-// vertex colours reach where no texel does.
+// Mean opacity of the material. At least kMin unless it is 0 everywhere: texture filtering and
+// vertex colours can give opacities that no texel has.
 double meanAlpha(const Scene& scene, const Material& m) {
   constexpr double kMin = 0.01;
   if (m.alphaMode == AlphaMode::Opaque) return 1;
   if (m.alphaMode == AlphaMode::Blend && m.baseColor.w == 0) return 0;
-  const auto shown = [&](const vec4& texel) {
+  const auto opacity = [&](const vec4& texel) {
     const float alpha = m.baseColor.w * texel.w;
     return m.alphaMode == AlphaMode::Mask ? (alpha >= m.alphaCutoff ? 1.0f : 0.0f) : alpha;
   };
-  const double mean =
-      m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, shown) : double(shown(vec4(1)));
+  const double mean = m.baseColorTexture ? meanOfTexels(scene, m.baseColorTexture, opacity)
+                                         : double(opacity(vec4(1)));
   return std::max(mean, kMin);
 }
 
-// Mean luminance a material emits; positive wherever it emits at all.
+// Mean emitted luminance of a material; positive if it emits anywhere.
 double meanEmission(const Scene& scene, const Material& m) {
   if (m.unlit || isBlack(m.emission)) return 0;
   const auto emitted = [&](const vec4& texel) { return luminance(m.emission * Rgb(texel)); };

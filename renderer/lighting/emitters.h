@@ -14,7 +14,7 @@ namespace chromeball {
 // material: its mean luminance x alpha / total.
 class Emitters {
  public:
-  // Null where nothing emits: such a scene has no table and no branch for one.
+  // Null if nothing emits.
   static std::unique_ptr<Emitters> make(const Scene& scene);
 
   struct Point {
@@ -22,11 +22,12 @@ class Emitters {
     vec2 barycentric;
     vec3 position;
   };
-  // `choice` in [0, 1) is fine enough to reach the weakest of a million triangles (getFine1()).
+  // `choice` in [0, 1) needs the 53 bits of PixelSampler::getFine1(), so that the weakest of a
+  // million triangles can be chosen.
   Point sample(double choice, float v) const;
 
-  // Pdf over solid angle of sampling a point of `material` seen from `distance` metres under
-  // the cosine `cosine` (> 0) at the emitter.
+  // Pdf over solid angle of sampling a point of `material` at a distance of `distance` metres, with
+  // cosine `cosine` (> 0) at the emitter.
   float pdf(int material, float distance, float cosine) const {
     return areaPdf_[material] * distance * distance / cosine;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any strategy, with the probe projected onto a surface at a finite distance (HDRI book, sections
-// 9.2.3 and 9.6.1).
+// Wraps any strategy: the probe is projected onto a surface at a finite distance (HDRI book,
+// sections 9.2.3 and 9.6.1).
 #pragma once
 
 #include "lighting/strategy.h"
@@ -12,18 +12,19 @@ namespace chromeball {
 // direction from the capture point c to y. The wrapped strategy samples directions from c. Seen
 // from a point x, the pdf over solid angle is
 //   pdf_x = pdf_c (|x - y|^2 / cos_x) / (|c - y|^2 / cos_c),
-// with the cosines at y towards x and c: both solid angles belong to one patch of the surface. So
-// suns and delta lights become lamps on the surface, nearer to some points than to others.
+// with the cosines at y towards x and c (the ratio of the solid angles of a patch at y seen from c
+// and from x). Suns and delta lights become lamps on the surface, at different distances from
+// different points.
 //
-// The strategy does not sample those parts of a room that the capture point does not see. A ray
-// that ends there finds the radiance that the probe shows in that direction. A sample on a wall
-// that another wall hides from x is dropped.
+// Parts of a room that are hidden from the capture point are not sampled. A BSDF-sampled ray that
+// ends there gets the probe's radiance in the direction from c. A light sample on a wall that
+// another wall hides from x is dropped.
 //
-// The camera and mirrors see the probe as captured; lamps made from suns light only matte and
-// glossy surfaces (RADIANCE's "illum").
+// The camera and mirrors see the probe as captured; lamps made from suns light only broad lobes
+// (RADIANCE's "illum").
 class FiniteSurroundings : public LightingStrategy {
  public:
-  // `room` replaces the box or sphere of `surroundings`, or is null; it must outlive this.
+  // `room`: replaces the box or sphere of `surroundings` unless null; must outlive this.
   FiniteSurroundings(std::unique_ptr<LightingStrategy> strategy, const Probe& probe,
                      const Surroundings& surroundings, const Walls* room = nullptr)
       : strategy_(std::move(strategy)), probe_(probe), surroundings_(surroundings), room_(room) {}

@@ -8,8 +8,8 @@
 namespace chromeball {
 namespace {
 
-// Fraction of the plain table's weight below which compensation is not used: for a constant probe,
-// rounding errors alone leave 1e-7.
+// Compensation is not used if it leaves less than this fraction of the plain table's weight. For a
+// constant probe rounding errors leave 1e-7.
 constexpr double kMinCompensated = 1e-3;
 
 double meanLuminance(const Probe& probe) {

@@ -10,14 +10,14 @@
 namespace chromeball {
 
 // Over the map the pdf is proportional to w, the bilinear interpolant of luminance x sin(theta)
-// between texel centres (luminance_field.h). A row of cells is chosen, then a cell, then a point in
-// it. The pdf over solid angle is w / (total x jacobian x sin(theta)): it follows the radiance
-// within a texel, and is positive wherever the radiance is.
+// between texel centres (luminance_field.h). A row of cells is sampled, then a cell, then a point
+// in it. The pdf over solid angle is w / (total x jacobian x sin(theta)): continuous, and positive
+// wherever the radiance is.
 //
 // MIS compensation (Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple
 // Importance Sampling", 2019): w becomes max(luminance - mean, 0) x sin(theta), because BSDF
-// samples cover the rest. For use with MIS only. Falls back to the plain w if compensation leaves
-// almost nothing.
+// samples cover the rest. Only valid with MIS. The plain w is used if the total of the compensated
+// w is almost 0.
 class Importance : public LightingStrategy {
  public:
   Importance(const Probe& probe, bool compensated);

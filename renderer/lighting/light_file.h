@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// The lights that replace a probe, with their origin.
+// The lights that replace a probe, and how they were made.
 struct LightRig {
   std::string probe, method;   // the probe's file, and the name of the method (methods.h)
   std::optional<Rgb> ambient;  // radiance from all directions, beside the lights

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe's luminance as an unnormalised pdf over its map, as continuous as the radiance.
+// The probe's luminance as an unnormalised, continuous pdf over its map.
 #pragma once
 
 #include <limits>

@@ -36,7 +36,7 @@ Strategy sampling(const Probe& probe, Mis, int) {
   return std::make_unique<Sampler>(probe);
 }
 
-// With MIS compensation where there is MIS.
+// With MIS compensation if MIS is on.
 template <class Sampler>
 Strategy compensated(const Probe& probe, Mis mis, int) {
   return std::make_unique<Sampler>(probe, mis != Mis::Off);
@@ -55,7 +55,7 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
   return {name, summary, lights.counts, makeStrategy, lights};
 }
 
-// A deterministic method, and one with a seed.
+// Deterministic methods.
 Lights constellation(CountRange counts, Constellation (*make)(const Image& latLong, int count)) {
   return {.make =
               [make](const Image& latLong, const LightRequest& request) {
@@ -65,6 +65,7 @@ Lights constellation(CountRange counts, Constellation (*make)(const Image& latLo
           .keepsEnergy = true};
 }
 
+// Stochastic methods.
 Lights constellation(CountRange counts,
                      Constellation (*make)(const Image& latLong, int count, uint64_t seed)) {
   return {.make =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of lighting methods: those that sample a probe, and those that replace it by
+// The table of lighting methods: those that sample a probe, and those that replace it by
 // directional lights.
 #pragma once
 
@@ -22,12 +22,12 @@ struct CountRange {
   int usual = 0;         // the default of a strategy
 };
 
-// What makeLights() is asked for.
+// Options of makeLights().
 struct LightRequest {
   std::optional<int> count;  // of lights; cube-grid: of squares along a face's edge
-  uint64_t seed = 0;         // read by stochastic methods only
-  // Read by the fits only: also fit a constant radiance from all directions; and stop at the
-  // smallest number of lights (`count` at most) whose mean error, in percent, is no greater.
+  uint64_t seed = 0;         // for stochastic methods
+  // For the fits: also fit a constant radiance from all directions; use the smallest number of
+  // lights (at most `count`) whose mean error in percent does not exceed maxErrorPercent.
   bool ambient = false;
   std::optional<double> maxErrorPercent;
 };
@@ -63,11 +63,12 @@ const std::vector<LightingMethod>& lightingMethods();
 // The method that makes lights, by name. Throws InputError, which starts with `location`.
 const LightingMethod& lightMethod(std::string_view name, std::string_view location);
 
-// The lights of `latLong` (at least three channels). Directions are unit; the same arguments give
-// the same bits. Methods that keep energy make no black or negative light: `count` lights where the
-// map has as many lit texels (blocks of texels in a large map), else one for each; none of a black
-// map. cube-grid makes up to 6 count^2 lights, one for each lit square; penrose `count` lights of
-// any map that is not black; suns those it finds, `count` at most.
+// The lights that replace `latLong` (at least three channels). Directions are unit; the result is
+// deterministic. Methods that keep energy make no black or negative lights. Their number is
+// min(count, number of lit cells), where a cell is a texel, or a block of texels of a large map; a
+// black map gives none. Exceptions: cube-grid makes up to 6 count^2 lights, one for each lit
+// square; penrose makes `count` lights unless the map is black; suns makes one for each sun that it
+// finds, at most `count`.
 // Throws InputError for an unknown method, a count that is missing or out of range, or a texel that
 // is negative or not finite.
 MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request);

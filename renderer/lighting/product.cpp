@@ -14,8 +14,8 @@ constexpr int kBins = kSide * kSide;
 // sees any of the block's sampled directions, and every light must have a positive pdf.
 constexpr double kMinCosine = 1e-3;
 
-// The octahedral map: |x| + |y| + |z| = 1 with its lower half (y < 0) folded outwards: the square
-// [-1, 1]^2.
+// The octahedral map: the octahedron |x| + |y| + |z| = 1, with its lower half (y < 0) folded
+// outwards, becomes the square [-1, 1]^2.
 vec2 toOctahedral(const vec3& n) {
   const vec3 p = n / (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
   if (p.y >= 0) return {p.x, p.z};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `product`: directions with pdf proportional to luminance x cosine, which leaves mostly visibility
-// to chance on a Lambertian surface.
+// `product`: directions with pdf proportional to luminance x cosine, so that on a Lambertian
+// surface most of the remaining variance comes from visibility.
 #pragma once
 
 #include "lighting/blocked_field.h"
@@ -11,10 +11,10 @@ namespace chromeball {
 
 // Normals are binned (squares of an octahedral map). Each bin has a distribution over the blocks of
 // the probe: luminance x the mean cosine between block and bin, positive wherever the cosine can
-// be. Within a block the pdf is proportional to luminance. So
-//   pdf = (pdf proportional to luminance) x pdfRatio(bin, block)
-// is known for every direction, as MIS needs. On a transmissive surface half of the samples use the
-// opposite normal. Specular reflection is left to BSDF samples.
+// be. Within a block the pdf is proportional to luminance. So for every direction, as MIS needs,
+//   pdf = (pdf proportional to luminance) x pdfRatio(bin, block).
+// On a transmissive surface half of the samples use the opposite normal. The pdf does not follow
+// specular lobes; BSDF samples do.
 class Product : public LightingStrategy {
  public:
   explicit Product(const Probe& probe);
@@ -25,7 +25,7 @@ class Product : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
-  // The sample from two numbers in [0, 1). Black probes give pdf 0.
+  // The sample from two numbers in [0, 1); pdf 0 for a black probe.
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lights without extent of a scene: delta lights beside the probe.
+// A scene's point, spot and directional lights (KHR_lights_punctual).
 #pragma once
 
 #include <memory>
@@ -10,34 +10,36 @@
 
 namespace chromeball {
 
-// Light of one lamp at a point. No BSDF sample finds it, so MIS leaves it whole.
+// The light of one lamp at a point. No BSDF sample can find a delta light, so its MIS weight is 1.
 struct PunctualSample {
   vec3 wi;         // unit, from the point to the light
   float distance;  // metres; infinite for a directional light
   Rgb irradiance;  // on a surface that faces it
 };
 
-// What the light sends to a point (KHR_lights_punctual): intensity / distance^2, faded out towards
-// the range by max(min(1 - (distance / range)^4, 1), 0), and for a spot towards the edge of its
-// cone by ((cos - cosOuter) / (cosInner - cosOuter))^2.
-PunctualSample shine(const PunctualLight& light, const vec3& position);
+// The light that arrives at `position` (KHR_lights_punctual): intensity / distance^2, times
+// max(min(1 - (distance / range)^4, 1), 0) for the range, and for a spot times
+// ((cos - cosOuter) / (cosInner - cosOuter))^2, clamped to [0, 1] before squaring.
+PunctualSample incidentLight(const PunctualLight& light, const vec3& position);
 
 class PunctualLights {
  public:
-  // Null where the scene has none: such a scene has no branch for them.
+  // Null if the scene has none.
   static std::unique_ptr<PunctualLights> make(const Scene& scene);
 
-  // Where there are more than this many, so many are chosen in proportion to the luminance of the
-  // irradiance they send, and raised by as much.
-  static constexpr int kFirst = 16, kLater = 2;  // at the first hit, and at later ones
+  // The maximum number of samples at the first hit and at later hits. With more lights, this many
+  // are chosen with probability proportional to the luminance of their irradiance, and divided by
+  // the probability.
+  static constexpr int kFirst = 16, kLater = 2;
 
-  // Calls use(PunctualSample) for each sample of the point.
+  // Calls use(PunctualSample) for each sample.
   template <class Use>
   void sample(const LightPoint& point, const PixelSampler& sampler, const Use& use) const {
     const size_t wanted = point.depth == 0 ? kFirst : kLater;
     if (lights_.size() > wanted) return choose(point, sampler, int(wanted), use);
     for (const PunctualLight& light : lights_)
-      if (const PunctualSample s = shine(light, point.position); !isBlack(s.irradiance)) use(s);
+      if (const PunctualSample s = incidentLight(light, point.position); !isBlack(s.irradiance))
+        use(s);
   }
 
  private:
@@ -48,16 +50,16 @@ class PunctualLights {
               const Use& use) const {
     float total = 0;
     for (const PunctualLight& light : lights_)
-      total += luminance(shine(light, point.position).irradiance);
+      total += luminance(incidentLight(light, point.position).irradiance);
     const float step = total / float(count);
-    constexpr uint64_t kPurpose = 0x6c616d70;  // apart from other uses of the key
+    constexpr uint64_t kPurpose = 0x6c616d70;  // separate random stream
     float target = step * toUnit(uint32_t(hash(sampler.sampleKey(), kPurpose))), sum = 0;
     for (const PunctualLight& light : lights_) {
-      PunctualSample s = shine(light, point.position);
-      const float fraction = luminance(s.irradiance);
-      sum += fraction;
-      s.irradiance *= step / fraction;
-      for (; fraction > 0 && sum > target; target += step) use(s);
+      PunctualSample s = incidentLight(light, point.position);
+      const float weight = luminance(s.irradiance);
+      sum += weight;
+      s.irradiance *= step / weight;
+      for (; weight > 0 && sum > target; target += step) use(s);
     }
   }
 

@@ -86,7 +86,7 @@ void Strata::sample(const LightPoint& point, const PixelSampler& sampler,
     }
     return;
   }
-  // All regions use one stratified point, with a different digital shift in each.
+  // All regions use the same stratified point, with a different digital shift in each.
   for (int region = 0; region < regions(); ++region) {
     if (!(strata_[region].weight() > 0)) continue;
     const uint64_t shift = hash(uint64_t(region));

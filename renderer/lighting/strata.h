@@ -13,12 +13,13 @@ namespace chromeball {
 // The cells of one region, sampled with probability proportional to their weights.
 class Stratum {
  public:
-  // Call row by row. The weight must be positive.
+  // To be called row by row. The weight must be positive.
   void add(int column, int row, double weight);
 
   double weight() const { return sums_.empty() ? 0 : sums_.back(); }
 
-  // `v` chooses the row, `u` the column; each becomes the position in the cell, in [0, 1).
+  // Chooses the row by `v` and the column by `u`, and replaces them by the position in the cell, in
+  // [0, 1).
   struct Cell {
     int column, row;
   };
@@ -35,14 +36,14 @@ class Stratum {
   std::vector<double> sums_;  // of the weights up to and including this cell
 };
 
-// The regions are those of kollig-keller, small where the probe is bright. The first hit takes a
-// sample from each region, with pdf proportional to luminance. Later hits take kLater samples, from
-// regions chosen with probability proportional to their energy.
+// The regions are those of kollig-keller; they are small where the probe is bright. The first hit
+// takes one sample in each region, with pdf proportional to luminance. Later hits take kLater
+// samples, in regions chosen with probability proportional to their energy.
 class Strata : public LightingStrategy {
  public:
   static constexpr int kLater = 1;  // samples
 
-  // Throws InputError for a probe that TexelTable refuses.
+  // Throws InputError for an invalid probe (TexelTable).
   Strata(const Probe& probe, int regions);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,

@@ -6,9 +6,9 @@
 namespace chromeball {
 namespace {
 
-constexpr size_t kMaxSampledEach = 2;  // with more suns, one is chosen
+constexpr size_t kMaxSampledEach = 2;  // with more suns, one is chosen by power
 
-// About +Y, as Probe does.
+// Rotation about +Y, the same as Probe's.
 vec3 rotated(const dvec3& d, double degrees) {
   const double angle = degrees * kPiD / 180, sine = std::sin(angle), cosine = std::cos(angle);
   return vec3(dvec3(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine));
@@ -34,9 +34,9 @@ Suns::Suns(const SunExtraction& extraction, float rotationDegrees, bool compensa
     Sun sun = extraction.suns[i];
     if (angle) sun.angle = *angle;
     const double chord = 2 * std::sin(sun.angle * kPiD / 720);
-    const double chance = chooses ? powers[i] / power : 1;
+    const double probability = chooses ? powers[i] / power : 1;
     discs_.push_back({Frame(rotated(sun.direction, rotationDegrees)), float(chord * chord),
-                      Rgb(sun.radiance()), float(chance / (kPiD * chord * chord))});
+                      Rgb(sun.radiance()), float(probability / (kPiD * chord * chord))});
   }
 }
 
@@ -58,7 +58,8 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
   const DirectionSample rest = importance_.sampleDirection(u * 0x1p-32, v * 0x1p-32);
   if (rest.pdf > 0) add(rest.wi);
 
-  // All discs use one stratified point; a digital shift in each keeps its stratification.
+  // All discs use the same stratified point with different digital shifts, which keep it
+  // stratified.
   if (choice_) {
     double position = (u ^ uint32_t(hash(0))) * 0x1p-32;
     const int chosen = choice_->sample(0, position);

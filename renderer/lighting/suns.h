@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `suns`: concentrated sources become discs that are sampled separately; the rest of the probe is
-// sampled by importance (HDRI book, section 9.6.1).
+// `suns`: concentrated sources are replaced by discs that are sampled separately; the remainder of
+// the probe is sampled as in `importance` (HDRI book, section 9.6.1).
 #pragma once
 
 #include <optional>
@@ -13,12 +13,12 @@
 namespace chromeball {
 
 // Takes one stratified sample of each sun and one of the remainder. If there are more than two
-// suns, chooses one with probability proportional to power: with four suns this needs 45% fewer
-// rays for the same noise. All rays, also those of the camera and mirrors, see the remainder plus
-// discs, so energy counts once. The only bias is the shape of the suns, visible in highlights and
-// penumbras: a disc with the irradiance and the spread of the source it replaces
-// (probe/sun_extraction.h). (At a pole, where the interpolation of the last row adds light, discs
-// have up to 8% less.)
+// suns, chooses one of them with probability proportional to power: with four suns this needs 45%
+// fewer rays for the same noise. All rays, including those of the camera and mirrors, see the
+// remainder plus the discs, so energy is counted once. The only bias is the shape of the suns,
+// visible in highlights and penumbras: a disc with the irradiance and the spread of the source that
+// it replaces (probe/sun_extraction.h). (At a pole the interpolation of the last row adds light to
+// the probe; discs there have up to 8% less.)
 //
 // All samples are combined by the balance heuristic: pdfs and radiances of the remainder and all
 // discs in a direction are added.

@@ -17,7 +17,7 @@ struct BlockPyramid::Assignment {
   const std::vector<dvec3>& directions;
   std::vector<glm::ivec2> cells;  // of the lights
   std::vector<dvec3> powers;      // of the lights
-  // By level, for the current block: the lights that may be nearest to some point of it.
+  // [level]: the lights that may be the nearest one to some point of the current block.
   std::vector<std::vector<int>> candidates;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assigns the light of a map to given directions: each cell's to the nearest.
+// Assigns the energy of each cell of a map to the nearest of given directions.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// Sums over blocks of 2 x 2 cells of a table, 4 x 4, ..., the whole map.
+// Sums over blocks of 2 x 2 cells, 4 x 4 cells, ... up to the whole map.
 class BlockPyramid {
  public:
   explicit BlockPyramid(const TexelTable& table);  // must outlive this

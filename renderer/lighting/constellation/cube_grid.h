@@ -7,8 +7,8 @@
 
 namespace chromeball {
 
-// n x n equal squares on each face, with a light in the middle of each square that is not black. It
-// has the energy of all cells whose centroid is seen through the square.
+// n x n equal squares on each face, with a light at the centre of each square that is not black,
+// with the energy of all cells whose centroid projects into the square.
 Constellation cubeGrid(const TexelTable& table, int n);
 Constellation cubeGrid(const Image& latLong, int n);
 

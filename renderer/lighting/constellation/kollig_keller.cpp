@@ -11,7 +11,8 @@
 namespace chromeball {
 namespace {
 
-// Relative, of the objective, while lights are being added: another light gains far more.
+// Relative decrease of the objective at which iteration stops while lights are being added; each
+// added light decreases it far more.
 constexpr double kTolerance = 1e-3;
 
 SphericalKMeans cluster(const TexelTable& table, int count) {
@@ -77,7 +78,8 @@ Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed)
     weight[region] += luminance(texelPower);
   });
 
-  // The texel at which the running sum of a region passes a random fraction of the region's weight.
+  // The light is in the texel at which the running sum of a region exceeds a random fraction of the
+  // region's weight.
   Constellation lights(partition.regions);
   forEachTexel(latLong, partition, [&](int x, int y, int region, const dvec3& texelPower) {
     const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };

@@ -27,9 +27,9 @@ struct Partition {
 };
 Partition kolligKellerRegions(const Image& latLong, int count);
 
-// `kollig-keller-strata` (the same paper's remedy for aliasing): each light's direction is
-// random in its region, with probability proportional to luminance and uniform within a texel; its
-// irradiance is that of the region.
+// `kollig-keller-strata` (the same paper, against aliasing): each light has a random direction in
+// its region, with probability proportional to luminance and uniform within a texel, and the
+// irradiance of the region.
 Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed);
 
 }  // namespace chromeball

@@ -10,8 +10,8 @@
 namespace chromeball {
 
 // Lights start at `count` different cells, drawn with probability proportional to luminance, and
-// move by Lloyd's iteration to convergence. Of four starts the one with the smallest objective
-// (spherical_kmeans.h) wins.
+// move by Lloyd's iteration to convergence. The result is the one with the smallest objective
+// (spherical_kmeans.h) out of four starts.
 Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
 Constellation lightGen(const Image& latLong, int count, uint64_t seed);
 

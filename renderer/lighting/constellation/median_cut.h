@@ -7,11 +7,11 @@
 
 namespace chromeball {
 
-// Repeatedly cuts the region of most energy (luminance) across its longer side, at the column or
-// row that halves the energy best. Its width is multiplied by the cosine of its latitude. Any count
-// is possible; powers of two give the published algorithm. A region's light is at the energy
-// centroid of its directions. No region crosses the seam of the map, so the lights depend on where
-// the seam is.
+// Repeatedly cuts the region of highest energy (luminance) across its longer side, at the column or
+// row that divides the energy most equally; the width counts times the cosine of the latitude. Any
+// count is possible; powers of two give the published algorithm. A region's light is at the energy
+// centroid of its directions. No region crosses the seam of the map, so the lights depend on the
+// position of the seam.
 std::vector<Region> medianCutRegions(const RegionTable& table, int count);
 Constellation medianCut(const RegionTable& table, int count);
 Constellation medianCut(const Image& latLong, int count);

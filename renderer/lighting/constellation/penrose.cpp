@@ -29,8 +29,8 @@ struct Corner {
   double rank;
 };
 
-// Codes are numbers in base phi whose newest digit is the most significant: each parent shape has
-// an interval of [0, 1), as long as its fraction of the children of this shape, and the parent's
+// A code is a number in base phi whose newest digit is the most significant: each parent shape has
+// an interval of [0, 1) whose length is its fraction of the children of this shape; the parent's
 // code is the position in the interval. The lengths are
 //   acute:  1/phi^2 from acute, 1/phi from obtuse
 //   obtuse: 1/phi^3 from acute, twice 1/phi^2 from obtuse
@@ -67,8 +67,8 @@ void split(const Triangle& t, AddTriangle addTriangle, AddCorner addCorner) {
   }
 }
 
-// Ten acute triangles around a point: a decagon of radius 4 that covers the map away from its
-// middle.
+// Ten acute triangles around a point: a decagon of radius 4 that covers the map. The map is off its
+// centre, where the tiling is symmetric.
 std::vector<Triangle> decagon(uint64_t seed) {
   const auto random = [&](int i) { return double(toUnit(uint32_t(hash(seed, i)))); };
   const auto polar = [](double radius, double angle) {

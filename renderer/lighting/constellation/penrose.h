@@ -41,10 +41,11 @@ class ImportanceTable {
 // The corners that the k-th subdivision of the tiling's triangles creates have ranks from phi^2k to
 // phi^(2k+2), evenly distributed over any neighbourhood. The `count` corners with the smallest rank
 // / importance become lights: their density over the map is proportional to importance, and they
-// keep a distance from each other. Each cell's light goes to the nearest corner: 300 lights then
-// have a mean error of irradiance of 0.4%, against 2% with equal weights as in the paper. The seed
-// places the tiling on the map. The paper's tables of corrections, which improve the spectrum, are
-// omitted, and lights near the seam and the poles keep no distance from those on the other side.
+// keep a minimum distance from each other. The energy of each cell is assigned to the nearest
+// light: 300 lights then have a mean error of irradiance of 0.4%, against 2% with equal weights as
+// in the paper. The seed determines position and rotation of the tiling on the map. The paper's
+// correction tables, which improve the spectrum, are omitted. The minimum distance does not hold
+// across the seam and the poles.
 Constellation penrose(const ImportanceTable& table, int count, uint64_t seed);
 Constellation penrose(const Image& latLong, int count, uint64_t seed);
 

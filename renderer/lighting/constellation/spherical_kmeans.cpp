@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMaxSteps = 200;
 
-// cos(2 a) from cos(a) for a up to 90 degrees; beyond that -2, below every cosine.
+// cos(2 a) from cos(a) for a < 90 degrees; otherwise -2, which is below every cosine.
 double cosOfTwice(double cosine) { return cosine > 0 ? 2 * cosine * cosine - 1 : -2; }
 
 }  // namespace
@@ -50,9 +50,9 @@ void SphericalKMeans::updateCosines() {
     if (moved_[label_[i]]) cosine_[i] = glm::dot(points_[i].direction, centres_[label_[i]]);
 }
 
-// The centres that may be nearer to a cell of this cluster than `centre` is, in order of distance
-// from `centre`. `minCosine` is that of the cluster's farthest cell. Pairs of centres
-// that have not moved since the last assignment are left out.
+// The centres that may be nearer to a cell of this cluster than `centre`, sorted by distance from
+// `centre`. `minCosine`: the cosine of the angle between `centre` and the cluster's farthest cell.
+// Pairs of centres that have not moved since the last assignment are left out.
 std::vector<SphericalKMeans::Rival> SphericalKMeans::rivals(int centre,
                                                             const std::vector<int>& moved,
                                                             double minCosine) const {
@@ -72,8 +72,8 @@ std::vector<SphericalKMeans::Rival> SphericalKMeans::rivals(int centre,
   return found;
 }
 
-// By the triangle inequality, a centre that is nearer to a cell than the cell's own centre is less
-// than twice as far from that centre as the cell is (Hamerly 2010).
+// Triangle inequality: if another centre is nearer to a cell than the cell's own centre c at
+// distance d, its distance from c is less than 2 d (Hamerly 2010).
 void SphericalKMeans::assign() {
   updateCosines();
   std::vector<double> minimum(centres_.size(), 1);

@@ -18,9 +18,9 @@ class SphericalKMeans {
   int litCells() const { return int(points_.size()); }
   double weight(int litCell) const { return points_[litCell].weight; }
 
-  // Adds a centre at a lit cell, or at the worst cell: that with the largest error in the cluster
-  // with the largest error among those with two or more cells (which exist while there are fewer
-  // centres than lit cells). The first centre goes to the brightest cell.
+  // Adds a centre at a lit cell, or at the worst cell: in the cluster with the largest error, among
+  // those with two or more cells, the cell with the largest error. (Such a cluster exists while
+  // there are fewer centres than lit cells.) The first centre is at the brightest cell.
   void addCentre(int litCell);
   void addCentreAtWorst() { addCentre(worst()); }
 
@@ -29,8 +29,8 @@ class SphericalKMeans {
   // Needs at least as many lit cells as centres.
   bool step();
 
-  // Steps until one lowers the objective by no more than the fraction `tolerance`, 200 times at
-  // most.
+  // Repeats step() until it decreases the objective by at most the fraction `tolerance`; at most
+  // 200 times.
   void converge(double tolerance);
 
   double objective() const;  // after the last assignment
@@ -44,8 +44,9 @@ class SphericalKMeans {
     double weight;
     int cell;  // in the table
   };
+  // A centre that may be nearer to some cells of a cluster than the cluster's own centre.
   struct Rival {
-    double cosine;  // of the angle to the centre whose rival it is
+    double cosine;  // of the angle between both centres
     int centre;
   };
 
@@ -58,7 +59,7 @@ class SphericalKMeans {
 
   const TexelTable& table_;
   std::vector<Point> points_;
-  std::vector<int> label_;      // of each point: its centre; -1 before there is one
+  std::vector<int> label_;      // the centre of each point; -1 before the first centre is added
   std::vector<double> cosine_;  // of the angle between a point and its centre
   std::vector<dvec3> centres_;
   std::vector<char> moved_;   // since the last assignment

@@ -13,7 +13,7 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-// Sums over texels, in double, so that the texels around a sun of 1e12 still count.
+// Sums over texels. In double, so that texels beside a sun of radiance 1e12 are not lost.
 struct TexelSum {
   dvec3 power{0};     // radiance x solid angle, RGB: the irradiance of a light that replaces them
   dvec3 moment{0};    // direction x weight
@@ -31,8 +31,8 @@ DirectionalLight makeLight(const dvec3& unitDirection, const dvec3& irradiance);
 inline constexpr size_t kFineCells = 1 << 21;    // 2048 x 1024: for look-ups
 inline constexpr size_t kCoarseCells = 1 << 15;  // 256 x 128: for repeated loops over all cells
 
-// Cells are square blocks of texels, the smallest that keep their number within `maxCells`: single
-// texels unless the map is large. The light of a texel counts as concentrated at its centre.
+// Cells are square blocks of texels, as small as possible with at most `maxCells` cells: single
+// texels unless the map is large. All light of a texel is treated as coming from its centre.
 class TexelTable {
  public:
   // Throws InputError for an empty map, fewer than three channels, a texel that is negative or not

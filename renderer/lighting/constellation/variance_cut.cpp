@@ -17,8 +17,8 @@ std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
   double minimum = std::numeric_limits<double>::infinity();
   const auto attempt = [&](const std::pair<Region, Region>& parts) {
     const dvec4 first = table.moment(parts.first);
-    const double left = variance(first) + variance(whole - first);
-    if (left < minimum) minimum = left, best = parts;
+    const double total = variance(first) + variance(whole - first);
+    if (total < minimum) minimum = total, best = parts;
   };
   for (int x = r.x0 + 1; x < r.x1; ++x) attempt(cutAtColumn(r, x));
   for (int y = r.y0 + 1; y < r.y1; ++y) attempt(cutAtRow(r, y));

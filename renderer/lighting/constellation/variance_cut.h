@@ -8,9 +8,9 @@
 namespace chromeball {
 
 // Repeatedly cuts the region of largest variance, sum of weight |direction - centroid|^2 over its
-// texels, at the column or row that leaves the smallest total variance in the two parts. For unit
-// directions the variance is weight - |moment|^2 / weight, so each trial takes four look-ups. As
-// with median-cut, no region crosses the seam of the map.
+// texels, at the column or row that minimises the total variance of the two parts. For unit
+// directions the variance is weight - |moment|^2 / weight, so each candidate takes four look-ups.
+// As with median-cut, no region crosses the seam of the map.
 std::vector<Region> varianceCutRegions(const RegionTable& table, int count);
 Constellation varianceCut(const RegionTable& table, int count);
 Constellation varianceCut(const Image& latLong, int count);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The irradiance of a directional light over all normals, and its products with that of another.
+// The irradiance of a directional light as a function of the normal, and inner products of two such
+// functions.
 #pragma once
 
 #include <cmath>

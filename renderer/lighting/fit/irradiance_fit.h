@@ -27,11 +27,11 @@ struct FitOptions {
 };
 
 // The lights that minimise the squared difference of irradiance over all orientations (Madsen et
-// al. 2003; Madsen and Laursen 2007). Adds one light after another where it reduces the difference
-// most, and moves all of them after each (alternating descent conditional gradient: Boyd,
-// Schiebinger and Recht 2017). The mean error never grows with the count. `latLong` is finite and
-// not negative. The same result for any number of threads. Throws InputError if a count is
-// negative.
+// al. 2003; Madsen and Laursen 2007). Adds lights one by one in the direction that reduces the
+// difference most, and then moves all lights (alternating descent conditional gradient: Boyd,
+// Schiebinger and Recht 2017). The mean error never increases with the count. `latLong` must be
+// finite and not negative. The result does not depend on the number of threads. Throws InputError
+// if a count is negative.
 IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A probe as points of light, few enough for repeated sums over all of them.
+// A probe as a small number of directional lights, for repeated sums over all of them.
 #pragma once
 
 #include <vector>
