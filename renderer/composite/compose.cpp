@@ -6,14 +6,14 @@ namespace {
 
 using glm::dvec3;
 
-// Fraction of the picture's mean L_noobj below which the ratio is not formed.
+// Fraction of the image's mean L_noobj below which the ratio is not used.
 constexpr double kMinForRatio = 1e-3;
 
 bool isNegative(const Rgb& c) { return c.x < 0 || c.y < 0 || c.z < 0; }
 
 double alphaOf(const DifferentialPixel& p) { return p.count > 0 ? p.covered / p.count : 0; }
 
-// L_noobj where no object is seen; 0 where one covers all.
+// Mean L_noobj of the samples that see no object; 0 if there are none.
 dvec3 localRadiance(const DifferentialPixel& p) {
   return p.count > p.covered ? p.local / (p.count - p.covered) : dvec3(0);
 }
@@ -30,7 +30,7 @@ dvec3 meanLocalRadiance(const DifferentialFilm& film) {
   return weight > 0 ? sum / weight : sum;
 }
 
-// plate / L_noobj where that can be formed, 1 (the difference) where it cannot.
+// plate / L_noobj where the ratio is used, 1 where the difference is used.
 Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
   Rgb gain(1);
   for (int c = 0; c < 3; ++c) {
@@ -52,14 +52,14 @@ Composite compose(const DifferentialFilm& film, const Image& mean, const Image& 
     for (int x = 0; x < film.width(); ++x) {
       const DifferentialPixel p = film.at(x, y);
       const Rgb behind = plate.rgb(x, y);
-      Rgb gain(1), color = behind;  // a render may stop before a pixel's first sample
+      Rgb gain(1), color = behind;  // an interrupted render may have no samples here
       if (p.count > 0 && mode == CompositeMode::Difference) color = mean.rgb(x, y);
       if (p.count > 0 && mode == CompositeMode::Ratio) {
         gain = ratioGain(behind, localRadiance(p), meanLocal);
         color = Rgb((p.objects + dvec3(gain) * p.difference) / p.count +
                     (1 - alphaOf(p)) * dvec3(behind));
       }
-      if (isNegative(color) && !isNegative(behind)) {  // a plate's own negatives are kept
+      if (isNegative(color) && !isNegative(behind)) {  // negative plate values are kept
         ++result.darkerThanBlack;
         color = glm::max(color, Rgb(0));
       }

@@ -10,24 +10,25 @@ namespace chromeball {
 
 enum class CompositeMode { Difference, Ratio };
 
-// Plate and objects in one picture. With alpha the fraction of samples that see an object, and
-// L_obj, L_noobj those of the other samples alone (so that edges are right):
-//   Difference  alpha L_objects + (1 - alpha) (plate + L_obj - L_noobj), not below 0
+// The composite image. With alpha the fraction of samples that see an object, L_objects the
+// radiance of these samples, and L_obj, L_noobj the radiance of the other samples with and without
+// the objects (so that edges are right):
+//   Difference  max(alpha L_objects + (1 - alpha) (plate + L_obj - L_noobj), 0)
 //   Ratio       alpha L_objects + (1 - alpha) plate L_obj / L_noobj
-// A ratio to almost no light is noise: where L_noobj of a colour channel is below 0.002 times the
-// picture's mean L_noobj, the ratio blends into the difference, which it is below 0.001 times.
-// Where objects change nothing, both are exactly the plate.
+// The ratio is noisy where L_noobj is small. Per colour channel, with M the image's mean L_noobj:
+// from 0.002 M down to 0.001 M the ratio blends into the difference, and below 0.001 M the
+// difference is used. Both equal the plate exactly where objects have no effect.
 struct Composite {
   Image color;
-  Image gain;                  // by which L_obj - L_noobj was multiplied, before (1 - alpha)
-  size_t darkerThanBlack = 0;  // pixels that the difference would have made negative; they are 0
+  Image gain;                  // factor of L_obj - L_noobj, without (1 - alpha)
+  size_t darkerThanBlack = 0;  // number of pixels with negative results, which are set to 0
 };
-// `mean`: of the integrator's samples.
+// `mean`: the mean of the integrator's samples.
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode);
 
-// The composite's luminances and errors, from those of the difference formula's; for the ratio to
-// first order, L_noobj taken as known.
+// The luminances and errors of the composite. `errors`: those of the difference formula. For the
+// ratio they are propagated to first order, with L_noobj treated as exact.
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors);
 

@@ -14,7 +14,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
   context.sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {
     if (hit && worlds.isObject(*hit) && !whole.isHiddenBack(state, *hit)) {
-      // An object: the two worlds follow paths of their own from here on.
+      // The ray hits an object: from here on the paths of the two worlds differ.
       sample.objectFirst = state.depth == 0;
       sample.withObjects += whole.follow(state, hit, context);
       if (sample.objectFirst && !behindObjects) return sample;
@@ -28,16 +28,17 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
     PathState without = state;
     without.first = nullptr;
     context.shadowsDiffer = false;
-    const bool goesOn = shared.vertex(state, hit, context);
+    const bool continues = shared.vertex(state, hit, context);
     const Rgb found = std::exchange(state.radiance, Rgb(0));
-    if (context.shadowsDiffer) {  // an object's shadow or light: the vertex again without it
+    // An object casts a shadow on the vertex or lights it: evaluate it again without objects.
+    if (context.shadowsDiffer) {
       sample.withObjects += found;
       local.vertex(without, hit, context);
       sample.without += without.radiance;
     } else {
       sample.both += found;
     }
-    if (!goesOn) return sample;
+    if (!continues) return sample;
     context.sampler.startVertex(state.depth);
     hit = whole.closestHit(state.ray, context);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differential rendering (HDRI book, 9.7.1) in one pass: radiance with the synthetic objects and
-// without them, along paths that are shared until an object matters.
+// Differential rendering (HDRI book, section 9.7.1) in one pass: radiance with and without the
+// synthetic objects, along paths that are shared until an object affects them.
 #pragma once
 
 #include "composite/differential_film.h"
@@ -11,26 +11,26 @@
 namespace chromeball {
 
 struct DifferentialSample {
-  Rgb both{0};                     // found with the objects and without them
-  Rgb withObjects{0}, without{0};  // found only so
-  bool objectFirst = false;        // the camera sees an object
+  Rgb both{0};                     // radiance common to both worlds
+  Rgb withObjects{0}, without{0};  // further radiance with the objects, and without them
+  bool objectFirst = false;        // the camera ray hits an object first
 
   Rgb difference() const { return withObjects - without; }
 };
 
-// `camera.hit` is that of the whole scene. Random numbers are the same in both worlds, and
-// everything before an object is met or shades something is computed once, so that `difference()`
-// is exactly 0 where objects change nothing. `behindObjects`: L_noobj is wanted also where the
-// camera sees an object.
+// `camera.hit` is the hit in the scene with objects. Both worlds use the same random numbers, and
+// vertices are computed once up to the first one that an object affects (by a hit or by a shadow
+// ray), so that `difference()` is exactly 0 where objects have no effect. `behindObjects`: also
+// estimate L_noobj where the camera sees an object.
 DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
                                         bool behindObjects, PathContext& context);
 
-// A sample's radiance is that of the composite by the difference formula: the object's where the
-// camera sees one, else plate + L_obj - L_noobj, which may be negative. A clamp applies to objects
-// and differences, never to the plate. Fills the layers of DifferentialFilm.
+// Samples of the composite by the difference formula: the radiance of an object where the camera
+// sees one, otherwise plate + L_obj - L_noobj, which may be negative. The clamp applies to objects
+// and differences, not to the plate. Writes the layers of DifferentialFilm.
 class DifferentialIntegrator : public Integrator {
  public:
-  // All must outlive this; the plate is of the picture's size.
+  // All arguments must outlive this; the plate has the size of the image.
   DifferentialIntegrator(const CompositeWorlds& worlds, const Image& plate, bool behindObjects)
       : worlds_(worlds), plate_(plate), behindObjects_(behindObjects) {}
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers that a composite is made of.
+// The accumulated layers from which a composite is computed.
 #pragma once
 
 #include "film/layer_film.h"
 
 namespace chromeball {
 
-// Sums over the samples of a pixel. `covered` of `count` samples saw an object first.
+// Sums over the samples of a pixel.
 struct DifferentialPixel {
-  double count = 0, covered = 0;
-  glm::dvec3 objects{0};     // L_obj where an object is seen
-  glm::dvec3 behind{0};      // L_noobj there, if it was wanted
-  glm::dvec3 local{0};       // L_noobj elsewhere
-  glm::dvec3 difference{0};  // L_obj - L_noobj elsewhere; exactly 0 where objects change nothing
+  double count = 0, covered = 0;  // all samples; samples that see an object first (covered)
+  glm::dvec3 objects{0};          // L_obj of the covered samples
+  glm::dvec3 behind{0};           // L_noobj of the covered samples, if requested
+  glm::dvec3 local{0};            // L_noobj of the other samples
+  glm::dvec3 difference{0};  // L_obj - L_noobj of the other samples; exactly 0 without any effect
 };
 
 class DifferentialFilm {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers that composites have beside those of plain renders (film/aov.h).
+// Additional layers of composites, besides those of film/aov.h.
 #pragma once
 
 #include <optional>
@@ -26,10 +26,10 @@ struct CompositeLayerInfo {
 };
 const std::vector<CompositeLayerInfo>& compositeLayers();
 
-// nullptr where the name is none of a composite's layers.
+// nullptr for an unknown name.
 const CompositeLayerInfo* findCompositeLayer(std::string_view name);
 
-// The image of a layer; not of Reflectance, which is a Projection's.
+// The image of a layer; not for Reflectance, which is in Projection::colors().
 Image compositeLayer(const DifferentialFilm& film, CompositeLayer layer);
 
 }  // namespace chromeball

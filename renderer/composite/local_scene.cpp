@@ -29,10 +29,8 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
   ObjectMask isObject;
   for (const Instance& instance : scene.instances) isObject.push_back(!isUnderLocal(instance.node));
   if (std::find(isObject.begin(), isObject.end(), true) == isObject.end())
-    throwInput(
-        "{}: every node is part of the local scene; nothing is left to be put into the "
-        "picture",
-        location);
+    throwInput("{}: every node is part of the local scene; no objects are left to be composited",
+               location);
   return isObject;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells the local scene, which stands for real things, from the synthetic objects.
+// Distinguishes the local scene (a model of real surfaces in the plate) from the synthetic objects.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace chromeball {
 
-// True for the instances under none of the nodes `names`; a node's name speaks for all below it.
-// Throws InputError for a name that no node has (with the nearest one), and where nothing is left
-// to be put into the picture (beginning with `location`).
+// The nodes in `names` and all their descendants are the local scene; all other instances are
+// objects. Throws InputError for an unknown name (with the nearest known one), and if there are no
+// objects (message beginning with `location`).
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
                        const std::string& location);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two worlds of a composite as classes of instances.
+// Ray masks of the two worlds of a composite: with and without the synthetic objects.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace chromeball {
 
-// By instance: true for a synthetic object, false for the local scene, which stands for real
-// things.
+// By instance: true for a synthetic object, false for the local scene (a model of real surfaces in
+// the plate).
 using ObjectMask = std::vector<bool>;
 
-// Rays with kLocalScene meet the local scene alone; rays with kAllInstances meet both.
+// Rays with kLocalScene hit only the local scene; rays with kAllInstances also hit the objects.
 inline constexpr RayMask kLocalScene = 1, kObjects = 2;
 
-// The masks of a World that composites are rendered in.
+// The masks for the World of a composite.
 inline std::vector<RayMask> rayMasks(const ObjectMask& isObject) {
   std::vector<RayMask> masks;
   for (const bool object : isObject) masks.push_back(object ? kObjects : kLocalScene);

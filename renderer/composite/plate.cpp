@@ -9,7 +9,8 @@
 namespace chromeball {
 namespace {
 
-// Pixel i of `to` covers [i, i + 1) * from / to. Calls add(texel, share) for what it covers.
+// Resampling from `from` texels to `to`: pixel i covers [i, i + 1) * from / to. Calls
+// add(texel, weight) for each covered texel; the weights sum to 1.
 template <class Add>
 void forCovered(int i, int to, int from, const Add& add) {
   const double begin = double(i) * from / to, end = double(i + 1) * from / to;
@@ -27,7 +28,7 @@ Image readPlate(const std::string& path) {
     for (int column = plate.width - 1; column >= 0; --column)
       if (!isFinite(plate.rgb(column, row))) ++invalid, x = column, y = row;
   if (invalid)
-    throwInput("{}: {} pixels of the plate are NaN or infinite, the first at ({}, {}); mend them",
+    throwInput("{}: {} pixels of the plate are NaN or infinite, the first at ({}, {}); repair them",
                path, invalid, x, y);
   return plate;
 }
@@ -38,8 +39,8 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
   const double down = double(image.height) * width / image.width - height;
   if (std::min(std::abs(across), std::abs(down)) > 0.5)
     throwInput(
-        "{}: the plate has {}x{} pixels, and the picture is to have {}x{}: leave the size "
-        "out, or give one of the plate's proportions",
+        "{}: the plate has {}x{} pixels, but the image size is {}x{}; leave out the size, or give "
+        "one with the plate's aspect ratio",
         name, image.width, image.height, width, height);
 
   Image narrow(width, image.height, 3), scaled(width, height, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The photograph that objects are put into.
+// The plate: the background photograph of a composite.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace chromeball {
 
-// Linear radiance, three channels. EXR, HDR and PFM are linear as they are; integers (JPEG, PNG,
-// TIFF) are decoded from sRGB. Throws InputError for what is no image or has a texel that is not
-// finite.
+// Linear radiance, three channels. EXR, HDR and PFM files are linear; integer files (JPEG, PNG,
+// TIFF) are decoded from sRGB. Throws InputError if the file is not an image or has a pixel that is
+// not finite.
 Image readPlate(const std::string& path);
 
-// Each pixel is the mean of what it covers of `image`, whose proportions must be those of
-// width x height to within half a pixel of either (InputError, beginning with `name`). The same
-// size is the same image.
+// Resamples with a box filter. The aspect ratios must agree to within half a pixel of either
+// dimension, otherwise throws InputError (message beginning with `name`). An image of the requested
+// size is returned unchanged.
 Image scaledPlate(const Image& image, int width, int height, const std::string& name);
 
 }  // namespace chromeball

@@ -7,8 +7,8 @@
 namespace chromeball {
 namespace {
 
-constexpr Rgb kFirstEstimate(0.25f);    // typical of real surfaces
-constexpr uint32_t kSightSamples = 16;  // per pixel, to find what the camera sees
+constexpr Rgb kFirstEstimate(0.25f);         // typical of real surfaces
+constexpr uint32_t kVisibilitySamples = 16;  // per pixel, to find the visible surfaces
 constexpr uint32_t kMaxSamples = 1024;
 
 PathSettings localSettings(const RenderSettings& settings) {
@@ -19,17 +19,17 @@ PathSettings localSettings(const RenderSettings& settings) {
   return local;
 }
 
-// What the camera sees of the local scene: the farthest depth of each pixel, and the mean of the
-// model's own base colour; 0 where it sees none of it.
-struct Sight {
+// The visible surfaces of the local scene: per pixel the maximum depth, and the mean base colour of
+// the model; 0 where none is visible.
+struct VisibleSurfaces {
   Image farthest, baseColor;
 };
 
-class SightIntegrator : public Integrator {
+class VisibilityIntegrator : public Integrator {
  public:
   enum Layer { kDepth, kCoverage, kBaseColor };
 
-  SightIntegrator(const PathTracer& tracer, const CameraRays& camera)
+  VisibilityIntegrator(const PathTracer& tracer, const CameraRays& camera)
       : tracer_(tracer), camera_(camera) {}
 
   std::vector<Accumulation> layers() const override {
@@ -58,7 +58,7 @@ class SightIntegrator : public Integrator {
   const CameraRays& camera_;
 };
 
-// Radiance of the local scene where the surface that the camera sees has another base colour.
+// Radiance of the local scene with the base colour of the first visible surface replaced.
 class RepaintedIntegrator : public Integrator {
  public:
   RepaintedIntegrator(const PathTracer& tracer, const Rgb& baseColor)
@@ -96,7 +96,8 @@ class RepaintedIntegrator : public Integrator {
   Rgb baseColor_;
 };
 
-// Applies `change` to the materials of the local scene, after making them its own.
+// Applies `change` to copies of the materials of the local scene, and assigns these to its
+// instances; objects keep the originals.
 template <class Change>
 void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change& change) {
   std::map<int, int> copies;
@@ -112,33 +113,38 @@ void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change
   }
 }
 
-Sight look(const ReflectanceProblem& problem, const RenderSettings& settings,
-           const std::atomic<bool>& stop) {
+VisibleSurfaces findVisibleSurfaces(const ReflectanceProblem& problem,
+                                    const RenderSettings& settings, const std::atomic<bool>& stop) {
   RenderSettings quick;
   quick.width = settings.width, quick.height = settings.height;
-  quick.samples = kSightSamples;
+  quick.samples = kVisibilitySamples;
   quick.maxDepth = 0;
   quick.seed = settings.seed;
   const CameraRays camera(problem.camera, float(settings.width) / float(settings.height));
   const PathTracer tracer(problem.world, problem.lighting, localSettings(quick));
   const RenderResult result = render(
-      SightIntegrator(tracer, camera), problem.world, problem.camera, quick, [](double) {}, stop);
-  Sight sight{Image(settings.width, settings.height, 1), Image(settings.width, settings.height, 3)};
+      VisibilityIntegrator(tracer, camera), problem.world, problem.camera, quick, [](double) {},
+      stop);
+  VisibleSurfaces visible{Image(settings.width, settings.height, 1),
+                          Image(settings.width, settings.height, 3)};
   for (int y = 0; y < settings.height; ++y)
     for (int x = 0; x < settings.width; ++x) {
-      const auto layer = [&](SightIntegrator::Layer l) { return result.layers.value(x, y, l); };
-      const double seen = layer(SightIntegrator::kCoverage).x;
+      const auto layer = [&](VisibilityIntegrator::Layer l) {
+        return result.layers.value(x, y, l);
+      };
+      const double seen = layer(VisibilityIntegrator::kCoverage).x;
       if (seen == 0) continue;
-      *sight.farthest.at(x, y) = float(layer(SightIntegrator::kDepth).x);
-      sight.baseColor.setRgb(x, y, Rgb(layer(SightIntegrator::kBaseColor) / seen));
+      *visible.farthest.at(x, y) = float(layer(VisibilityIntegrator::kDepth).x);
+      visible.baseColor.setRgb(x, y, Rgb(layer(VisibilityIntegrator::kBaseColor) / seen));
     }
-  return sight;
+  return visible;
 }
 
-// Mean radiance of the visible local scene with the base colour given.
-Image repainted(const ReflectanceProblem& problem, const Rgb& baseColor,
-                const RenderSettings& settings, const Progress& progress,
-                const std::atomic<bool>& stop) {
+// Renders the visible local scene with the given base colour; the mean over the samples that hit
+// it.
+Image renderRepainted(const ReflectanceProblem& problem, const Rgb& baseColor,
+                      const RenderSettings& settings, const Progress& progress,
+                      const std::atomic<bool>& stop) {
   const PathTracer tracer(problem.world, problem.lighting, localSettings(settings));
   const RenderResult result = render(RepaintedIntegrator(tracer, baseColor), problem.world,
                                      problem.camera, settings, progress, stop);
@@ -151,26 +157,26 @@ Image repainted(const ReflectanceProblem& problem, const Rgb& baseColor,
   return image;
 }
 
-// One step of the solution, from the radiance of black and of white surfaces.
-ReflectanceSolution explain(const Image& plate, const Image& black, const Image& white,
-                            const Sight& sight, Projection& projection) {
-  constexpr float kDark = 1e-4f;  // of the mean, below which there is no light to speak of
+// One iteration, given the radiance with black and with white visible surfaces.
+ReflectanceSolution solveStep(const Image& plate, const Image& black, const Image& white,
+                              const VisibleSurfaces& visible, Projection& projection) {
+  constexpr float kDark = 1e-4f;  // fraction of the mean below which a pixel counts as unlit
   ReflectanceSolution solution;
   double light = 0, plateSum = 0, modelSum = 0;
-  const auto forSeen = [&](const auto& visit) {
+  const auto forVisible = [&](const auto& visit) {
     for (int y = 0; y < plate.height; ++y)
       for (int x = 0; x < plate.width; ++x)
-        if (*sight.farthest.at(x, y) > 0) visit(x, y);
+        if (*visible.farthest.at(x, y) > 0) visit(x, y);
   };
-  forSeen([&](int x, int y) {
+  forVisible([&](int x, int y) {
     light += luminance(white.rgb(x, y) - black.rgb(x, y));
     ++solution.pixels;
   });
   if (solution.pixels == 0) return solution;
   const float dark = kDark * float(light / double(solution.pixels));
-  forSeen([&](int x, int y) {
+  forVisible([&](int x, int y) {
     const Rgb wanted = plate.rgb(x, y) - black.rgb(x, y);
-    const Rgb received = white.rgb(x, y) - black.rgb(x, y), model = sight.baseColor.rgb(x, y);
+    const Rgb received = white.rgb(x, y) - black.rgb(x, y), model = visible.baseColor.rgb(x, y);
     Rgb rho = model;
     for (int c = 0; c < 3; ++c)
       if (received[c] > dark) rho[c] = wanted[c] / received[c];
@@ -186,12 +192,12 @@ ReflectanceSolution explain(const Image& plate, const Image& black, const Image&
   return solution;
 }
 
-void startFrom(const Sight& sight, Projection& projection) {
-  projection.setDepth(sight.farthest);
+void initialise(const VisibleSurfaces& visible, Projection& projection) {
+  projection.setDepth(visible.farthest);
   Image& colors = projection.colors();
   for (int y = 0; y < colors.height; ++y)
     for (int x = 0; x < colors.width; ++x)
-      colors.setRgb(x, y, *sight.farthest.at(x, y) > 0 ? kFirstEstimate : Rgb(0));
+      colors.setRgb(x, y, *visible.farthest.at(x, y) > 0 ? kFirstEstimate : Rgb(0));
 }
 
 }  // namespace
@@ -221,8 +227,8 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
                                      const RenderSettings& settings, int iterations,
                                      Projection& projection, const Progress& progress,
                                      const std::atomic<bool>& stop) {
-  const Sight sight = look(problem, settings, stop);
-  startFrom(sight, projection);
+  const VisibleSurfaces visible = findVisibleSurfaces(problem, settings, stop);
+  initialise(visible, projection);
 
   RenderSettings step = settings;
   step.aovs = {Aov::Alpha};
@@ -230,19 +236,19 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   step.timeLimit.reset();
   step.noiseLimit.reset();
   const Scene& scene = problem.world.scene;
-  bool shines = false;  // even where its base colour is black
+  bool blackIsLit = false;  // whether a black base colour has radiance: emission or a highlight
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Material& m = scene.materials[size_t(scene.instances[i].material)];
-    shines |= problem.world.accel.mask(i) == kLocalScene && (m.emits() || m.specular > 0);
+    blackIsLit |= problem.world.accel.mask(i) == kLocalScene && (m.emits() || m.specular > 0);
   }
 
   ReflectanceSolution solution;
   for (int i = 0; i < iterations && !stop; ++i) {
     const auto report = [&](double fraction) { progress((i + fraction) / iterations); };
     Image black(settings.width, settings.height, 3);
-    if (shines) black = repainted(problem, Rgb(0), step, report, stop);
-    const Image white = repainted(problem, Rgb(1), step, report, stop);
-    solution = explain(problem.plate, black, white, sight, projection);
+    if (blackIsLit) black = renderRepainted(problem, Rgb(0), step, report, stop);
+    const Image white = renderRepainted(problem, Rgb(1), step, report, stop);
+    solution = solveStep(problem.plate, black, white, visible, projection);
   }
   return solution;
 }
@@ -250,16 +256,16 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
                                          const RenderSettings& settings, const Rgb& irradiance,
                                          Projection& projection, const std::atomic<bool>& stop) {
-  const Sight sight = look(problem, settings, stop);
-  startFrom(sight, projection);
+  const VisibleSurfaces visible = findVisibleSurfaces(problem, settings, stop);
+  initialise(visible, projection);
   Image black(settings.width, settings.height, 3), white = black;
   for (int y = 0; y < white.height; ++y)
     for (int x = 0; x < white.width; ++x) white.setRgb(x, y, irradiance * kInvPi);
-  return explain(problem.plate, black, white, sight, projection);
+  return solveStep(problem.plate, black, white, visible, projection);
 }
 
 std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject) {
-  constexpr double kTolerance = 1e-4;  // of the scene's size, and of a unit normal
+  constexpr double kTolerance = 1e-4;  // relative to the scene's size, and of unit normals
   std::optional<glm::dvec3> normal, point;
   double size = 0, farthest = 0;
   for (size_t i = 0; i < scene.instances.size(); ++i) {

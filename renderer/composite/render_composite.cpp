@@ -4,8 +4,8 @@
 namespace chromeball {
 namespace {
 
-// One of the two worlds on its own. The samples of both renders add up to the composite: with
-// objects, theirs or plate + L_obj; without, -L_noobj where no object is seen.
+// Renders one of the two worlds. The sum of both renders is the composite: with objects the samples
+// are L_objects or plate + L_obj, without objects -L_noobj (0 where an object is visible).
 class OneWorld : public Integrator {
  public:
   OneWorld(const CompositeWorlds& worlds, bool withObjects, const Image& plate, bool behindObjects)
@@ -76,7 +76,7 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
   if (result.samples == 0) return finished(std::move(result), std::move(mean), std::move(errors));
   RenderSettings second = settings;
   second.seed = hash(settings.seed, 1);
-  second.samples = result.samples;  // the same, also where time or noise ended the first
+  second.samples = result.samples;  // a limit may have ended the first pass early
   second.timeLimit.reset();
   second.noiseLimit.reset();
   const RenderResult without = render(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders what a composite is made of.
+// Renders the layers of a composite.
 #pragma once
 
 #include "composite/differential.h"
@@ -9,24 +9,24 @@ namespace chromeball {
 
 enum class Passes {
   One,  // both worlds along shared paths (differential.h)
-  Two,  // two plain renders with seeds of their own, subtracted: the slow reference
+  Two,  // two independent renders, subtracted: slow, as a reference
 };
 
 struct CompositeRender {
-  RenderResult result;  // of the one pass, or of the one with objects
+  RenderResult result;  // of the only pass, or of the pass with objects
   DifferentialFilm film;
-  Image mean;          // the composite by the difference formula
+  Image mean;          // the composite by the difference formula (compose.h)
   PixelErrors errors;  // of the mean
 };
 
-// `world` has the masks of composite/objects.h; the plate is of the picture's size.
-// `behindObjects`: L_noobj is wanted also where an object hides it.
+// `world` must have the masks of composite/objects.h, and the plate the size of the image.
+// `behindObjects`: also estimate L_noobj where an object hides it.
 CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightingStrategy& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
                                 const Progress& progress, const std::atomic<bool>& stop);
 
-// Memory that a composite takes beside a plain render.
+// Memory of a composite in addition to that of a plain render.
 inline size_t compositeBytesPerPixel() {
   constexpr size_t kImages = 60;  // plate, mean, variance, ...
   return LayerFilm::bytesPerPixel(DifferentialFilm::kLayers) + kImages;
