@@ -347,7 +347,7 @@ TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
                   scene.out / "a.json", "--aov", "albedo"},
                  "  2%");  // after a second
   EXPECT_EQ(result.status, 130);
-  EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the picture so far is saved\n"));
+  EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the image so far is saved\n"));
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
   EXPECT_EQ(scene.stats("a.json")["interrupted"], true);
   const ImageFile image = scene.image("a.exr");

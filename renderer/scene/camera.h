@@ -34,8 +34,8 @@ struct Beam {
 };
 
 // The beam of one of `samples` rays through a pixel at the centre of an image of `height` pixels.
-// The beams of a pixel overlap: together they cover it four times, so that textures do not alias.
-// More samples make them narrower, so that textures do not blur.
+// The sum of the beams' areas is four times that of the pixel: less would alias textures, more
+// would blur them.
 Beam beamOf(const Camera& camera, int height, double samples);
 
 // The rays of a camera for an image of the given width / height.
@@ -50,12 +50,12 @@ class CameraRays {
     direction = orthographic_ ? forward_ : glm::normalize(point);
   }
 
-  // The ray of a thin lens to the same point of the plane in focus. It starts at a point of the
-  // lens that is uniform over the area for `lens` uniform in [0, 1)^2.
+  // The ray from a point of the thin lens to the same point of the plane in focus. `lens` in
+  // [0, 1)^2 is mapped uniformly to the area of the lens.
   bool hasLens() const { return lensRadius_ > 0; }
   void ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const;
 
-  // Metres along the camera's axis to a point `distance` metres along a ray.
+  // Depth along the camera's axis, in metres, of the point `distance` metres along a ray.
   float depth(const vec3& direction, float distance) const {
     return distance * glm::dot(direction, forward_);
   }

@@ -10,8 +10,8 @@ struct ExtendedMaterial {
   // KHR_materials_transmission, _volume and _dispersion
   float transmission = 0;  // fraction of the dielectric base that transmits instead of scattering
   bool thinWalled = true;  // a thin sheet; if false, the mesh bounds a body and refracts
-  Rgb attenuation{0};    // in the body, 1/m: after s metres a fraction exp(-attenuation s) is left
-  float dispersion = 0;  // 20 / Abbe number
+  Rgb attenuation{0};      // in the body, 1/m: transmittance over s metres is exp(-attenuation s)
+  float dispersion = 0;    // 20 / Abbe number
   TextureSlot transmissionTexture;  // R
 
   // KHR_materials_clearcoat: a dielectric layer of index 1.5 on top of all other layers

@@ -6,7 +6,7 @@
 
 namespace chromeball {
 
-inline constexpr float kCoatF0 = 0.04f;  // of a clear coat, whose index is 1.5
+inline constexpr float kCoatF0 = 0.04f;  // of a clear coat with refractive index 1.5
 
 struct ExtendedPoint {
   float transmission = 0;
@@ -17,7 +17,7 @@ struct ExtendedPoint {
   float anisotropy = 0;
   vec3 anisotropyTangent{0};  // unit, perpendicular to the smooth normal
   float iridescence = 0, filmIor = 1, filmThickness = 0;  // nanometres
-  vec3 clearcoatNormal{0};  // on the viewer's side, as Surface::normal
+  vec3 clearcoatNormal{0};                                // unit, on the viewer's side
 };
 
 // Precondition: the surface's material has extensions.

@@ -83,8 +83,8 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
   Camera camera = Camera::lookAt({0.45f, 0.35f, 1}, vec3(0), vec3(0, 1, 0), kFov);
   const glm::dvec3 right(camera.right), up(camera.up), back(camera.back);
 
-  // A scene without extent gets a view of about a metre, or wider if the rounding of coordinates
-  // far from the origin requires it.
+  // A scene without extent gets a view of about a metre, or wider if rounding errors of coordinates
+  // far from the origin require it.
   if (glm::length(size) <= 1e-6 * glm::length(centre)) {
     camera.position = vec3(centre + (2 + 1e-3 * glm::length(centre)) * back);
     return camera;

@@ -44,8 +44,8 @@ Box boundsOf(const Scene& scene, const std::vector<int>& instances) {
   return box;
 }
 
-// The nearest surfaces seen along one axis, from both sides of the bounding box. A grid of kCells^2
-// parallel rays stands for the view.
+// The nearest surfaces seen along one axis, from both sides of the bounding box, sampled by a grid
+// of kCells^2 parallel rays.
 class OutsideView {
  public:
   OutsideView(const Box& box, int axis) : box_(box), axis_(axis) {}
@@ -74,7 +74,7 @@ class OutsideView {
       }
   }
 
-  // Adds the number of back faces and of all faces that the two views show.
+  // Adds the number of back faces and of all faces that are visible in the two views.
   void count(double& backFaces, double& faces) const {
     for (const Cell& nearest : cells_) {
       if (nearest.high < nearest.low) continue;

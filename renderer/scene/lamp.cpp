@@ -10,7 +10,7 @@ vec3 moved(const vec3& position, const glm::dvec3& origin) {
   return vec3(glm::dvec3(position) - origin);
 }
 
-// A polygon whose front, with its corners counter-clockwise, is the side that shines.
+// A polygon whose front side (corners counter-clockwise) emits.
 Mesh polygonOf(const DiscLamp& disc, const vec3& centre) {
   const double turn = 2 * kPiD / kDiscSides;
   const double circumradius = disc.radius * std::sqrt(turn / std::sin(turn));  // of equal area

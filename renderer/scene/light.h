@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights that are not part of a model's surfaces, and the units in which files state them.
+// Lights that are not emissive surfaces of a model, and their units in files.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct PunctualLight {
       1};  // W/sr; for a directional light W/m^2, its irradiance on a surface that faces it
   vec3 position{0};                            // metres
   vec3 direction{0, 0, -1};                    // unit, from the light into the scene
-  float range = INFINITY;                      // metres at which its light has faded to 0
+  float range = INFINITY;                      // metres; beyond it the light is 0
   float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
 
   // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions).
@@ -34,7 +34,7 @@ struct PunctualLight {
 // A disc that emits uniform radiance from one side.
 struct DiscLamp {
   vec3 position{0};          // of the centre, metres
-  vec3 direction{0, 0, -1};  // unit, the normal of the side that shines
+  vec3 direction{0, 0, -1};  // unit, the normal of the emitting side
   float radius = 1;          // metres
   Rgb radiance{1};
 };

@@ -14,8 +14,8 @@ class Projection;
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-// What ignores the back faces of single-sided surfaces (glTF 2.0, 3.9.6): the camera and mirrors
-// (back-face culling), also light that comes from behind, or nothing.
+// Which rays ignore the back faces of single-sided surfaces (glTF 2.0, 3.9.6). Camera: camera rays
+// and mirror reflections (back-face culling). Light: also light from behind. Off: none.
 enum class SingleSided : uint8_t { Camera, Light, Off };
 
 struct Material {
@@ -33,17 +33,18 @@ struct Material {
   SingleSided singleSided = SingleSided::Camera;  // ignored if doubleSided
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
 
-  // Whether the camera and mirrors do not see its back, and whether light passes it from behind.
+  // Whether the back is invisible to the camera and mirrors.
   bool hidesBack() const {
     return !doubleSided && singleSided != SingleSided::Off &&
            !(extended && extended->transmission > 0);
   }
+  // Whether light from behind passes the surface.
   bool backLetsLightThrough() const { return hidesBack() && singleSided == SingleSided::Light; }
 
-  // Whether it is the boundary of a transparent body (KHR_materials_volume).
+  // Whether the surface is the boundary of a transparent body (KHR_materials_volume).
   bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }
 
-  // Replaces the base colour wherever the projector sees the surface; null: no projector.
+  // Replaces the base colour where the surface is visible to the projector; null: none.
   const Projection* projection = nullptr;
 
   bool emits() const { return unlit || emission != Rgb(0); }

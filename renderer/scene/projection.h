@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture thrown from a camera onto the surfaces that it sees.
+// An image projected from a camera onto the surfaces that are visible to it.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,16 @@ namespace chromeball {
 
 class Projection {
  public:
-  // For pictures of width x height pixels. Nothing is seen yet.
+  // For images of width x height pixels; initially no surface is visible.
   Projection(const Camera& camera, int width, int height);
 
-  // The farthest point that each pixel sees, in metres along the camera's axis; 0 for none (one
-  // channel). Each pixel is made to see as far as its neighbours do, since a surface at a slant is
-  // deeper at a pixel's far side than any point of it that was found.
+  // Sets the maximum depth of the surface visible in each pixel, in metres along the camera's axis;
+  // 0: none (one channel). Applies a maximum filter over the neighbouring pixels, because samples
+  // underestimate the maximum depth of an oblique surface.
   void setDepth(const Image& farthest);
 
-  // The colour of the pixel in which the camera sees `point`; nullopt where something is before it.
+  // The colour of the pixel that contains `point`; nullopt if the point is outside the image or
+  // occluded.
   std::optional<Rgb> lookup(const vec3& point) const;
 
   Image& colors() { return colors_; }

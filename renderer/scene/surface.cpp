@@ -23,8 +23,8 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Mesh& mesh, const
   return scene.textures[slot.texture].lookup(slot.transform(uv));
 }
 
-// The beam around a ray meets the surface in an ellipse; textures are filtered by a circle as
-// large, so that the beams of a pixel cover as much of it at any slant.
+// The footprint of the beam is an ellipse. Textures are filtered isotropically over an equal area,
+// so that at any angle the beams of a pixel together cover the same multiple of its footprint.
 float footprintOf(float crossSection, float cosine, float doubleArea) {
   constexpr float kMinCosine = 1e-3f;
   const float area = crossSection / std::max(std::fabs(cosine), kMinCosine);
@@ -35,13 +35,13 @@ float handednessOf(const Instance& instance) {
   return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0 ? -1.0f : 1.0f;
 }
 
-// The vertices' normals between them, in world space and on the front; not unit.
+// The interpolated vertex normal in world space, on the front side; not unit.
 [[gnu::always_inline]] inline vec3 interpolatedNormal(const Mesh& mesh, const Instance& instance,
                                                       const Triangle& triangle, vec2 barycentric,
                                                       float handedness) {
   const vec3 n = interpolate(mesh.normals, triangle, barycentric);
   if (!instance.toWorld) return n;
-  const mat3& m = instance.toWorld->linear;  // normals turn by the matrix of cofactors
+  const mat3& m = instance.toWorld->linear;  // normals are transformed by the cofactor matrix
   return handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
                        n.z * glm::cross(m[0], m[1]));
 }
@@ -59,7 +59,7 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
       tangent, handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent), normal};
 }
 
-// Out of line: most materials have no normal map.
+// Not inlined, because most materials have no normal map.
 [[gnu::noinline]] vec3 mappedNormal(const Scene& scene, const Surface& s, const Instance& instance,
                                     float handedness, const vec3& normal) {
   const auto frame = tangentFrame(s, instance, handedness, normal);
@@ -67,11 +67,11 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
   return mappedNormal(scene, s.material->normalTexture, s.material->normalScale, s, *frame);
 }
 
-// The error of a point interpolated from a triangle, and of the ray-triangle test that may see it
-// again, is a few roundings of the triangle's coordinates. Measured along the normal, as Waechter
-// and Binder (2019) offset in units in the last place; but by the vertices' coordinates and not the
-// point's, so that it also holds for a large triangle through the origin. A small share of the
-// other directions keeps it above zero on a coordinate plane.
+// Bounds the error, along the normal, of a point interpolated in a triangle and of the next
+// ray-triangle intersection: a few rounding errors of the coordinates. Waechter and Binder (2019)
+// use units in the last place of the point; here the vertices' coordinates are used, so that the
+// bound also holds for a large triangle through the origin. kAcross adds a small fraction of the
+// other directions, so that the offset is not 0 for a triangle in a coordinate plane.
 float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal) {
   constexpr float kRoundings = 16 * std::numeric_limits<float>::epsilon(), kAcross = 1.0f / 1024;
   const vec3 extent = glm::max(glm::abs(p0), glm::max(glm::abs(p1), glm::abs(p2)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray finds where it hits: geometry, normals, and the material's parameters at that point.
+// Geometry, normals and material parameters at a hit point.
 #pragma once
 
 #include "scene/scene.h"
@@ -7,7 +7,7 @@
 namespace chromeball {
 
 // A point on a triangle. Both normals are unit and on the side of the viewer; `normal` is the
-// interpolated (and, where the material has one, mapped) shading normal.
+// shading normal: interpolated, and perturbed by the material's normal map if it has one.
 struct Surface {
   const Mesh* mesh;
   const Material* material;
@@ -16,53 +16,53 @@ struct Surface {
   vec3 position;
   vec3 geometricNormal;
   vec3 normal;
-  float rayOffset;  // how far a ray must start off the surface not to meet it again (metres)
+  float rayOffset;  // offset of ray origins from the surface against self-intersection, metres
   bool frontFace;
-  // The area around the point that stands for it in textures, as a share of twice the triangle's; 0
-  // where textures are not filtered.
+  // Area of the texture filter on the triangle, divided by twice the triangle's area; 0 if textures
+  // are not filtered.
   float footprint;
 
-  // Where a ray that leaves towards `direction` starts.
+  // Origin of a ray that leaves the surface in direction `direction`.
   vec3 rayOrigin(const vec3& direction) const {
     const float side = glm::dot(geometricNormal, direction) < 0 ? -rayOffset : rayOffset;
     return position + side * geometricNormal;
   }
 };
 
-// Whether a ray along `direction` meets the back of a triangle: surfaceAt() says the same.
+// Whether a ray along `direction` hits the back of the triangle; equals !surfaceAt().frontFace.
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
                   const vec3& direction);
 
 // `wo`: unit, towards the viewer. `crossSection`: of the beam around the ray, in square metres; 0
-// for a ray that sees a point.
+// without texture filtering.
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
                   const vec3& wo, float crossSection = 0);
 
-// The smooth normal before any map, and the axes about it that normal maps are written in, all on
-// the front. Right angles; unit. Nothing where the mesh has no tangents or a degenerate one.
+// The orthonormal frame of normal maps: the interpolated normal (not mapped), tangent and
+// bitangent, on the front side. nullopt if the mesh has no tangents or the tangent is degenerate.
 struct TangentFrame {
   vec3 tangent, bitangent, normal;
 };
 std::optional<TangentFrame> tangentFrameAt(const Surface& surface, const Instance& instance);
 
-// A normal map's normal, unit.
+// The unit normal given by a normal map.
 vec3 mappedNormal(const Scene& scene, const TextureSlot& map, float scale, const Surface& surface,
                   const TangentFrame& frame);
 
-// A texture's value at a surface.
+// The texture's value at a surface point.
 vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& surface);
 
 // The metallic-roughness parameters at a point: factors x textures x vertex colours.
 struct MaterialPoint {
   Rgb baseColor;
   float metallic, roughness;
-  Rgb dielectricF0;     // reflectance at normal incidence of the dielectric part
-  float dielectricF90;  // and at grazing incidence
+  Rgb dielectricF0;     // of the dielectric part: reflectance at normal incidence
+  float dielectricF90;  // reflectance at grazing incidence
 };
 MaterialPoint materialAt(const Scene& scene, const Surface& surface);
 
-// Radiance emitted towards `wo` (unit, on the side that the surface is seen from). A single-sided
-// material emits from its front only; a clear coat keeps back what it reflects.
+// Radiance emitted towards `wo` (unit, on the viewer's side). A single-sided material emits only
+// from its front; a clear coat attenuates the emission by coatTransmittance().
 Rgb emittedRadiance(const Scene& scene, const Instance& instance, const Surface& surface,
                     const vec3& wo);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surroundings at a finite distance: a surface onto which the probe is projected (HDRI
-// book, 9.2.3).
+// Surroundings at a finite distance: a surface onto which the probe is projected (HDRI book,
+// section 9.2.3).
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ struct Surroundings {
   vec3 center{0};       // Sphere
   float radius = 0;
   std::string model;  // path of the model's file
-  vec3 capture{0};    // where the probe was captured
+  vec3 capture{0};    // the position at which the probe was captured
 
   struct Point {
     vec3 position;
     vec3 normal;  // unit, inwards
   };
-  // The point where a ray from inside hits the box or sphere; the origin itself if that is slightly
-  // outside.
+  // The point at which a ray from inside hits the box or sphere; the ray's origin if that is
+  // slightly outside.
   Point behind(const vec3& origin, const vec3& direction) const;
 
   bool contains(const vec3& point) const;
@@ -33,7 +33,7 @@ struct Surroundings {
   void grow(float fraction);  // on each side, by this fraction of its size
 };
 
-// Surroundings of any shape, also a model of the room (trace/room.h).
+// Surroundings of any other shape, such as a model of the room (trace/room.h).
 class Walls {
  public:
   virtual ~Walls() = default;

@@ -82,8 +82,8 @@ float reduce(float x, Wrap wrap) {
 
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
 
-// The result of a lookup that takes a mean of texels by mean(fetch). If colours are weighted by
-// alpha, this is the mean of (alpha colour, alpha), with the colour then divided by alpha.
+// A filtered lookup; mean(fetch) is the weighted mean of fetched texels. If colours are weighted by
+// alpha, returns the mean of (alpha colour, alpha), with the colour then divided by alpha.
 template <class Mean>
 [[gnu::always_inline]] static inline vec4 weighted(const Texture& t, const Mean& mean) {
   const bool srgb = t.srgb;
@@ -93,7 +93,7 @@ template <class Mean>
     const vec4 texel = fetch(g, srgb, x, y);
     return vec4(texel.w * Rgb(texel), texel.w);
   });
-  if (!(sum.w > 0)) return mean(plain);  // alpha masks with a cutoff of 0 show texels of alpha 0
+  if (!(sum.w > 0)) return mean(plain);  // visible if an alpha mask has a cutoff of 0
   return vec4(Rgb(sum) / sum.w, sum.w);
 }
 

@@ -29,8 +29,8 @@ struct Texture {
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter filter = Filter::Linear;
   bool srgb = false;
-  // Whether filtering weights colours by alpha, so that transparent texels do not tint opaque ones.
-  // True for base colours that blend or are masked; elsewhere alpha is unrelated to the colour.
+  // Whether filtering weights colours by alpha, so that the colours of transparent texels do not
+  // bleed into opaque ones. True for the base colour of blended or masked materials.
   bool weightedByAlpha = false;
   std::shared_ptr<const std::vector<TexelGrid>> mipLevels;  // mip_chain.h; null: none
 

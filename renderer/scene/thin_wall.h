@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth thin sheets (KHR_materials_transmission): light passes them in a straight line, so that
-// shadow rays can pass them, too.
+// Smooth thin sheets (KHR_materials_transmission). They do not refract, so shadow rays can pass
+// them.
 #pragma once
 
 #include "scene/extended_surface.h"
@@ -8,14 +8,15 @@
 namespace chromeball {
 
 // Whether the material transmits light only in a straight line, so that straightTransmittance() is
-// all of its transmission.
+// its whole transmission.
 bool passesStraight(const Material& material);
 
-// Fraction of the light that passes a smooth sheet at an angle of the given cosine: the part that
-// is not reflected (Schlick's Fresnel term), tinted by the base colour.
+// Transmittance of a smooth sheet for the given cosine of the angle of incidence: base colour x
+// transmission x (1 - metallic) x (1 - Schlick's Fresnel term).
 Rgb sheetTransmittance(const MaterialPoint& material, float transmission, float cosine);
 
-// The same at a surface point, along `direction` (unit, of either sign); black for other materials.
+// The same at a surface point, along `direction` (unit, either sign); black unless
+// passesStraight().
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction);
 

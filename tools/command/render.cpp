@@ -43,7 +43,7 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
                                   fmt::join(job.outputs, ", ")));
-  if (render.interrupted) throw Interrupted("interrupted; the picture so far is saved");
+  if (render.interrupted) throw Interrupted("interrupted; the image so far is saved");
   if (!quiet)
     fmt::print("{} samples per pixel in {:.2f} s, noise {}: {}\n", render.samples, result.seconds,
                inWords(result.noise), fmt::join(job.outputs, ", "));
