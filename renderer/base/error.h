@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways in which a run can fail. The command turns each into one line and an exit status.
+// The exceptions that end a run. The command prints each as one line and returns an exit status.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the library tells its user beside its results. It prints nothing itself.
+// Messages of the library to its user. The library itself prints nothing.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// Channels are interleaved. An image that holds colour has its first three channels R G B.
+// Channels are interleaved. The first three channels of a colour image are R, G, B.
 struct Image {
   int width = 0, height = 0, channels = 0;
   std::vector<float> texels;

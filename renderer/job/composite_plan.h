@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a job that puts objects into a photograph.
+// The part of a job that composites objects into a photograph.
 #pragma once
 
 #include "composite/compose.h"
@@ -14,7 +14,7 @@ struct LoadedScene;
 struct CompositePlan {
   Image plate;  // of the image's size
   CompositeMode mode = CompositeMode::Difference;
-  // Where the local scene's reflectance comes from.
+  // The source of the local scene's reflectance.
   enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
   int iterations = 1;  // of Reflectance::Plate
   Passes passes = Passes::One;
@@ -25,8 +25,8 @@ struct CompositePlan {
 // has another. Throws InputError.
 void planComposite(RenderJob& job);
 
-// Separates objects from local scene, and gives the local scene its reflectance and gloss. Throws
-// InputError.
+// Determines the objects and the local scene, and sets the local scene's reflectance and gloss.
+// Throws InputError.
 void prepareLocalScene(const RenderJob& job, LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -16,7 +16,7 @@ std::string dumped(const ordered_json& json) {
                    ordered_json::error_handler_t::replace);  // names may hold any byte
 }
 
-// `name(id - 1)` is the name of a number.
+// `name(id - 1)`: the name of the number `id`.
 template <class Name>
 std::string manifestOf(const Image& ids, const Name& name) {
   const std::set<float> present(ids.texels.begin(), ids.texels.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names that the numbers in the layers `node` and `material` stand for.
+// The names of the numbers in the layers `node` and `material`.
 #pragma once
 
 #include <map>
@@ -10,10 +10,10 @@
 
 namespace chromeball {
 
-// For each of these layers of the image an attribute `manifest/LAYER`: JSON {"1": "name",
-// ...} in ASCII, as Cryptomatte's manifests (Friedman and Jones 2015) with our numbers for its
-// hashes. It lists only numbers in the image; names are cut at 256 bytes, and beyond a mebibyte in
-// total the rest is counted under "omitted".
+// An attribute `manifest/LAYER` for each of these layers in the image: JSON {"1": "name", ...} in
+// ASCII, as in Cryptomatte's manifests (Friedman and Jones 2015) but with our numbers instead of
+// hashes. It lists only numbers that occur in the image. Names are truncated to 256 bytes; beyond a
+// total of 1 MiB, names are left out and their number is stored under "omitted".
 Metadata idManifests(const OutputImage& output, const Scene& scene);
 
 // The contents of such an attribute; empty if it is not well-formed.

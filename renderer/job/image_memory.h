@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory that an image takes, known before it is allocated.
+// Estimates the memory of a render before it is allocated.
 #pragma once
 
 #include "integrate/render.h"

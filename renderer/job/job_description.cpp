@@ -16,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Rows that name the same contents by another path, or that a comparison varies itself.
+// Rows that are excluded: paths (contents are compared instead), and settings that a comparison
+// varies.
 constexpr std::array kNotOfTheIdentity = {"scene",    "probe",       "files",
                                           "strategy", "noise-limit", "time-limit"};
 
@@ -37,11 +38,11 @@ void describeSettings(const Settings& settings, Json& d) {
   }
 }
 
-// Row vectors: the numbers of a row are the image of a unit vector, those of the last row that of
-// the origin.
+// For row vectors: each row is the transformed unit vector of an axis, the last row the transformed
+// origin.
 Json rows(const glm::dmat4& matrix) {
   Json numbers = Json::array();
-  for (int column = 0; column < 4; ++column)  // of glm's, which is for column vectors
+  for (int column = 0; column < 4; ++column)  // glm's matrices are for column vectors
     for (int row = 0; row < 4; ++row) numbers.push_back(float(matrix[column][row]));
   return numbers;
 }
@@ -52,9 +53,9 @@ glm::dmat4 worldToCamera(const Camera& camera, const glm::dvec3& position) {
   return glm::inverse(toWorld);
 }
 
-// The point (x, y, z) of camera space is seen at u = 1/2 + x / (2 a h z), v = 1/2 - y / (2 h z)
-// with h half the picture's height at distance 1 and a its aspect ratio; the third number grows
-// with z.
+// The point (x, y, z) of camera space has the image position u = 1/2 + x / (2 a h z),
+// v = 1/2 - y / (2 h z), with h half the image's height at distance 1 and a its aspect ratio. The
+// third coordinate increases with z.
 glm::dmat4 cameraToNdc(const Camera& camera, double aspect) {
   const double h = camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
   glm::dmat4 m(0);

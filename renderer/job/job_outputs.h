@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a job's images and statistics go.
+// The output files of a job: images and statistics.
 #pragma once
 
 #include "base/message.h"
@@ -7,8 +7,8 @@
 
 namespace chromeball {
 
-// Checks before the work that the outputs can be written. Returns warnings of settings without
-// effect on them. Throws InputError or RunError.
+// Checks, before rendering, that the outputs can be written. Returns warnings about settings that
+// have no effect on them. Throws InputError or RunError.
 Messages checkOutputs(const RenderJob& job);
 
 // Call when all files are read (`inputs`; the scene file itself is added) and no other input error

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render reports about itself: its statistics and the attributes of its EXR file.
+// The statistics of a render, and the attributes of its EXR file.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user should know about the files of a job.
+// Messages to the user about the files of a job.
 #pragma once
 
 #include "job/load_scene.h"
 
 namespace chromeball {
 
-// Of the job's settings, the models (`modelWarnings`: what their files hold that is not rendered),
-// the probe and the plate.
+// Messages about the job's settings, the models (`modelWarnings`: unsupported contents of their
+// files), the probe and the plate.
 Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
                       const std::vector<std::string>& modelWarnings);
 

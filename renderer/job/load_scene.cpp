@@ -34,9 +34,9 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin,
   return scene;
 }
 
-// The origin of the scene's coordinates in the world. A float resolves positions to 1e-7 of their
-// distance from the origin, so a scene much farther from the origin than it is large is moved to
-// its own centre; the probe, infinitely far away, looks the same.
+// The origin of the scene's coordinates in the world. Floats have a relative precision of 1e-7, so
+// a scene that is small compared with its distance from the origin is moved to its own centre. The
+// distant probe is not affected.
 glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   constexpr float kMaxReach = 1e9f, kFar = 1000;
   const Bounds box = bounds(scene);

@@ -15,16 +15,16 @@ namespace chromeball {
 
 struct LoadedScene {
   Scene scene;
-  Camera camera;            // the one that renders
+  Camera camera;            // the camera of the image
   LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
-  Probe probe;              // black where the scene lights itself
+  Probe probe;              // black if only the scene's own lights are used
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::vector<std::string> files;            // all that were read; no output may replace one
   Messages messages;  // of the job's settings, of the models and of the probe
 
-  // Of a composite; else empty.
+  // For composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
   std::unique_ptr<Projection> projection;  // of the local scene's reflectance, where it is solved
 };

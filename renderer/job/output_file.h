@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output files, checked before the work that makes them.
+// Output files, and checks to be made before rendering.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ NamedSetting named(const Settings& settings, std::string_view name) {
   return {settings.get<std::string>(name), settings.location(name)};
 }
 
-// Settings that the models take, each for itself.
+// Applies the settings that are stored per model.
 void applyToModels(const Settings& over, const Settings& all, std::vector<ModelEntry>& models) {
   for (ModelEntry& model : models) {
     GltfChoice& choice = model.choice;
@@ -44,7 +44,7 @@ void applyToModels(const Settings& over, const Settings& all, std::vector<ModelE
   }
 }
 
-// `over` over the scene file.
+// Overrides the settings of the scene file by `over`.
 void merge(SceneFile& file, const Settings& over) {
   if (over.has("camera.name")) file.camera.reset();
   const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
@@ -55,7 +55,7 @@ void merge(SceneFile& file, const Settings& over) {
   applyToModels(over, file.settings, file.models);
 }
 
-// Those of plain renders; a composite's own are in CompositePlan.
+// The layers of plain renders; those of composites are in CompositePlan.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
   const std::string location = file.settings.location("output.aovs");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render with all its settings: those given, laid over the scene file's, laid over the defaults.
+// A render with all its settings: given settings override the scene file's, which override the
+// defaults.
 #pragma once
 
 #include <optional>
@@ -14,21 +15,21 @@
 namespace chromeball {
 
 struct RenderJob {
-  SceneFile file;                 // its `settings` hold the given ones too
+  SceneFile file;                 // its `settings` include the given ones
   RenderSettings settings;        // of the integrator; the size is final after loadScene()
-  std::optional<ImageSize> size;  // else the model's camera decides
+  std::optional<ImageSize> size;  // nullopt: determined by the model's camera
   SingleSided singleSided = SingleSided::Camera;
   NamedSetting strategy;
   std::optional<CompositePlan> composite;
 
-  // Of writing the image; rendering ignores them.
+  // For writing the image; no effect on rendering.
   std::vector<std::string> outputs;
   bool makesOutputFolders = false;  // the scene file names the outputs
   DisplayTransform display;         // of a .png
 };
 
-// Lays `over` over the scene file's settings, and reads the plate of a composite. Throws InputError
-// for settings that contradict each other, and for an unreadable plate.
+// Overrides the scene file's settings by `over`, and reads the plate of a composite. Throws
+// InputError for settings that contradict each other, and for an unreadable plate.
 RenderJob planJob(SceneFile scene, const Settings& over = {});
 
 }  // namespace chromeball

@@ -6,7 +6,7 @@
 
 namespace chromeball {
 
-// Finds the local scene's reflectance where the job asks for it, then renders the composite.
+// Estimates the local scene's reflectance if the job requests it, then renders the composite.
 JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
                           const PreparedScene& prepared, const Progress& progress,
                           const std::atomic<bool>& stop);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a job whose scene is loaded: the one place that builds the acceleration structure and the
-// lighting, and calls the integrators.
+// Renders a job with a loaded scene: builds the acceleration structure and the lighting strategy,
+// and calls the integrators.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace chromeball {
 
-// What a render needs beside the scene. The scene must outlive it.
+// The data that a render needs besides the scene, which must outlive it.
 struct PreparedScene {
   std::unique_ptr<const World> world;
   std::unique_ptr<LightingStrategy> lighting;
@@ -26,13 +26,13 @@ struct PreparedScene {
 // Throws InputError for a strategy that is unknown or does not suit the probe.
 PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded);
 
-// How a composite came out.
+// Statistics of a composite.
 struct CompositeReport {
   double coverage = 0;           // mean alpha of the objects
-  size_t darkerThanBlack = 0;    // pixels where the difference exceeds the plate; they became black
-  struct Reflectance {           // of the local scene, found from the plate
-    size_t pixels = 0;           // that see the local scene
-    double clampedFraction = 0;  // of them: need an albedo above 1
+  size_t darkerThanBlack = 0;    // number of pixels with negative results, which are set to 0
+  struct Reflectance {           // of the local scene, estimated from the plate (reflectance.h)
+    size_t pixels = 0;           // number of pixels that see the local scene
+    double clampedFraction = 0;  // fraction of these that need an albedo above 1
     double exposureRatio = 0;    // plate over the local scene with the model's own reflectance
     double lastChange = 0;       // mean |change| of the reflectance in the last iteration
   };
@@ -50,12 +50,12 @@ struct JobResult {
   const Image& color() const { return image.layers.front().image; }  // linear RGB or RGBA
 };
 
-// Renders until the job's samples, time or noise is reached, or `stop` is set: then
-// render.interrupted is true, and the image holds the samples so far.
+// Renders until the job's limit of samples, time or noise is reached, or `stop` is set. In the
+// latter case render.interrupted is true, and the image contains the samples so far.
 JobResult renderJob(const RenderJob& job, const LoadedScene& loaded, const PreparedScene& prepared,
                     const Progress& progress, const std::atomic<bool>& stop);
 
-// The same to the end, without progress.
+// The same without progress reports and interruption.
 JobResult renderJob(const RenderJob& job, const LoadedScene& loaded);
 
 }  // namespace chromeball

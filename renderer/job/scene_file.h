@@ -22,13 +22,13 @@ struct ModelEntry {
   GltfChoice choice;
 };
 
-// A thin lens, for whichever perspective camera renders.
+// A thin lens; applies to any perspective camera.
 struct Lens {
   float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
   std::string location;   // FILE:LINE, begins an error
 };
 
-// The nodes of [composite] that stand for real things; the other nodes are put into the plate.
+// The local scene of [composite], by node names; all other nodes are objects.
 struct CompositeEntry {
   std::string location;  // of the section: FILE:LINE, begins an error
   std::vector<NamedSetting> localScene;
@@ -36,9 +36,9 @@ struct CompositeEntry {
 
 // The contents of a scene file. Paths are resolved against the scene file's folder.
 struct SceneFile {
-  std::string path;                // of the scene file, or of the model that replaces one
+  std::string path;                // of the scene file, or of the model if there is no scene file
   std::vector<ModelEntry> models;  // at least one
-  Settings settings;               // all keys but those of structured parts, as far as given
+  Settings settings;               // the given keys, except those of structured parts
   std::optional<Camera> camera;    // [camera] with `position`
   std::optional<Lens> lens;
   std::vector<Lamp> lamps;  // [[light]]
@@ -51,8 +51,8 @@ struct SceneFile {
 // known one), a wrong type, a value out of range, or a model or probe that does not exist.
 SceneFile readSceneFile(const std::string& path);
 
-// A scene file (.toml), or a model (.gltf, .glb) as a scene file that names nothing else. Throws
-// InputError.
+// A scene file (.toml), or a model (.gltf, .glb) as a scene file that contains only this model.
+// Throws InputError.
 SceneFile openScene(const std::string& path);
 
 }  // namespace chromeball

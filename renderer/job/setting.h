@@ -25,7 +25,7 @@ enum class SettingType {
   Factor,    // the same; "off" is 0
   Choice,    // one of the choices
   Choices,   // one or several of the choices
-  Name,      // a string; the code that uses it knows which are valid
+  Name,      // a string, validated by the code that uses it
   File,      // an existing file
   Files,     // one or several files to write
   Size,      // width and height in pixels
@@ -43,12 +43,12 @@ struct Range {
   }
 };
 
-// What a setting changes.
+// The effect of a setting.
 enum class Effect {
-  Image,    // the pixels' radiance: part of a job's description
-  Limit,    // how many samples are taken
-  Display,  // how a .png shows the radiance
-  Run,      // nothing in the image
+  Image,    // changes the radiance of pixels: part of a job's description
+  Limit,    // changes the number of samples
+  Display,  // changes the tone mapping of a .png
+  Run,      // does not change the image
 };
 
 struct Setting {
@@ -61,18 +61,18 @@ struct Setting {
   std::string_view form = {};  // of a Compound: "three numbers"
   Range range = {};
   std::string_view unit = {};
-  std::string fallback = {};     // the default, as the option takes it; empty: none
-  std::string_view absent = {};  // without a default: what applies instead
+  std::string fallback = {};     // the default, in the syntax of the option; empty: none
+  std::string_view absent = {};  // if there is no default: describes the behaviour without a value
   std::vector<std::string_view> (*choices)() = nullptr;  // listed also for a Name
   std::string_view help;
   Effect effect = Effect::Image;
-  bool renderOnly = false;  // `chromeball compare` has no such option: it varies it or ignores it
+  bool renderOnly = false;  // not an option of `chromeball compare`, which varies or ignores it
 
   // "render.samples"; the option if there is no key.
   std::string name() const;
 };
 
-// What a valid value is: "a whole number from 1 to 20", "a finite number above 0 (seconds)".
+// Describes valid values: "a whole number from 1 to 20", "a finite number above 0 (seconds)".
 std::string expected(const Setting& setting);
 
 // The value of an option's arguments (none for a flag). Throws InputError, begun by `location`.
@@ -82,7 +82,7 @@ SettingValue parseSetting(const Setting& setting, const std::vector<std::string>
 // Throws InputError, begun by `location`, for a value of another type or out of range.
 void checkSetting(const Setting& setting, const SettingValue& value, const std::string& location);
 
-// As an option takes it.
+// The value in the syntax of the option.
 std::string toText(const SettingValue& value);
 
 }  // namespace chromeball

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of all settings of a render. The scene file's reader, the command line, --help, the
-// reference page (docs/scene-file.md) and the description of a job in an EXR file come from it.
+// The table of all settings of a render. The scene file's reader, the command line, --help, the
+// reference page (docs/scene-file.md) and the description of a job in an EXR file are derived from
+// it.
 #pragma once
 
 #include <span>
@@ -17,8 +18,8 @@ inline constexpr int kMaxDepth = 1'000'000;
 // Compound also needs a reader (scene_file*.cpp).
 const std::vector<Setting>& settingTable();
 
-// A section of the scene file, in the order of the reference page; the empty name holds options of
-// the command line that no scene file gives.
+// A section of the scene file, in the order of the reference page; the section with the empty name
+// contains the options that exist only on the command line.
 struct SettingSection {
   std::string_view name;     // "render"
   std::string_view heading;  // "[render]"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings that a scene file, a command line or a program gives.
+// Values of settings, from a scene file, a command line or a program.
 #pragma once
 
 #include <map>
@@ -11,9 +11,9 @@
 
 namespace chromeball {
 
-// Values by the names of the table of settings ("render.samples"), each with the location it comes
-// from: FILE:LINE, "--samples", or nothing. A name that is not in the table, or a type that is not
-// the setting's, is a mistake of the calling code: std::logic_error.
+// Values by the names of the table of settings ("render.samples"), each with the location of its
+// origin: FILE:LINE, "--samples", or empty. Throws std::logic_error for a name that is not in the
+// table, or for the wrong type: mistakes of the calling code.
 class Settings {
  public:
   struct Given {
@@ -23,7 +23,7 @@ class Settings {
 
   // Throws InputError, begun by the location, for a value out of range.
   void set(std::string_view name, SettingValue value, std::string location = {});
-  // From the text that the setting's option would take.
+  // Sets the value from text in the syntax of the option.
   void parse(std::string_view name, const std::string& text);
 
   void erase(std::string_view name);

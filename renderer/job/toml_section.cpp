@@ -20,7 +20,7 @@ std::string describe(const toml::node& node) {
   return "a date or time";
 }
 
-// What one number of the setting must be.
+// Describes valid numbers of the setting.
 std::string expectedNumber(Setting setting, const Range& range) {
   if (setting.type == SettingType::Compound) setting.type = SettingType::Number;
   setting.range = range;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads TOML with errors that begin with FILE:LINE and say what would be right.
+// Reads TOML. Error messages begin with FILE:LINE and describe valid input.
 #pragma once
 
 // parseToml() reports invalid keys such as [[&]] itself; the library's assertions would abort.

@@ -44,8 +44,8 @@ class GridTable {
     return values_[offset];
   }
 
-  // Multilinear interpolation, along the last dimension first, by mix(a, b, blend): glm's, or the
-  // function of this name beside the type Value.
+  // Multilinear interpolation, along the last dimension first, by mix(a, b, blend): glm::mix, or an
+  // overload found by argument-dependent lookup for Value.
   Value interpolate(const Position& position) const { return mixAlong<0>(position, 0); }
 
   // Calls visit(value, weight) for the 2^kDimensions corners around the position: the sum of weight

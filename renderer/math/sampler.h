@@ -25,10 +25,10 @@ inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
 inline constexpr int kPerVertex = 8;
 }  // namespace dimension
 
-// Numbers for the samples of one pixel. All pixels share the table's points; each pixel and
-// dimension XORs them with a random number of its own (a random digital shift), which preserves
-// their stratification and makes each point uniform. A block is as many samples as the table has
-// points; every block has its own shifts, and so is an independent randomisation.
+// Random numbers for the samples of one pixel. All pixels share the table's points; each pixel and
+// dimension XORs them with its own random number (a random digital shift), which preserves their
+// stratification and makes each point uniform. A block is as many samples as the table has points;
+// every block has its own shifts, and so is an independent randomisation.
 class PixelSampler {
  public:
   PixelSampler(const SobolTable& table, uint64_t seed)
@@ -53,12 +53,12 @@ class PixelSampler {
   uint32_t bits(int d) const {
     d += base_;
     if (d < dimensions_) return point_[d] ^ shifts_[d];
-    return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: plain random numbers
+    return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: not stratified
   }
   float get1(int d) const { return toUnit(bits(d)); }
-  // With 53 bits, of which the lower ones are plain random numbers: to choose among more than 2^24.
+  // With 53 bits, to choose among more than 2^24 items; the lower 21 bits are not stratified.
   double getFine1(int d) const {
-    constexpr uint64_t kPurpose = 0x66696e65;  // separates this from other uses of the key
+    constexpr uint64_t kPurpose = 0x66696e65;  // separate random stream
     const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
     return (double(bits(d)) + double(low) * 0x1p-21) * 0x1p-32;
   }

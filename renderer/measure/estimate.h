@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number known from samples, with its standard error.
+// An estimated number with its standard error.
 #pragma once
 
 #include <span>

@@ -37,7 +37,7 @@ DetectedMapping detectMapping(const Image& image) {
   if (w == 2 * h) return {Mapping::LatLong, "its shape is 2:1", true};
   if (w == 6 * h) return {Mapping::HorizontalStrip, "its shape is 6:1", true};
   if (h == 6 * w) return {Mapping::VerticalStrip, "its shape is 1:6", true};
-  // Smaller images are too coarse to tell a disc or a cross.
+  // Smaller images are too coarse to detect a disc or a cross.
   constexpr int kMin = 12;
   if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a probe's file: image, mapping, repair, conversion to a lat-long map ready to render with.
+// Reads a probe's file: image, mapping, repair, and conversion to a lat-long map for rendering.
 #pragma once
 
 #include <filesystem>
@@ -30,9 +30,9 @@ struct LoadedProbe {
 // `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` attribute
 // of an EXR, else detects it (detect_mapping.h). A lat-long map with that attribute has +Z in its
 // centre and +X at its left quarter (OpenEXR's ImfEnvmap.h); it is turned by 180 degrees, to agree
-// with the cube map of the same place. A lat-long file of any shape keeps its texels; others are
-// converted at latLongSize() (convert.h). Throws InputError; it starts with `mappingLocation` if
-// the mapping is at fault.
+// with the cube map of the same environment. A lat-long file of any shape keeps its texels; others
+// are converted at latLongSize() (convert.h). Throws InputError; it starts with `mappingLocation`
+// if the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
                       std::string_view mappingLocation = "--probe-mapping");
 

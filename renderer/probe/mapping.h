@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The omnidirectional mappings: direction to image and back. This is the only copy of each.
+// The omnidirectional mappings: direction to image position and back.
 #pragma once
 
 #include <optional>

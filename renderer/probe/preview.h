@@ -8,8 +8,7 @@
 
 namespace chromeball {
 
-// The probe as the scene sees it, rotated: a lat-long map of width / 2 rows, in display-linear
-// colours.
+// The rotated probe as a lat-long map of width / 2 rows, in display-linear colours.
 Image probePreview(const Probe& probe, int width);
 
 }  // namespace chromeball

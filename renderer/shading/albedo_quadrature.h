@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tables of albedo share: the positions of their nodes, and the integral at a node.
+// Common parts of the albedo tables: the positions of their nodes, and the integral at a node.
 #pragma once
 
 #include <span>

@@ -9,11 +9,11 @@
 
 namespace chromeball {
 
-// One bounce off anisotropic GGX microfacets over a diffuse base. The specular lobe is scaled up by
-// the light that microfacets scatter more than once (Turquin 2019, "Practical multiple scattering
-// compensation for microfacet models"), 1 + F0 (1 - E) / E with E the white albedo of one bounce;
-// the base gets what the surface does not reflect towards the viewer. No light is lost, but the
-// diffuse part is not reciprocal.
+// One bounce off anisotropic GGX microfacets over a diffuse base. The specular lobe is multiplied
+// by 1 + F0 (1 - E) / E, with E the white albedo of one bounce, to account for light that
+// microfacets scatter more than once (Turquin 2019, "Practical multiple scattering compensation for
+// microfacet models"). The diffuse base is scaled by 1 - (albedo of the surface for wo): energy is
+// conserved, but the diffuse part is not reciprocal.
 class Brushed {
  public:
   // `tangent`: unit, the direction in which the highlight is wider; `strength` in [0, 1]; the rest

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a surface scatters light at one point, seen from one direction: the closed set of BSDFs.
+// The BSDF of a surface at one point, for one viewing direction: a closed set of types.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// What every BSDF of the set answers.
+// The interface of every BSDF of the set.
 template <class T>
 concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2 u, float lobe,
                                  BsdfSample& out) {
@@ -20,7 +20,7 @@ concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2
   // Chooses a direction by `u`, and by `lobe` in [0, 1) one of several lobes. False if the
   // light is absorbed.
   { bsdf.sample(u, lobe, out) } -> std::same_as<bool>;
-  // Whether evaluate() can be above 0 for such lobes, so that sampling lights pays.
+  // Whether evaluate() can be above 0 for these lobes; if not, light samples are not needed.
   { bsdf.has(lobes) } -> std::same_as<bool>;
   // Whether broad lobes transmit light from behind.
   { bsdf.transmits() } -> std::same_as<bool>;
@@ -29,7 +29,7 @@ concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2
 };
 static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && ScattersLight<Layered>);
 
-// A material pays for its own member of the set alone.
+// A std::variant over the set: only the type that the material needs is constructed.
 class Bsdf {
  public:
   // Of a plain material: Lambert if it has no specular reflection. `wo`: unit, towards the viewer;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// What evaluating and sampling a BSDF return.
+// Results of evaluating and sampling a BSDF.
 #pragma once
 
 #include "math/vec.h"
 
 namespace chromeball {
 
-// Strategies that put lights in the probe's place would show these one by one in narrow lobes,
-// which therefore see the probe itself (LightingStrategy::mirrorAlpha). A BSDF is the sum of its
-// lobes of either kind, and each sum has its own samples, pdf and MIS weights.
+// If a strategy replaces the probe by lights, narrow lobes would reflect them as separate
+// highlights; so narrow lobes see the probe itself (LightingStrategy::mirrorAlpha). A BSDF is the
+// sum of its broad and its narrow lobes; each sum has its own samples, pdf and MIS weights.
 enum class Lobes {
   Broad,
-  Narrow,  // GGX with alpha below the limit; also perfect mirrors, which evaluate() does not show
+  Narrow,  // GGX with alpha below the limit; also perfect mirrors, for which evaluate() returns 0
 };
 
 struct BsdfValue {
@@ -27,8 +27,8 @@ struct BsdfSample {
   bool isDelta;  // wi is the only direction of a perfect mirror or a smooth refraction
 };
 
-// Completes a sample in the direction out.wi, where out.lobes have `value`; false where the pdf is
-// 0. NaN passes, to be counted by the film.
+// Completes a sample in the direction out.wi, for which out.lobes have `value`. Returns false if
+// the pdf is 0. NaN passes, to be counted by the film.
 inline bool completeSample(const BsdfValue& value, BsdfSample& out) {
   if (value.pdf <= 0) return false;
   out.weight = value.fCos / value.pdf;

@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-// Textures scale the factors of a material by at most 1: what is 0 stays 0.
+// Textures scale the factors of a material by at most 1, so a factor of 0 stays 0.
 bool needsEnergy(const Material& m) { return m.metallic > 0 || m.specular > 0 || m.extended; }
 bool needsAnisotropic(const Material& m) { return m.extended && m.extended->anisotropy > 0; }
 bool needsSheen(const Material& m) { return m.extended && !isBlack(m.extended->sheenColor); }

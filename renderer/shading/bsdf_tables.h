@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables that the BSDFs of a scene look up.
+// The precomputed tables of the BSDFs of a scene.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace chromeball {
 
-// Holds those tables that the materials need, and no others: none for Lambertian materials. Belongs
-// to whoever renders the scene, and must outlive the BSDFs.
+// Builds only the tables that the materials need; none for Lambertian materials. Must outlive the
+// BSDFs.
 struct BsdfTables {
   explicit BsdfTables(std::span<const Material> materials);
 

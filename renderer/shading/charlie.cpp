@@ -4,15 +4,15 @@
 namespace chromeball::charlie {
 namespace {
 
-// D(h): pdf of the fibres' normals per solid angle and projected area at height z; largest at right
-// angles to the surface's normal (eq. 2).
+// D(h): pdf of the fibres' normals per solid angle and projected area, for h.z = z (eq. 2). Its
+// maximum is perpendicular to the surface normal.
 float distribution(float z, float alpha) {
   const float sine = std::sqrt(std::max(0.0f, 1 - z * z));
   return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) * (0.5f * kInvPi);
 }
 
-// A fit to Smith's Lambda for a direction at height z (eq. 3 and table 1). Rounding may leave z
-// above 1.
+// A fit to Smith's Lambda for a direction w with w.z = z (eq. 3 and table 1). Rounding errors may
+// make z > 1.
 float lambda(float z, float alpha) {
   const float t = (1 - alpha) * (1 - alpha);
   const auto between = [t](float rough, float smooth) { return rough + t * (smooth - rough); };

@@ -10,13 +10,14 @@ namespace {
 
 constexpr float kMirrorAlpha = 1.001e-4f;  // ggx::kSmoothAlpha, the smallest node, with a margin
 
-// The smoothest surfaces are perfect mirrors, whose facets mask nothing, even at grazing angles.
+// The smoothest surfaces are perfect mirrors, without masking even at grazing angles.
 SpecularAlbedo mirrorAlbedo(float mu) {
   const float c = 1 - mu, grazing = c * c * c * c * c;
   return {1 - grazing, grazing};
 }
 
-// 2 int E(mu) mu dmu of the interpolant itself, so that the compensation balances.
+// 2 int E(mu) mu dmu of the piecewise linear interpolant, so that the compensation conserves energy
+// exactly.
 template <int kAngles>
 SpecularAlbedo average(const GridTable<SpecularAlbedo, kAngles>& line) {
   constexpr int kSteps = 4096;

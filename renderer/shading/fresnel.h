@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reflection and refraction at a smooth boundary. `eta`: the index of refraction on the far side
-// over that on the near side, from which the light is seen.
+// Reflection and refraction at a smooth boundary. `eta`: the refractive index on the far side over
+// that on the near side (the viewer's).
 #pragma once
 
 #include "math/vec.h"

@@ -18,7 +18,7 @@ inline float distribution(const vec3& h, float alpha) {
   return 1 / (kPi * alpha * alpha * e * e);
 }
 
-// Smith's Lambda for a direction at height z (Heitz 2014, "Understanding the Masking-Shadowing
+// Smith's Lambda for a direction w with w.z = z (Heitz 2014, "Understanding the Masking-Shadowing
 // Function in Microfacet-Based BRDFs", eq. 72).
 inline float lambda(float z, float alpha) {
   const float z2 = z * z;

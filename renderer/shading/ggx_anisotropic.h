@@ -10,7 +10,7 @@ namespace chromeball::ggx {
 // Widths along and across the tangent, for perceptual roughness and strength in [0, 1]
 // (KHR_materials_anisotropy, "Implementation").
 inline vec2 anisotropicAlpha(float roughness, float strength) {
-  constexpr float kMin = 1e-3f;  // narrower lobes look the same: as thin as a line
+  constexpr float kMin = 1e-3f;  // narrower lobes look the same, a thin line
   const float alpha = std::max(roughness * roughness, kMin);
   return {glm::mix(alpha, 1.0f, strength * strength), alpha};
 }

@@ -17,8 +17,9 @@ float normalReflectance(float eta) {
   return r * r;
 }
 
-// F0 of KHR_materials_specular over F0 of the index `front` against air. The same ratio applies in
-// any surrounding medium, so that a body of nearly the index of its surroundings vanishes.
+// F0 of KHR_materials_specular over F0 of the index `front` against air. The same ratio is used in
+// any surrounding medium, so that the reflectance of a body vanishes as its index approaches that
+// of its surroundings.
 float specularTint(const MaterialPoint& m, int channel, float front) {
   const float own = normalReflectance(front);
   return own > 0 ? m.dielectricF0[channel] / own : m.dielectricF90;

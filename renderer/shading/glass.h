@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// Indices of refraction at a boundary, as ratios (fresnel.h), one for each channel: they differ if
-// the body disperses light. `front`: the index of the body's own medium against air, to which the
+// Relative refractive indices at a boundary (eta of fresnel.h), one per channel: they differ for a
+// dispersive body. `front`: the index of the body's own medium against air, to which the
 // reflectance of KHR_materials_specular refers.
 struct RefractiveIndex {
   Rgb eta;
@@ -18,10 +18,10 @@ struct RefractiveIndex {
 };
 
 // GGX microfacets that reflect by Fresnel's equations and refract the rest (Walter et al. 2007),
-// both scaled by 1 / (their albedo in one bounce), so that no light is lost (Turquin 2019,
-// "Practical multiple scattering compensation for microfacet models"). That conserves energy
-// exactly for every view, and is reciprocal only if the surface is smooth. KHR_materials_specular
-// changes Fresnel's reflectance F before the critical angle to
+// both scaled by 1 / (their total albedo in one bounce) (Turquin 2019, "Practical multiple
+// scattering compensation for microfacet models"). That conserves energy exactly for every viewing
+// direction, but is reciprocal only for a smooth surface. KHR_materials_specular changes Fresnel's
+// reflectance F below the critical angle to
 //   F0 + (F90 - F0) (F - F(0)) / (1 - F(0)),   affine in F.
 // Paths carry basic radiance, L / n^2, so there is no factor eta^2: it cancels between the eye and
 // a light in the same medium.
@@ -40,8 +40,8 @@ class Glass {
   Rgb fresnel(float cosine) const;  // of each channel
   float fresnel(float cosine, int channel) const;
   BsdfValue reflect(const vec3& wi) const;
-  // Refraction of one channel, whose direction the others share; the pdf is that of all facets at
-  // which sample() refracts.
+  // Refraction with the index of `channel`; the other channels use the same direction. The pdf is
+  // that of refraction by sample().
   BsdfValue refract(const vec3& wi, int channel) const;
   // Probability of sampling reflection at a facet.
   float reflectProbability(const Rgb& reflectance) const {
@@ -54,7 +54,7 @@ class Glass {
   Rgb eta_;
   bool dispersive_;
   Rgb tint_;
-  Rgb offset_, slope_;  // reflectance before the critical angle: offset + slope F
+  Rgb offset_, slope_;  // reflectance below the critical angle: offset + slope F
   float alpha_;
   float lambdaO_;
   Rgb gain_;  // 1 / (albedo in one bounce)

@@ -9,8 +9,8 @@
 namespace chromeball {
 namespace {
 
-// x = (eta - 1) / (eta + 1) from -1/2 to 1/2, dense about 0, where facets cease to refract and the
-// critical angle approaches the grazing one. Roughness and angle as in albedo_quadrature.h.
+// x = (eta - 1) / (eta + 1) from -1/2 to 1/2, with dense nodes about 0, where refraction vanishes
+// and the critical angle approaches 90 degrees. Roughness and angle as in albedo_quadrature.h.
 constexpr float kMaxX = 0.5f, kExponent = 2.5f;
 float etaNode(int i, int count) {
   const float t = 2 * float(i) / float(count - 1) - 1;
@@ -22,9 +22,10 @@ float etaCoordinate(float eta) {
   return 0.5f + 0.5f * std::copysign(std::pow(std::fabs(x), 1 / kExponent), x);
 }
 
-// For all nodes of eta, the means over visible normals of G2/G1 times: 1 where facets reflect
-// totally or else refract (plain); 1 for reflection and -1 for refraction (a); the same times
-// Fresnel's reflectance (b).
+// For all nodes of eta, the means over visible normals of G2/G1 times:
+//   plain: 1 for total internal reflection and for refraction
+//   a: 1 for reflection, -1 for refraction, below the critical angle
+//   b: as a, times Fresnel's reflectance
 template <size_t kEtas>
 std::array<GlassAlbedo, kEtas> integrate(float mu, float alpha, std::span<const vec2> points) {
   std::array<float, kEtas> etas;

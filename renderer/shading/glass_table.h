@@ -6,9 +6,9 @@
 
 namespace chromeball {
 
-// Albedo in one bounce, reflection and refraction together, of GGX microfacets that absorb nothing;
-// below 1 by what they mask and would scatter again. They reflect all light beyond the critical
-// angle, and before it a fraction that is affine in Fresnel's reflectance F:
+// Albedo in one bounce, reflection plus refraction, of GGX microfacets without absorption. It is
+// below 1 by the masked light, which would be scattered again. The facets reflect all light above
+// the critical angle, and below it a fraction that is affine in Fresnel's reflectance F:
 //   reflectance = offset + slope F,   albedo = plain + offset a + slope b.
 struct GlassAlbedo {
   float plain, a, b;

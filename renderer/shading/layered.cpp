@@ -87,7 +87,7 @@ void Layered::addBase(const Point& p, const MaterialPoint& m, const Rgb& metalF0
     normal_ = glass_->lobe.normal();
   }
   if (transmission < 1) {
-    MaterialPoint rest = m;  // as much metal, and the rest of the dielectric
+    MaterialPoint rest = m;  // the metal, and the part of the dielectric that does not transmit
     rest.metallic = m.metallic / (1 - transmission);
     addOpaque(p, rest, rest.baseColor * (1 - rest.metallic), metalF0, weight * (1 - transmission));
   }
@@ -112,8 +112,8 @@ Rgb Layered::addOpaque(const Point& p, const MaterialPoint& m, const Rgb& diffus
   return Rgb(0);
 }
 
-// Under a coloured film the lobe's diffuse part gets what the film transmits of the channel that it
-// reflects most; what it transmits of the others beyond that is a diffuse lobe of its own.
+// Under a coloured film, the lobe's diffuse part is scaled by the film's smallest transmittance
+// over the channels. The additional transmittance of the other channels is a separate diffuse lobe.
 template <class Lobe, class LobeOf>
 Rgb Layered::addOpaqueLobe(std::optional<Weighted<Lobe>>& to, const Point& p,
                            const MaterialPoint& m, const Rgb& diffuse, float weight,

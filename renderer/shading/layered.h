@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BSDF of materials with glTF extensions: layers and lobes beside metallic-roughness.
+// The BSDF of materials with glTF extensions: layers and lobes besides metallic-roughness.
 #pragma once
 
 #include <optional>
@@ -15,15 +15,15 @@
 namespace chromeball {
 
 // A weighted sum of lobes that each conserve energy. From the outside in:
-//   a clear coat of index 1.5, which transmits 1 - (its albedo) to what lies beneath;
+//   a clear coat of index 1.5, which transmits 1 - (its albedo) to the layers beneath;
 //   sheen, likewise;
 //   the base: metallic-roughness, or brushed if it is anisotropic. The fraction `transmission` of
 //   its dielectric part is glass (which ignores anisotropy); in a sheet without thickness, this
 //   fraction of the diffuse light is transmitted instead.
-// A thin film changes the F0 of the base to the film's reflectance for the viewer's angle: exact if
-// the base is smooth. What it does not reflect of each channel reaches the diffuse base.
-// Layers attenuate by the viewer's direction alone, as the simple forms of the extensions do: that
-// conserves energy exactly but is not reciprocal.
+// A thin film replaces the F0 of the base by the film's reflectance at the viewing angle (exact for
+// a smooth base). Light that it does not reflect, per channel, reaches the diffuse base.
+// The attenuation of layers depends only on the viewing direction, as in the simple forms of the
+// extensions: that conserves energy exactly but is not reciprocal.
 class Layered {
  public:
   // As for MetallicRoughness.
@@ -46,7 +46,7 @@ class Layered {
     float weight;
     float probability;  // of sampling the lobe
   };
-  // What all lobes at the point are built from.
+  // The inputs of all lobes at the point.
   struct Point {
     const ExtendedPoint& extended;
     const RefractiveIndex& index;
@@ -68,7 +68,7 @@ class Layered {
   bool sampleLobe(const Weighted<Lobe>& part, vec2 u, float choice, BsdfSample& out) const;
 
   void addBase(const Point& point, const MaterialPoint& material, const Rgb& metalF0, float weight);
-  // Metallic-roughness, brushed or Lambert; returns what the dielectric surface reflects.
+  // Adds metallic-roughness, brushed or Lambert; returns the reflectance of the dielectric surface.
   Rgb addOpaque(const Point& point, const MaterialPoint& material, const Rgb& diffuse,
                 const Rgb& metalF0, float weight);
   // `lobeOf` makes the lobe for a MaterialPoint.

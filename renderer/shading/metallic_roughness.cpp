@@ -31,8 +31,8 @@ MetallicRoughness::MetallicRoughness(const MaterialPoint& m, const Rgb& diffuse,
       f0_(glm::mix(m.dielectricF0, metalF0, m.metallic)),
       f90_(glm::mix(m.dielectricF90, 1.0f, m.metallic)),
       energy_(tables.energy->row(m.roughness)) {
-  // Not in the list above, where the compiler would fuse other multiplications and additions:
-  // images would change in their last bits.
+  // Not in the initialiser list: there the compiler fuses other multiplications and additions,
+  // which changes images in their last bits.
   frame_ = Frame(normalThatReflects(surface.normal, surface.geometricNormal, wo));
   wo_ = frame_.toLocal(wo);
   wo_.z = std::max(wo_.z, 1e-6f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF metallic-roughness (glTF 2.0, appendix B), for materials that reflect specularly at all.
+// glTF metallic-roughness (glTF 2.0, appendix B), for materials with a specular lobe.
 #pragma once
 
 #include "math/frame.h"
@@ -9,15 +9,15 @@
 
 namespace chromeball {
 
-// A diffuse base under a specular surface, at one point, seen from one direction:
+// A diffuse base under a specular surface, at one point, for one viewing direction:
 //   f = specular + diffuse (1 - S(wo))(1 - S(wi)) / (pi (1 - S_mean))
 //     + multiple (1 - E(wo))(1 - E(wi)) / (pi (1 - E_mean)).
 // Specular: one bounce off GGX microfacets under Schlick's Fresnel term; E is its albedo for
 // F0 = F90 = 1. Multiple: the light that microfacets scatter more than once (Kulla and Conty 2017,
 // "Revisiting Physically Based Shading at Imageworks"). S is the albedo of the dielectric surface,
-// both included: the base gets what S lets through on the way in and out (Kelemen and Szirmay-Kalos
-// 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling").
-// Reciprocal, and a white material reflects all light.
+// including both terms: light is attenuated by 1 - S on the way into and out of the base (Kelemen
+// and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance
+// Sampling"). Reciprocal; a white material reflects all light.
 class MetallicRoughness {
  public:
   // `wo`: unit, towards the viewer; the surface's normals are on its side. The specular lobe is
@@ -27,7 +27,7 @@ class MetallicRoughness {
       : MetallicRoughness(material, material.baseColor * (1 - material.metallic),
                           material.baseColor, surface, wo, tables, mirrorAlpha) {}
 
-  // With the diffuse albedo and the metal's F0 in place of the base colour.
+  // With the diffuse albedo and the metal's F0 given instead of the base colour.
   MetallicRoughness(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
                     const Surface& surface, const vec3& wo, const BsdfTables& tables,
                     float mirrorAlpha);
@@ -38,9 +38,9 @@ class MetallicRoughness {
   bool transmits() const { return false; }
   const vec3& normal() const { return frame_.z; }
 
-  // Luminance reflected of a uniform white surrounding.
+  // Luminance reflected towards wo under uniform white radiance of 1.
   float albedo() const { return albedo_; }
-  // S(wo): the fraction of light that does not reach a layer beneath.
+  // S(wo): the fraction of light that does not reach the layer beneath.
   float surfaceAlbedo() const { return surfaceAlbedo_; }
 
  private:

@@ -19,7 +19,7 @@ class Sheen {
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
   bool has(Lobes lobes) const { return lobes == Lobes::Broad; }
   float albedo() const { return luminance(color_) * whiteAlbedo_; }
-  // Fraction of light that does not reach what lies beneath.
+  // Fraction of light that does not reach the layers beneath.
   float surfaceAlbedo() const { return maxComponent(color_) * whiteAlbedo_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Albedo of the white sheen lobe, for what lies beneath it.
+// Albedo of the white sheen lobe, which attenuates the layers beneath.
 #pragma once
 
 #include "math/grid_table.h"

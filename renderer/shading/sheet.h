@@ -14,7 +14,7 @@ namespace chromeball {
 // not refracted. A smooth sheet transmits light straight.
 class Sheet {
  public:
-  // `fraction`: transmitted of all incident light, for each channel.
+  // `fraction`: the transmitted fraction of all incident light, per channel.
   Sheet(const Rgb& fraction, float roughness, const Surface& surface, const vec3& wo,
         const BsdfTables& tables, float mirrorAlpha);
 

@@ -6,7 +6,7 @@ namespace chromeball {
 
 // Under Schlick's Fresnel term F0 + (F90 - F0)(1 - cos)^5 the albedo is linear in F0 and F90:
 //   E(mu) = F0 a(mu) + F90 b(mu),   mu the cosine of the viewing angle.
-// With F0 = F90 = 1 it falls short of 1 by what microfacets scatter more than once.
+// With F0 = F90 = 1 it is below 1 by the light that microfacets scatter more than once.
 struct SpecularAlbedo {
   float a, b;
 

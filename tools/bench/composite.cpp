@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What differential rendering costs beside one plain render of the whole scene, both of one thread
-// and in turn: the still life on its table, the table being the local scene.
+// The cost of differential rendering relative to one plain render of the whole scene, alternating,
+// both with one thread: the still life on its table, with the table as the local scene.
 #include <benchmark/benchmark.h>
 
 #include "composite/differential.h"

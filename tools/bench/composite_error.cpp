@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a local scene that is not quite right costs a composite: the terrace with its objects put
-// in, against a picture of terrace and objects together. Errors are of the pixels that see the
-// local scene where the objects change it by more than 2%; the difference formula against the
-// ratio. The objects are made rough here: caustics of the sun are more noise than light in all
-// these pictures, and would hide what is measured.
+// The error of a composite with an inaccurate local scene: the terrace with composited objects,
+// against a reference image of terrace and objects together; for the difference formula and for the
+// ratio. The error is computed over pixels that see the local scene and that the objects change by
+// more than 2%. The objects are made rough, because the noise of caustics of the sun would hide
+// these errors.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -58,7 +58,7 @@ struct Truth {
   }
 };
 
-// Whether the objects matter there.
+// Whether the objects change the pixel by more than 2%.
 bool isChanged(int x, int y) {
   const double plate = luminance(Truth::get().plate.rgb(x, y));
   return std::abs(luminance(Truth::get().whole.rgb(x, y)) - plate) > 0.02 * plate;
@@ -143,9 +143,9 @@ MISTAKE(probe - 30 % and solved, {.reflectance = Reflectance::Solved, .exposure 
 MISTAKE(no interreflection, {.maxDepth = 1});
 #undef MISTAKE
 
-// How many times less the variance of the difference is from one pass than from two renders: in all
-// pixels that see the local scene, and in those that the objects change. Where they take all light,
-// in the core of a shadow, there is nothing to cancel.
+// The variance of the difference from two renders over that from one pass: in all pixels that see
+// the local scene, and in those that the objects change. (In an umbra nothing cancels, so one pass
+// has no advantage there.)
 void compositeNoise(benchmark::State& state, float minRoughness) {
   const Truth& truth = Truth::get();
   const Scene scene = load(demo::Terrace::Whole, minRoughness);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a matte scene pays for the features it does not use: the renderer against a path tracer that
-// knows no other material than Lambert's, no texture, no instance, no alpha, no lamp and no other
-// strategy than `importance`. Both take the same random decisions, so both make the same picture.
+// The cost of unused features in a matte scene: the renderer against a path tracer that supports
+// only Lambertian materials and the strategy `importance`, and no textures, instances, alpha or
+// lamps. Both use the same random numbers, so both compute the same image.
 #include <benchmark/benchmark.h>
 
 #include "integrate/mis.h"
@@ -106,7 +106,7 @@ void unusedFeatures(benchmark::State& state) {
     leanSeconds += cpuSeconds() - middle;
   }
   if (std::fabs(luminance(fullSum) / luminance(leanSum) - 1) > 1e-3)
-    state.SkipWithError("the two pictures differ");
+    state.SkipWithError("the two images differ");
   state.counters["cost of unused features"] = fullSeconds / leanSeconds - 1;
 }
 BENCHMARK(unusedFeatures)->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(4);

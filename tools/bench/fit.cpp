@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fit of directional lights costs, and what each count leaves of the error. The probe is
-// CHROMEBALL_PROBE's, or a studio.
+// The time of fitting directional lights, and the remaining error for each count. The probe is the
+// file in CHROMEBALL_PROBE, or a studio.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ const Image& fitProbe() {
   return probe;
 }
 
-// All of it, the exact irradiance of 20480 normals included.
+// The whole fit, including the exact irradiance of 20480 normals.
 void irradianceFit(benchmark::State& state) {
   const Image& probe = fitProbe();
   IrradianceFit fit;
@@ -46,7 +46,7 @@ void irradianceOfTheProbe(benchmark::State& state) {
 }
 BENCHMARK(irradianceOfTheProbe)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-// The inner loop: one light against a probe of so many rows.
+// The inner loop: one light against a probe of the given number of rows.
 void productWithALight(benchmark::State& state) {
   const RadiancePoints points(fitProbe(), int(state.range(0)), 1);
   for (auto _ : state) benchmark::DoNotOptimize(points.productWith(dvec3(0.6, 0.8, 0)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact irradiance: how fast the sum over texels and normals runs.
+// The speed of the exact irradiance, a sum over texels and normals.
 #include <benchmark/benchmark.h>
 
 #include "math/icosphere.h"

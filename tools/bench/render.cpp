@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of a render beside its rays: samples and rays per second, and the time of the same rays
-// replayed by Embree alone. CHROMEBALL_PROBE names another probe than the project's own studio.
+// The overhead of a render over ray tracing: samples and rays per second, and the time of the same
+// rays replayed by Embree alone. CHROMEBALL_PROBE replaces the default probe, a studio.
 #include <benchmark/benchmark.h>
 
 #include "integrate/render.h"
@@ -11,7 +11,7 @@ BENCHMARK_MAIN();
 namespace chromeball {
 namespace {
 
-// One thread's paths over the picture, `samples` per pixel; `log` may be null.
+// Traces the paths of the whole image on this thread, `samples` per pixel; `log` may be null.
 Rgb tracePicture(const BenchmarkScene& s, int samples, RayLog* log) {
   const PathTracer tracer = s.tracer();
   return sumOverPicture(
@@ -42,7 +42,7 @@ void render(benchmark::State& state, demo::Finish finish) {
   state.counters["rays/sample"] = rays / samples;
 }
 
-// Render time over the time of the same rays alone, both of one thread and in turn.
+// Render time over the time of the same rays alone, alternating, both with one thread.
 void overhead(benchmark::State& state, demo::Finish finish) {
   constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene that the rendering benchmarks share: the still life in matte paint or in metal.
-// CHROMEBALL_PROBE names another probe than the project's own studio.
+// The scene of the rendering benchmarks: the still life, matte or metallic. CHROMEBALL_PROBE
+// replaces the default probe, a studio.
 #pragma once
 
 #include <cstdlib>
@@ -75,7 +75,7 @@ Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance, RayLo
   return sum;
 }
 
-// Of this thread.
+// CPU time of this thread.
 inline double cpuSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

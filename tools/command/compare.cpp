@@ -75,8 +75,9 @@ std::vector<Budget> planBudgets(const Arguments& a) {
   return budgets;
 }
 
-// Enough samples for the reference's variance to be small against that of any strategy half as good
-// as its own. The number of samples in a budget of seconds is unknown.
+// Chooses enough samples that the reference's variance is small compared with that of any strategy
+// with at least half the efficiency of the reference's. The number of samples in a budget of
+// seconds is unknown.
 int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
   constexpr int kTimes = 16, kMin = 1024;
   if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
@@ -110,7 +111,7 @@ Study planStudy(const Arguments& a) {
   return study;
 }
 
-// The results also show the renders that earlier runs left in the folder.
+// The results include the renders of earlier runs in the folder.
 void showStored(Study& study, const RenderStore& store) {
   study.shownStrategies = study.strategies;
   study.shownBudgets = study.budgets;
@@ -128,7 +129,7 @@ void checkReference(const StudyRun& run, const Study& study) {
                study.referenceStrategy);
 }
 
-// The files of a report. Its renders are not outputs: they are read again, never overwritten.
+// The files of a report. Its renders are not among them, because they are read, not overwritten.
 struct ReportFiles {
   explicit ReportFiles(const fs::path& folder)
       : csv((folder / "results.csv").string()),

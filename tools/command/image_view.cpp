@@ -27,7 +27,7 @@ std::string printable(std::string text) {
   return text;
 }
 
-// Prints which color stands for which name.
+// Prints the color of each name.
 void printLegend(const Image& ids, const std::map<int, std::string>& names) {
   constexpr size_t kMax = 64;
   std::set<int> present;

@@ -78,7 +78,8 @@ Image invalidView(Image invalid) {
 
 bool isOfIds(const std::string& name) { return name == "node" || name == "material"; }
 
-// Hues a golden section of the circle apart, so that near numbers differ most; three depths.
+// Hues at steps of the golden angle, so that consecutive numbers have very different hues; three
+// brightness levels.
 Color8 idColor(int id) {
   if (id <= 0) return {0, 0, 0};
   constexpr double kTurn = 0.6180339887498949;

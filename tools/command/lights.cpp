@@ -28,7 +28,7 @@ double parsePercent(std::string text, std::string_view option) {
   return percent;
 }
 
-// Refuses options that the method does not take, and a missing count.
+// Throws InputError for options that the method does not support, and for a missing count.
 void checkOptions(const LightingMethod& method, const LightRequest& request) {
   const LightingMethod::Lights& lights = method.lights;
   if (!request.count && !request.maxErrorPercent && !lights.countIsOptional)

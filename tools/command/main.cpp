@@ -47,7 +47,7 @@ std::string describeConversion(const CLI::App& command, const std::string& error
                                       : "a number");
 }
 
-// CLI11's error in our form; for an unknown word, with the nearest known one.
+// Rewrites an error message of CLI11; for an unknown word, adds the nearest known one.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> commands = namedCommands(app);
   const CLI::App& command = *commands.back();

@@ -18,7 +18,7 @@ struct Arguments {
   float rotation = 0;
 };
 
-// The mapping and size of the output. Of a cross or strip given no size, the upright form is made.
+// The mapping and size of the output. Without a size, crosses and strips are vertical.
 std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& latLong) {
   if (!arguments.size.empty()) {
     const ImageSize size = parseSize(arguments.size, "--size");

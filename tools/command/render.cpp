@@ -23,7 +23,7 @@ namespace {
 
 std::atomic<bool> interrupted = false;
 
-// An image that lacks pixels does not replace one that may be complete.
+// An image without samples in some pixels must not overwrite one that may be complete.
 void nameAsPartial(std::vector<std::string>& outputs) {
   for (std::string& output : outputs) {
     std::filesystem::path path = output;

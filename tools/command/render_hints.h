@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user should know about a rendered image, with the options that help.
+// Messages to the user about a rendered image, with suggestions of options.
 #pragma once
 
 #include "job/run_job.h"
 
 namespace chromeball {
 
-// The messages of `result`, and of what its numbers show: samples left out, clamped light, light
-// beyond the maximum depths, images that are nearly black or mostly clipped.
+// The messages of `result`, and messages about excluded samples, clamped light, light beyond the
+// depth limits, and images that are nearly black or mostly clipped.
 Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
                         const PreparedScene& prepared, const JobResult& result);
 

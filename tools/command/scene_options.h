@@ -11,17 +11,17 @@ namespace chromeball {
 
 struct SceneOptions {
   std::string scene;
-  Settings settings;  // as the command line gives them; locations are "--size"
+  Settings settings;  // from the command line; locations are option names ("--size")
 
   bool quiet() const { return settings.get<bool>("quiet"); }
   bool showsProgress() const;
 };
 
-// Which command the options are for: compare varies some settings itself, and has no use for
+// The command that the options are for: compare varies some settings itself, and does not need
 // others.
 enum class SceneCommand { Render, Compare };
 
-// Fills `options` when the command line is parsed; both must live as long.
+// `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command);
 
 // "--probe-scale FACTOR", or with a value "--probe-scale 2".

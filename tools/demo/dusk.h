@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The demo's light probe: a lake among hills at dusk, all of it painted.
+// The demo's light probe: a lake among hills at dusk, computed procedurally.
 #pragma once
 
 #include "image/image.h"

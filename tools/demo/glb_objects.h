@@ -16,8 +16,8 @@ struct Object {
   float metallic = 0, roughness = 1;
   float glow = 0;           // strength of its emission
   int texture = -1;         // of the base colour, as addTexture() returned it
-  bool lambertian = false;  // nothing but diffuse
-  bool glass = false;       // smooth, and nothing else
+  bool lambertian = false;  // purely diffuse
+  bool glass = false;       // smooth glass
 };
 
 // Each appends to the file; the texture's index is returned.

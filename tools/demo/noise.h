@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth noise for what the demo paints: wood and clouds.
+// Smooth noise for the demo's wood and clouds.
 #pragma once
 
 #include "base/hash.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smaller files for paintings.
+// Reduces the size of compressed image files.
 #pragma once
 
 #include "image/image.h"
 
 namespace chromeball::demo {
 
-// Eleven significant bits are plenty for a painting, and make the file a third as large.
+// Rounds to eleven significant bits, which makes the file a third as large.
 inline void roundTexels(Image& image) {
   for (float& texel : image.texels) {
     int exponent;

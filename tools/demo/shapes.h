@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surfaces that the demo's still life is made of.
+// The surfaces of the demo's still life.
 #pragma once
 
 #include <functional>

@@ -49,8 +49,8 @@ std::vector<Object> stillLife() {
   };
 }
 
-// Everything without gloss, or what is of metal conductors of a roughness that both renderers
-// sample well, or smooth glass.
+// Makes all materials diffuse, except conductors (with a roughness that both renderers sample well)
+// or smooth glass, depending on `finish`.
 void makePlain(std::vector<Object>& objects, Finish finish) {
   for (Object& object : objects) {
     const bool metal = object.metallic > 0, polished = metal && object.roughness < 0.3f;

@@ -8,9 +8,9 @@ namespace chromeball::demo {
 
 enum class Finish {
   Demo,        // metals, plastic, wood, a lantern that glows
-  Lambertian,  // all diffuse: what any two renderers can agree on
-  Conductors,  // diffuse, but for three metals of roughness 0.2 and more
-  Glass,       // diffuse, but for a ball and a knot of smooth glass
+  Lambertian,  // all diffuse, so that the images of any two renderers should agree
+  Conductors,  // diffuse, except for three metals of roughness 0.2 and more
+  Glass,       // diffuse, except for a ball and a knot of smooth glass
 };
 
 // A .glb of some 66,000 triangles with a camera named Front. Throws RunError.

@@ -26,7 +26,7 @@ void addPatch(Surface& surface, vec3 corner, vec3 a, vec3 b) {
     surface.triangles.push_back(t + first);
 }
 
-// All but the bottom, which stands on something.
+// A box without its bottom face.
 void addBox(Surface& s, vec3 low, vec3 high) {
   const vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
   addPatch(s, {low.x, high.y, high.z}, x, -z);
@@ -60,7 +60,7 @@ Surface pillar(float x) {
   return s;
 }
 
-// Slabs in rows that are out of step with each other.
+// Slabs in rows with different offsets.
 Image slabs(int size) {
   Image image(size, size, 3);
   for (int y = 0; y < size; ++y)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The composite's demo: a terrace with a wall, two pillars and a vase, and what is put there.
+// The demo of compositing: a terrace with a wall, two pillars and a vase, and synthetic objects.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace chromeball::demo {
 
 enum class Terrace {
-  Photograph,  // the real things alone, as they are: the plate is a picture of them
-  Whole,       // the same with the objects: what a composite should come to
-  Model,       // the objects among grey stand-ins for the real things: what is rendered
+  Photograph,  // the terrace with its true materials, rendered as the plate
+  Whole,       // the same with the objects, rendered as the reference image of the composite
+  Model,       // the objects and a grey model of the terrace, rendered for the composite
 };
 
-// A .glb with a camera named View. Stand-ins and real things have the same names: floor, wall,
-// pillar (two of them), vase. Throws RunError.
+// A .glb with a camera named View. The grey model has the same node names as the true terrace:
+// floor, wall, pillar (two of them), vase. Throws RunError.
 void writeTerrace(const std::string& path, Terrace what);
 
 // The probe that belongs to it: a clear sky, the sun to the left and behind us. Lat-long, `width` x

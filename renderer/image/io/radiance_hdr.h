@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance images (.hdr, .pic): RGBE texels, flat or in one of the two run-length encodings
-// (Ward, "Real Pixels", Graphics Gems II; Radiance's color.c). A texel (r, g, b, e) stands for
+// (Ward, "Real Pixels", Graphics Gems II; Radiance's color.c). A texel (r, g, b, e) encodes
 // (r, g, b) 2^(e - 136), divided by the product of the EXPOSURE lines in the header.
 #pragma once
 

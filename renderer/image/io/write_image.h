@@ -12,8 +12,9 @@
 
 namespace chromeball {
 
-// A group of channels. Each letter of `channels` is one: {"albedo", "RGB"} stands for albedo.R,
-// albedo.G, albedo.B. The colour has the empty name. {"samples", ""} is the single channel samples.
+// A group of channels. Each letter of `channels` is one: {"albedo", "RGB"} has the channels
+// albedo.R, albedo.G, albedo.B. The colour has the empty name. {"samples", ""} is the single
+// channel samples.
 struct Layer {
   std::string name, channels;
   Image image;  // as many channels as letters, at least one

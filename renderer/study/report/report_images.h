@@ -12,16 +12,13 @@ namespace chromeball {
 // JSON:
 //   width, height       of the images in pixels
 //   heat, signed        colour tables, 256 [r, g, b] each
-//   reference           {rgb, exponent}: PNG data URIs of radiance in Ward's RGBE, with mantissas
-//   and
-//                       exponents as separate images
-//   images              [{name, budget, samples, seconds, rgb, exponent, error}]: one render of
-//   each
+//   reference           {rgb, exponent}: PNG data URIs of radiance in Ward's RGBE, with separate
+//                       images for mantissas and exponents
+//   images              [{name, budget, samples, seconds, rgb, exponent, error}]: one render per
 //                       strategy, all of about equal time. `error` is a map of the root of the mean
 //                       over repeats of the squared relative error, logarithmic
 //   errorScale          {max, decades} of these maps
-//   bias                [{name, map, budget}]: maps of the relative bias of approximating
-//   strategies,
+//   bias                [{name, map, budget}]: maps of the relative bias of biased strategies,
 //                       linear, 128 where the bias is less than two standard errors
 //   biasScale           {max} of these maps
 //   pairs               [{a, b, map, width, height}]: maps of z, one texel per tile
