@@ -67,8 +67,8 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
   for (const std::string& line : scene.notes) messages.note(line);
   if (!scene.lights.empty() && hasBodies(scene))
     messages.warn(
-        "lights without extent do not shine through bodies of glass, which refract their light: "
-        "what stands behind is in full shadow; light from a lamp with a surface passes");
+        "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
+        "are in full shadow; light from emissive surfaces passes");
   addMemory(job.settings, messages);
   const Settings& settings = job.file.settings;
   if (const auto probe = settings.getIfGiven<std::string>("probe.file"))

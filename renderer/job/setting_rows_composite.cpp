@@ -20,8 +20,8 @@ void addComposite(std::vector<Setting>& rows) {
        .type = Compound,
        .form = "a node's name, or several",
        .absent = "required",
-       .help = "Nodes that stand for real things, with everything below them; the model's other "
-               "nodes are put into the photograph."});
+       .help = "Nodes that model real surfaces in the photograph, including their descendants; all "
+               "other nodes of the model are synthetic objects."});
   add({.key = "mode",
        .type = Choice,
        .fallback = "difference",
@@ -92,8 +92,9 @@ void addSurroundings(std::vector<Setting>& rows) {
   add({.key = "file",
        .type = File,
        .absent = "required for a model",
-       .help = "A glTF file of the room, of which only the shape counts."});
-  point("capture", "the middle; required for a model", "Where the probe was captured, inside.");
+       .help = "A glTF file of the room; only its geometry is used."});
+  point("capture", "the middle; required for a model",
+        "The position at which the probe was captured, inside.");
 }
 
 }  // namespace

@@ -28,12 +28,12 @@ std::vector<Setting> lightRows() {
        .form = "three numbers",
        .unit = "metres",
        .absent = "required",
-       .help = "Where the lamp is."});
+       .help = "Position of the lamp."});
   add({.key = "direction",
        .type = Compound,
        .form = "three numbers",
        .absent = "required for a spot or disc",
-       .help = "Where a spot or disc shines; of any length but 0."});
+       .help = "Direction in which a spot or disc emits; of any length except 0."});
   add({.key = "intensity",
        .type = Compound,
        .form = color,

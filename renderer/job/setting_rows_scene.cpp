@@ -29,7 +29,7 @@ void addModel(std::vector<Setting>& rows) {
        .form = "three numbers",
        .unit = "metres",
        .absent = "0, 0, 0",
-       .help = "Moves the model."});
+       .help = "Translation of the model."});
   add({.key = "rotation",
        .type = Compound,
        .form = "three angles, or a quaternion x, y, z, w",
@@ -78,7 +78,7 @@ void addCamera(std::vector<Setting>& rows) {
        .form = "three numbers",
        .unit = "metres",
        .absent = "none",
-       .help = "Where the camera stands."});
+       .help = "Position of the camera."});
   add({.key = "look_at",
        .type = Compound,
        .form = "three numbers",

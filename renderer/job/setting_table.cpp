@@ -43,8 +43,8 @@ std::span<const SettingSection> settingSections() {
        "The files to write. If the folder of one is missing from a folder that exists, it is "
        "made."},
       {"composite", "[composite]", "Composite",
-       "Differential rendering: puts the model's nodes into a photograph, except those of the "
-       "local scene, which stand for what is in the photograph."},
+       "Differential rendering: composites the model's nodes into a photograph, except those of "
+       "the local scene, which model real surfaces in the photograph."},
       {"surroundings", "[surroundings]", "Surroundings",
        "The surface at a finite distance that the probe is mapped onto, as seen from `capture`."},
       {"", "The command line only", "Run", "These settings are options without a key."},

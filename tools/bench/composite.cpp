@@ -23,12 +23,12 @@ void differential(benchmark::State& state, demo::Finish finish) {
   Rgb plainSum(0), withObjects(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    plainSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+    plainSum = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
       const auto hit = worlds.whole.closestHit(ray, context);
       return worlds.whole.radiance(PathState{ray}, hit, context);
     });
     const double middle = cpuSeconds();
-    withObjects = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+    withObjects = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
       const CameraSample sample{0, 0, ray, worlds.whole.closestHit(ray, context)};
       const DifferentialSample found = differentialRadiance(worlds, sample, false, context);
       return found.both + found.withObjects;

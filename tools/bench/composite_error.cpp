@@ -18,7 +18,7 @@
 namespace chromeball {
 namespace {
 
-constexpr int kColumns = 120, kRows = 80, kTruthSamples = 4096, kCompositeSamples = 1024;
+constexpr int kColumns = 120, kRows = 80, kReferenceSamples = 4096, kCompositeSamples = 1024;
 constexpr float kRough = 0.7f;
 const std::atomic<bool> kGoOn = false;
 const auto kQuiet = [](double) {};
@@ -39,29 +39,29 @@ RenderSettings settingsOf(int samples, uint64_t seed) {
   return s;
 }
 
-Image picture(demo::Terrace what, const Probe& probe, uint64_t seed) {
+Image renderTerrace(demo::Terrace what, const Probe& probe, uint64_t seed) {
   const Scene scene = load(what);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
-  return render(World(scene), scene.cameras.front(), *lighting, settingsOf(kTruthSamples, seed),
+  return render(World(scene), scene.cameras.front(), *lighting, settingsOf(kReferenceSamples, seed),
                 kQuiet, kGoOn)
       .film.mean();
 }
 
-struct Truth {
+struct ReferenceImages {
   Image probe = demo::terraceProbe(512);
-  Image plate = picture(demo::Terrace::Photograph, Probe(probe), 1);
-  Image whole = picture(demo::Terrace::Whole, Probe(probe), 2);
+  Image plate = renderTerrace(demo::Terrace::Photograph, Probe(probe), 1);
+  Image whole = renderTerrace(demo::Terrace::Whole, Probe(probe), 2);
 
-  static const Truth& get() {
-    static const Truth truth;
-    return truth;
+  static const ReferenceImages& get() {
+    static const ReferenceImages images;
+    return images;
   }
 };
 
 // Whether the objects change the pixel by more than 2%.
 bool isChanged(int x, int y) {
-  const double plate = luminance(Truth::get().plate.rgb(x, y));
-  return std::abs(luminance(Truth::get().whole.rgb(x, y)) - plate) > 0.02 * plate;
+  const double plate = luminance(ReferenceImages::get().plate.rgb(x, y));
+  return std::abs(luminance(ReferenceImages::get().whole.rgb(x, y)) - plate) > 0.02 * plate;
 }
 
 enum class Reflectance { True, Grey, Solved };
@@ -74,19 +74,19 @@ struct Mistake {
 
 void errorOf(const Image& found, const DifferentialFilm& film, const char* name,
              benchmark::State& state) {
-  const Truth& truth = Truth::get();
-  double squares = 0, sum = 0, reference = 0;
+  const ReferenceImages& reference = ReferenceImages::get();
+  double squares = 0, sum = 0, wholeSum = 0;
   int count = 0;
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < kColumns; ++x) {
       if (film.at(x, y).covered > 0 || !isChanged(x, y)) continue;
-      const double whole = luminance(truth.whole.rgb(x, y));
+      const double whole = luminance(reference.whole.rgb(x, y));
       const double error = luminance(found.rgb(x, y)) - whole;
       squares += error * error / (whole * whole + 0.01);
-      sum += error, reference += whole, ++count;
+      sum += error, wholeSum += whole, ++count;
     }
   state.counters[std::string(name) + " rel. RMSE %"] = 100 * std::sqrt(squares / count);
-  state.counters[std::string(name) + " bias %"] = 100 * sum / reference;
+  state.counters[std::string(name) + " bias %"] = 100 * sum / wholeSum;
 }
 
 ObjectMask objectsOf(const Scene& scene) {
@@ -94,7 +94,7 @@ ObjectMask objectsOf(const Scene& scene) {
 }
 
 void compositeError(benchmark::State& state, const Mistake& mistake) {
-  const Truth& truth = Truth::get();
+  const ReferenceImages& reference = ReferenceImages::get();
   const bool isTrue = mistake.reflectance == Reflectance::True;
   Scene scene = load(isTrue ? demo::Terrace::Whole : demo::Terrace::Model);
   const ObjectMask isObject = objectsOf(scene);
@@ -103,7 +103,7 @@ void compositeError(benchmark::State& state, const Mistake& mistake) {
       vec4& color = scene.materials[size_t(scene.instances[i].material)].baseColor;
       color = vec4(Rgb(color) * mistake.albedo, color.w);
     }
-  const Probe probe(truth.probe, 0, mistake.exposure);
+  const Probe probe(reference.probe, 0, mistake.exposure);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
   const Camera& camera = scene.cameras.front();
   RenderSettings settings = settingsOf(kCompositeSamples, 3);
@@ -114,12 +114,12 @@ void compositeError(benchmark::State& state, const Mistake& mistake) {
   const World world(scene, rayMasks(isObject));
   for (auto _ : state) {
     if (mistake.reflectance == Reflectance::Solved)
-      solveReflectance({world, camera, *lighting, truth.plate}, settings, 2, projection, kQuiet,
+      solveReflectance({world, camera, *lighting, reference.plate}, settings, 2, projection, kQuiet,
                        kGoOn);
-    const CompositeRender r = renderComposite(world, camera, *lighting, truth.plate, settings,
+    const CompositeRender r = renderComposite(world, camera, *lighting, reference.plate, settings,
                                               Passes::One, false, kQuiet, kGoOn);
     for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
-      errorOf(compose(r.film, r.mean, truth.plate, mode).color, r.film,
+      errorOf(compose(r.film, r.mean, reference.plate, mode).color, r.film,
               mode == CompositeMode::Difference ? "difference" : "ratio", state);
   }
 }
@@ -147,13 +147,13 @@ MISTAKE(no interreflection, {.maxDepth = 1});
 // the local scene, and in those that the objects change. (In an umbra nothing cancels, so one pass
 // has no advantage there.)
 void compositeNoise(benchmark::State& state, float minRoughness) {
-  const Truth& truth = Truth::get();
+  const ReferenceImages& reference = ReferenceImages::get();
   const Scene scene = load(demo::Terrace::Whole, minRoughness);
   const World world(scene, rayMasks(objectsOf(scene)));
-  const Probe probe(truth.probe);
+  const Probe probe(reference.probe);
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
   const auto renderIn = [&](Passes passes) {
-    return renderComposite(world, scene.cameras.front(), *lighting, truth.plate,
+    return renderComposite(world, scene.cameras.front(), *lighting, reference.plate,
                            settingsOf(kCompositeSamples, 3), passes, false, kQuiet, kGoOn);
   };
   for (auto _ : state) {

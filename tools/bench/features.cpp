@@ -95,11 +95,11 @@ void unusedFeatures(benchmark::State& state) {
   Rgb fullSum(0), leanSum(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    fullSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+    fullSum = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
       return full.radiance(PathState{ray}, full.closestHit(ray, context), context);
     });
     const double middle = cpuSeconds();
-    leanSum = sumOverPicture(camera, kTraced, [&](const Ray& ray, PathContext& context) {
+    leanSum = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
       return leanRadiance(lean, ray, context.sampler);
     });
     fullSeconds += middle - start;

@@ -12,9 +12,9 @@ namespace chromeball {
 namespace {
 
 // Traces the paths of the whole image on this thread, `samples` per pixel; `log` may be null.
-Rgb tracePicture(const BenchmarkScene& s, int samples, RayLog* log) {
+Rgb traceImage(const BenchmarkScene& s, int samples, RayLog* log) {
   const PathTracer tracer = s.tracer();
-  return sumOverPicture(
+  return sumOverImage(
       s.scene.cameras.front(), samples,
       [&](const Ray& ray, PathContext& context) {
         return tracer.radiance(PathState{ray}, tracer.closestHit(ray, context), context);
@@ -47,11 +47,11 @@ void overhead(benchmark::State& state, demo::Finish finish) {
   constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);
   RayLog log;
-  benchmark::DoNotOptimize(tracePicture(s, kTraced, &log));
+  benchmark::DoNotOptimize(traceImage(s, kTraced, &log));
   double whole = 0, alone = 0;
   for (auto _ : state) {
     const double start = cpuSeconds();
-    benchmark::DoNotOptimize(tracePicture(s, kTraced, nullptr));
+    benchmark::DoNotOptimize(traceImage(s, kTraced, nullptr));
     const double middle = cpuSeconds();
     for (const auto& [ray, isShadow] : log.rays) {
       Hit hit;

@@ -54,7 +54,7 @@ struct BenchmarkScene {
 
 // Calls radiance(ray, context) for every sample of every pixel, on this thread; `log` may be null.
 template <class Radiance>
-Rgb sumOverPicture(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
+Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
   const CameraRays rays(camera, float(kWidth) / kHeight);
   const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * (kDepth + 1), 1);
   PathContext context{.sampler = PixelSampler(table, 1), .clamp = Clamp(), .log = log};

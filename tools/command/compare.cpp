@@ -75,18 +75,18 @@ std::vector<Budget> planBudgets(const Arguments& a) {
   return budgets;
 }
 
-// Chooses enough samples that the reference's variance is small compared with that of any strategy
-// with at least half the efficiency of the reference's. The number of samples in a budget of
-// seconds is unknown.
+// 16 times the largest budget, so that the reference's variance is small compared with that of each
+// strategy unless the reference's own strategy is less than half as efficient. The number of
+// samples in a budget of seconds is unknown.
 int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
-  constexpr int kTimes = 16, kMin = 1024;
+  constexpr int kFactor = 16, kMin = 1024;
   if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
     throwInput("--reference-samples: {} is not {} or more", *a.referenceSamples,
                Study::kReferenceParts);
   double maximum = 0;
   for (const Budget& budget : budgets)
     maximum = std::max(maximum, budget.timed ? kMin : budget.amount);
-  return a.referenceSamples.value_or(std::max(kMin, int(std::min(kTimes * maximum, 1e6))));
+  return a.referenceSamples.value_or(std::max(kMin, int(std::min(kFactor * maximum, 1e6))));
 }
 
 Study planStudy(const Arguments& a) {

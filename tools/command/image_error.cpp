@@ -99,15 +99,15 @@ void writeMap(const Arguments& arguments, const Image& map) {
   const double maximum = arguments.map == "flip" ? 1
                          : arguments.map == "z"  ? kMaxZ
                                                  : roundUp(percentile(map.texels, 0.99));
-  Image picture(map.width, map.height, 3);
+  Image colors(map.width, map.height, 3);
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) {
       const double number = *map.at(x, y);
       const Color8 color =
           heatColor(logarithmic ? logLevel(number, maximum, kDecades) : number / maximum);
-      for (int c = 0; c < 3; ++c) picture.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
+      for (int c = 0; c < 3; ++c) colors.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
     }
-  writeImage(arguments.output, picture);
+  writeImage(arguments.output, colors);
   if (!arguments.json)
     fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
                logarithmic ? "logarithmic" : "linear",

@@ -32,7 +32,7 @@ double parsePercent(std::string text, std::string_view option) {
 void checkOptions(const LightingMethod& method, const LightRequest& request) {
   const LightingMethod::Lights& lights = method.lights;
   if (!request.count && !request.maxErrorPercent && !lights.countIsOptional)
-    throwInput("--count: should say how many lights");
+    throwInput("--count: the number of lights is missing");
   if (request.ambient && !lights.fitsAmbient)
     throwInput("--ambient: {} fits no ambient light; use irradiance-fit", method.name);
   if (request.maxErrorPercent && !lights.takesMaxError)

@@ -106,7 +106,7 @@ void run(const Arguments& arguments) {
 void addLightsErrorCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
-      "lights-error", "How far the irradiance of directional lights is from their probe's.");
+      "lights-error", "The error of the irradiance of directional lights against their probe.");
   command->add_option("PROBE", arguments->probe, "the probe's image")->required();
   command->footer(lightMethodHelp());
   command->add_option("--methods", arguments->methods, "one or several; see below")

@@ -58,7 +58,8 @@ void addProbeConvertCommand(CLI::App& probe) {
       ->add_option("--to", arguments->to, "lat-long, angular, mirror-ball, cube-cross, cube-strip")
       ->required();
   command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT; else what keeps the detail");
+  command->add_option("--size", arguments->size,
+                      "WIDTHxHEIGHT; else the size that keeps the detail");
   command->add_option("--rotation", arguments->rotation,
                       "degrees about +Y, counter-clockwise seen from above");
   command->callback([arguments] { run(*arguments); });

@@ -92,7 +92,7 @@ void addDepthCut(const char* option, int depth, double fraction, Messages& messa
   constexpr double kMinFraction = 0.01;
   if (fraction > kMinFraction)
     messages.push_back({Message::Kind::Warning,
-                        fmt::format("{} {} cut about {:.2g}% of the light; a higher one finds it",
+                        fmt::format("{} {} cut about {:.2g}% of the light; a higher one keeps it",
                                     option, depth, 100 * fraction)});
 }
 

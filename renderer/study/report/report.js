@@ -71,7 +71,7 @@ async function makeViewer() {
   const zoom = Math.max(1, Math.floor(Math.min(1100, document.body.clientWidth - 48) / data.width));
   canvas.style.width = data.width * Math.min(zoom, 5) + 'px';
 
-  const choices = [byId('pictureA'), byId('pictureB')];
+  const choices = [byId('imageA'), byId('imageB')];
   choices.forEach((choice, i) => {
     for (const p of images) choice.add(new Option(p.label));
     choice.selectedIndex = i ? 0 : Math.min(1, images.length - 1);
