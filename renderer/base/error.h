@@ -18,7 +18,7 @@ struct Remedy {
 };
 
 // The user's input is wrong: arguments, scene, model, probe (exit status 2). The message reads
-// "FILE[:LINE]: what is wrong, and what would be right".
+// "FILE[:LINE]: the mistake, and valid input".
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
   InputError(const std::string& message, Remedy r) : runtime_error(message), remedy(std::move(r)) {}

@@ -13,8 +13,9 @@ inline constexpr int kDefaultTransmissionDepth = 64;
 struct PathSettings {
   Mis mis = Mis::Balance;
   int maxDepth = 8;  // 0: emission seen by the camera; 1: direct light; ...
-  int maxTransmissionDepth = kDefaultTransmissionDepth;  // bounces in solid glass, beside maxDepth
-  bool hideProbe = false;                                // from the camera
+  int maxTransmissionDepth =
+      kDefaultTransmissionDepth;    // bounces in solid glass; not counted in maxDepth
+  bool hideProbe = false;           // from the camera
   bool estimateDepthCut = true;     // estimate the light beyond the depth limits
   RayMask visible = kAllInstances;  // all rays of the paths ignore other instances
   // If it differs from `visible`, shadow rays are traced with both masks, and

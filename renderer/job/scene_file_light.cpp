@@ -4,7 +4,7 @@
 namespace chromeball {
 namespace {
 
-// The keys beside `type`, `name` and `position`.
+// The keys besides `type`, `name` and `position`.
 struct LampType {
   std::string_view name;
   std::vector<std::string_view> keys;

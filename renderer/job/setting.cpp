@@ -50,7 +50,7 @@ void checkChoice(const Setting& setting, const std::string& name, const std::str
     throwInput("{}: `{}` is not known; {}", location, name, didYouMean(name, known));
 }
 
-// Words, each of which may hold several names with commas between them.
+// Splits words at commas; each word may contain several names.
 std::vector<std::string> split(const std::vector<std::string>& words) {
   std::vector<std::string> names;
   for (const std::string& word : words)

@@ -14,7 +14,7 @@ namespace chromeball {
 // The lights that replace a probe, and how they were made.
 struct LightRig {
   std::string probe, method;   // the probe's file, and the name of the method (methods.h)
-  std::optional<Rgb> ambient;  // radiance from all directions, beside the lights
+  std::optional<Rgb> ambient;  // additional constant radiance from all directions
   Constellation lights;
   LightUnits units = LightUnits::Photometric;  // in .gltf
 };

@@ -59,7 +59,7 @@ struct StudyResults {
   bool complete = true;               // whether every cell of this run exists
 };
 
-// Uses the cells of which at least Study::kMinRepeats repeats are stored.
+// Uses the cells with at least Study::kMinRepeats stored repeats.
 StudyResults studyResults(const Study& study, const RenderStore& store, const Reference& reference);
 
 // The cell of a strategy for a budget; null if it does not exist yet.

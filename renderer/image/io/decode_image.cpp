@@ -55,7 +55,7 @@ void checkSize(int width, int height, int channels, const char* reader, size_t f
 // Reads the image as RGBA texels of type T. It reads a few rows at a time, so that each page of the
 // result is touched once and no other buffer is large: page faults cost about as much as decoding.
 // `type` is the type to convert to. It is UNKNOWN if the file holds T, because OpenImageIO
-// allocates a buffer of 64 MB on every call that asks for T itself.
+// allocates a buffer of 64 MB on every call that requests T itself.
 template <class T, class Texel>
 std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
   constexpr int kRows = 32;

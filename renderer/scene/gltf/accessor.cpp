@@ -134,7 +134,7 @@ Packed readPacked(GltfFile& file, int accessor, const std::string& user) {
   return packed;
 }
 
-// Two codes of a signed normalised integer stand for -1 (glTF 2.0, 3.6.2.2): f = max(c / 127, -1).
+// Signed normalised integers (glTF 2.0, 3.6.2.2): f = max(c / 127, -1), so two codes give -1.
 template <class T>
 void convert(const Packed& packed, float* out) {
   const float scale =

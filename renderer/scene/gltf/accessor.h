@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Elements of N components (1 to 4) as floats; integers are normalised if the accessor says so.
+// Elements of N components (1 to 4) as floats; integers are normalised if the accessor is.
 // Throws if the accessor's type does not have N components.
 template <int N>
 std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor, const std::string& where);

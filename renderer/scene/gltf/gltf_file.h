@@ -74,8 +74,8 @@ class GltfFile {
   void warnOnce(const std::string& what);
 
   // Records memory that is about to be allocated for the file's contents. Because of references, a
-  // small file can ask for much: throws InputError if the sum is out of proportion to the length of
-  // the file.
+  // small file can require much memory: throws InputError if the sum is out of proportion to the
+  // length of the file.
   void spend(uint64_t bytes);
 
  private:

@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// The triangles of a vertex sequence, wound as the specification says (glTF 2.0, 3.7.2.1).
+// The triangles of a vertex sequence, with the winding of the specification (glTF 2.0, 3.7.2.1).
 std::vector<Triangle> assemble(const std::vector<uint32_t>& v, int mode) {
   std::vector<Triangle> triangles;
   if (v.size() < 3) return triangles;

@@ -12,7 +12,7 @@ namespace chromeball {
 // Decodes a data URI, in base64 or percent-encoded. Returns false if it is invalid.
 bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes);
 
-// Replaces each %XX by the byte it stands for.
+// Replaces each %XX by the byte with that hexadecimal code.
 std::string decodePercent(const std::string& uri);
 
 // Both throw std::runtime_error with a reason to be preceded by the name ("is an absolute path").
