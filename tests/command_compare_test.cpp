@@ -125,37 +125,37 @@ TEST_F(SlowCommandCompare, referenceFromAFileAndTimes) {
     EXPECT_EQ(std::string(warning).find("assumed to be exact"), std::string::npos) << warning;
 }
 
-TEST_F(SlowCommandCompare, badInputIsRefused) {
-  const auto refused = [&](const std::vector<std::string>& arguments, const char* reason) {
-    expectRefused(command(arguments), reason);
+TEST_F(SlowCommandCompare, badInputIsRejected) {
+  const auto expectInputError = [&](const std::vector<std::string>& arguments, const char* reason) {
+    expectError(command(arguments), reason);
   };
-  refused({"--strategies", "importanse"}, "importance");
-  refused({"--samples", "0"}, "--samples");
-  refused({"--times", "-1"}, "--times");
-  refused({"--repeats", "2"}, "--repeats");
-  refused({"--baseline", "uniform", "--strategies", "bsdf"}, "--baseline");
-  refused({"--reference-strategy", "median-cut"}, "biased");
-  refused({"--reference-samples", "3"}, "--reference-samples");
+  expectInputError({"--strategies", "importanse"}, "importance");
+  expectInputError({"--samples", "0"}, "--samples");
+  expectInputError({"--times", "-1"}, "--times");
+  expectInputError({"--repeats", "2"}, "--repeats");
+  expectInputError({"--baseline", "uniform", "--strategies", "bsdf"}, "--baseline");
+  expectInputError({"--reference-strategy", "median-cut"}, "biased");
+  expectInputError({"--reference-samples", "3"}, "--reference-samples");
   Image sunny = constantProbe({32, 16}, Rgb(0.1f));
   sunny.setRgb(9, 4, Rgb(1e4f));
   writeImage(folder_ / "sunny.exr", sunny);
   std::vector<std::string> underSun = command({"--reference-strategy", "suns"});
   underSun[3] = folder_ / "sunny.exr";
-  expectRefused(underSun, "biased");
+  expectError(underSun, "biased");
   writeImage(folder_ / "other.exr", Image(8, 8, 3));
-  refused({"--reference", folder_ / "other.exr"}, "--size 8x8");
+  expectInputError({"--reference", folder_ / "other.exr"}, "--size 8x8");
   EXPECT_FALSE(fs::exists(dir())) << "nothing is made before all is right";
 
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
-  refused(with(kSmall, {"--seed", "1"}), "another folder");
+  expectInputError(with(kSmall, {"--seed", "1"}), "another folder");
   const fs::path stored = renders().begin()->first;
   const ImageFile file = readImageFile(stored);
   for (const Layer& spoilt : {Layer{"", "RGB", Image(8, 8, 3)}, Layer{"N", "XYZ", file.image}}) {
     writeImage(stored, OutputImage{{spoilt}, file.metadata});
-    refused(kSmall, "is damaged or was changed");
+    expectInputError(kSmall, "is damaged or was changed");
   }
   fs::resize_file(stored, fs::file_size(stored) / 2);
-  refused(kSmall, stored.filename().c_str());
+  expectInputError(kSmall, stored.filename().c_str());
 }
 
 // Every option of the command, by the help it prints: either it leaves the renders as they are, or
@@ -230,7 +230,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
 
   // So do the contents of what the files name.
   w.write("data.bin", std::vector<uint8_t>(36));
-  expectRefused(words("", {}), "contents of data.bin");
+  expectError(words("", {}), "contents of data.bin");
 }
 
 TEST_F(SlowCommandCompare, whatIsStoredStaysOnThePage) {

@@ -80,9 +80,9 @@ class CommandComposite : public testing::Test {
       arguments.insert(arguments.end(), {"--samples", "16"});
     return runCommand(arguments);
   }
-  void refused(const std::string& scenePath, const std::string& reason) const {
-    expectRefused({"render", scenePath, "-o", path("refused.exr")}, reason);
-    EXPECT_FALSE(std::filesystem::exists(path("refused.exr")));
+  void expectInputError(const std::string& scenePath, const std::string& reason) const {
+    expectError({"render", scenePath, "-o", path("rejected.exr")}, reason);
+    EXPECT_FALSE(std::filesystem::exists(path("rejected.exr")));
   }
 
   GltfWriter model_;
@@ -169,37 +169,38 @@ TEST_F(CommandComposite, PlatesAreScaledInProportion) {
       for (int i = 0; i < 4; ++i) mean += plate.rgb(2 * x + i % 2, 2 * y + i / 2) / 4.0f;
       EXPECT_LT(glm::length(small.rgb(x, y) - mean), 1e-6f);
     }
-  expectRefused({"render", scene(kGood), "-o", path("x.exr"), "--size", "16x9"},
+  expectError({"render", scene(kGood), "-o", path("x.exr"), "--size", "16x9"},
                 "plate.exr: the plate has 32x16 pixels, but the image size is 16x9");
 }
 
 // A parent speaks for what hangs on it.
 TEST_F(CommandComposite, NodesStandForThoseBelow) {
-  refused(scene("plate = \"plate.exr\"\nlocal_scene = [\"ground\", \"boat\"]"),
-          "every node is part of the local scene");
+  expectInputError(scene("plate = \"plate.exr\"\nlocal_scene = [\"ground\", \"boat\"]"),
+                   "every node is part of the local scene");
 }
 
-TEST_F(SlowCommandComposite, RefusesWhatMakesNoSense) {
-  refused(scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
-          "scene.toml:11: local_scene: the model has no node `grund`; did you mean `ground`?");
-  refused(scene("plate = \"none.exr\"\nlocal_scene = \"ground\""), "no such file");
-  refused(scene("plate = \"plate.exr\""), "[composite] has no `local_scene`");
-  refused(scene("local_scene = \"ground\""), "[composite] has no `plate`");
-  refused(scene(std::string(kGood) + "\nmode = \"rato\""), "did you mean `ratio`?");
-  refused(scene(std::string(kGood) + "\nmod = \"ratio\""), "did you mean `mode`?");
-  refused(scene("plate = \"scene.toml\"\nlocal_scene = \"ground\""), "scene.toml");
+TEST_F(SlowCommandComposite, RejectsWhatMakesNoSense) {
+  expectInputError(
+      scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
+      "scene.toml:11: local_scene: the model has no node `grund`; did you mean `ground`?");
+  expectInputError(scene("plate = \"none.exr\"\nlocal_scene = \"ground\""), "no such file");
+  expectInputError(scene("plate = \"plate.exr\""), "[composite] has no `local_scene`");
+  expectInputError(scene("local_scene = \"ground\""), "[composite] has no `plate`");
+  expectInputError(scene(std::string(kGood) + "\nmode = \"rato\""), "did you mean `ratio`?");
+  expectInputError(scene(std::string(kGood) + "\nmod = \"ratio\""), "did you mean `mode`?");
+  expectInputError(scene("plate = \"scene.toml\"\nlocal_scene = \"ground\""), "scene.toml");
   Image plate(32, 16, 3);
   plate.setRgb(5, 4, Rgb(NAN));
   plate.setRgb(7, 9, Rgb(INFINITY));
   writeImage(path("plate.exr"), plate);
-  refused(scene(kGood),
-          "plate.exr: 2 pixels of the plate are NaN or infinite, the first at (5, 4)");
-  expectRefused({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
-                 "--aov", "l_obj"},
-                "--aov: layer `l_obj` is a composite's");
-  expectRefused({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
-                 "--two-pass"},
-                "--two-pass");
+  expectInputError(scene(kGood),
+                   "plate.exr: 2 pixels of the plate are NaN or infinite, the first at (5, 4)");
+  expectError({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
+               "--aov", "l_obj"},
+              "--aov: layer `l_obj` is a composite's");
+  expectError({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("out.exr"),
+               "--two-pass"},
+              "--two-pass");
 }
 
 TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
@@ -232,29 +233,33 @@ TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
             std::string::npos)
       << dark.error;
 
-  refused(scene(std::string(kGood) + "\nreflectance = \"plat\""), "did you mean `plate`?");
-  refused(scene(std::string(kGood) + "\nspecular = 2"), "`specular` must be a number from 0 to 1");
-  expectRefused({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
-                "layer `reflectance` needs reflectance =");
+  expectInputError(scene(std::string(kGood) + "\nreflectance = \"plat\""), "did you mean `plate`?");
+  expectInputError(scene(std::string(kGood) + "\nspecular = 2"),
+                   "`specular` must be a number from 0 to 1");
+  expectError({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
+              "layer `reflectance` needs reflectance =");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
   const std::string room = "[surroundings]\nshape = \"box\"\nmin = [-2, 0, -2]\n";
   ASSERT_EQ(render(scene(kGood, room + "max = [2, 5, 2]"), {}).status, 0);
-  refused(scene(kGood, room + "max = [0.5, 5, 2]"), "the model must lie inside [surroundings]");
-  refused(scene(kGood, room + "max = [-3, 5, 2]"), "`max` must be above `min`");
-  refused(scene(kGood, room + "max = [2, 5, 2]\ncapture = [0, 6, 0]"), "lies outside");
-  refused(scene(kGood, "[surroundings]\nshape = \"cone\""), "`shape`: `cone` is not known");
-  refused(scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]"),
-          "has no `radius`");
+  expectInputError(scene(kGood, room + "max = [0.5, 5, 2]"),
+                   "the model must lie inside [surroundings]");
+  expectInputError(scene(kGood, room + "max = [-3, 5, 2]"), "`max` must be above `min`");
+  expectInputError(scene(kGood, room + "max = [2, 5, 2]\ncapture = [0, 6, 0]"), "lies outside");
+  expectInputError(scene(kGood, "[surroundings]\nshape = \"cone\""),
+                   "`shape`: `cone` is not known");
+  expectInputError(scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]"),
+                   "has no `radius`");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {
   const std::string room = "[surroundings]\nshape = \"model\"\nfile = \"model.gltf\"\n";
   ASSERT_EQ(render(scene(kGood, room + "capture = [0, 0.25, 0]"), {}).status, 0);
-  refused(scene(kGood, room), "has no `capture`");
-  refused(scene(kGood, room + "capture = [0, 50, 0]"), "lies outside the room");
-  refused(scene(kGood, "[surroundings]\nshape = \"model\"\nfile = \"hall.glb\""), "hall.glb");
+  expectInputError(scene(kGood, room), "has no `capture`");
+  expectInputError(scene(kGood, room + "capture = [0, 50, 0]"), "lies outside the room");
+  expectInputError(scene(kGood, "[surroundings]\nshape = \"model\"\nfile = \"hall.glb\""),
+                   "hall.glb");
 }
 
 // A phone's photograph and the probe that was taken with it.

@@ -114,7 +114,7 @@ TEST(CommandImage, ViewShowsLayers) {
   run({"image", "view", path, png, "--layer", "normal"});
   EXPECT_NEAR(readImage(png).rgb(0, 0).x, 0.5f, 0.004f);
   EXPECT_EQ(readImage(png).rgb(0, 0).y, 1);
-  expectRefused({"image", "view", path, png, "--layer", "dept"}, "`depth`");
+  expectError({"image", "view", path, png, "--layer", "dept"}, "`depth`");
 }
 
 TEST(CommandImage, ViewShowsEveryKindOfLayer) {
@@ -164,30 +164,30 @@ TEST(CommandImage, ViewShowsEveryKindOfLayer) {
   EXPECT_NEAR(view("alpha").first.rgb(0, 0).x, 0.5f, 0.01f);
 }
 
-TEST(SlowCommandImage, BadInputIsRefused) {
+TEST(SlowCommandImage, BadInputIsRejected) {
   const TemporaryFolder folder;
   const std::string a = folder / "a.exr", png = folder / "a.png";
   writeImage(a, filled(2, 2, 3, 1));
   writeImage(folder / "b.exr", filled(3, 2, 3, 1));
-  expectRefused({"image", "error", a, folder / "b.exr"}, "same size");
-  expectRefused({"image", "error", a}, "B");
-  expectRefused({"image", "error", a, folder / "none.exr"}, "no such file");
-  expectRefused({"image", "error", a, a, "--map", "z", "-o", png}, "--aov variance");
-  expectRefused({"image", "error", a, a, "--map", "flipp", "-o", png}, "`flip`");
-  expectRefused({"image", "error", a, a, "-o", folder / "map.exr"}, ".png");
-  expectRefused({"image", "view", a, folder / "a.gif"}, ".png");
-  expectRefused({"image", "view", a, png, "--tonemap", "reinhart"}, "`reinhard`");
-  expectRefused({"image", "view", a, png, "--exposure", "nan"}, "--exposure");
-  expectRefused({"image", "view", a, png, "--layer", "depth"}, "depth");
+  expectError({"image", "error", a, folder / "b.exr"}, "same size");
+  expectError({"image", "error", a}, "B");
+  expectError({"image", "error", a, folder / "none.exr"}, "no such file");
+  expectError({"image", "error", a, a, "--map", "z", "-o", png}, "--aov variance");
+  expectError({"image", "error", a, a, "--map", "flipp", "-o", png}, "`flip`");
+  expectError({"image", "error", a, a, "-o", folder / "map.exr"}, ".png");
+  expectError({"image", "view", a, folder / "a.gif"}, ".png");
+  expectError({"image", "view", a, png, "--tonemap", "reinhart"}, "`reinhard`");
+  expectError({"image", "view", a, png, "--exposure", "nan"}, "--exposure");
+  expectError({"image", "view", a, png, "--layer", "depth"}, "depth");
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "b.exr"}));
 }
 
-// Files from fuzzers: shown or refused with one line, never a crash, never half an output.
-TEST(SlowCommandImage, DamagedFilesAreShownOrRefused) {
+// Files from fuzzers: shown or rejected with one line, never a crash, never half an output.
+TEST(SlowCommandImage, DamagedFilesAreShownOrRejected) {
   const auto root = sharedData("bad/images");
   if (!root) GTEST_SKIP() << "no bad/images";
   const TemporaryFolder folder;
-  int shown = 0, refused = 0;
+  int shown = 0, rejected = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(*root)) {
     if (!entry.is_regular_file()) continue;
     const CommandResult result =
@@ -199,7 +199,7 @@ TEST(SlowCommandImage, DamagedFilesAreShownOrRefused) {
       EXPECT_EQ(folder.files(), std::vector<std::string>{"v.png"}) << entry.path();
       std::filesystem::remove(folder / "v.png");
     } else {
-      ++refused;
+      ++rejected;
       EXPECT_EQ(result.status, 2) << entry.path();
       EXPECT_TRUE(error.starts_with("chromeball: " + entry.path().string() + ": ")) << error;
       EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
@@ -207,7 +207,7 @@ TEST(SlowCommandImage, DamagedFilesAreShownOrRefused) {
     }
   }
   EXPECT_GT(shown, 3);
-  EXPECT_GT(refused, 50);
+  EXPECT_GT(rejected, 50);
 }
 
 }  // namespace

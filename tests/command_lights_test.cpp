@@ -138,7 +138,7 @@ TEST(SlowCommandLights, ABlackProbeIsNoError) {
   EXPECT_EQ(fileContents(folder / "e.svg").find("nan"), std::string::npos);
 }
 
-TEST(SlowCommandLights, BadInputIsRefused) {
+TEST(SlowCommandLights, BadInputIsRejected) {
   const TemporaryFolder folder;
   const std::string in = folder / "a.exr", out = folder / "a.json";
   writeImage(in, constantProbe({32, 16}, Rgb(1)));
@@ -148,35 +148,34 @@ TEST(SlowCommandLights, BadInputIsRefused) {
     arguments.insert(arguments.end(), more);
     return arguments;
   };
-  expectRefused(with(lights, {"medain-cut"}), "`median-cut`");
-  expectRefused(with(lights, {"irradiance-fitt"}), "`irradiance-fit`");
-  expectRefused(with(lights, {"median-cut", "--ambient"}), "--ambient");
-  expectRefused(with(lights, {"median-cut", "--max-error", "5%"}), "--max-error");
-  expectRefused(with(lights, {"irradiance-fit", "--max-error", "-5"}), "--max-error");
-  expectRefused(with(lights, {"irradiance-fit", "--max-error", "five"}), "--max-error");
-  expectRefused(with(lights, {"median-cut", "--preview", folder / "a.jpg"}), ".png");
-  expectRefused({"lights", in, "--method", "median-cut", "-o", out}, "--count");
-  expectRefused({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "a.txt"},
-                ".json");
-  expectRefused({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "b/a.csv"},
-                "no folder");
-  expectRefused({"lights", in, "--method", "median-cut", "--count", "-4", "-o", out}, "count");
-  expectRefused({"lights", in, "--method", "irradiance-fit", "--count", "0", "-o", out}, "count");
-  expectRefused({"lights", in, "--method", "irradiance-fit", "--count", "2000000000", "-o", out},
-                "count");
-  expectRefused(
-      {"lights", folder / "none.exr", "--method", "median-cut", "--count", "4", "-o", out},
-      "no such file");
+  expectError(with(lights, {"medain-cut"}), "`median-cut`");
+  expectError(with(lights, {"irradiance-fitt"}), "`irradiance-fit`");
+  expectError(with(lights, {"median-cut", "--ambient"}), "--ambient");
+  expectError(with(lights, {"median-cut", "--max-error", "5%"}), "--max-error");
+  expectError(with(lights, {"irradiance-fit", "--max-error", "-5"}), "--max-error");
+  expectError(with(lights, {"irradiance-fit", "--max-error", "five"}), "--max-error");
+  expectError(with(lights, {"median-cut", "--preview", folder / "a.jpg"}), ".png");
+  expectError({"lights", in, "--method", "median-cut", "-o", out}, "--count");
+  expectError({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "a.txt"},
+              ".json");
+  expectError({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "b/a.csv"},
+              "no folder");
+  expectError({"lights", in, "--method", "median-cut", "--count", "-4", "-o", out}, "count");
+  expectError({"lights", in, "--method", "irradiance-fit", "--count", "0", "-o", out}, "count");
+  expectError({"lights", in, "--method", "irradiance-fit", "--count", "2000000000", "-o", out},
+              "count");
+  expectError({"lights", folder / "none.exr", "--method", "median-cut", "--count", "4", "-o", out},
+              "no such file");
   const std::vector<std::string> errors{"lights-error", in, "--methods", "median-cut", "--counts"};
-  expectRefused(with(errors, {"two"}), "--counts");
-  expectRefused(with(errors, {"2", "--normals", "1000"}), "1280");
-  expectRefused(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
-  expectRefused(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
-  expectRefused({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},
-                "suns-cut");
-  expectRefused({"probe", "irradiance", in, folder / "o.exr", "--method", "exakt"}, "`exact`");
-  expectRefused({"probe", "irradiance", in, folder / "o.exr", "--size", "0x2"}, "--size");
-  expectRefused({"probe", "irradiance", in, folder / "o.jpg"}, ".exr");
+  expectError(with(errors, {"two"}), "--counts");
+  expectError(with(errors, {"2", "--normals", "1000"}), "1280");
+  expectError(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
+  expectError(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
+  expectError({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},
+              "suns-cut");
+  expectError({"probe", "irradiance", in, folder / "o.exr", "--method", "exakt"}, "`exact`");
+  expectError({"probe", "irradiance", in, folder / "o.exr", "--size", "0x2"}, "--size");
+  expectError({"probe", "irradiance", in, folder / "o.jpg"}, ".exr");
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr"}));
 }
 

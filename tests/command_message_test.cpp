@@ -59,15 +59,15 @@ TEST_F(SlowCommandMessage, OptionsOfOtherRenderersAreKnown) {
 
 TEST_F(SlowCommandMessage, NumbersThatAreNoneAreNamed) {
   EXPECT_EQ(render({"--noise", "30%"}).status, 0);
-  const auto refused = [&](const Words& words, const char* reason) {
+  const auto expectInputError = [&](const Words& words, const char* reason) {
     Words all{"render", w_.save()};
     all.insert(all.end(), words.begin(), words.end());
-    expectRefused(all, reason);
+    expectError(all, reason);
   };
-  refused({"--noise", "much"}, "--noise: `much` is not a finite number above 0");
-  refused({"--samples", "many"}, "--samples: `many` is not a whole number from 1 to");
-  refused({"--samples", "1.5"}, "--samples: `1.5` is not a whole number from 1 to");
-  refused({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
+  expectInputError({"--noise", "much"}, "--noise: `much` is not a finite number above 0");
+  expectInputError({"--samples", "many"}, "--samples: `many` is not a whole number from 1 to");
+  expectInputError({"--samples", "1.5"}, "--samples: `1.5` is not a whole number from 1 to");
+  expectInputError({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
 }
 
 TEST_F(SlowCommandMessage, SettingsWithoutEffectAreWarnedOf) {

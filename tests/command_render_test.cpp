@@ -390,44 +390,45 @@ TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
   GltfWriter demanding;
   demanding.root["extensionsRequired"] = demanding.root["extensionsUsed"] = {"EXT_nonsense"};
 
-  const auto refused = [&](const Words& words, const std::string& named,
-                           const std::string& remedy) {
+  const auto expectInputError = [&](const Words& words, const std::string& named,
+                                    const std::string& remedy) {
     Words all{"render"};
     all.insert(all.end(), words.begin(), words.end());
-    const CommandResult result = expectRefused(all, remedy);
+    const CommandResult result = expectError(all, remedy);
     EXPECT_NE(result.error.find(named), std::string::npos) << result.error;
   };
-  const auto refusedOption = [&](const Words& more, const std::string& remedy) {
+  const auto expectOptionError = [&](const Words& more, const std::string& remedy) {
     Words words{scene.model, "--probe", scene.gradient, "-o", output};
     words.insert(words.end(), more.begin(), more.end());
-    refused(words, more.front(), remedy);
+    expectInputError(words, more.front(), remedy);
   };
-  refused({scene.folder() + "/none.gltf", "-o", output}, "none.gltf", "no such file");
-  refused({scene.folder() + "/none.toml", "-o", output}, "none.toml", "no such file");
-  refused({scene.gradient, "-o", output}, "gradient.exr", ".gltf");
-  refused({scene.model, "--probe", scene.folder() + "/none.exr", "-o", output}, "none.exr",
-          "no such file");
-  refused({scene.model, "--probe", corrupt, "-o", output}, "corrupt.exr", "corrupt.exr: ");
-  refused({demanding.save(), "--probe", scene.gradient, "-o", output}, "model.gltf",
-          "EXT_nonsense");
-  refused({scene.model, "--probe", scene.gradient}, "model.gltf", "--output");
-  refusedOption({"--strategy", "importence"}, "`importance`");
-  refusedOption({"--aov", "albdo"}, "`albedo`");
-  refusedOption({"--mis", "powr"}, "`power`");
-  refusedOption({"--camera", "Frnt"}, "`Front`");
-  refusedOption({"--size", "12by9"}, "WIDTHxHEIGHT");
-  refusedOption({"--size", "0x9"}, "WIDTHxHEIGHT");
-  refusedOption({"--samples", "0"}, "from 1 to 2000000000");
-  refusedOption({"--samples", "many"}, "many");
-  refusedOption({"--max-depth", "-1"}, "from 0 to 1000000");
-  refusedOption({"--time", "nan"}, "above 0");
-  refusedOption({"--noise", "0"}, "above 0");
-  refusedOption({"--probe-scale", "nan"}, "0 or more");
-  refusedOption({"--probe-rotation", "inf"}, "finite");
-  refusedOption({"--samplse", "4"}, "`--samples`");
-  refused({scene.model, "--probe", scene.gradient, "-o", scene.folder() + "/none/a.exr"},
-          "none/a.exr: ", "no folder");
-  refused({scene.model, "--probe", scene.gradient, "-o", scene.out / "a.bmp"}, "a.bmp: ", ".exr");
+  expectInputError({scene.folder() + "/none.gltf", "-o", output}, "none.gltf", "no such file");
+  expectInputError({scene.folder() + "/none.toml", "-o", output}, "none.toml", "no such file");
+  expectInputError({scene.gradient, "-o", output}, "gradient.exr", ".gltf");
+  expectInputError({scene.model, "--probe", scene.folder() + "/none.exr", "-o", output}, "none.exr",
+                   "no such file");
+  expectInputError({scene.model, "--probe", corrupt, "-o", output}, "corrupt.exr", "corrupt.exr: ");
+  expectInputError({demanding.save(), "--probe", scene.gradient, "-o", output}, "model.gltf",
+                   "EXT_nonsense");
+  expectInputError({scene.model, "--probe", scene.gradient}, "model.gltf", "--output");
+  expectOptionError({"--strategy", "importence"}, "`importance`");
+  expectOptionError({"--aov", "albdo"}, "`albedo`");
+  expectOptionError({"--mis", "powr"}, "`power`");
+  expectOptionError({"--camera", "Frnt"}, "`Front`");
+  expectOptionError({"--size", "12by9"}, "WIDTHxHEIGHT");
+  expectOptionError({"--size", "0x9"}, "WIDTHxHEIGHT");
+  expectOptionError({"--samples", "0"}, "from 1 to 2000000000");
+  expectOptionError({"--samples", "many"}, "many");
+  expectOptionError({"--max-depth", "-1"}, "from 0 to 1000000");
+  expectOptionError({"--time", "nan"}, "above 0");
+  expectOptionError({"--noise", "0"}, "above 0");
+  expectOptionError({"--probe-scale", "nan"}, "0 or more");
+  expectOptionError({"--probe-rotation", "inf"}, "finite");
+  expectOptionError({"--samplse", "4"}, "`--samples`");
+  expectInputError({scene.model, "--probe", scene.gradient, "-o", scene.folder() + "/none/a.exr"},
+                   "none/a.exr: ", "no folder");
+  expectInputError({scene.model, "--probe", scene.gradient, "-o", scene.out / "a.bmp"},
+                   "a.bmp: ", ".exr");
   EXPECT_EQ(scene.out.files(), Words{});
 }
 
@@ -438,7 +439,7 @@ TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
   EXPECT_EQ(readImage(scene.out / "a.pfm").rgb(0, 0), Rgb(0));
   GltfWriter dark;
   addTriangle(dark);
-  expectRefused({"render", dark.save(), "-o", scene.out / "b.exr"}, "--probe");
+  expectError({"render", dark.save(), "-o", scene.out / "b.exr"}, "--probe");
   EXPECT_EQ(scene.out.files(), Words{"a.pfm"});
 }
 

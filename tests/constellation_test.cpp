@@ -97,7 +97,7 @@ TEST(Constellation, SameSeedSameBitsOtherSeedOtherLights) {
   }
 }
 
-TEST(Constellation, RefusesWhatItCannotDo) {
+TEST(Constellation, RejectsWhatItCannotDo) {
   const Image map = constantProbe({8, 4}, Rgb(1));
   try {
     makeLights("medain-cut", map, {.count = 8});

@@ -15,7 +15,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using Texel = std::array<uint8_t, 4>;
 
-std::string refusal(const Bytes& file) {
+std::string errorMessage(const Bytes& file) {
   try {
     decodeImage(file, "x");
   } catch (const InputError& e) {
@@ -73,19 +73,20 @@ TEST(DecodeImage, RejectsLargeImagesBeforeDecoding) {
                       0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
                       0x00, 0x80, 0xbf, 0x01, 0x40, 0x02, 0x00, 0x01, 0x79, 0x25, 0x46, 0x11,
                       0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
-  EXPECT_EQ(refusal(wide), "x: 16385 x 1 texels with 1 channels; the limit is 16384 x 16384");
+  EXPECT_EQ(errorMessage(wide), "x: 16385 x 1 texels with 1 channels; the limit is 16384 x 16384");
   const Bytes liar = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d,
                       0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x40, 0x00, 0x00, 0x00, 0x40, 0x00,
                       0x08, 0x00, 0x00, 0x00, 0x00, 0x8c, 0xa3, 0x4f, 0x58, 0x00, 0x00, 0x00,
                       0x0c, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0xa0, 0x3d, 0x00,
                       0x00, 0x00, 0x64, 0x00, 0x01, 0x86, 0x64, 0x3c, 0x35, 0x00, 0x00, 0x00,
                       0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
-  EXPECT_TRUE(refusal(liar).starts_with("x: damaged image: 16384 x 16384 texels cannot fit into"));
+  EXPECT_TRUE(
+      errorMessage(liar).starts_with("x: damaged image: 16384 x 16384 texels cannot fit into"));
 }
 
 TEST(DecodeImage, RejectsOtherFormatsByName) {
-  EXPECT_EQ(refusal({}), "x: is not a PNG, JPEG or WebP file");
-  EXPECT_EQ(refusal({0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb}),
+  EXPECT_EQ(errorMessage({}), "x: is not a PNG, JPEG or WebP file");
+  EXPECT_EQ(errorMessage({0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb}),
             "x: is KTX2; it must be PNG, JPEG or WebP");
 }
 
@@ -107,12 +108,12 @@ TEST(DecodeImage, DamagedWebpIsRejectedOrRead) {
   for (size_t i = 12; i < kWebp.size(); ++i) {
     Bytes cut(kWebp.begin(), kWebp.begin() + long(i)), turned = kWebp;
     turned[i] = uint8_t(~turned[i]);
-    EXPECT_NE(refusal(cut), "");
-    refusal(turned);
+    EXPECT_NE(errorMessage(cut), "");
+    errorMessage(turned);
   }
   Bytes large = kWebp;  // 16384 x 16384 according to the 28 bits of its header
   large[21] = large[22] = large[23] = 0xff, large[24] = 0x1f;
-  EXPECT_NE(refusal(large).find("cannot fit into 40 bytes"), std::string::npos);
+  EXPECT_NE(errorMessage(large).find("cannot fit into 40 bytes"), std::string::npos);
 }
 
 TEST(DecodeImage, DamagedFilesAreRejectedOrRead) {
@@ -121,7 +122,7 @@ TEST(DecodeImage, DamagedFilesAreRejectedOrRead) {
   for (const auto& entry : std::filesystem::directory_iterator(*folder)) {
     std::ifstream stream(entry.path(), std::ios::binary);
     const Bytes file(std::istreambuf_iterator<char>(stream), {});
-    EXPECT_EQ(refusal(file).find('\n'), std::string::npos) << entry.path();
+    EXPECT_EQ(errorMessage(file).find('\n'), std::string::npos) << entry.path();
   }
 }
 

@@ -282,7 +282,7 @@ TEST(DeltaLights, blackProbesGiveBlackPictures) {
   }
 }
 
-std::string refusal(const std::string& name) {
+std::string errorMessage(const std::string& name) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   try {
     makeStrategy(name, probe, Mis::Balance, "scene.toml:7");
@@ -292,18 +292,18 @@ std::string refusal(const std::string& name) {
   return "";
 }
 
-TEST(StrategyTable, refusesBadCountsInOneLine) {
+TEST(StrategyTable, rejectsBadCountsInOneLine) {
   for (const char* name : {"median-cut:1", "median-cut:4097", "median-cut:", "median-cut:x",
                            "median-cut:8x", "median-cut:-3", "median-cut:99999999999",
                            "median-cut:8:8", "cube-grid:27", "irradiance-fit:0"}) {
-    const std::string message = refusal(name);
+    const std::string message = errorMessage(name);
     EXPECT_TRUE(message.starts_with("scene.toml:7: ")) << name;
     EXPECT_NE(message.find("or no count for"), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
-  EXPECT_NE(refusal("bsdf:3").find("takes no count"), std::string::npos);
-  EXPECT_NE(refusal("median-cud:3").find("did you mean `median-cut`"), std::string::npos);
-  EXPECT_NE(refusal("").find("known"), std::string::npos);
+  EXPECT_NE(errorMessage("bsdf:3").find("takes no count"), std::string::npos);
+  EXPECT_NE(errorMessage("median-cud:3").find("did you mean `median-cut`"), std::string::npos);
+  EXPECT_NE(errorMessage("").find("known"), std::string::npos);
 }
 
 TEST(StrategyTable, helpListsEveryStrategy) {

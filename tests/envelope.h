@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures for the tests of tests/ENVELOPE.md.
+// Helpers for the tests that tests/ENVELOPE.md lists.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,13 +16,13 @@ inline Scene plane(const Material& material, float half = 10) {
   return scene;
 }
 
-// Luminance of a picture whose every sample was valid.
+// Mean luminance of a render; expects that it has no invalid samples.
 inline double validMean(const RenderResult& result) {
   EXPECT_EQ(result.invalid.total(), 0u);
   return luminance(glm::dvec3(meanColor(result.film.mean())));
 }
 
-// Irradiance / pi of a plane that faces `normal`, by brute force over the radiance function.
+// Irradiance / pi of a plane with `normal`, by quadrature over theta and phi.
 inline double irradianceOverPi(const Probe& probe, const vec3& normal, int rows) {
   double sum = 0;
   for (int i = 0; i < rows; ++i)

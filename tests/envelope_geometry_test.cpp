@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tests/ENVELOPE.md, the rows of geometry.
+// tests/ENVELOPE.md: the rows about geometry.
 #include <cstdlib>
 #include <functional>
 
@@ -12,8 +12,8 @@
 namespace chromeball {
 namespace {
 
-// A ball on a table, `scale` metres large.
-Scene still(float scale) {
+// A ball on a table; the radius of the ball is `scale` metres.
+Scene ballOnTable(float scale) {
   Scene scene;
   const int grey = addMaterial(scene, lambert(Rgb(0.6f)));
   Material coated = lambert(Rgb(0.8f, 0.3f, 0.2f));
@@ -30,14 +30,14 @@ TEST(SlowEnvelopeGeometry, SceneScaleFrom1e_4To1e7) {
   for (float scale : {1.0f, 1e-4f, 1e-2f, 1e3f, 1e7f}) {
     const Camera camera = Camera::lookAt(scale * vec3(1, 1.5f, 5), vec3(0), {0, 1, 0}, 0.7f);
     const RenderResult r =
-        renderScene(still(scale), camera, probe, "importance", smallRender(32, 32, 64, 4));
+        renderScene(ballOnTable(scale), camera, probe, "importance", smallRender(32, 32, 64, 4));
     validMean(r);
     const Image mean = r.film.mean();
     if (scale == 1.0f) {
       reference = mean;
       continue;
     }
-    double squares = 0;  // a few paths part ways by rounding; their number must stay small
+    double squares = 0;  // rounding makes a few paths diverge; their number must stay small
     for (size_t i = 0; i < mean.texels.size(); ++i)
       squares += std::pow(mean.texels[i] - reference.texels[i], 2);
     EXPECT_LT(std::sqrt(squares / double(mean.texels.size())), 4e-3) << scale;
@@ -45,15 +45,15 @@ TEST(SlowEnvelopeGeometry, SceneScaleFrom1e_4To1e7) {
   }
 }
 
-// A model of a metre that stands 1e6 m from the origin is rendered as if it stood there, since it
-// is seen from its own centre; and a scene beyond 1e9 m is refused.
+// A model of 1 m at a distance of 1e6 m from the origin renders the same image as at the origin,
+// because the scene's centre is subtracted. A scene beyond 1e9 m is rejected.
 TEST(EnvelopeGeometry, ASmallObjectFarFromTheOrigin) {
   const TemporaryFolder out;
   const std::string probe = out / "probe.exr";
   writeImage(probe, gradientProbe({32, 16}, Rgb(1), {0.2, 0.7, 0.3}));
   const auto renderAt = [&](const nlohmann::json& translation, const std::string& name) {
     GltfWriter w;
-    const Scene ball = still(0.5f);
+    const Scene ball = ballOnTable(0.5f);
     std::vector<float> positions;
     std::vector<uint16_t> indices;
     for (const vec3& p : ball.meshes[1].positions)
@@ -84,51 +84,52 @@ TEST(EnvelopeGeometry, DegenerateTriangles) {
   const int grey = addMaterial(scene, lambert(Rgb(0.5f)));
   addQuad(scene, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
   addQuad(scene, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});     // a duplicate
-  addQuad(scene, grey, {-1, 0, 1}, {4, 0, 0.5f}, {0, 0, -4});  // a coplanar overlap
-  Mesh odd;
-  odd.positions = {{0, 0.5f, 0},        {0, 0.5f, 0},  {0, 0.5f, 0},     {1, 0.5f, 0},
-                   {0.5f, 0.5f, 1e-7f}, {-1, 0.2f, 0}, {1, 0.2f, 1e-6f}, {1, 0.2f, -1e-6f}};
-  odd.triangles = {
+  addQuad(scene, grey, {-1, 0, 1}, {4, 0, 0.5f}, {0, 0, -4});  // coplanar and overlapping
+  Mesh degenerate;
+  degenerate.positions = {{0, 0.5f, 0},        {0, 0.5f, 0},  {0, 0.5f, 0},     {1, 0.5f, 0},
+                          {0.5f, 0.5f, 1e-7f}, {-1, 0.2f, 0}, {1, 0.2f, 1e-6f}, {1, 0.2f, -1e-6f}};
+  degenerate.triangles = {
       {0, 1, 2}, {0, 0, 0}, {0, 3, 3}, {0, 3, 4}, {5, 6, 7}};  // points, lines, slivers
-  odd.normals.assign(odd.positions.size(), vec3(0));
-  addMesh(scene, grey, odd);
+  degenerate.normals.assign(degenerate.positions.size(), vec3(0));
+  addMesh(scene, grey, degenerate);
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   const RenderResult r =
       renderScene(scene, topCamera(3, 40), probe, "importance", smallRender(64, 64, 16, 6));
-  // What sees the sky alone shows 1/2; slivers shadow next to nothing.
+  // Exitant radiance = albedo x probe radiance = 1/2; the slivers occlude a negligible area.
   EXPECT_NEAR(validMean(r), 0.5, 2e-3);
 }
 
-TEST(EnvelopeGeometry, NormalsAndTangentsThatAreNone) {
+TEST(EnvelopeGeometry, InvalidNormals) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   Material coated = lambert(Rgb(1));
   coated.specular = 1;
   coated.roughness = 0.4f;
-  const std::pair<const char*, std::function<vec3(int, vec3)>> spoilers[] = {
+  const std::pair<const char*, std::function<vec3(int, vec3)>> corruptions[] = {
       {"long", [](int, vec3 n) { return 1e6f * n; }},
       {"short", [](int, vec3 n) { return 1e-6f * n; }},
       {"zero", [](int, vec3) { return vec3(0); }},
       {"flipped", [](int, vec3 n) { return -n; }},
       {"some zero, some flipped", [](int i, vec3 n) { return float(i % 3 - 1) * n; }},
       {"overflowing", [](int, vec3 n) { return 1e30f * n; }}};
-  for (const auto& [name, spoil] : spoilers) {
+  for (const auto& [name, corrupt] : corruptions) {
     Scene scene;
     addSphere(scene, addMaterial(scene, coated), vec3(0), 1, 16);
     for (size_t i = 0; i < scene.meshes[0].normals.size(); ++i)
-      scene.meshes[0].normals[i] = spoil(int(i), scene.meshes[0].normals[i]);
+      scene.meshes[0].normals[i] = corrupt(int(i), scene.meshes[0].normals[i]);
     const RenderResult r =
         renderScene(scene, topCamera(5, 20), probe, "importance", smallRender(24, 24, 32, 6));
     const double mean = validMean(r);
-    EXPECT_LT(mean, 1.01) << name;  // a white furnace: no more light than came
+    EXPECT_LT(mean, 1.01) << name;  // a white furnace: no energy is created
     EXPECT_GT(mean, 0.9) << name;
   }
 }
 
-// Rays that no hole lets through: a light in a closed box and a camera outside, and a bright probe
-// around a closed ball with a camera inside. CHROMEBALL_LEAK_RAYS sets the number for each scale.
+// Two watertight scenes in which every pixel must be 0: a lamp in a closed box with the camera
+// outside, and a closed ball with the camera inside under a bright probe. CHROMEBALL_LEAK_RAYS sets
+// the approximate number of rays for each scale.
 TEST(SlowEnvelopeGeometry, NoLightLeaksAtAnyScale) {
-  const char* asked = std::getenv("CHROMEBALL_LEAK_RAYS");
-  const double wanted = asked ? std::atof(asked) : 4e5;
+  const char* variable = std::getenv("CHROMEBALL_LEAK_RAYS");
+  const double raysPerScale = variable ? std::atof(variable) : 4e5;
   const Probe black(constantProbe({4, 2}, Rgb(0))), bright(constantProbe({16, 8}, Rgb(1e6f)));
   const glm::mat3 turn(glm::mat3_cast(glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)))));
   double rays = 0;
@@ -138,7 +139,7 @@ TEST(SlowEnvelopeGeometry, NoLightLeaksAtAnyScale) {
     glow.emission = Rgb(1e10f);
     const int light = addMaterial(lamp, glow), wall = addMaterial(lamp, lambert(Rgb(0.8f)));
     addSphere(lamp, light, vec3(0), 0.3f * scale, 6);
-    // Its walls share their corners: rounded apart, they would leave a crack.
+    // The walls share their vertices: separately rounded ones would leave a crack.
     Mesh box;
     for (int i = 0; i < 8; ++i)
       box.positions.push_back(scale *
@@ -154,7 +155,7 @@ TEST(SlowEnvelopeGeometry, NoLightLeaksAtAnyScale) {
     addSphere(ball, addMaterial(ball, lambert(Rgb(0.8f))), vec3(0.3f, 0.2f, 0.1f) * scale, -scale,
               24, false);
 
-    const int samples = std::max(1, int(wanted / 2 / (64.0 * 64 * 12)));
+    const int samples = std::max(1, int(raysPerScale / 2 / (64.0 * 64 * 12)));
     const Camera outside = Camera::lookAt(scale * vec3(2, 3, 4), vec3(0), {0, 1, 0}, 0.6f);
     const RenderResult a =
         renderScene(lamp, outside, black, "importance", smallRender(64, 64, 4 * samples, 3));
@@ -174,8 +175,8 @@ TEST(SlowEnvelopeGeometry, NoLightLeaksAtAnyScale) {
   std::printf("%.3g rays\n", rays);
 }
 
-// Walls 1e-5 thick around a lamp, beside coordinates of a metre.
-TEST(EnvelopeGeometry, ThinWallsHoldTheLight) {
+// A lamp in a box with double walls 1e-5 apart, at coordinates of about 1.
+TEST(EnvelopeGeometry, ThinWallsDoNotLeakLight) {
   Scene scene;
   Material glow = lambert(Rgb(0.5f));
   glow.emission = Rgb(1e10f);

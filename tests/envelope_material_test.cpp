@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tests/ENVELOPE.md, the rows of materials, light and depth.
+// tests/ENVELOPE.md: the rows about materials, emission and path depth.
 #include "envelope.h"
 
 namespace chromeball {
@@ -14,7 +14,8 @@ Material coated(float roughness, float metallic, float ior) {
   return m;
 }
 
-// A white ball in a white furnace shows no more than the furnace, and what it loses is stated.
+// White furnace test: a ball of albedo 1 under constant radiance 1 neither gains energy nor loses
+// more than ENVELOPE.md states.
 TEST(SlowEnvelopeMaterial, RoughnessMetalnessAndIor) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   for (float roughness : {0.0f, 1e-4f, 0.02f, 0.1f, 0.5f, 1.0f})
@@ -30,7 +31,7 @@ TEST(SlowEnvelopeMaterial, RoughnessMetalnessAndIor) {
       }
 }
 
-// A plane seen at an angle of 1e-7, by every kind of lobe.
+// A plane seen at grazing angles down to 1e-7 rad, for every kind of lobe.
 TEST(EnvelopeMaterial, GrazingAnglesTo1e_7) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   for (float angle : {1e-2f, 1e-4f, 1e-7f})
@@ -46,8 +47,8 @@ TEST(EnvelopeMaterial, GrazingAnglesTo1e_7) {
       }
 }
 
-// Inside a closed sphere that absorbs nothing and emits 1, depth d sees d + 1: energy neither grows
-// nor vanishes, and the path ends where the depth says.
+// Inside a closed sphere of albedo 1 and emission 1, a path of d bounces has radiance d + 1: energy
+// is conserved, and every path has exactly the maximum number of bounces.
 TEST(SlowEnvelopeMaterial, AlbedoOneAt1000Bounces) {
   Scene scene;
   Material white = lambert(Rgb(1));
@@ -61,7 +62,7 @@ TEST(SlowEnvelopeMaterial, AlbedoOneAt1000Bounces) {
   EXPECT_EQ(r.rays.bounce, 1000 * r.rays.camera);
 }
 
-// The same with a coated material: what its lobes make of all light is still all light.
+// The same with a coated material: the sum of its lobes must have an albedo of 1.
 TEST(SlowEnvelopeMaterial, AWhiteCoatingAt200Bounces) {
   Scene scene;
   Material white = coated(0.5f, 0, 1.5f);
@@ -73,8 +74,8 @@ TEST(SlowEnvelopeMaterial, AWhiteCoatingAt200Bounces) {
   EXPECT_NEAR(validMean(r) / 201, 1, 0.05);
 }
 
-// Two rooms without a door, one lit by 1e10, the other by 1e-8. Light samples all but never choose
-// the weak lamp; the BSDF's samples find it, and MIS gives them the whole weight.
+// Two closed rooms, with lamps of radiance 1e10 and 1e-8. Light samples almost never choose the
+// weak lamp; BSDF samples hit it, with an MIS weight of almost 1.
 TEST(SlowEnvelopeMaterial, Emission1e10Beside1e_8) {
   const auto room = [](Scene& scene, float x, float emission) {
     Material glow = lambert(Rgb(0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tests/ENVELOPE.md, the error analysis: what is shipped, against long double. Each test prints the
-// errors that the table states, and holds them to its bounds.
+// tests/ENVELOPE.md, "Measured errors": the renderer's arithmetic compared with long double. Each
+// test prints the errors that the table lists and checks their bounds.
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr long double kPiL = 3.141592653589793238462643383279502884L;
 
-// Width of a column, as sample() uses it, from where two u inside it end up.
+// Width of a column's interval in u, measured by how sample() maps two values of u inside it.
 long double width(const CdfRows& table, int column, long double from, long double to) {
   double a = double(from + 0.25L * (to - from)), b = double(from + 0.75L * (to - from));
   const double ua = a, ub = b;
@@ -55,7 +55,7 @@ TEST(SlowEnvelopePrecision, FilmOfAMillionSamples) {
   for (int block = 0; count < 1'000'000; ++block) {
     SampleSums sums;
     for (int i = 0; i < 4096; ++i, ++count) {
-      // Nine decades, as a picture with a sun in it has.
+      // Nine decades, as in an image that contains the sun.
       const float x = std::pow(10.0f, std::uniform_real_distribution(-6.0f, 3.0f)(random));
       sums.add(Rgb(x));
       sum += x;
@@ -66,12 +66,12 @@ TEST(SlowEnvelopePrecision, FilmOfAMillionSamples) {
   const long double mean = sum / count, variance = squares / count - mean * mean;
   const long double error = std::fabs(film.mean().texels[0] / mean - 1);
   std::printf("film, %.2g samples: relative error of the mean %.1Le\n", double(count), error);
-  EXPECT_LT(error, 1.2e-7L);  // half a float's last place, which is what is written
+  EXPECT_LT(error, 1.2e-7L);  // one rounding to float, the type of the output
   // The squared error of the mean of independent samples.
   EXPECT_NEAR(film.errors().scatter[0].w * double(count) / double(variance), 1, 1e-5);
 }
 
-// The mean does not stall: sample 16 million still counts as much as the first.
+// With 2^25 samples, late samples still have the same weight as the first.
 TEST(SlowEnvelopePrecision, AccumulatorsDoNotStall) {
   Film film(1, 1);
   AovFilm aovs(1, 1, {Aov::Albedo, Aov::Alpha});
@@ -92,8 +92,8 @@ TEST(SlowEnvelopePrecision, AccumulatorsDoNotStall) {
   EXPECT_EQ(aovs.finished(Aov::Alpha).texels[0], 1);
 }
 
-// How far a point that surfaceAt() finds lies off its triangle, in units of the offset with which
-// rays leave it: below 1, no ray starts on the wrong side.
+// Distance of the points that surfaceAt() computes from the plane of their triangle, relative to
+// the ray offset: below 1, no ray starts on the wrong side.
 TEST(EnvelopePrecision, RayOffset) {
   using lvec3 = glm::vec<3, long double>;
   std::mt19937 random(3);
@@ -106,23 +106,23 @@ TEST(EnvelopePrecision, RayOffset) {
       const float size = std::pow(10.0f, uniform(-4, 0));
       vec3 p[3];
       for (vec3& v : p) v = vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) * size;
-      const vec3 away = vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const vec3 center = vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
       Scene scene;
       Mesh mesh;
-      for (const vec3& v : p) mesh.positions.push_back(scale * (v + away));
+      for (const vec3& v : p) mesh.positions.push_back(scale * (v + center));
       mesh.triangles = {{0, 1, 2}};
       addMesh(scene, addMaterial(scene, lambert(Rgb(1))), mesh);
       const auto& q = scene.meshes[0].positions;
       const lvec3 a(q[0]), normal = glm::cross(lvec3(q[1]) - a, lvec3(q[2]) - a);
       const long double length = glm::length(normal);
-      // A sliver whose normal rounding may turn has no side to speak of.
+      // Skip slivers: rounding may flip their normal.
       if (length < 1e-3L * glm::length(lvec3(q[1]) - a) * glm::length(lvec3(q[2]) - a)) continue;
       const float u = uniform(0, 1), v = uniform(0, 1 - u);
       const Surface s = surfaceAt(scene, scene.instances[0], 0, {u, v}, {0, 1, 0});
       const long double off = std::fabs(glm::dot(lvec3(s.position) - a, normal)) / length;
       worst = std::max(worst, off / s.rayOffset);
     }
-    std::printf("ray offset, scale %g: a point lies off its plane by %.2Lf of the offset\n", scale,
+    std::printf("ray offset, scale %g: distance to the plane is %.2Lf of the offset\n", scale,
                 worst);
     EXPECT_LT(worst, 0.5L) << scale;
   }
@@ -136,18 +136,18 @@ TEST(EnvelopePrecision, SolidAnglesNearThePole) {
       const long double top = kPiL * row / height, bottom = kPiL * (row + 1) / height;
       const long double exact =
           2 * kPiL / width * 2 * std::sin((top + bottom) / 2) * std::sin((bottom - top) / 2);
-      const double shipped = texelSolidAngle(row, width, height);
-      worst = std::max(worst, std::fabs(shipped / exact - 1));
-      sum += (long double)(shipped)*width;
+      const double found = texelSolidAngle(row, width, height);
+      worst = std::max(worst, std::fabs(found / exact - 1));
+      sum += (long double)(found)*width;
     }
     std::printf("solid angle, %d rows: relative error %.1Le, of their sum %.1Le\n", height, worst,
                 std::fabs(sum / (4 * kPiL) - 1));
-    EXPECT_LT(worst, 1e-11L);  // at the south pole, where pi's own rounding shows
+    EXPECT_LT(worst, 1e-11L);  // largest at the south pole, because of the rounding of pi
     EXPECT_LT(std::fabs(sum / (4 * kPiL) - 1), 1e-13L);
   }
 }
 
-// The Jacobian's sine near the poles, and how far a direction strays from its texel.
+// sin(theta) of the Jacobian near the pole, and the error of texel -> direction -> texel.
 TEST(EnvelopePrecision, DirectionsNearThePole) {
   const int rows = 8192;
   const Probe probe(constantProbe({8, rows}, Rgb(1)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of tests/ENVELOPE.md on probes.
+// tests/ENVELOPE.md: the rows about probes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,20 +16,20 @@
 namespace chromeball {
 namespace {
 
-constexpr const char* kEvery[] = {"bsdf",
-                                  "uniform",
-                                  "importance",
-                                  "product",
-                                  "suns",
-                                  "median-cut:8",
-                                  "kollig-keller-strata:4",
-                                  "lightgen:4",
-                                  "variance-cut:8",
-                                  "cube-grid:2",
-                                  "kollig-keller:4",
-                                  "penrose:32",
-                                  "irradiance-fit:2",
-                                  "irradiance-fit-ambient:2"};
+constexpr const char* kStrategies[] = {"bsdf",
+                                       "uniform",
+                                       "importance",
+                                       "product",
+                                       "suns",
+                                       "median-cut:8",
+                                       "kollig-keller-strata:4",
+                                       "lightgen:4",
+                                       "variance-cut:8",
+                                       "cube-grid:2",
+                                       "kollig-keller:4",
+                                       "penrose:32",
+                                       "irradiance-fit:2",
+                                       "irradiance-fit-ambient:2"};
 
 RenderResult litPlane(const Probe& probe, const std::string& strategy, int samples,
                       const Material& material = lambert(Rgb(0.5f))) {
@@ -49,14 +49,14 @@ TEST(EnvelopeProbe, RadianceFrom1e_8To1e10) {
   }
 }
 
-// Scaled by a power of two, so without rounding.
+// Scales by a power of two, which is exact.
 Image scaled(Image image, int exponent) {
   for (float& x : image.texels) x = std::ldexp(x, exponent);
   return image;
 }
 
 // A bright texel in a gradient.
-Image sunny(float sun) {
+Image gradientWithSun(float sun) {
   Image image = gradientProbe({32, 16}, Rgb(1), {0.2, 0.6, 0.3});
   image.setRgb(11, 4, Rgb(sun));
   return image;
@@ -64,21 +64,21 @@ Image sunny(float sun) {
 
 // Scaling the probe by 1e30 or 1e-30 scales the image by the same factor.
 TEST(SlowEnvelopeProbe, RadianceFrom1e_30To1e30UnderEveryStrategy) {
-  for (const std::string strategy : kEvery) {
-    const double mean = validMean(litPlane(Probe(sunny(50)), strategy, 16));
+  for (const std::string strategy : kStrategies) {
+    const double mean = validMean(litPlane(Probe(gradientWithSun(50)), strategy, 16));
     for (const int exponent : {-100, 100}) {
-      const Probe probe(scaled(sunny(50), exponent));
+      const Probe probe(scaled(gradientWithSun(50), exponent));
       EXPECT_NEAR(std::ldexp(validMean(litPlane(probe, strategy, 16)), -exponent) / mean, 1, 1e-4)
           << strategy << " 2^" << exponent;
     }
   }
 }
 
-// A sun so bright, or a rest so dark, that squares exceed the range of a float.
+// Squares of these radiances overflow or underflow in float.
 TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
   for (const float sun : {1e20f, 1e30f})
     for (const std::string strategy : {"importance", "product", "kollig-keller-strata:4", "suns"}) {
-      const Probe probe(sunny(sun));
+      const Probe probe(gradientWithSun(sun));
       const double expected = 0.5 * irradianceOverPi(probe, {0, 1, 0}, 1500);
       EXPECT_NEAR(validMean(litPlane(probe, strategy, 256)) / expected, 1,
                   strategy == "suns" ? 0.02 : 5e-3)
@@ -91,8 +91,8 @@ TEST(SlowEnvelopeProbe, AOneTexelSunOf1e30) {
 }
 
 // The statistics of a probe and its exact irradiance.
-TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
-  const Image image = sunny(1e6f);
+TEST(EnvelopeProbe, StatisticsFrom1e_30To1e30) {
+  const Image image = gradientWithSun(1e6f);
   const ProbeInfo info = probeInfo(image);
   ASSERT_EQ(info.suns.size(), 1u);
   const vec3 normal = glm::normalize(vec3(0.3f, 0.9f, 0.1f));
@@ -112,7 +112,7 @@ TEST(EnvelopeProbe, NumbersOfAProbeFrom1e_30To1e30) {
   }
 }
 
-// Squares of radiance exceed the range of a float; the film uses double.
+// Squares of radiance exceed the range of float; the film accumulates in double.
 TEST(EnvelopeProbe, TheErrorEstimateHoldsFrom1e_35To1e35) {
   for (const float radiance : {1e-35f, 1e-25f, 1.0f, 1e25f, 1e35f}) {
     Film film(1, 1);
@@ -134,19 +134,19 @@ TEST(SlowEnvelopeProbe, ADynamicRangeOf1e12InOneProbe) {
   const Probe probe(image);
   const double expected = 0.5 * irradianceOverPi(probe, {0, 1, 0}, 1500);
   for (const char* strategy : {"importance", "suns"})
-    // `suns` replaces the lamp by a disc, which shifts its light a little.
+    // `suns` replaces the bright texel by a disc of slightly different shape.
     EXPECT_NEAR(validMean(litPlane(probe, strategy, 256)) / expected, 1,
                 std::string(strategy) == "suns" ? 0.02 : 5e-3)
         << strategy;
-  // Surfaces that the lamp does not light still get light from the rest: seen from below.
+  // With the bright texel below the plane, the plane is lit only by the other texels.
   Image below = constantProbe({32, 16}, Rgb(1e-2f));
   below.setRgb(11, 13, Rgb(1e10f));
-  const RenderResult r = litPlane(Probe(below), "importance", 4096);
+  const RenderResult r = litPlane(Probe(below), "importance", 4096);  // seen from above
   EXPECT_NEAR(validMean(r) / 5e-3, 1, 0.02);
 }
 
-// Tables are double: next to a texel 1e12 times as bright, the other texels of a row of 16384 keep
-// their probability to 1e-3, and each can be sampled.
+// The CDF is double: beside a texel 1e12 times as bright, the other texels of a row of 16384 can be
+// sampled, and their probability has a relative error below 1e-3.
 TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirProbability) {
   const int width = 16384, sun = 3;
   std::vector<double> weights(width, 1.0);
@@ -164,7 +164,7 @@ TEST(EnvelopeProbe, TexelsAfterAOneTexelSunKeepTheirProbability) {
   }
 }
 
-// The largest probe: one plane lit by the sun, and one lit only by the rest.
+// The largest probe size. One plane is lit by the sun, the other only by the other texels.
 TEST(SlowEnvelopeProbe, AOneTexelSunIn16384x8192) {
   if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) < 8e9)
     GTEST_SKIP() << "takes 5 GB of memory";
@@ -187,7 +187,7 @@ TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {
   struct Case {
     const char* name;
     Image image;
-    double expected;  // of the plane of albedo 1/2 that looks up; below 0: by brute force
+    double expected;  // radiance of a plane of albedo 1/2 facing up; below 0: use quadrature
   };
   Image oneTexel = constantProbe({16, 8}, Rgb(0)), tall = constantProbe({3, 7}, Rgb(1));
   oneTexel.setRgb(6, 1, Rgb(50));
@@ -203,7 +203,7 @@ TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {
     const Probe probe(c.image);
     const double expected =
         c.expected >= 0 ? c.expected : 0.5 * irradianceOverPi(probe, {0, 1, 0}, 600);
-    for (const std::string strategy : kEvery) {
+    for (const std::string strategy : kStrategies) {
       const double mean = validMean(litPlane(probe, strategy, 64));
       const bool exact = strategy == "uniform" || strategy == "importance" || strategy == "bsdf" ||
                          strategy.starts_with("kollig-keller-strata");
@@ -266,7 +266,7 @@ TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndReported) {
   validMean(litPlane(Probe(image), "importance", 16));
 }
 
-TEST(EnvelopeProbe, ScalesBeyondTheRangeOfFloatAreRefused) {
+TEST(EnvelopeProbe, ScalesBeyondTheRangeOfFloatAreRejected) {
   const Image bright = constantProbe({4, 2}, Rgb(1e30f));
   EXPECT_THROW(Probe(bright, 0, 1e10f), InputError);
   EXPECT_THROW(Probe(bright, NAN), InputError);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tests/ENVELOPE.md, the rows of how much: triangles in a model, samples in a pixel.
+// tests/ENVELOPE.md: the rows about the number of triangles and of samples per pixel.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// A wavy sheet of at least `triangles`, as a model file.
+// Path of a model file of a wavy sheet with at least `triangles` triangles.
 std::string sheet(GltfWriter& w, double triangles) {
   const uint32_t side = uint32_t(std::ceil(std::sqrt(triangles / 2))) + 1;  // vertices
   std::vector<float> positions;
@@ -33,10 +33,10 @@ std::string sheet(GltfWriter& w, double triangles) {
 }
 
 #ifndef __SANITIZE_ADDRESS__
-// CHROMEBALL_TRIANGLES asks for more.
+// CHROMEBALL_TRIANGLES overrides the number of triangles.
 TEST(SlowEnvelopeSize, MemoryAndTimeOfATriangle) {
-  const char* asked = std::getenv("CHROMEBALL_TRIANGLES");
-  const double triangles = asked ? std::atof(asked) : 5e5;
+  const char* variable = std::getenv("CHROMEBALL_TRIANGLES");
+  const double triangles = variable ? std::atof(variable) : 5e5;
   const TemporaryFolder out;
   writeImage(out / "probe.exr", constantProbe({8, 4}, Rgb(1)));
   const auto renderSheet = [&](double count) {
@@ -59,7 +59,7 @@ TEST(SlowEnvelopeSize, MemoryAndTimeOfATriangle) {
 }
 #endif
 
-// The error of a render keeps falling as 1/N, or faster, to a million samples in each pixel.
+// The squared error of a render falls as 1/N or faster, up to a million samples per pixel.
 TEST(SlowEnvelopeSize, TheErrorOfAMillionSamples) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   const auto squaredError = [&](int samples) {

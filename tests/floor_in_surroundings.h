@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A floor in surroundings at a finite distance, for several tests.
+// Test helpers: a floor in surroundings at a finite distance.
 #pragma once
 
 #include "lighting/finite_surroundings.h"
@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// A box around the floor, and the capture point.
+// A box around the floor, with the probe's capture point inside.
 inline Surroundings box() {
   Surroundings s;
   s.shape = Surroundings::Shape::Box;
@@ -28,7 +28,8 @@ inline vec3 sphereDirection(uint64_t i) {
   return squareToUniformSphere({toUnit(uint32_t(hash(2 * i))), toUnit(uint32_t(hash(2 * i + 1)))});
 }
 
-// Radiance of a small area of the floor around (x, z), seen from above.
+// Exitant radiance of a small area of the floor around (x, z), seen from above. The moments are
+// over `repeats` renders with different seeds.
 inline Moments floorRadiance(const LightingStrategy& lighting, float x, float z, int repeats) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},

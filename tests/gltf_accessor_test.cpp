@@ -120,15 +120,16 @@ TEST(GltfAccessor, SparseIndicesWithoutABufferView) {
 }
 
 TEST(GltfAccessor, RejectsElementsOutsideTheBuffer) {
-  const auto refusal = [](const nlohmann::json& accessorPatch, const nlohmann::json& viewPatch) {
+  const auto errorMessage = [](const nlohmann::json& accessorPatch,
+                               const nlohmann::json& viewPatch) {
     GltfWriter w;
     addTriangle(w);
     w.root["accessors"][0].merge_patch(accessorPatch);
     w.root["bufferViews"][0].merge_patch(viewPatch);
-    return w.refusal();
+    return w.errorMessage();
   };
   const auto none = nlohmann::json::object();
-  EXPECT_EQ(refusal(none, none), "");
+  EXPECT_EQ(errorMessage(none, none), "");
   const char* position = "meshes[0].primitives[0].attributes.POSITION: ";
   for (const nlohmann::json& patch :
        std::vector<nlohmann::json>{{{"count", 4}},
@@ -142,7 +143,8 @@ TEST(GltfAccessor, RejectsElementsOutsideTheBuffer) {
                                    {{"componentType", 5130}},
                                    {{"componentType", 5124}},
                                    {{"count", 0}}}) {
-    EXPECT_TRUE(refusal(patch, none).starts_with(position)) << patch << refusal(patch, none);
+    EXPECT_TRUE(errorMessage(patch, none).starts_with(position))
+        << patch << errorMessage(patch, none);
   }
   for (const nlohmann::json& patch :
        std::vector<nlohmann::json>{{{"byteLength", 37}},
@@ -152,29 +154,31 @@ TEST(GltfAccessor, RejectsElementsOutsideTheBuffer) {
                                    {{"buffer", -1}},
                                    {{"byteStride", 16}},
                                    {{"byteStride", 4}}}) {
-    EXPECT_TRUE(refusal(none, patch).starts_with(position)) << patch << refusal(none, patch);
+    EXPECT_TRUE(errorMessage(none, patch).starts_with(position))
+        << patch << errorMessage(none, patch);
   }
-  EXPECT_NE(refusal({{"bufferView", nullptr}, {"count", 1000000000000}}, none).find("the limit is"),
-            std::string::npos);
+  EXPECT_NE(
+      errorMessage({{"bufferView", nullptr}, {"count", 1000000000000}}, none).find("the limit is"),
+      std::string::npos);
 }
 
 TEST(GltfAccessor, RejectsSparseDataOutsideTheBuffer) {
-  const auto refusal = [](const nlohmann::json& patch) {
+  const auto errorMessage = [](const nlohmann::json& patch) {
     GltfWriter w;
     addTriangle(w);
     w.root["accessors"][0]["sparse"] =
         sparse(1, w.view(std::vector<uint16_t>{2}), kUShort, w.view(std::vector<float>{1, 2, 3}));
     w.root["accessors"][0]["sparse"].merge_patch(patch);
-    return w.refusal();
+    return w.errorMessage();
   };
-  EXPECT_EQ(refusal(nlohmann::json::object()), "");
-  EXPECT_NE(refusal({{"count", 2}}), "");
-  EXPECT_NE(refusal({{"count", -1}}), "");
-  EXPECT_NE(refusal({{"count", 4}}), "");
-  EXPECT_NE(refusal({{"indices", {{"bufferView", 9}}}}), "");
-  EXPECT_NE(refusal({{"indices", {{"componentType", kFloat}}}}), "");
-  EXPECT_NE(refusal({{"indices", {{"byteOffset", -2}}}}), "");
-  EXPECT_NE(refusal({{"values", {{"byteOffset", 4}}}}), "");
+  EXPECT_EQ(errorMessage(nlohmann::json::object()), "");
+  EXPECT_NE(errorMessage({{"count", 2}}), "");
+  EXPECT_NE(errorMessage({{"count", -1}}), "");
+  EXPECT_NE(errorMessage({{"count", 4}}), "");
+  EXPECT_NE(errorMessage({{"indices", {{"bufferView", 9}}}}), "");
+  EXPECT_NE(errorMessage({{"indices", {{"componentType", kFloat}}}}), "");
+  EXPECT_NE(errorMessage({{"indices", {{"byteOffset", -2}}}}), "");
+  EXPECT_NE(errorMessage({{"values", {{"byteOffset", 4}}}}), "");
 }
 
 TEST(GltfAccessor, RejectsSparseIndicesOutOfRange) {
@@ -182,21 +186,21 @@ TEST(GltfAccessor, RejectsSparseIndicesOutOfRange) {
   addTriangle(w);
   w.root["accessors"][0]["sparse"] =
       sparse(1, w.view(std::vector<uint16_t>{3}), kUShort, w.view(std::vector<float>{1, 2, 3}));
-  EXPECT_EQ(w.refusal(),
+  EXPECT_EQ(w.errorMessage(),
             "meshes[0].primitives[0].attributes.POSITION: accessors[0].sparse: index 3 out of "
             "range (3 elements)");
 }
 
 TEST(GltfAccessor, RejectsIndicesOutOfRange) {
-  const auto refusal = [](std::vector<uint16_t> indices) {
+  const auto errorMessage = [](std::vector<uint16_t> indices) {
     GltfWriter w;
     addTriangle(w, {{"indices", w.indices(indices)}});
-    return w.refusal();
+    return w.errorMessage();
   };
-  EXPECT_EQ(refusal({0, 1, 2}), "");
-  EXPECT_EQ(refusal({0, 1, 3}),
+  EXPECT_EQ(errorMessage({0, 1, 2}), "");
+  EXPECT_EQ(errorMessage({0, 1, 3}),
             "meshes[0].primitives[0].indices: index 3 out of range (3 vertices)");
-  EXPECT_EQ(refusal({0, 65535, 2}),
+  EXPECT_EQ(errorMessage({0, 65535, 2}),
             "meshes[0].primitives[0].indices: index 65535 is the primitive-restart value, "
             "which glTF forbids");
 }
@@ -206,14 +210,15 @@ TEST(GltfAccessor, RejectsPositionsThatAreNotFinite) {
     GltfWriter w;
     const int positions = w.vec3s({0, 0, 0, 1, 0, 0, 0, bad, 0});
     w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}}}})}});
-    EXPECT_EQ(w.refusal(), "meshes[0].primitives[0]: the position of vertex 2 is not finite");
+    EXPECT_EQ(w.errorMessage(), "meshes[0].primitives[0]: the position of vertex 2 is not finite");
   }
 }
 
 TEST(GltfAccessor, RejectsAttributesOfDifferentLength) {
   GltfWriter w;
   addTriangle(w, {{"attributes", {{"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1})}}}});
-  EXPECT_EQ(w.refusal(), "meshes[0].primitives[0].attributes.NORMAL: 2 elements for 3 vertices");
+  EXPECT_EQ(w.errorMessage(),
+            "meshes[0].primitives[0].attributes.NORMAL: 2 elements for 3 vertices");
 }
 
 }  // namespace

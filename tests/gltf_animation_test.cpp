@@ -16,7 +16,7 @@ Scene at(GltfWriter& w, double seconds, const std::string& name = "") {
       w.save(), {}, [&](const std::string& line) { w.warnings.push_back(line); }, choice);
 }
 
-std::string refusalAt(GltfWriter& w, const std::string& name = "") {
+std::string errorMessageOf(GltfWriter& w, const std::string& name = "") {
   try {
     at(w, 0, name);
   } catch (const InputError& e) {
@@ -151,8 +151,9 @@ TEST(GltfAnimation, IsChosenByNameOrIndex) {
   EXPECT_EQ(origin(at(w, 0)).x, 1);
   EXPECT_EQ(origin(at(w, 0, "0")).x, 1);
   EXPECT_EQ(origin(at(w, 0, "Walk")).x, 2);
-  EXPECT_NE(refusalAt(w, "Wolk").find("no animation `Wolk` (--animation); did you mean `Walk`?"),
-            std::string::npos);
+  EXPECT_NE(
+      errorMessageOf(w, "Wolk").find("no animation `Wolk` (--animation); did you mean `Walk`?"),
+      std::string::npos);
   const Scene rest = w.load();
   EXPECT_EQ(origin(rest).x, 0);
   EXPECT_TRUE(w.warnings.empty());
@@ -180,7 +181,7 @@ TEST(GltfAnimation, ChannelsWithoutANodeAreIgnored) {
 }
 
 TEST(GltfAnimation, InvalidAnimationsAreRejected) {
-  const auto refusal = [](const json& channel, const json& sampler, const json& node = {}) {
+  const auto errorMessage = [](const json& channel, const json& sampler, const json& node = {}) {
     GltfWriter w;
     addTriangle(w, {}, node);
     scalars(w, {0, 1});
@@ -191,25 +192,27 @@ TEST(GltfAnimation, InvalidAnimationsAreRejected) {
     json s = {{"input", 1}, {"output", 2}};
     c.merge_patch(channel), s.merge_patch(sampler);
     w.add("animations", {{"channels", {c}}, {"samplers", {s}}});
-    return refusalAt(w);
+    return errorMessageOf(w);
   };
   const auto holds = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_EQ(refusal(json::object(), json::object()), "");
-  EXPECT_TRUE(holds(refusal({{"sampler", 3}}, json::object()), "samplers[3] does not exist"));
-  EXPECT_TRUE(holds(refusal({{"target", {{"node", 7}}}}, json::object()), "nodes[7]"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"input", 3}}), "not in ascending order of time"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"output", 4}}), "not finite"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"output", 1}}), "1 components; it must have 3"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "CUBICSPLINE"}}), "do not match"));
-  EXPECT_TRUE(holds(refusal(json::object(), {{"interpolation", "Linear"}}), "is not STEP"));
-  EXPECT_TRUE(holds(refusal(json::object(), json::object(),
-                            {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}),
+  EXPECT_EQ(errorMessage(json::object(), json::object()), "");
+  EXPECT_TRUE(holds(errorMessage({{"sampler", 3}}, json::object()), "samplers[3] does not exist"));
+  EXPECT_TRUE(holds(errorMessage({{"target", {{"node", 7}}}}, json::object()), "nodes[7]"));
+  EXPECT_TRUE(
+      holds(errorMessage(json::object(), {{"input", 3}}), "not in ascending order of time"));
+  EXPECT_TRUE(holds(errorMessage(json::object(), {{"output", 4}}), "not finite"));
+  EXPECT_TRUE(holds(errorMessage(json::object(), {{"output", 1}}), "1 components; it must have 3"));
+  EXPECT_TRUE(
+      holds(errorMessage(json::object(), {{"interpolation", "CUBICSPLINE"}}), "do not match"));
+  EXPECT_TRUE(holds(errorMessage(json::object(), {{"interpolation", "Linear"}}), "is not STEP"));
+  EXPECT_TRUE(holds(errorMessage(json::object(), json::object(),
+                                 {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}),
                     "has a matrix"));
   GltfWriter still;
   addTriangle(still);
-  EXPECT_TRUE(holds(refusalAt(still), "has no animation"));
+  EXPECT_TRUE(holds(errorMessageOf(still), "has no animation"));
 }
 
 }  // namespace

@@ -124,27 +124,28 @@ TEST(GltfCompression, MeshoptFilters) {
 }
 
 TEST(GltfCompression, InvalidMeshoptDataIsRejected) {
-  const auto refusal = [](const json& change, const Data& data = kPositions) {
+  const auto errorMessage = [](const json& change, const Data& data = kPositions) {
     GltfWriter w;
     const int view = meshoptView(w, data, "ATTRIBUTES", 4, 12, change);
-    return square(w, w.accessor(view, kFloat, "VEC3", 4), w.indices({0, 1, 2})).refusal();
+    return square(w, w.accessor(view, kFloat, "VEC3", 4), w.indices({0, 1, 2})).errorMessage();
   };
   const auto holds = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_EQ(refusal(json::object()), "");
-  EXPECT_TRUE(holds(refusal({{"mode", "VERTICES"}}), "is not ATTRIBUTES, TRIANGLES or INDICES"));
-  EXPECT_TRUE(holds(refusal({{"byteStride", 10}}), "10 is invalid for ATTRIBUTES"));
-  EXPECT_TRUE(holds(refusal({{"filter", "OCTAHEDRAL"}}), "is invalid for"));
-  EXPECT_TRUE(holds(refusal({{"filter", "LOUD"}}), "is invalid for"));
-  EXPECT_TRUE(holds(refusal({{"buffer", 9}}), "buffers[9] does not exist"));
-  EXPECT_TRUE(holds(refusal({{"buffer", 1}}), "buffers[1] does not exist"));
-  EXPECT_TRUE(holds(refusal({{"byteLength", 4000}}), "which has"));
-  EXPECT_TRUE(holds(refusal({{"count", -1}}), "not a whole number"));
-  EXPECT_TRUE(holds(refusal({{"count", 2000000000}}), "out of proportion to the length"));
-  EXPECT_TRUE(holds(refusal({{"count", 5000000}}), "damaged data"));
-  EXPECT_TRUE(holds(refusal({{"count", 3}}), "do not fit"));
-  EXPECT_TRUE(holds(refusal(json::object(), Data(60, 0)), "damaged data"));
+  EXPECT_EQ(errorMessage(json::object()), "");
+  EXPECT_TRUE(
+      holds(errorMessage({{"mode", "VERTICES"}}), "is not ATTRIBUTES, TRIANGLES or INDICES"));
+  EXPECT_TRUE(holds(errorMessage({{"byteStride", 10}}), "10 is invalid for ATTRIBUTES"));
+  EXPECT_TRUE(holds(errorMessage({{"filter", "OCTAHEDRAL"}}), "is invalid for"));
+  EXPECT_TRUE(holds(errorMessage({{"filter", "LOUD"}}), "is invalid for"));
+  EXPECT_TRUE(holds(errorMessage({{"buffer", 9}}), "buffers[9] does not exist"));
+  EXPECT_TRUE(holds(errorMessage({{"buffer", 1}}), "buffers[1] does not exist"));
+  EXPECT_TRUE(holds(errorMessage({{"byteLength", 4000}}), "which has"));
+  EXPECT_TRUE(holds(errorMessage({{"count", -1}}), "not a whole number"));
+  EXPECT_TRUE(holds(errorMessage({{"count", 2000000000}}), "out of proportion to the length"));
+  EXPECT_TRUE(holds(errorMessage({{"count", 5000000}}), "damaged data"));
+  EXPECT_TRUE(holds(errorMessage({{"count", 3}}), "do not fit"));
+  EXPECT_TRUE(holds(errorMessage(json::object(), Data(60, 0)), "damaged data"));
 }
 
 GltfWriter& dracoSquare(GltfWriter& w, const Data& data, size_t indexCount = 6) {
@@ -191,30 +192,31 @@ TEST(GltfCompression, DracoWithTooManyTrianglesIsRejectedBeforeDecoding) {
     hostile.insert(hostile.begin() + long(at), billion.begin(), billion.end());
     for (const size_t indexCount : {size_t(6), size_t(3000000000)}) {
       GltfWriter w;
-      EXPECT_NE(dracoSquare(w, hostile, indexCount).refusal().find("claims 1000000000 triangles"),
-                std::string::npos);
+      EXPECT_NE(
+          dracoSquare(w, hostile, indexCount).errorMessage().find("claims 1000000000 triangles"),
+          std::string::npos);
     }
   }
   GltfWriter old;
   Data data = kSequential;
   data[6] = 1;
-  EXPECT_NE(dracoSquare(old, data).refusal().find("bitstream 2.2"), std::string::npos);
+  EXPECT_NE(dracoSquare(old, data).errorMessage().find("bitstream 2.2"), std::string::npos);
   GltfWriter noise;
-  EXPECT_NE(dracoSquare(noise, Data(50, 7)).refusal().find("is not Draco"), std::string::npos);
+  EXPECT_NE(dracoSquare(noise, Data(50, 7)).errorMessage().find("is not Draco"), std::string::npos);
 }
 
 // With any single byte changed, and truncated anywhere.
 TEST(GltfCompression, DamagedDataNeverCrashes) {
-  int refused = 0;
+  int rejected = 0;
   for (const Data& good : {kSequential, kEdgebreaker})
     for (size_t i = 0; i < good.size(); ++i) {
       Data bad = good;
       bad[i] = uint8_t(bad[i] ^ (i % 3 ? 0xff : 1 << i % 8));
       if (i % 5 == 0) bad.resize(i);
       GltfWriter w;
-      refused += !dracoSquare(w, bad).refusal().empty();
+      rejected += !dracoSquare(w, bad).errorMessage().empty();
     }
-  EXPECT_GT(refused, 50);
+  EXPECT_GT(rejected, 50);
 }
 
 TEST(GltfCompression, UncompressedCopiesAreUsedWithoutDecoding) {
@@ -237,7 +239,7 @@ TEST(GltfInstancing, AddsAnInstanceForEachTransform) {
   EXPECT_EQ(scene.instances[1].point({1, 0, 0}), vec3(7, 0, 7));
 
   attributes["SCALE"] = w.vec3s({1, 1, 1});
-  EXPECT_NE(w.refusal().find("1 elements for 2 instances"), std::string::npos);
+  EXPECT_NE(w.errorMessage().find("1 elements for 2 instances"), std::string::npos);
 }
 
 TEST(GltfSamples, CompressedModelsEqualUncompressedOnes) {

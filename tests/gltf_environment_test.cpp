@@ -140,15 +140,15 @@ TEST(GltfEnvironment, InconsistentCoefficientsGiveAWarning) {
 }
 
 TEST(GltfEnvironment, InvalidEnvironmentsAreRejected) {
-  const auto refusal = [](const std::function<void(GltfWriter&)>& spoil) {
+  const auto errorMessage = [](const std::function<void(GltfWriter&)>& spoil) {
     GltfWriter w;
     addEnvironment(w);
     spoil(w);
-    return w.refusal();
+    return w.errorMessage();
   };
   const auto expect = [&](const std::string& reason,
                           const std::function<void(GltfWriter&)>& spoil) {
-    const std::string said = refusal(spoil);
+    const std::string said = errorMessage(spoil);
     EXPECT_NE(said.find(reason), std::string::npos) << "\"" << said << "\", not " << reason;
     EXPECT_EQ(said.find('\n'), std::string::npos);
   };

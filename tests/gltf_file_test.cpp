@@ -32,8 +32,8 @@ std::vector<uint8_t> glb(uint32_t version, const std::string& text,
   return bytes;
 }
 
-std::string refusalOf(const std::filesystem::path& path,
-                      ExternalFiles external = ExternalFiles::Refuse) {
+std::string errorMessageOf(const std::filesystem::path& path,
+                           ExternalFiles external = ExternalFiles::Refuse) {
   try {
     loadGltf(path.string(), {}, nullptr, {.external = external});
   } catch (const InputError& e) {
@@ -53,27 +53,27 @@ TEST(GltfFile, GlbChunks) {
   EXPECT_EQ(loadGltf(path.string(), {}, nullptr).meshes.at(0).positions[1], vec3(1, 0, 0));
 
   w.write("model.glb", glb(2, w.root.dump(), {0, 0, 0}));
-  EXPECT_EQ(refusalOf(path), "buffers[0]: byteLength is 36, but there are only 12 bytes");
+  EXPECT_EQ(errorMessageOf(path), "buffers[0]: byteLength is 36, but there are only 12 bytes");
   w.write("model.glb", glb(2, w.root.dump(), positions, 4));
-  EXPECT_TRUE(refusalOf(path).starts_with("is a truncated GLB")) << refusalOf(path);
+  EXPECT_TRUE(errorMessageOf(path).starts_with("is a truncated GLB")) << errorMessageOf(path);
   w.write("model.glb", glb(1, w.root.dump(), positions));
-  EXPECT_EQ(refusalOf(path), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
+  EXPECT_EQ(errorMessageOf(path), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
   // Every truncation is rejected without a crash.
   const std::vector<uint8_t> whole = glb(2, w.root.dump(), positions);
   for (size_t size = 0; size < whole.size(); size += 5) {
     w.write("model.glb", {whole.begin(), whole.begin() + std::ptrdiff_t(size)});
-    EXPECT_NE(refusalOf(path), "") << size;
+    EXPECT_NE(errorMessageOf(path), "") << size;
   }
 }
 
 TEST(GltfFile, VersionsAndExtensions) {
   GltfWriter w;
   w.root["asset"]["version"] = "1.0";
-  EXPECT_EQ(w.refusal(), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
+  EXPECT_EQ(w.errorMessage(), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
   w.root["asset"] = {{"version", "2.1"}};
-  EXPECT_EQ(w.refusal(), "");
+  EXPECT_EQ(w.errorMessage(), "");
   w.root["asset"]["minVersion"] = "2.1";
-  EXPECT_EQ(w.refusal(), "requires glTF 2.1; only 2.0 is supported");
+  EXPECT_EQ(w.errorMessage(), "requires glTF 2.1; only 2.0 is supported");
   w.root["asset"] = {{"version", "2.0"}};
   w.root["extensionsUsed"] =
       json::array({"KHR_xmp_json_ld", "KHR_materials_unlit", "EXT_lights_ies"});
@@ -81,7 +81,7 @@ TEST(GltfFile, VersionsAndExtensions) {
   ASSERT_EQ(w.warnings.size(), 1u);
   EXPECT_TRUE(w.warnings[0].ends_with(": ignored extensions: EXT_lights_ies, KHR_xmp_json_ld"));
   w.root["extensionsRequired"] = json::array({"KHR_texture_basisu"});
-  EXPECT_EQ(w.refusal(),
+  EXPECT_EQ(w.errorMessage(),
             "requires the extension KHR_texture_basisu, which is not supported; convert its "
             "KTX2 textures to PNG, JPEG or WebP (`ktx extract` of KTX-Software can)");
 }
@@ -92,20 +92,20 @@ TEST(GltfFile, BuffersByUri) {
   w.save();
   std::filesystem::create_directory(w.folder() / "sub dir");
   std::filesystem::rename(w.folder() / "data.bin", w.folder() / "sub dir" / "d\u00e9.bin");
-  const auto refusal = [&](const std::string& uri) {
+  const auto errorMessage = [&](const std::string& uri) {
     w.root["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
     std::ofstream(w.folder() / "model.gltf") << w.root;
-    return refusalOf(w.folder() / "model.gltf");
+    return errorMessageOf(w.folder() / "model.gltf");
   };
-  EXPECT_EQ(refusal("sub dir/d\u00e9.bin"), "");
-  EXPECT_EQ(refusal("sub%20dir/d%C3%A9.bin"), "");
-  EXPECT_EQ(refusal("./sub%20dir/d%C3%A9.bin"), "");
-  EXPECT_EQ(refusal("data:application/octet-stream;base64,"
-                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
+  EXPECT_EQ(errorMessage("sub dir/d\u00e9.bin"), "");
+  EXPECT_EQ(errorMessage("sub%20dir/d%C3%A9.bin"), "");
+  EXPECT_EQ(errorMessage("./sub%20dir/d%C3%A9.bin"), "");
+  EXPECT_EQ(errorMessage("data:application/octet-stream;base64,"
+                         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
             "");
-  EXPECT_EQ(refusal("data:application/octet-stream;base64,AA*A"),
+  EXPECT_EQ(errorMessage("data:application/octet-stream;base64,AA*A"),
             "buffers[0].uri: invalid data URI");
-  EXPECT_EQ(refusal("none.bin"),
+  EXPECT_EQ(errorMessage("none.bin"),
             "buffers[0].uri: " + (w.folder() / "none.bin").string() + ": no such file");
 }
 
@@ -114,16 +114,16 @@ TEST(GltfFile, FilesOutsideTheFolderNeedPermission) {
   addTriangle(elsewhere);
   elsewhere.save();
   addTriangle(w);
-  const auto refusal = [&](const std::string& uri, ExternalFiles external) {
+  const auto errorMessage = [&](const std::string& uri, ExternalFiles external) {
     w.save();
     w.root["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
     std::ofstream(w.folder() / "model.gltf") << w.root;
-    return refusalOf(w.folder() / "model.gltf", external);
+    return errorMessageOf(w.folder() / "model.gltf", external);
   };
   std::filesystem::create_directory(w.folder() / "sub");
   std::filesystem::create_symlink(elsewhere.folder(), w.folder() / "link");
   std::filesystem::create_symlink("../data.bin", w.folder() / "sub/inside.bin");
-  EXPECT_EQ(refusal("sub/inside.bin", ExternalFiles::Refuse), "");
+  EXPECT_EQ(errorMessage("sub/inside.bin", ExternalFiles::Refuse), "");
 
   const std::string other = elsewhere.folder().filename().string() + "/data.bin";
   const std::pair<std::string, const char*> outside[] = {
@@ -133,46 +133,49 @@ TEST(GltfFile, FilesOutsideTheFolderNeedPermission) {
       {(elsewhere.folder() / "data.bin").string(), "is an absolute path"},
       {"link/data.bin", "is outside of the model's folder through a link"}};
   for (const auto& [uri, reason] : outside) {
-    const std::string said = refusal(uri, ExternalFiles::Refuse);
+    const std::string said = errorMessage(uri, ExternalFiles::Refuse);
     EXPECT_NE(said.find(reason), std::string::npos) << uri << ": " << said;
     EXPECT_NE(said.find("--allow-external"), std::string::npos) << said;
-    EXPECT_EQ(refusal(uri, ExternalFiles::Allow), "") << uri;
+    EXPECT_EQ(errorMessage(uri, ExternalFiles::Allow), "") << uri;
   }
   for (const char* uri : {"file:///etc/passwd", "https://example.org/x.bin", "C:/x", "data%3ax"})
-    EXPECT_NE(refusal(uri, ExternalFiles::Allow).find("has the scheme"), std::string::npos) << uri;
+    EXPECT_NE(errorMessage(uri, ExternalFiles::Allow).find("has the scheme"), std::string::npos)
+        << uri;
   for (const char* uri : {"..\\x", "a\nb", "%00"})
-    EXPECT_NE(refusal(uri, ExternalFiles::Allow).find("backslash or a control"), std::string::npos)
+    EXPECT_NE(errorMessage(uri, ExternalFiles::Allow).find("backslash or a control"),
+              std::string::npos)
         << uri;
 }
 
 TEST(GltfFile, BuffersWithoutBytesAreRejectedOnlyWhenUsed) {
   GltfWriter w;
   w.root["buffers"] = {{{"byteLength", 100}}};
-  EXPECT_EQ(w.refusal(), "");
+  EXPECT_EQ(w.errorMessage(), "");
 }
 
 TEST(GltfFile, RejectsOtherFiles) {
   GltfWriter w;
-  const auto refusal = [&](const std::string& text) {
+  const auto errorMessage = [&](const std::string& text) {
     w.write("x.gltf", {text.begin(), text.end()});
-    return refusalOf(w.folder() / "x.gltf");
+    return errorMessageOf(w.folder() / "x.gltf");
   };
-  EXPECT_NE(refusal(""), "");
-  EXPECT_NE(refusal("PNG"), "");
-  EXPECT_EQ(refusal("[]"), "is not a JSON object");
-  EXPECT_EQ(refusal("{}"), "has no asset.version; it must be \"2.0\"");
+  EXPECT_NE(errorMessage(""), "");
+  EXPECT_NE(errorMessage("PNG"), "");
+  EXPECT_EQ(errorMessage("[]"), "is not a JSON object");
+  EXPECT_EQ(errorMessage("{}"), "has no asset.version; it must be \"2.0\"");
   const std::string deep(100000, '[');
-  EXPECT_EQ(refusal("{\"extras\":" + deep + "}"), "nests deeper than 128 levels");
+  EXPECT_EQ(errorMessage("{\"extras\":" + deep + "}"), "nests deeper than 128 levels");
   const std::string brackets = "{\"asset\":{\"version\":\"2.0\"},\"extras\":\"\\\"" + deep + "\"}";
-  EXPECT_EQ(refusal(brackets), "");
-  EXPECT_EQ(refusalOf(w.folder() / "missing.gltf"), "no such file");
-  EXPECT_EQ(refusalOf(w.folder()), "not a regular file");
+  EXPECT_EQ(errorMessage(brackets), "");
+  EXPECT_EQ(errorMessageOf(w.folder() / "missing.gltf"), "no such file");
+  EXPECT_EQ(errorMessageOf(w.folder()), "not a regular file");
 }
 
 TEST(GltfFile, MessagesStayOnOneLine) {
   GltfWriter w;
   w.root["extensionsRequired"] = json::array({"A\nB"});
-  EXPECT_TRUE(w.refusal().starts_with("requires the extension A?B, which")) << w.refusal();
+  EXPECT_TRUE(w.errorMessage().starts_with("requires the extension A?B, which"))
+      << w.errorMessage();
 }
 
 TEST(GltfFile, RejectsAmplificationByReferences) {
@@ -186,7 +189,7 @@ TEST(GltfFile, RejectsAmplificationByReferences) {
   }
   w.add("meshes", {{"primitives", primitives}});
   w.add("nodes", {{"mesh", 0}});
-  EXPECT_NE(w.refusal().find("out of proportion to the length"), std::string::npos);
+  EXPECT_NE(w.errorMessage().find("out of proportion to the length"), std::string::npos);
 }
 
 // The message names the member that is missing or of the wrong type.
@@ -196,7 +199,8 @@ TEST(GltfFile, SkinsWithoutJointsAreNamedInTheMessage) {
     addTriangle(w);
     w.add("skins", json::object());
     if (!joints.is_null()) w.root["skins"][0]["joints"] = joints;
-    EXPECT_EQ(w.refusal(), "skins[0].joints: is missing or not a list of node indices") << joints;
+    EXPECT_EQ(w.errorMessage(), "skins[0].joints: is missing or not a list of node indices")
+        << joints;
   }
 }
 

@@ -253,7 +253,7 @@ TEST(GltfMaterial, TangentsOnlyForNormalMaps) {
 }
 
 TEST(GltfMaterial, InvalidNumbersAreRejectedOrClamped) {
-  const auto refusal = [](const json& material) {
+  const auto errorMessage = [](const json& material) {
     GltfWriter w;
     try {
       loadWith(w, material);
@@ -262,11 +262,11 @@ TEST(GltfMaterial, InvalidNumbersAreRejectedOrClamped) {
     }
     return std::string();
   };
-  EXPECT_EQ(refusal({{"alphaMode", "GLASS"}}),
+  EXPECT_EQ(errorMessage({{"alphaMode", "GLASS"}}),
             "materials[0].alphaMode: \"GLASS\" is not OPAQUE, MASK or BLEND");
-  EXPECT_EQ(refusal({{"normalTexture", {{"index", 9}}}}),
+  EXPECT_EQ(errorMessage({{"normalTexture", {{"index", 9}}}}),
             "materials[0].normalTexture: textures[9] does not exist (2 in the file)");
-  EXPECT_EQ(refusal({{"normalTexture", {{"index", 0}, {"texCoord", 1000000000}}}}),
+  EXPECT_EQ(errorMessage({{"normalTexture", {{"index", 0}, {"texCoord", 1000000000}}}}),
             "materials[0].normalTexture: texCoord 1000000000 is not in the range 0 to 15");
   GltfWriter w;
   const Scene scene = loadWith(w, {{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}});
@@ -281,23 +281,24 @@ TEST(GltfMaterial, TexturesByExtension) {
   texture = {{"source", 99}, {"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
   EXPECT_EQ(w.load().textures.at(0).grid->width, 2);
   texture = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
-  EXPECT_NE(w.refusal().find("textures[0]: has only a KTX2 image"), std::string::npos);
+  EXPECT_NE(w.errorMessage().find("textures[0]: has only a KTX2 image"), std::string::npos);
   texture["source"] = 0;  // the fallback for readers without KTX2
-  EXPECT_EQ(w.refusal(), "");
+  EXPECT_EQ(w.errorMessage(), "");
 }
 
 TEST(GltfMaterial, RejectsInvalidImages) {
-  const auto refusal = [](const std::vector<uint8_t>& image) {
+  const auto errorMessage = [](const std::vector<uint8_t>& image) {
     GltfWriter w;
     loadWith(w, {{"normalTexture", {{"index", 0}}}});
     w.write("a.png", image);
-    return w.refusal();
+    return w.errorMessage();
   };
-  EXPECT_EQ(refusal(kPng), "");
-  EXPECT_EQ(refusal({}), "images[0] (a.png): is not a PNG, JPEG or WebP file");
-  EXPECT_NE(refusal({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("not a WebP"),
+  EXPECT_EQ(errorMessage(kPng), "");
+  EXPECT_EQ(errorMessage({}), "images[0] (a.png): is not a PNG, JPEG or WebP file");
+  EXPECT_NE(errorMessage({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}).find("not a WebP"),
             std::string::npos);
-  EXPECT_NE(refusal({kPng.begin(), kPng.begin() + 50}).find("damaged image"), std::string::npos);
+  EXPECT_NE(errorMessage({kPng.begin(), kPng.begin() + 50}).find("damaged image"),
+            std::string::npos);
 }
 
 }  // namespace

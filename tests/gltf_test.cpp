@@ -124,7 +124,7 @@ TEST(Gltf, TheDefaultSceneSelectsTheNodes) {
   w.root["scene"] = 1;
   EXPECT_EQ(w.load().instances.at(0).node, 0);
   w.root["scene"] = 2;
-  EXPECT_EQ(w.refusal(), "scene: scenes[2] does not exist (2 in the file)");
+  EXPECT_EQ(w.errorMessage(), "scene: scenes[2] does not exist (2 in the file)");
 }
 
 TEST(Gltf, MeshesWithoutNodesAreAtTheOrigin) {
@@ -137,12 +137,12 @@ TEST(Gltf, MeshesWithoutNodesAreAtTheOrigin) {
 TEST(Gltf, NodesMustFormTrees) {
   GltfWriter w;
   w.root["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, json::object()};
-  EXPECT_EQ(w.refusal(),
+  EXPECT_EQ(w.errorMessage(),
             "nodes[1].children: nodes[2] is also a child of nodes[0]; nodes must form trees");
   w.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
-  EXPECT_EQ(w.refusal(), "nodes[0]: is its own ancestor; nodes must form trees");
+  EXPECT_EQ(w.errorMessage(), "nodes[0]: is its own ancestor; nodes must form trees");
   w.root["nodes"] = {{{"children", {5}}}};
-  EXPECT_EQ(w.refusal(), "nodes[0].children: nodes[5] does not exist (1 in the file)");
+  EXPECT_EQ(w.errorMessage(), "nodes[0].children: nodes[5] does not exist (1 in the file)");
 }
 
 TEST(Gltf, VeryDeepHierarchiesLoad) {
@@ -207,7 +207,7 @@ TEST(Gltf, SkinsBlendTheirJoints) {
   w.add("skins", {{"joints", {1, 2}}});
   EXPECT_EQ(w.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 1}, {1, 0, 2}, {0, 1, 3}}));
   w.root["skins"][0]["joints"] = {1};
-  EXPECT_EQ(w.refusal(),
+  EXPECT_EQ(w.errorMessage(),
             "meshes[0].primitives[0].attributes.JOINTS_0: joint 1 out of range (1 joints)");
 }
 

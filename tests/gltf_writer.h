@@ -100,7 +100,7 @@ class GltfWriter {
   }
 
   // The message with which the file is rejected, without the path; "" if it loads.
-  std::string refusal() {
+  std::string errorMessage() {
     const std::string path = save();
     try {
       loadGltf(path, {}, nullptr);

@@ -49,7 +49,7 @@ void expectWhole(const std::string& message) {
 
 // The reason for which the file is rejected, or "" if it renders without invalid samples.
 // Exceptions other than InputError fail the test; a crash or a hang fails all of them.
-std::string refusalOfModel(const fs::path& path) {
+std::string modelErrorMessage(const fs::path& path) {
   try {
     const Scene scene = loadGltf(path.string(), {}, nullptr);
     if (scene.instances.empty()) return "";
@@ -66,7 +66,7 @@ std::string refusalOfModel(const fs::path& path) {
   }
 }
 
-std::string refusalOfImage(const fs::path& path) {
+std::string imageErrorMessage(const fs::path& path) {
   try {
     const ImageFile file = readImageFile(path);
     for (const std::string& layer : layerNames(file)) findLayer(file, layer);
@@ -83,10 +83,10 @@ std::string refusalOfImage(const fs::path& path) {
 TEST(SlowHostile, MalformedModelsAreRejectedOrRendered) {
   const auto root = sharedData("bad");
   if (!root) GTEST_SKIP() << "../shared/data/bad is not there";
-  int refused = 0, rendered = 0;
+  int rejected = 0, rendered = 0;
   for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"}))
-    ++(refusalOfModel(path).empty() ? rendered : refused);
-  EXPECT_GT(refused, 50);
+    ++(modelErrorMessage(path).empty() ? rendered : rejected);
+  EXPECT_GT(rejected, 50);
   EXPECT_GT(rendered, 20);
 }
 
@@ -95,16 +95,17 @@ TEST(SlowHostile, ValidModelsAreRead) {
   const auto root = sharedData("bad/gltf-validator/base");
   if (!root) GTEST_SKIP() << "../shared/data/bad/gltf-validator is not there";
   // Only warnings for the validator: a URI scheme, a missing file, an accessor of unknown type.
-  const std::set<std::string> kRefused = {"non_relative_uri.gltf", "min_version_valid.gltf",
-                                          "unknown_type.gltf"};
+  const std::set<std::string> kRejected = {"non_relative_uri.gltf", "min_version_valid.gltf",
+                                           "unknown_type.gltf"};
   int valid = 0;
   for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"})) {
     const fs::path report = path.string() + ".report.json";
     if (!fs::exists(report)) continue;
     const auto issues = nlohmann::json::parse(fileContents(report)).at("issues");
     if (issues.at("numErrors") != 0) continue;
-    const std::string refusal = refusalOfModel(path);
-    EXPECT_EQ(refusal.empty(), !kRefused.contains(path.filename())) << path << ": " << refusal;
+    const std::string errorMessage = modelErrorMessage(path);
+    EXPECT_EQ(errorMessage.empty(), !kRejected.contains(path.filename()))
+        << path << ": " << errorMessage;
     ++valid;
   }
   EXPECT_GT(valid, 30);
@@ -113,18 +114,18 @@ TEST(SlowHostile, ValidModelsAreRead) {
 TEST(SlowHostile, DamagedImagesAreRejectedOrRead) {
   const auto root = sharedData("bad/images");
   if (!root) GTEST_SKIP() << "../shared/data/bad/images is not there";
-  int refused = 0;
+  int rejected = 0;
   for (const fs::path& path : filesBelow(*root, {".exr", ".png"})) {
-    const bool isRefused = !refusalOfImage(path).empty();
-    refused += isRefused;
+    const bool isRejected = !imageErrorMessage(path).empty();
+    rejected += isRejected;
     if (path.parent_path().filename() == "openexr-damaged") {
-      EXPECT_TRUE(isRefused) << path;
+      EXPECT_TRUE(isRejected) << path;
     }
     if (path.parent_path().filename() == "openexr-values") {
-      EXPECT_FALSE(isRefused) << path;
+      EXPECT_FALSE(isRejected) << path;
     }
   }
-  EXPECT_GT(refused, 60);
+  EXPECT_GT(rejected, 60);
 }
 
 // The command prints one line and uses at most a gibibyte of memory.
@@ -138,14 +139,14 @@ TEST(SlowHostile, TheCommandRejectsInOneLine) {
                             "assimp/IndexOutOfRange/IndexOutOfRange.gltf", "tinygltf/issue-492.glb",
                             "asset-generator-negative/Mesh_NoPosition/Mesh_NoPosition_00.gltf",
                             "tinygltf/BoundsChecking/integer-out-of-bounds.gltf"})
-    expectRefused({"render", (*root / model).string(), "--probe", probe, "-o", out / "a.exr"},
-                  model, kGibibyte);
+    expectError({"render", (*root / model).string(), "--probe", probe, "-o", out / "a.exr"}, model,
+                kGibibyte);
   for (const char* image : {"memory_DOS_2.1.exr", "oom_exr.exr", "heap_overflow_exr.exr"})
-    expectRefused({"probe", "info", (*root / "images/openexr-damaged" / image).string()}, image,
-                  kGibibyte);
+    expectError({"probe", "info", (*root / "images/openexr-damaged" / image).string()}, image,
+                kGibibyte);
   for (const char* image : {"xs1n0g01.png", "x_unexpected_eof.png"})
-    expectRefused({"image", "view", (*root / "images/png" / image).string(), out / "a.png"}, image,
-                  kGibibyte);
+    expectError({"image", "view", (*root / "images/png" / image).string(), out / "a.png"}, image,
+                kGibibyte);
   EXPECT_EQ(out.files(), Words{"probe.hdr"});
 }
 
@@ -157,17 +158,17 @@ TEST(Hostile, SizeBombsAreRejectedByTheirHeaders) {
     return folder / name;
   };
   const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 40000 +X 40000\n";
-  expectRefused({"probe", "info", write("a.hdr", hdr + std::string(150, '\1'))},
-                "40000 x 40000 texels", kGibibyte);
+  expectError({"probe", "info", write("a.hdr", hdr + std::string(150, '\1'))},
+              "40000 x 40000 texels", kGibibyte);
   const std::string pfm = "PF\n20000 8000\n-1\n";
-  expectRefused({"probe", "info", write("a.pfm", pfm + std::string(100, '\1'))}, "20000 x 8000",
-                kGibibyte);
+  expectError({"probe", "info", write("a.pfm", pfm + std::string(100, '\1'))}, "20000 x 8000",
+              kGibibyte);
   // A PNG with a header of 16000 x 8000 and data for two texels.
   std::string png(kPng.begin(), kPng.end());
   png.replace(16, 17,
               std::string("\x00\x00\x3e\x80\x00\x00\x1f\x40\x08\x02\x00\x00\x00", 13) +
                   std::string("\xb6\x3e\x64\x15", 4));
-  expectRefused({"probe", "info", write("a.png", png)}, "too short for 16000 x 8000", kGibibyte);
+  expectError({"probe", "info", write("a.png", png)}, "too short for 16000 x 8000", kGibibyte);
   // The headers of a JPEG: 65500 x 65500, three components, one quantisation table.
   const std::string jpeg =
       std::string(
@@ -179,10 +180,10 @@ TEST(Hostile, SizeBombsAreRejectedByTheirHeaders) {
           "\xff\xc0\x00\x11\x08\xff\xdc\xff\xdc\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00"
           "\xff\xda\x00\x0c\x03\x01\x00\x02\x11\x03\x11\x00\x3f\x00\xff\xd9",
           35);
-  expectRefused({"probe", "info", write("a.jpg", jpeg)}, "65500 x 65500", kGibibyte);
+  expectError({"probe", "info", write("a.jpg", jpeg)}, "65500 x 65500", kGibibyte);
   std::string truncated = jpeg;
   truncated.replace(jpeg.find("\xff\xdc"), 4, std::string("\4\0\4\0", 4));
-  expectRefused({"probe", "info", write("a.jpg", truncated)}, "1024 x 1024 texels cannot fit into");
+  expectError({"probe", "info", write("a.jpg", truncated)}, "1024 x 1024 texels cannot fit into");
 
   GltfWriter model;
   model.write("bomb.jpg", {jpeg.begin(), jpeg.end()});
@@ -190,8 +191,8 @@ TEST(Hostile, SizeBombsAreRejectedByTheirHeaders) {
   model.add("textures", {{"source", 0}});
   model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   addTriangle(model, {{"material", 0}});
-  expectRefused({"render", model.save(), "-o", folder / "out.exr"},
-                "bomb.jpg): damaged image: 65500 x 65500", kGibibyte);
+  expectError({"render", model.save(), "-o", folder / "out.exr"},
+              "bomb.jpg): damaged image: 65500 x 65500", kGibibyte);
 }
 
 // An EXR with `attributes` of name, type and content; `length` is the stated length of the last
@@ -215,29 +216,30 @@ TEST(Hostile, ExrHeadersAreChecked) {
   const auto words = [](std::initializer_list<int32_t> numbers) {
     return std::string(reinterpret_cast<const char*>(numbers.begin()), 4 * numbers.size());
   };
-  const auto expectRefusedFor = [&](const std::string& bytes, const std::string& reason) {
+  const auto expectHeaderError = [&](const std::string& bytes, const std::string& reason) {
     std::ofstream(folder / "a.exr", std::ios::binary) << bytes;
-    expectRefused({"probe", "info", folder / "a.exr"}, reason, kGibibyte);
+    expectError({"probe", "info", folder / "a.exr"}, reason, kGibibyte);
   };
   const std::string channel = std::string("R\0", 2) + words({1, 0, 1, 1}) + '\0';
   const std::array<std::string, 3> channels = {"channels", "chlist", channel};
-  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0x6e000013),
-                   "more bytes than the file");
-  expectRefusedFor(exr({channels, {"owner", "string", "I"}}, 0xffffffff),
-                   "more bytes than the file");
-  expectRefusedFor(exr({channels, {"dataWindow", "box2i", words({0, 0, (1 << 27) - 1, 0})}}),
-                   "134217728 texels per row");
-  expectRefusedFor(exr({channels, {"dataWindow", "box2i", words({INT32_MIN, 0, INT32_MAX, 0})}}),
-                   "4294967296 x 1 texels");
-  expectRefusedFor(exr({channels, {"tiles", "tiledesc", words({60000, 60000}) + '\0'}}),
-                   "60000 x 60000 texels");
+  expectHeaderError(exr({channels, {"owner", "string", "I"}}, 0x6e000013),
+                    "more bytes than the file");
+  expectHeaderError(exr({channels, {"owner", "string", "I"}}, 0xffffffff),
+                    "more bytes than the file");
+  expectHeaderError(exr({channels, {"dataWindow", "box2i", words({0, 0, (1 << 27) - 1, 0})}}),
+                    "134217728 texels per row");
+  expectHeaderError(exr({channels, {"dataWindow", "box2i", words({INT32_MIN, 0, INT32_MAX, 0})}}),
+                    "4294967296 x 1 texels");
+  expectHeaderError(exr({channels, {"tiles", "tiledesc", words({60000, 60000}) + '\0'}}),
+                    "60000 x 60000 texels");
   // Read beyond its stated length, the channel list would hide the next attribute.
   const std::array<std::string, 3> endless = {"channels", "chlist", channel.substr(0, 18)};
-  expectRefusedFor(exr({endless, {"owner", "string", "I"}}), "a list of 18 bytes");
-  expectRefusedFor(exr({channels, {"lineOrder", "lineOrder", "too long"}}), "lineOrder of 8 bytes");
-  expectRefusedFor(exr({channels, {"views", "stringvector", words({1 << 30})}}),
-                   "a list of 4 bytes");
-  expectRefusedFor(exr({{std::string(300, 'n'), "string", ""}}), "does not end");
+  expectHeaderError(exr({endless, {"owner", "string", "I"}}), "a list of 18 bytes");
+  expectHeaderError(exr({channels, {"lineOrder", "lineOrder", "too long"}}),
+                    "lineOrder of 8 bytes");
+  expectHeaderError(exr({channels, {"views", "stringvector", words({1 << 30})}}),
+                    "a list of 4 bytes");
+  expectHeaderError(exr({{std::string(300, 'n'), "string", ""}}), "does not end");
 }
 
 // OpenImageIO would try its readers of film, camera and medical formats on unknown formats.
@@ -246,7 +248,7 @@ TEST(Hostile, OtherFormatsAreRejectedByTheirFirstBytes) {
   for (const std::string& bytes : {std::string("GIF89a\1\0\1\0", 10), std::string("BM\x46"),
                                    std::string("\0\0\1\0\1\0", 6), std::string("SIMPLE  =")}) {
     std::ofstream(folder / "a.exr", std::ios::binary) << bytes;
-    expectRefused({"probe", "info", folder / "a.exr"}, "not an EXR", kGibibyte);
+    expectError({"probe", "info", folder / "a.exr"}, "not an EXR", kGibibyte);
   }
 }
 

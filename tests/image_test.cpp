@@ -119,21 +119,21 @@ TEST(Image, HdrMatchesReferenceDecoder) {
 TEST(Image, DamagedHdrIsRejected) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.hdr", head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
-  const auto refuse = [&](const std::string& bytes, const std::string& reason) {
+  const auto expectError = [&](const std::string& bytes, const std::string& reason) {
     write(path, bytes);
     expectInputError(path, reason);
   };
-  refuse(head + "-Y 100000 +X 100000\n", "exceed the limit");
-  refuse(head + "-Y 0 +X 5\n", "0");
-  refuse(head + "-Y -5 +X 5\n", "-5");
-  refuse(head + "+X 5 -Y 5\n", "resolution");
-  refuse(head + "-Y 8000 +X 8000\n" + std::string("\2\2\x1f\x40", 4), "too short");
-  refuse(head + "-Y 1 +X 8\n" + std::string("\2\2\0\x8\xff\1------", 12), "a run exceeds");
-  refuse(head + "-Y 1 +X 4\n" + std::string("\1\1\1\4", 4), "a run exceeds");
-  refuse(head + "-Y 1 +X 4\n" + std::string("\1\1\2\4", 4), "ends");
-  refuse("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234", "EXPOSURE");
-  refuse("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234", "rgbe");
-  refuse("#?RADIANCE", "end");
+  expectError(head + "-Y 100000 +X 100000\n", "exceed the limit");
+  expectError(head + "-Y 0 +X 5\n", "0");
+  expectError(head + "-Y -5 +X 5\n", "-5");
+  expectError(head + "+X 5 -Y 5\n", "resolution");
+  expectError(head + "-Y 8000 +X 8000\n" + std::string("\2\2\x1f\x40", 4), "too short");
+  expectError(head + "-Y 1 +X 8\n" + std::string("\2\2\0\x8\xff\1------", 12), "a run exceeds");
+  expectError(head + "-Y 1 +X 4\n" + std::string("\1\1\1\4", 4), "a run exceeds");
+  expectError(head + "-Y 1 +X 4\n" + std::string("\1\1\2\4", 4), "ends");
+  expectError("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234", "EXPOSURE");
+  expectError("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234", "rgbe");
+  expectError("#?RADIANCE", "end");
 }
 
 TEST(Image, PfmBigEndianAndGrey) {

@@ -73,7 +73,7 @@ TEST(Probe, locateInvertsDirectionEverywhere) {
   }
 }
 
-TEST(Probe, refusesScalesThatLeaveTheRangeOfFloat) {
+TEST(Probe, rejectsScalesThatLeaveTheRangeOfFloat) {
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1e30f)), 0, 1e20f), std::runtime_error);
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), 0, -1), std::runtime_error);
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);

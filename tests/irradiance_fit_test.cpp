@@ -275,7 +275,7 @@ TEST(IrradianceFit, MaxErrorGivesTheSmallestNumberOfLights) {
   EXPECT_EQ(fitIrradiance(probe, options).lights.size(), 2u);
 }
 
-TEST(IrradianceFit, RefusesANegativeCount) {
+TEST(IrradianceFit, RejectsANegativeCount) {
   EXPECT_ANY_THROW(fitIrradiance(studioProbe(kSize), {.count = -1}));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps that are not all there: what of them light samples find is what the BSDF's rays find.
+// Emitters with alpha below 1: light samples and BSDF samples must find the same light.
 #include <gtest/gtest.h>
 
 #include "composite/compose.h"
@@ -17,7 +17,7 @@ const Probe& blackProbe() {
   return kBlack;
 }
 
-Material lampOfAlpha(AlphaMode mode, float alpha) {
+Material lampMaterial(AlphaMode mode, float alpha) {
   Material m = lambert(Rgb(0));
   m.emission = Rgb(3);
   m.alphaMode = mode;
@@ -25,7 +25,7 @@ Material lampOfAlpha(AlphaMode mode, float alpha) {
   return m;
 }
 
-// A glossy floor under a lamp of 2 m x 2 m, which hangs 1 m above.
+// A glossy floor, 1 m below a lamp of 2 m x 2 m.
 Scene floorUnder(const Material& lamp) {
   Scene scene;
   Material floor = lambert(Rgb(0.5f));
@@ -36,7 +36,7 @@ Scene floorUnder(const Material& lamp) {
   return scene;
 }
 
-Moments light(const Scene& scene, Mis mis, int samples = 256) {
+Moments floorRadiance(const Scene& scene, Mis mis, int samples = 256) {
   const Camera camera = Camera::lookAt({0, 0.5f, 1.2f}, {0, 0, 0}, {0, 1, 0}, 0.2f);
   std::vector<double> means;
   for (uint64_t seed = 0; seed < 8; ++seed) {
@@ -48,43 +48,43 @@ Moments light(const Scene& scene, Mis mis, int samples = 256) {
   return Moments::of(means);
 }
 
-void expectFraction(const Scene& scene, const Scene& whole, double fraction, const char* what) {
-  const double all = light(whole, Mis::Balance, 1024).mean;
+// The floor in `scene` has `fraction` of its radiance in `reference`, for every MIS weight.
+void expectFraction(const Scene& scene, const Scene& reference, double fraction, const char* name) {
+  const double all = floorRadiance(reference, Mis::Balance, 1024).mean;
   for (const Mis mis : {Mis::Off, Mis::Balance, Mis::Power})
-    EXPECT_NEAR(light(scene, mis).mean / all, fraction, 0.03) << what << " " << int(mis);
+    EXPECT_NEAR(floorRadiance(scene, mis).mean / all, fraction, 0.03) << name << " " << int(mis);
 }
 
-const Scene& wholeLamp() {
-  static const Scene kWhole = floorUnder(lampOfAlpha(AlphaMode::Opaque, 1));
-  return kWhole;
+const Scene& opaqueLamp() {
+  static const Scene kScene = floorUnder(lampMaterial(AlphaMode::Opaque, 1));
+  return kScene;
 }
 
-TEST(LampAlpha, BlendedLampsLendTheirShare) {
+TEST(LampAlpha, BlendModeScalesEmissionByAlpha) {
   for (const float alpha : {0.0f, 0.3f, 1.0f})
-    expectFraction(floorUnder(lampOfAlpha(AlphaMode::Blend, alpha)), wholeLamp(), alpha, "blend");
-  // Of a material that is opaque, alpha says nothing.
-  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Opaque, 0.3f)), wholeLamp(), 1, "opaque");
+    expectFraction(floorUnder(lampMaterial(AlphaMode::Blend, alpha)), opaqueLamp(), alpha, "blend");
+  // An opaque material ignores alpha.
+  expectFraction(floorUnder(lampMaterial(AlphaMode::Opaque, 0.3f)), opaqueLamp(), 1, "opaque");
 }
 
-TEST(LampAlpha, MasksShowAllOrNothing) {
-  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.4f)), wholeLamp(), 0,
+TEST(LampAlpha, MaskModeComparesAlphaWithTheCutoff) {
+  expectFraction(floorUnder(lampMaterial(AlphaMode::Mask, 0.4f)), opaqueLamp(), 0,
                  "below the cutoff");
-  expectFraction(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.6f)), wholeLamp(), 1, "above");
+  expectFraction(floorUnder(lampMaterial(AlphaMode::Mask, 0.6f)), opaqueLamp(), 1, "above");
 }
 
-TEST(LampAlpha, VertexColoursCount) {
-  Scene scene = floorUnder(lampOfAlpha(AlphaMode::Blend, 0.8f));
+TEST(LampAlpha, VertexColoursScaleAlpha) {
+  Scene scene = floorUnder(lampMaterial(AlphaMode::Blend, 0.8f));
   scene.meshes[1].colors.assign(4, vec4(1, 1, 1, 0.5f));
-  expectFraction(scene, wholeLamp(), 0.4, "vertex colour");
+  expectFraction(scene, opaqueLamp(), 0.4, "vertex colour");
 }
 
-// One half of the lamp is cut away by its texture: what shines is a lamp of half the size.
-TEST(LampAlpha, TexturesCount) {
-  Scene half;
-  half = floorUnder(lampOfAlpha(AlphaMode::Opaque, 1));
+// The texture's alpha is 0 on one half of the lamp, which must equal a lamp of half the size.
+TEST(LampAlpha, TexturesScaleAlpha) {
+  Scene half = floorUnder(lampMaterial(AlphaMode::Opaque, 1));
   half.meshes[1].positions = {{-1, 1, -1}, {0, 1, -1}, {0, 1, 1}, {-1, 1, 1}};
   for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend}) {
-    Scene scene = floorUnder(lampOfAlpha(mode, 1));
+    Scene scene = floorUnder(lampMaterial(mode, 1));
     scene.grids.push_back(
         std::make_unique<TexelGrid>(TexelGrid{2, 1, {{0, 0, 0, 255}, {0, 0, 0, 0}}, {}}));
     Texture texture{scene.grids[0].get()};
@@ -97,21 +97,23 @@ TEST(LampAlpha, TexturesCount) {
   }
 }
 
-// Lamps are chosen by what is there of them, but none that may shine is left out.
-TEST(LampAlpha, TheChoiceOfLampsKnowsAlpha) {
-  EXPECT_EQ(Emitters::make(floorUnder(lampOfAlpha(AlphaMode::Blend, 0))), nullptr);
-  Scene scene = floorUnder(lampOfAlpha(AlphaMode::Blend, 0.1f));
+// The probability of choosing an emitter is proportional to its alpha. Masked emitters keep a pdf
+// above 0, because their texture may exceed the cutoff.
+TEST(LampAlpha, EmitterPdfIsProportionalToAlpha) {
+  EXPECT_EQ(Emitters::make(floorUnder(lampMaterial(AlphaMode::Blend, 0))), nullptr);
+  Scene scene = floorUnder(lampMaterial(AlphaMode::Blend, 0.1f));
   const auto emitters = Emitters::make(scene);
-  addQuad(scene, addMaterial(scene, lampOfAlpha(AlphaMode::Opaque, 1)), {3, 1, -1}, {2, 0, 0},
+  addQuad(scene, addMaterial(scene, lampMaterial(AlphaMode::Opaque, 1)), {3, 1, -1}, {2, 0, 0},
           {0, 0, 2});
   const auto both = Emitters::make(scene);
   EXPECT_NEAR(both->pdf(1, 1, 1) / both->pdf(2, 1, 1), 0.1f, 1e-6f);
-  EXPECT_GT(Emitters::make(floorUnder(lampOfAlpha(AlphaMode::Mask, 0.1f)))->pdf(1, 1, 1), 0);
+  EXPECT_GT(Emitters::make(floorUnder(lampMaterial(AlphaMode::Mask, 0.1f)))->pdf(1, 1, 1), 0);
 }
 
-// A composite's lamp, put in: it changes alpha of what an opaque one changes.
-TEST(LampAlpha, CompositesCountIt) {
-  const auto change = [](const Material& lamp) {
+// A lamp that is a synthetic object of a composite: the change of the plate is proportional to
+// alpha.
+TEST(LampAlpha, CompositesScaleTheDifferenceByAlpha) {
+  const auto difference = [](const Material& lamp) {
     const Scene scene = floorUnder(lamp);
     const ObjectMask isObject{false, true};
     const World world(scene, rayMasks(isObject));
@@ -124,14 +126,14 @@ TEST(LampAlpha, CompositesCountIt) {
         stop);
     return meanColor(compositeLayer(r.film, CompositeLayer::Difference)).y;
   };
-  const float whole = change(lampOfAlpha(AlphaMode::Opaque, 1));
-  EXPECT_NEAR(change(lampOfAlpha(AlphaMode::Blend, 0.3f)) / whole, 0.3f, 0.02f);
-  EXPECT_EQ(change(lampOfAlpha(AlphaMode::Blend, 0)), 0);
+  const float opaque = difference(lampMaterial(AlphaMode::Opaque, 1));
+  EXPECT_NEAR(difference(lampMaterial(AlphaMode::Blend, 0.3f)) / opaque, 0.3f, 0.02f);
+  EXPECT_EQ(difference(lampMaterial(AlphaMode::Blend, 0)), 0);
 }
 
-// A lamp of a thousand millionth of the power is found where its share of the numbers is, which no
-// float reaches.
-TEST(EmitterChoice, TheWeakestLampIsWithinReach) {
+// A lamp with 1e-9 of the total power has its interval of u within 1e-9 of 1, which a float cannot
+// resolve.
+TEST(EmitterChoice, ALampOf1e_9OfThePowerIsSampled) {
   Scene scene;
   Material strong = lambert(Rgb(0)), weak = strong;
   strong.emission = Rgb(1), weak.emission = Rgb(1e-9f);
@@ -140,12 +142,13 @@ TEST(EmitterChoice, TheWeakestLampIsWithinReach) {
   const auto emitters = Emitters::make(scene);
   EXPECT_EQ(emitters->sample(1 - 0.4e-9, 0.5f).instance, 1u);
   EXPECT_EQ(emitters->sample(1 - 1.1e-9, 0.5f).instance, 0u);
-  const Emitters::Point p = emitters->sample(1 - 0.25e-9, 0.5f);  // in the middle of its triangle
+  const Emitters::Point p = emitters->sample(1 - 0.25e-9, 0.5f);  // inside its first triangle
   EXPECT_GT(p.position.x, 5.01f);
   EXPECT_LT(p.position.x, 5.99f);
 }
 
-// The numbers that choose are uniform to the last of 53 bits, and agree with the coarser ones.
+// The 53-bit numbers for emitter choice agree with the table in their upper 32 bits and are uniform
+// in the bits below.
 TEST(EmitterChoice, FineNumbersAreUniformBelowTheTable) {
   const SobolTable table(1024, 16, 7);
   PixelSampler sampler(table, 3);

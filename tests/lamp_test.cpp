@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps that a scene file adds.
+// The [[light]] tables of a scene file.
 #include "scene/lamp.h"
 
 #include <gtest/gtest.h>
@@ -25,9 +25,9 @@ Lamp lampOf(const std::string& keys) {
   return read(folder, "[[light]]\n" + keys).lamps.at(0);
 }
 
-// The middle of a grey floor of 20 m x 20 m under the lamp, seen from above; the lamp is above it.
-Rgb floorUnder(const Lamp& lamp, const std::string& strategy = "importance",
-               Mis mis = Mis::Balance) {
+// Exitant radiance at the centre of a grey floor of 20 m x 20 m, seen from above the lamp.
+Rgb floorRadiance(const Lamp& lamp, const std::string& strategy = "importance",
+                  Mis mis = Mis::Balance) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
   addLamp(scene, lamp, glm::dvec3(0));
@@ -43,7 +43,7 @@ Rgb floorUnder(const Lamp& lamp, const std::string& strategy = "importance",
 // L = albedo / pi x I / h^2.
 TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
   const Rgb point =
-      floorUnder(lampOf("type = 'point'\nposition = [0, 2, 0]\nintensity = [8, 4, 2]"));
+      floorRadiance(lampOf("type = 'point'\nposition = [0, 2, 0]\nintensity = [8, 4, 2]"));
   EXPECT_NEAR(point.x, 0.5 / kPiD * 8 / 4, 1e-3);
   EXPECT_NEAR(point.z, 0.5 / kPiD * 2 / 4, 1e-3);
   const Lamp spot = lampOf(
@@ -51,13 +51,13 @@ TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
       "inner_angle = 20\nouter_angle = 30\nrange = 4");
   EXPECT_NEAR(spot.punctual->cosOuter, std::cos(kPiD / 6), 1e-6);
   EXPECT_NEAR(spot.punctual->cosInner, std::cos(kPiD / 9), 1e-6);
-  EXPECT_NEAR(floorUnder(spot).x, 0.5 / kPiD * 8 / 4 * (1 - 1.0 / 16), 1e-3);
+  EXPECT_NEAR(floorRadiance(spot).x, 0.5 / kPiD * 8 / 4 * (1 - 1.0 / 16), 1e-3);
   const Lamp away =
       lampOf("type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, 1, 0]\nintensity = 8");
-  EXPECT_EQ(floorUnder(away).x, 0);
+  EXPECT_EQ(floorRadiance(away).x, 0);
 }
 
-// The light that a lamp of 10 W sends in all directions, summed up over the sphere, is 10 W.
+// The integral over the sphere of the intensity of a 10 W lamp is 10 W.
 TEST(Lamps, PowerIsTheIntegralOfTheIntensity) {
   for (const char* text :
        {"type = 'point'\nposition = [0, 0, 0]\npower = 10",
@@ -78,19 +78,19 @@ TEST(Lamps, PowerIsTheIntegralOfTheIntensity) {
   }
 }
 
-// A disc of radius r on the axis, h away: E = pi L r^2 / (r^2 + h^2).
-TEST(Lamps, DiscsLightAsTheirClosedFormSays) {
+// Irradiance from a disc of radius r at distance h on its axis: E = pi L r^2 / (r^2 + h^2).
+TEST(Lamps, DiscIrradianceMatchesTheClosedForm) {
   for (const float radius : {0.5f, 2.0f}) {
     const Lamp lamp = lampOf(fmt::format(
         "type = 'disc'\nposition = [0, 1, 0]\ndirection = [0, -1, 0]\nradius = {}\nradiance = 3",
         radius));
     const double r2 = double(radius) * radius, expected = 0.5 * 3 * r2 / (r2 + 1);
     for (const Mis mis : {Mis::Off, Mis::Balance, Mis::Power})
-      EXPECT_NEAR(floorUnder(lamp, "importance", mis).x / expected, 1, 0.02) << radius;
+      EXPECT_NEAR(floorRadiance(lamp, "importance", mis).x / expected, 1, 0.02) << radius;
     const Lamp back = lampOf(fmt::format(
         "type = 'disc'\nposition = [0, 1, 0]\ndirection = [0, 1, 0]\nradius = {}\nradiance = 3",
         radius));
-    EXPECT_EQ(floorUnder(back).x, 0);
+    EXPECT_EQ(floorRadiance(back).x, 0);
   }
 }
 
@@ -119,8 +119,8 @@ TEST(Lamps, DiscsHaveTheirExactAreaAndPower) {
   EXPECT_FALSE(scene.materials[0].doubleSided);
 }
 
-TEST(Lamps, WhatIsWrongIsSaidWithItsLine) {
-  const auto refusal = [](const std::string& keys) {
+TEST(Lamps, ErrorsNameTheLineInTheFile) {
+  const auto errorMessage = [](const std::string& keys) {
     try {
       lampOf(keys);
     } catch (const InputError& e) {
@@ -131,30 +131,31 @@ TEST(Lamps, WhatIsWrongIsSaidWithItsLine) {
   };
   const std::string point = "type = 'point'\nposition = [0, 2, 0]\n";
   const std::string disc = "type = 'disc'\nposition = [0, 2, 0]\nradius = 1\n";
-  EXPECT_EQ(refusal(point + "intensity = 1"), "");
-  EXPECT_EQ(refusal("position = [0, 2, 0]"),
+  EXPECT_EQ(errorMessage(point + "intensity = 1"), "");
+  EXPECT_EQ(errorMessage("position = [0, 2, 0]"),
             "a.toml:2: [light] has no `type`: one of point, spot, disc");
-  EXPECT_EQ(refusal("type = 'disk'"),
+  EXPECT_EQ(errorMessage("type = 'disk'"),
             "a.toml:3: `type`: `disk` is not known; did you mean `disc`?");
-  EXPECT_EQ(refusal(point + "intensty = 1"),
+  EXPECT_EQ(errorMessage(point + "intensty = 1"),
             "a.toml:5: unknown key `intensty` in [light]; did you mean `intensity`?");
-  EXPECT_EQ(refusal(point + "intensity = 1\nradius = 1"),
+  EXPECT_EQ(errorMessage(point + "intensity = 1\nradius = 1"),
             "a.toml:6: a point light has no `radius`; it has intensity, power, range");
-  EXPECT_EQ(refusal(point), "a.toml:2: [light] has neither `intensity` nor `power`");
-  EXPECT_EQ(refusal(point + "intensity = 1\npower = 1"),
+  EXPECT_EQ(errorMessage(point), "a.toml:2: [light] has neither `intensity` nor `power`");
+  EXPECT_EQ(errorMessage(point + "intensity = 1\npower = 1"),
             "a.toml:6: [light] has `intensity`; it cannot have `power` too");
-  EXPECT_EQ(refusal(point + "intensity = [1, -1, 0]"),
+  EXPECT_EQ(errorMessage(point + "intensity = [1, -1, 0]"),
             "a.toml:5: `intensity` must be a finite number, 0 or more (W/sr), not -1");
-  EXPECT_EQ(refusal("type = 'point'\nintensity = 1"), "a.toml:2: [light] has no `position`");
-  EXPECT_EQ(refusal(disc + "radiance = 1"), "a.toml:2: [light] has no `direction`");
-  EXPECT_EQ(refusal(disc + "radiance = 1\ndirection = [0, 0, 0]"),
+  EXPECT_EQ(errorMessage("type = 'point'\nintensity = 1"), "a.toml:2: [light] has no `position`");
+  EXPECT_EQ(errorMessage(disc + "radiance = 1"), "a.toml:2: [light] has no `direction`");
+  EXPECT_EQ(errorMessage(disc + "radiance = 1\ndirection = [0, 0, 0]"),
             "a.toml:7: `direction` must be other than 0, 0, 0, not an array of 3");
-  EXPECT_EQ(refusal("type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\nintensity = 1\n"
-                    "outer_angle = 20\ninner_angle = 30"),
-            "a.toml:8: `inner_angle` must be a number from 0 to 20 (degrees), not 30");
+  EXPECT_EQ(
+      errorMessage("type = 'spot'\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\nintensity = 1\n"
+                   "outer_angle = 20\ninner_angle = 30"),
+      "a.toml:8: `inner_angle` must be a number from 0 to 20 (degrees), not 30");
 }
 
-TEST(Lamps, LightASceneWithoutAProbe) {
+TEST(Lamps, LightASceneThatHasNoProbe) {
   for (const char* lamp : {"type = 'point'\nintensity = 5",
                            "type = 'disc'\ndirection = [0, 0, -1]\nradius = 1\npower = 50"}) {
     const TemporaryFolder folder;

@@ -122,7 +122,7 @@ TEST(LightFile, CsvHasALinePerLight) {
             "x,y,z,r,g,b,angle\n0,1,0,5,2,1,0\n0,0,-1,0,0.25,0.33333334,0.53\n");
 }
 
-TEST(LightFile, RefusesLightsThatAreNotFiniteAndUnknownExtensions) {
+TEST(LightFile, RejectsLightsThatAreNotFiniteAndUnknownExtensions) {
   const TemporaryFolder folder;
   LightRig rig = exampleRig();
   EXPECT_THROW(writeLights(folder / "a.txt", rig), InputError);

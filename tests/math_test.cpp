@@ -9,7 +9,7 @@
 namespace chromeball {
 namespace {
 
-TEST(Trig, agreesWithTheLibrary) {
+TEST(Trig, agreesWithTheStandardLibrary) {
   for (int i = -100000; i <= 100000; ++i) {
     const float turns = float(i) / 100000;
     float sine, cosine;
@@ -55,7 +55,7 @@ const Warp kWarps[] = {
      [](const vec3& v) { return double(squareToCosineHemispherePdf(v)); },
      cosineHemisphereToSquare}};
 
-TEST(Warp, hasItsDensityAndItsInverse) {
+TEST(Warp, matchesItsPdfAndItsInverse) {
   for (const Warp& warp : kWarps) {
     SCOPED_TRACE(warp.name);
     const SphereTest test = testDirections(
@@ -71,7 +71,7 @@ TEST(Warp, hasItsDensityAndItsInverse) {
 }
 
 TEST(Warp, triangleIsUniformAndInvertible) {
-  std::vector<double> counts(16);  // four levels of the midpoint subdivision: equal areas
+  std::vector<double> counts(16);  // 16 cells of equal area: two levels of midpoint subdivision
   constexpr int kSamples = 100000;
   for (int i = 0; i < kSamples; ++i) {
     const vec2 u = random2(i, 0);
@@ -96,7 +96,7 @@ TEST(Warp, triangleIsUniformAndInvertible) {
   EXPECT_GT(chiSquareTest(counts, expected).pValue, 1e-3);
 }
 
-TEST(CdfRows, returnsColumnsInProportionAndThePlaceInside) {
+TEST(CdfRows, samplesColumnsInProportionAndRemapsU) {
   const std::vector<double> weights{0, 3, 0, 0, 1, 4, 0};
   CdfRows rows(2, 7);
   EXPECT_EQ(rows.setRow(1, weights), 8);
@@ -114,7 +114,7 @@ TEST(CdfRows, returnsColumnsInProportionAndThePlaceInside) {
   for (int c = 0; c < 7; ++c) EXPECT_NEAR(counts[c], weights[c] / 8 * kSamples, 1.01);
 }
 
-TEST(CdfRows, aWeightOf1e12LeavesTheOthersTheirWidth) {
+TEST(CdfRows, aWeightOf1e12PreservesTheOtherWidths) {
   std::vector<double> weights(16384, 1.0);
   weights[5000] = 1e12;
   CdfRows rows(1, 16384);

@@ -50,7 +50,7 @@ class SlowOutputFiles : public testing::Test {
       return all;
     };
     const auto before = contents();
-    expectRefused(words, reason);
+    expectError(words, reason);
     EXPECT_EQ(contents(), before) << reason;
   }
 
@@ -135,10 +135,10 @@ TEST_F(SlowOutputFiles, TheFolderThatASceneFileNamesIsMade) {
   EXPECT_EQ(made.status, 0) << made.error;
   EXPECT_TRUE(fs::exists(in("out/a.exr")));
   EXPECT_EQ(runCommand({"render", scene("out/a.exr"), "--quiet"}).status, 0);
-  expectRefused({"render", scene("none/deeper/a.exr")}, "no folder");
-  expectRefused({"render", scene("out/a.exr"), "-o", in("none/a.exr")}, "no folder");
-  expectRefused({"render", scene("other/a.gif")}, "unknown image format");
-  expectRefused({"render", scene("other/a.exr"), "--strategy", "nonsense"}, "nonsense");
+  expectError({"render", scene("none/deeper/a.exr")}, "no folder");
+  expectError({"render", scene("out/a.exr"), "-o", in("none/a.exr")}, "no folder");
+  expectError({"render", scene("other/a.gif")}, "unknown image format");
+  expectError({"render", scene("other/a.exr"), "--strategy", "nonsense"}, "nonsense");
   EXPECT_FALSE(fs::exists(in("none")));
   EXPECT_FALSE(fs::exists(in("other")));
 }

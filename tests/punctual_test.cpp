@@ -223,28 +223,30 @@ TEST(GltfLights, StandWhereTheirNodesAre) {
   EXPECT_EQ(loadGltf(w.save(), {}, nullptr, radiometric).lights[0].intensity, Rgb(3, 1.5f, 0));
 }
 
-TEST(GltfLights, AreRefusedWhereTheyAreNotWellFormed) {
-  const auto refusal = [](const json& light, int index = 0) {
+TEST(GltfLights, AreRejectedWhereTheyAreNotWellFormed) {
+  const auto errorMessage = [](const json& light, int index = 0) {
     GltfWriter w;
     addTriangle(w);
     w.root["extensions"]["KHR_lights_punctual"]["lights"] = {light};
     w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = index;
-    return w.refusal();
+    return w.errorMessage();
   };
   const auto holds = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_EQ(refusal({{"type", "point"}}), "");
-  EXPECT_TRUE(holds(refusal({{"type", "point"}}, 1), "lights[1] does not exist"));
-  EXPECT_TRUE(holds(refusal({{"type", "area"}}), "\"area\" is not directional, point or spot"));
-  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"intensity", -1}}), "lights[0].intensity: -1"));
-  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"range", 0}}), "lights[0].range"));
-  EXPECT_TRUE(holds(refusal({{"type", "point"}, {"color", {1, -1, 0}}}), "lights[0].color"));
-  EXPECT_TRUE(holds(refusal({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
+  EXPECT_EQ(errorMessage({{"type", "point"}}), "");
+  EXPECT_TRUE(holds(errorMessage({{"type", "point"}}, 1), "lights[1] does not exist"));
+  EXPECT_TRUE(
+      holds(errorMessage({{"type", "area"}}), "\"area\" is not directional, point or spot"));
+  EXPECT_TRUE(
+      holds(errorMessage({{"type", "point"}, {"intensity", -1}}), "lights[0].intensity: -1"));
+  EXPECT_TRUE(holds(errorMessage({{"type", "point"}, {"range", 0}}), "lights[0].range"));
+  EXPECT_TRUE(holds(errorMessage({{"type", "point"}, {"color", {1, -1, 0}}}), "lights[0].color"));
+  EXPECT_TRUE(holds(errorMessage({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
                     "outerConeAngle: 2 is not in the range"));
-  EXPECT_TRUE(holds(
-      refusal({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}}),
-      "innerConeAngle"));
+  EXPECT_TRUE(holds(errorMessage({{"type", "spot"},
+                                  {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}}),
+                    "innerConeAngle"));
 }
 
 // A triangle before the camera, lit by a directional light of 683 lx.
@@ -277,14 +279,15 @@ TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
   EXPECT_EQ(mean({"--lights", "0"}), 0);
   EXPECT_NEAR(mean({"--light-units", "radiometric"}) / whole, 683, 0.01);
   EXPECT_NEAR(mean({"--light-units", "photometric"}) / whole, 1, 1e-6);
-  const auto refused = [&](const std::vector<std::string>& options, const std::string& reason) {
+  const auto expectOptionError = [&](const std::vector<std::string>& options,
+                                     const std::string& reason) {
     std::vector<std::string> all = {"render", model, "-o", folder / "a.pfm"};
     all.insert(all.end(), options.begin(), options.end());
-    expectRefused(all, reason);
+    expectError(all, reason);
   };
-  refused({"--lights", "-1"}, "--lights: `-1` is not \"off\" or a factor, 0 or more");
-  refused({"--lights", "on"}, "--lights");
-  refused({"--light-units", "lux"}, "--light-units: `lux` is not known");
+  expectOptionError({"--lights", "-1"}, "--lights: `-1` is not \"off\" or a factor, 0 or more");
+  expectOptionError({"--lights", "on"}, "--lights");
+  expectOptionError({"--light-units", "lux"}, "--light-units: `lux` is not known");
 }
 
 TEST(GltfLights, ClippedPicturesAreSaidToBe) {
@@ -331,7 +334,7 @@ TEST(GltfLights, LightASceneWithoutAProbe) {
   GltfWriter w;
   addTriangle(w);
   const TemporaryFolder folder;
-  expectRefused({"render", w.save(), "-o", folder / "a.pfm"}, "nothing lights the scene");
+  expectError({"render", w.save(), "-o", folder / "a.pfm"}, "nothing lights the scene");
   w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}}};
   w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
   const CommandResult result =

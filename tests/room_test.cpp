@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surroundings given by a model of the room.
+// Surroundings of shape `model`: the walls are the triangles of a room model.
 #include "trace/room.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ Surroundings room() {
 
 enum class Furnishing { None, Screen };
 
-// The box as a mesh; its walls' fronts face either way. The screen hides a corner from the capture
-// point.
+// The box as a mesh, with walls of both orientations. The screen hides a corner of the room from
+// the capture point.
 Scene boxModel(bool hasCeiling, Furnishing furnishing) {
   Scene scene;
   const int grey = addMaterial(scene, lambert(Rgb(0.5f)));
@@ -37,7 +37,7 @@ Scene boxModel(bool hasCeiling, Furnishing furnishing) {
   return scene;
 }
 
-TEST(Room, AModelOfABoxIsTheBox) {
+TEST(Room, AModelOfABoxEqualsTheAnalyticBox) {
   const Room walls(boxModel(true, Furnishing::None), kCapture, "test");
   for (uint64_t i = 0; i < 1000; ++i) {
     const vec3 from = kCapture + 0.9f * toUnit(uint32_t(hash(i, 7))) * sphereDirection(i + 1000);
@@ -61,18 +61,17 @@ TEST(Room, AnOpeningShowsTheDistantProbe) {
   EXPECT_GT(glm::length(lighting.background(from, down) - probe.radiance(down)), 1e-3f);
 }
 
-TEST(Room, AScreenHidesTheWallBehind) {
+TEST(Room, AScreenOccludesTheWallBehindIt) {
   const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
   const vec3 corner(-1.99f, 0.5f, 1.5f);
   EXPECT_FALSE(walls.isSeen(corner, kCapture));
   EXPECT_TRUE(walls.isSeen(corner, {-1.9f, 0.5f, 0}));
-  EXPECT_TRUE(walls.isSeen({-1, 0.5f, 1}, kCapture)) << "a point of the screen itself";
+  EXPECT_TRUE(walls.isSeen({-1, 0.5f, 1}, kCapture)) << "a point on the screen";
 }
 
-// The floor in front of and behind the screen is lit also by parts that the capture point does not
-// see. BSDF samples, which need no visibility from the capture point, must agree with light
-// samples.
-TEST(SlowRoom, StrategiesAgreeThoughWallsHideEachOther) {
+// The floor on both sides of the screen is also lit by walls that the capture point cannot see.
+// BSDF samples do not depend on visibility from the capture point; light samples must agree.
+TEST(SlowRoom, StrategiesAgreeWhenWallsOccludeEachOther) {
   const Probe probe(spotted(), 25);
   const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
   const Surroundings surroundings = room();
@@ -90,7 +89,7 @@ TEST(SlowRoom, StrategiesAgreeThoughWallsHideEachOther) {
   }
 }
 
-TEST(Room, RefusesEmptyModelsAndCapturePointsOutside) {
+TEST(Room, RejectsEmptyModelsAndCapturePointsOutside) {
   EXPECT_THROW(Room(Scene(), kCapture, "test"), InputError);
   EXPECT_THROW(Room(boxModel(true, Furnishing::None), {0, 5, 0}, "test"), InputError);
 }

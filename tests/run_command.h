@@ -110,8 +110,8 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
 
 // The input was refused as the command line promises: status 2, nothing on standard output, and one
 // line `chromeball: ...` that holds `reason`.
-inline CommandResult expectRefused(const std::vector<std::string>& arguments,
-                                   const std::string& reason, const CommandLimits& limits = {}) {
+inline CommandResult expectError(const std::vector<std::string>& arguments,
+                                 const std::string& reason, const CommandLimits& limits = {}) {
   const CommandResult result = runCommand(arguments, "", SIGINT, limits);
   EXPECT_EQ(result.status, 2) << result.error;
   EXPECT_EQ(result.out, "");

@@ -251,19 +251,19 @@ TEST_F(SceneFileTest, CameraMustBeOneOrTheOther) {
   expectError("[camera]\nposition=[0,0,1]\nlook_at=[0,0,0]\nup=[0,0,1]\n", 2, {"parallel"});
 }
 
-TEST_F(SceneFileTest, BadModelsAreRefused) {
-  const auto refuse = [&](const std::string& toml) {
+TEST_F(SceneFileTest, BadModelsAreRejected) {
+  const auto expectError = [&](const std::string& toml) {
     EXPECT_THROW(read(toml), InputError) << toml;
   };
-  refuse("");
-  refuse("model = []");
-  refuse("model = 3");
-  refuse("[[model]]\nscale = 2\n");
-  refuse("[[model]]\nfile='../ball.glb'\nscale = 0\n");
-  refuse("[[model]]\nfile='../ball.glb'\nscale = [1, 0, 1]\n");
-  refuse("[[model]]\nfile='../ball.glb'\nrotation = [0, 0]\n");
-  refuse("[[model]]\nfile='../ball.glb'\nrotation = [0, 0, 0, 0]\n");
-  refuse("[[model]]\nfile='../ball.glb'\ntranslation = [0, nan, 0]\n");
+  expectError("");
+  expectError("model = []");
+  expectError("model = 3");
+  expectError("[[model]]\nscale = 2\n");
+  expectError("[[model]]\nfile='../ball.glb'\nscale = 0\n");
+  expectError("[[model]]\nfile='../ball.glb'\nscale = [1, 0, 1]\n");
+  expectError("[[model]]\nfile='../ball.glb'\nrotation = [0, 0]\n");
+  expectError("[[model]]\nfile='../ball.glb'\nrotation = [0, 0, 0, 0]\n");
+  expectError("[[model]]\nfile='../ball.glb'\ntranslation = [0, nan, 0]\n");
 }
 
 TEST_F(SceneFileTest, MissingFilesAreNamedWithTheirLine) {
@@ -286,7 +286,7 @@ TEST_F(SceneFileTest, CompositeNeedsPlateAndLocalScene) {
   expectError("[composite]\nplate = 'none.exr'\nlocal_scene = 'a'\n", 3, {"no such file"});
 }
 
-TEST_F(SceneFileTest, InvalidFilesAreRefused) {
+TEST_F(SceneFileTest, InvalidFilesAreRejected) {
   EXPECT_THROW(readSceneFile((root_ / "none.toml").string()), InputError);
   EXPECT_THROW(readSceneFile(root_.string()), InputError);
   EXPECT_THROW(read("# " + std::string(size_t(5) << 20, 'x')), InputError);

@@ -101,7 +101,7 @@ TEST(Sky, GroundReflectsWhatItReceives) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(ground[c] / (0.5 / kPiD * received[c]), 1, 0.005);
 }
 
-TEST(Sky, OutOfRangeIsRefused) {
+TEST(Sky, OutOfRangeIsRejected) {
   EXPECT_THROW(clearSkyProbe({4, 2}, {.sunElevation = -1}), InputError);
   EXPECT_THROW(clearSkyProbe({4, 2}, {.turbidity = 1}), InputError);
   EXPECT_THROW(clearSkyProbe({4, 2}, {.turbidity = std::nan("")}), InputError);

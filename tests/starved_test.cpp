@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs that are stopped, or lack what they need: one line, the right status, and no half of a file.
+// Interrupted runs and runs without disk space, memory or permission: a one-line message, the
+// documented exit status, and no partially written file.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-// A triangle under a constant probe, and a folder that holds an earlier picture.
+// A model of one triangle and a constant probe.
 class Starved : public testing::Test {
  protected:
   void SetUp() override {
@@ -40,7 +41,7 @@ class Starved : public testing::Test {
     return all;
   }
 
-  // The run failed while running: one line, and `folder` holds what it held.
+  // Expects exit status 1 (a failure at run time) and a one-line message that contains `reason`.
   static void expectFailed(const CommandResult& result, const std::string& reason) {
     EXPECT_EQ(result.status, 1) << result.error;
     EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;
@@ -54,7 +55,7 @@ class Starved : public testing::Test {
 
 using SlowStarved = Starved;
 
-TEST_F(SlowStarved, FilesThatMayNotGrowLeaveTheOldOnes) {
+TEST_F(SlowStarved, AFileSizeLimitLeavesTheOldFile) {
   const TemporaryFolder out;
   for (const char* name : {"a.exr", "a.png", "a.hdr", "a.pfm"}) {
     std::ofstream(out / name) << "old";
@@ -72,7 +73,7 @@ TEST_F(SlowStarved, AFullDiskLeavesTheOldFile) {
   const std::string disk = folder / "disk";
   fs::create_directory(disk);
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=8k") != 0)
-    GTEST_SKIP() << "cannot mount a small file system here (that takes root)";
+    GTEST_SKIP() << "cannot mount a small file system (needs root)";
   for (const char* name : {"a.exr", "a.png", "a.hdr", "a.pfm"}) {
     const std::string path = disk + "/" + name;
     std::ofstream(path) << "old";
@@ -85,12 +86,12 @@ TEST_F(SlowStarved, AFullDiskLeavesTheOldFile) {
   umount(disk.c_str());
 }
 
-TEST_F(SlowStarved, APlaceThatTakesNoFileIsSaidBeforeRendering) {
+TEST_F(SlowStarved, UnwritablePathsAreReportedBeforeRendering) {
   const TemporaryFolder out;
   fs::create_directory(out / "folder.exr");
   expectFailed(runCommand(words(out / "folder.exr")), "is a folder");
-  expectRefused(words(out / "none/a.exr"), "no folder");
-  expectRefused(words(out / "a.exr", {"--stats", out / "none/a.json"}), "no folder");
+  expectError(words(out / "none/a.exr"), "no folder");
+  expectError(words(out / "a.exr", {"--stats", out / "none/a.json"}), "no folder");
   expectFailed(runCommand(words("/proc/a.exr")), "/proc/a.exr: cannot be written: ");
   EXPECT_EQ(out.files(), Words{"folder.exr"});
 }
@@ -109,11 +110,11 @@ TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
   EXPECT_EQ(out.files(), Words{"a.exr"});
   fs::permissions(out / "", fs::perms::owner_all);
   fs::permissions(probe_, fs::perms::none);
-  expectRefused(words(out / "a.exr"), "Permission denied", limits);
+  expectError(words(out / "a.exr"), "Permission denied", limits);
   fs::permissions(probe_, fs::perms::owner_all);
 }
 
-TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
+TEST_F(SlowStarved, SigintAndSigtermSaveTheImageSoFar) {
   for (int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder out;
     const Words all = words(out / "a.exr", {"--samples", "100000000", "--time", "60", "--progress",
@@ -123,7 +124,7 @@ TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
     EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));
     const auto stats = nlohmann::json::parse(fileContents(out / "a.json"));
     EXPECT_EQ(stats["interrupted"], true);
-    // The header tells whole passes, the layer what each pixel has.
+    // `samples_per_pixel` counts complete passes; the layer `samples` has the count of each pixel.
     const Image samples = *findLayer(readImageFile(out / "a.exr"), "samples");
     EXPECT_GE(*std::min_element(samples.texels.begin(), samples.texels.end()),
               stats["samples_per_pixel"]);
@@ -131,7 +132,7 @@ TEST_F(SlowStarved, BothSignalsSaveThePictureSoFar) {
   }
 }
 
-// A picture without some of its pixels never takes the place of a whole one.
+// An image with missing pixels never replaces a complete one.
 TEST_F(SlowStarved, AnInterruptInTheFirstPassLeavesTheOldFile) {
   const TemporaryFolder out;
   std::ofstream(out / "a.exr") << "old";
@@ -171,17 +172,17 @@ TEST_F(SlowStarved, AKillDuringTheWriteLeavesTheOldFile) {
     EXPECT_TRUE(WIFSIGNALED(status));
     EXPECT_EQ(fileContents(path), "old");
   }
-  // What was left behind does not stand in the way of the next run.
+  // The leftover temporary files do not prevent the next run.
   EXPECT_EQ(runCommand(words(path)).status, 0);
   EXPECT_EQ(readImage(path).width, 64);
 }
 
-TEST_F(SlowStarved, PicturesTooLargeAreRefusedBeforeTheirMemoryIsTaken) {
+TEST_F(SlowStarved, TooLargeImagesAreRejectedBeforeAllocation) {
   const TemporaryFolder out;
-  expectRefused(words(out / "a.exr", {"--size", "12000x12000", "--memory", "4"}),
-                "12000x12000 takes 3");
-  expectRefused(words(out / "a.exr", {"--size", "16384x16384"}), "16384 x 16384 texels");
-  expectRefused(words(out / "a.exr", {"--size", "100x100", "--memory", "0"}), "above 0");
+  expectError(words(out / "a.exr", {"--size", "12000x12000", "--memory", "4"}),
+              "12000x12000 takes 3");
+  expectError(words(out / "a.exr", {"--size", "16384x16384"}), "16384 x 16384 texels");
+  expectError(words(out / "a.exr", {"--size", "100x100", "--memory", "0"}), "above 0");
   EXPECT_EQ(runCommand(words(out / "a.exr", {"--size", "1x1"})).status, 0);
 }
 

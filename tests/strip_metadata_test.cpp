@@ -226,7 +226,7 @@ TEST(SlowStripMetadata, TexturesOfModels) {
                            "-o",
                            (model.folder() / "out.pfm").string()};
       if (isBomb) {
-        expectRefused(words, "64764 x 64764 texels cannot fit into", kSmall);
+        expectError(words, "64764 x 64764 texels cannot fit into", kSmall);
       } else {
         const CommandResult result = runCommand(words);
         EXPECT_EQ(result.status, 0) << location << ": " << result.error;
@@ -255,15 +255,15 @@ TEST(SlowStripMetadata, JpegFramesAreCheckedBeforeTheFileIsOpened) {
     std::fill_n(bomb.begin() + std::ptrdiff_t(at) + 5, 4, uint8_t(0xff));
     EXPECT_NE(reason(bomb).find("65535 x 65535 texels cannot fit"), std::string::npos) << kind;
     const std::string path = saved(folder / "bomb.jpg", bomb);
-    expectRefused({"image", "view", path, folder / "out.png"}, "65535 x 65535", kSmall);
-    expectRefused({"probe", "info", path}, "65535 x 65535", kSmall);
+    expectError({"image", "view", path, folder / "out.png"}, "65535 x 65535", kSmall);
+    expectError({"probe", "info", path}, "65535 x 65535", kSmall);
   }
   // An image that is too large is rejected even if the file has enough bytes.
   Bytes large = jpeg;
   large[frame + 1] = 0xc2;
   std::fill_n(large.begin() + std::ptrdiff_t(frame) + 5, 4, uint8_t(0xff));
   large.resize(9 << 20);
-  expectRefused({"probe", "info", saved(folder / "large.jpg", large)}, "exceed the limit", kSmall);
+  expectError({"probe", "info", saved(folder / "large.jpg", large)}, "exceed the limit", kSmall);
   EXPECT_THROW(decodeImage(large, "large"), InputError);
   // No frame, and a truncated one.
   EXPECT_EQ(reason(Bytes(jpeg.begin(), jpeg.begin() + std::ptrdiff_t(frame) + 8)),
@@ -291,7 +291,7 @@ TEST(StripMetadata, FilesFromFuzzing) {
   if (!folder) GTEST_SKIP() << "../shared/data/hostile is not there";
   const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();
   const TemporaryFolder out;
-  expectRefused({"probe", "info", bomb}, "65500 x 65500 texels cannot fit into 522 bytes", kSmall);
+  expectError({"probe", "info", bomb}, "65500 x 65500 texels cannot fit into 522 bytes", kSmall);
   const std::string damaged = (*folder / "corrupt-icc-4551.jpg").string();
   const CommandResult result = runCommand({"image", "view", damaged, out / "a.png"});
   EXPECT_TRUE(result.status == 0 || result.status == 2) << result.status << result.error;

@@ -17,7 +17,7 @@ Surroundings dome() {
   return s;
 }
 
-TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
+TEST(Surroundings, RaysFromInsideHitTheSurface) {
   for (const Surroundings& s : {box(), dome()})
     for (int i = 0; i < 500; ++i) {
       const vec3 from = s.capture + 0.9f * toUnit(uint32_t(hash(i, 7))) * sphereDirection(i + 1000);
@@ -30,7 +30,7 @@ TEST(Surroundings, RaysFromInsideEndOnTheSurface) {
     }
 }
 
-// Strategies with their tolerance at a position on the floor.
+// Strategies and the tolerance of the relative error at a position on the floor.
 constexpr std::pair<const char*, double> kStrategies[] = {{"bsdf", 0.03},
                                                           {"uniform", 0.03},
                                                           {"importance", 0.03},
@@ -38,24 +38,24 @@ constexpr std::pair<const char*, double> kStrategies[] = {{"bsdf", 0.03},
                                                           {"kollig-keller-strata:4", 0.03},
                                                           {"irradiance-fit-ambient:8", 0.3}};
 
-std::unique_ptr<LightingStrategy> inside(const Surroundings& s, const char* name,
-                                         const Probe& probe) {
+std::unique_ptr<LightingStrategy> makeLighting(const Surroundings& s, const char* name,
+                                               const Probe& probe) {
   return std::make_unique<FiniteSurroundings>(makeStrategy(name, probe, Mis::Balance, "test"),
                                               probe, s);
 }
 
-// Surroundings of constant radiance look the same from every position.
-TEST(Surroundings, ConstantOnesAreTheSameEverywhere) {
+// Under surroundings of constant radiance, the exitant radiance is the same at every position.
+TEST(Surroundings, ConstantRadianceIsIndependentOfPosition) {
   const Probe probe(constantProbe({8, 4}, Rgb(2)));
   for (const Surroundings& s : {box(), dome()})
     for (const char* name : {"bsdf", "uniform", "importance"})
       for (const vec2 at : {vec2(0, 0), vec2(-1, 1)}) {
-        const Moments m = floorRadiance(*inside(s, name, probe), at.x, at.y, 6);
+        const Moments m = floorRadiance(*makeLighting(s, name, probe), at.x, at.y, 6);
         EXPECT_NEAR(m.mean, 1, 0.01) << name;
       }
 }
 
-// Irradiance of the floor by quadrature: E = integral over the upper hemisphere of L cos.
+// Irradiance of the floor by quadrature over the upper hemisphere: E = integral of L cos dw.
 double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x) {
   constexpr int kRows = 300;
   double sum = 0;
@@ -70,15 +70,14 @@ double floorIrradiance(const Surroundings& s, const Probe& probe, const vec3& x)
   return sum * 2 * kPiD / kRows / (4 * kRows);
 }
 
-// Every strategy finds the irradiance at positions that see the surroundings differently.
-// Strategies that replace the probe have their lights on the walls, so a near one has a larger
-// error.
-TEST(SlowSurroundings, LightChangesWithThePosition) {
+// Every strategy matches the quadrature at two positions with different irradiance. Strategies that
+// replace the probe by lights put them on the walls, so the error is larger near a light.
+TEST(SlowSurroundings, IrradianceDependsOnPosition) {
   const Probe probe(spotted(), 25);
   double near = 0, far = 0;
   for (const Surroundings& s : {box(), dome()})
     for (const auto& [name, tolerance] : kStrategies) {
-      const auto lighting = inside(s, name, probe);
+      const auto lighting = makeLighting(s, name, probe);
       for (const vec2 at : {vec2(0.5f, -0.5f), vec2(-1.5f, 1.5f)}) {
         const double expected = 0.5 / kPiD * floorIrradiance(s, probe, {at.x, 0.001f, at.y});
         (at.x > 0 ? near : far) = expected;
@@ -93,14 +92,14 @@ TEST(SlowSurroundings, LightChangesWithThePosition) {
     }
 }
 
-// sample() and escaped() agree on radiance and pdf of a direction.
+// sample() and escaped() return the same radiance and pdf for a direction.
 TEST(Surroundings, PdfsAgree) {
   const Probe probe(spotted(), 25);
   const SobolTable table(64, 16, 0);
   PixelSampler sampler(table, 0);
   for (const Surroundings& s : {box(), dome()})
     for (const char* name : {"uniform", "importance"}) {
-      const auto lighting = inside(s, name, probe);
+      const auto lighting = makeLighting(s, name, probe);
       for (uint32_t i = 0; i < 640; ++i) {
         sampler.startPixel(i / 64, 3, 0);
         sampler.startSample(i % 64);
@@ -119,13 +118,14 @@ TEST(Surroundings, PdfsAgree) {
     }
 }
 
-// The lamps that `suns` makes of a probe's sources light matte surfaces only; the camera and
-// mirrors see the probe as captured.
-TEST(Surroundings, SunsAreNotSeen) {
+// The discs with which `suns` replaces a probe's sources light only matte surfaces; the camera and
+// mirrors see the original probe.
+TEST(Surroundings, SunsAreInvisibleToCameraAndMirrors) {
   Image map = spotted();
   map.setRgb(12, 4, Rgb(6000, 4000, 3000));
   const Probe probe(map, 25);
-  ASSERT_FALSE(makeStrategy("suns", probe, Mis::Balance, "test")->unbiased()) << "it has one";
+  ASSERT_FALSE(makeStrategy("suns", probe, Mis::Balance, "test")->unbiased())
+      << "the probe has a source";
   Scene scene;
   Material mirror;
   mirror.roughness = 0;
@@ -140,28 +140,28 @@ TEST(Surroundings, SunsAreNotSeen) {
       brightest = d;
   const std::atomic<bool> stop = false;
   for (const Surroundings& s : {box(), dome()}) {
-    const auto picture = [&](const char* name) {
-      // Towards the source, past the ball.
+    const auto renderMean = [&](const char* name) {
+      // The camera looks at the source; the mirror ball is beside it.
       const vec3 to = s.behind(s.capture, brightest).position;
       const Camera camera = Camera::lookAt(eye, to, {0, 1, 0}, 1.6f);
       return render(
-                 world, camera, *inside(s, name, probe), smallRender(32, 32, 4, 2), [](double) {},
-                 stop)
+                 world, camera, *makeLighting(s, name, probe), smallRender(32, 32, 4, 2),
+                 [](double) {}, stop)
           .film.mean();
     };
-    const Image seen = picture("suns"), expected = picture("importance");
-    EXPECT_EQ(seen.texels, expected.texels);
+    const Image found = renderMean("suns"), expected = renderMean("importance");
+    EXPECT_EQ(found.texels, expected.texels);
     EXPECT_GT(*std::max_element(expected.texels.begin(), expected.texels.end()), 1000);
   }
 }
 
-// At a large distance they equal the distant probe.
-TEST(Surroundings, AtALargeDistanceTheyAreTheProbe) {
+// Surroundings of a large radius converge to the infinitely distant probe.
+TEST(Surroundings, ConvergeToTheDistantProbe) {
   Surroundings s = dome();
   s.radius = 1e4f;
   s.capture = s.center;
   const Probe probe(spotted());
-  const auto lighting = inside(s, "importance", probe);
+  const auto lighting = makeLighting(s, "importance", probe);
   for (int i = 0; i < 200; ++i) {
     const vec3 d = sphereDirection(i);
     EXPECT_LT(glm::length(lighting->background({1, -1, 0.5f}, d) - probe.radiance(d)),

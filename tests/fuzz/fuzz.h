@@ -41,7 +41,7 @@ inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string
 // Whatever is wrong with the input must come out as an InputError of one line; anything else that
 // is thrown ends the fuzzer.
 template <class Read>
-int readOrRefuse(const Read& read) {
+int readOrReject(const Read& read) {
   try {
     read();
   } catch (const InputError& error) {

@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;
   const std::string path = fuzzFile(bytes, size, "model.glb");
-  return readOrRefuse([&] {
+  return readOrReject([&] {
     const Scene scene = loadGltf(path, {}, nullptr);
     bounds(scene);
     for (const Instance& instance : scene.instances) {

@@ -10,8 +10,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;
   const std::string path = fuzzFile(bytes, size, "image");
-  readOrRefuse([&] { decodeImage({bytes, size}, "texture"); });
-  return readOrRefuse([&] {
+  readOrReject([&] { decodeImage({bytes, size}, "texture"); });
+  return readOrReject([&] {
     const ImageFile file = readImageFile(path);
     if (file.image.texels.size() > 1 << 20) return;  // copied slowly under the sanitizers
     for (const std::string& layer : layerNames(file)) findLayer(file, layer);

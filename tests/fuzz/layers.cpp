@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   std::vector<uint8_t> exr(bytes, bytes + size);
   std::copy_n(kMagic, std::min(size, sizeof kMagic), exr.begin());
   const std::string path = fuzzFile(exr.data(), exr.size(), "render.exr");
-  return readOrRefuse([&] {
+  return readOrReject([&] {
     const ImageFile file = readImageFile(path);
     const size_t texels = size_t(file.image.width) * size_t(file.image.height);
     if (file.image.texels.size() != texels * file.channels.size()) std::abort();

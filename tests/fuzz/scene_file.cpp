@@ -6,5 +6,5 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;
   const std::string path = fuzzFile(bytes, size, "scene.toml");
-  return readOrRefuse([&] { readSceneFile(path); });
+  return readOrReject([&] { readSceneFile(path); });
 }
