@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray meets: no leaks, instances as good as baked meshes, alpha resolved.
+// Ray intersection: watertightness, instances compared with baked meshes, alpha, ray masks.
 #include "trace/accel.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class Random {
   uint64_t count_ = 0;
 };
 
-// Six quads of one mesh each, that face inwards.
+// Six inward-facing quads, each a mesh of its own.
 Scene boxScene(float side, vec3 centre) {
   Scene scene;
   const int material = addMaterial(scene, lambert(Rgb(0.5f)));
@@ -47,13 +47,13 @@ Scene sphereScene(float radius, vec3 centre) {
 }
 
 struct Leaks {
-  int escaped = 0;  // met nothing
-  int stuck = 0;    // met the flat face they started from
+  int escaped = 0;  // rays that hit nothing
+  int stuck = 0;    // rays that hit the flat face they started from
   float largestOffset = 0;
 };
 
-// Follows a path inside a closed scene: every ray must meet another face. A leaking path starts
-// again. A mesh of two triangles is one flat face; of more, each triangle is.
+// Follows a path inside a closed scene: every ray must hit another face. A leaking path restarts.
+// A mesh of two triangles counts as one flat face; in larger meshes each triangle is a face.
 Leaks bounceAround(const Scene& scene, int rays) {
   const Accel accel(scene);
   const Bounds box = bounds(scene);
@@ -88,14 +88,14 @@ Leaks bounceAround(const Scene& scene, int rays) {
   return leaks;
 }
 
-// Moves every instance; Accel then traces them as instances, not as part of the whole.
-void place(Scene& scene, const Transform& transform) {
+// Transforms every instance, so that Accel traces them as instances instead of flattening them.
+void setTransforms(Scene& scene, const Transform& transform) {
   for (Instance& instance : scene.instances) instance.toWorld = transform;
 }
 
-// Exact up to ten times the size away from the origin; then the spacing of floats there, 2^-24 of
-// the distance, begins to show: of a million rays in a box, 1 is lost at 100 to 1,000 sizes, 5 at
-// 10,000; at a million sizes a shape has only a dozen floats across it, and falls apart.
+// No leaks up to a distance of 10 sizes from the origin. Beyond, the spacing of floats (2^-24 of
+// the distance) matters: of a million rays in a box, 1 leaks at 100 to 1,000 sizes, 5 at 10,000. At
+// a million sizes only a dozen floats span a shape.
 TEST(Accel, ClosedShapesDoNotLeak) {
   constexpr int kRays = 100000;
   for (const float size : {1e-4f, 1.0f, 1e7f})
@@ -121,7 +121,7 @@ TEST(Accel, ClosedInstancesDoNotLeak) {
   for (const float scale : {1e-4f, 1.0f, 1e4f}) {
     std::array shapes{boxScene(1, vec3(0)), sphereScene(0.5f, vec3(2))};
     for (Scene& scene : shapes) {
-      place(scene, {turned(scale), 3 * scale * vec3(1, -2, 0.5f)});
+      setTransforms(scene, {turned(scale), 3 * scale * vec3(1, -2, 0.5f)});
       const Leaks leaks = bounceAround(scene, 50000);
       EXPECT_EQ(leaks.escaped, 0) << scale;
       EXPECT_EQ(leaks.stuck, 0) << scale;
@@ -131,11 +131,11 @@ TEST(Accel, ClosedInstancesDoNotLeak) {
 }
 
 struct Aimed {
-  int hits = 0, entered = 0;  // of those, faces met from behind
+  int hits = 0, entered = 0;  // `entered`: hits on a back face
 };
 
-// Rays at the edges of a scene's only body, from a ball of `radius` around it, one by one and in
-// packets.
+// Traces rays at the edges of a scene's only body, from a ball of `radius` around it, as single
+// rays and in packets.
 Aimed aimAtEdges(const Scene& scene, float radius, int rayCount) {
   const Accel accel(scene);
   const Bounds box = bounds(scene);
@@ -167,9 +167,9 @@ Aimed aimAtEdges(const Scene& scene, float radius, int rayCount) {
   return aimed;
 }
 
-// From outside, a closed body shows no face from behind, though every ray aims at an edge: but for
-// triangles that stand exactly edge-on, one ray in a million. Without trace/edge.h it is one in
-// 300.
+// From outside, a ray cannot hit a back face of a closed body, even if every ray is aimed at an
+// edge. The exception is triangles seen exactly edge-on: one ray in a million. Without trace/edge.h
+// it is one in 300.
 TEST(Accel, RaysAtEdgesDoNotEnterClosedBodies) {
   constexpr int kRays = 200000;
   const Transform turned{2.0f * glm::mat3_cast(glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)))),
@@ -178,7 +178,7 @@ TEST(Accel, RaysAtEdgesDoNotEnterClosedBodies) {
     Scene ball, instance;
     addSphere(ball, addMaterial(ball, lambert(Rgb(0.5f))), vec3(0.3f, 0.2f, 0.1f) * size, size, 12);
     addSphere(instance, addMaterial(instance, lambert(Rgb(0.5f))), vec3(0), size, 12);
-    place(instance, {turned.linear, size * turned.translation});
+    setTransforms(instance, {turned.linear, size * turned.translation});
     for (const Scene* scene : {&ball, &instance}) {
       const Aimed aimed = aimAtEdges(*scene, 5 * size, kRays);
       EXPECT_GT(aimed.hits, kRays);
@@ -187,7 +187,7 @@ TEST(Accel, RaysAtEdgesDoNotEnterClosedBodies) {
   }
 }
 
-// A tilted normal map of one texel, so that tangents show.
+// A normal map of one tilted texel, so that the shading normal depends on the tangents.
 int addNormalMappedMaterial(Scene& scene) {
   scene.grids.push_back(std::make_unique<TexelGrid>());
   *scene.grids.back() = {1, 1, {{180, 90, 220, 255}}, {}};
@@ -207,7 +207,7 @@ Mesh tangentSphere() {
   return mesh;
 }
 
-TEST(Accel, InstancesAreAsGoodAsBakedMeshes) {
+TEST(Accel, InstancesMatchBakedMeshes) {
   const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.7, glm::dvec3(0.3, 1, -0.2));
   const glm::dmat4 transforms[] = {glm::translate(glm::dmat4(1), glm::dvec3(-3, 0, 0)) * turn,
                                    glm::translate(glm::dmat4(1), glm::dvec3(0, 0.5, 0)) *
@@ -231,7 +231,7 @@ TEST(Accel, InstancesAreAsGoodAsBakedMeshes) {
   constexpr int kRays = 20000;
   int hits = 0, differing = 0, fronts = 0, mapped = 0;
   for (int i = 0; i < kRays; ++i) {
-    // From around the scene towards a sphere, or from within one to anywhere.
+    // From outside the scene towards a sphere, or from inside a sphere in any direction.
     const vec3 centre(transforms[i % 3][3]);
     const vec3 jitter = vec3(random.next(), random.next(), random.next()) - 0.5f;
     const vec3 origin = i % 2 ? centre + 0.5f * jitter : 10.0f * jitter;
@@ -241,7 +241,7 @@ TEST(Accel, InstancesAreAsGoodAsBakedMeshes) {
     const bool hitsShared = sharedAccel.intersect({origin, direction}, 0, a);
     const bool hitsBaked = bakedAccel.intersect({origin, direction}, 0, b);
     if (hitsShared != hitsBaked || (hitsShared && a.instance != b.instance)) {
-      ++differing;  // past a silhouette
+      ++differing;  // beside a silhouette
       continue;
     }
     if (!hitsShared) continue;
@@ -252,14 +252,14 @@ TEST(Accel, InstancesAreAsGoodAsBakedMeshes) {
         surfaceAt(baked, baked.instances[b.instance], b.triangle, b.barycentric, -direction);
     const bool grazes = std::fabs(glm::dot(t.geometricNormal, direction)) < 1e-3f;
     if (a.triangle != b.triangle || grazes) {
-      ++differing;  // on an edge, where either triangle will do
+      ++differing;  // on an edge, where both triangles are valid hits
       continue;
     }
     fronts += s.frontFace;
     ASSERT_EQ(s.frontFace, t.frontFace);
     ASSERT_NEAR(glm::distance(s.position, t.position), 0, 1e-4f);
     ASSERT_NEAR(glm::distance(s.geometricNormal, t.geometricNormal), 0, 1e-4f);
-    // Interpolated before or after the transform; at the poles, where the tangents turn, it shows.
+    // Interpolation before and after the transform differs most at the poles, where tangents vary.
     differing += glm::distance(s.normal, t.normal) > 0.02f;
     mapped += glm::distance(s.normal, s.geometricNormal) > 0.2f;
   }
@@ -277,7 +277,8 @@ Material layer(AlphaMode mode, float alpha) {
   return m;
 }
 
-// Quads across the Z axis at z = 1, 2, ... of the given materials; one mesh for all, or one each.
+// Quads perpendicular to the Z axis at z = 1, 2, ..., one for each material, in one mesh or in one
+// instance each.
 Scene layerScene(const std::vector<Material>& materials, bool instanced) {
   Scene scene;
   for (const Material& material : materials) {
@@ -294,7 +295,7 @@ Scene layerScene(const std::vector<Material>& materials, bool instanced) {
 
 const Ray kThroughLayers{{0.3f, 0.1f, 0}, {0, 0, 1}};
 
-TEST(Accel, TransmittanceIsTheProductOfWhatLayersLetPass) {
+TEST(Accel, TransmittanceIsTheProductOverLayers) {
   const float alphas[] = {0.1f, 0.3f, 0.5f, 0.7f, 0.25f};
   std::vector<Material> blended, mixed;
   for (float alpha : alphas) blended.push_back(layer(AlphaMode::Blend, alpha));
@@ -322,29 +323,29 @@ TEST(Accel, TransmittanceIsTheProductOfWhatLayersLetPass) {
   }
 }
 
-TEST(Accel, BlendedLayersAreHitWithTheirProbability) {
+TEST(Accel, BlendedLayersAreHitWithProbabilityAlpha) {
   const std::vector<Material> layers{layer(AlphaMode::Blend, 0.3f), layer(AlphaMode::Blend, 0.6f),
                                      layer(AlphaMode::Mask, 0.2f)};
   for (bool instanced : {false, true}) {
     const Scene scene = layerScene(layers, instanced);
     const Accel accel(scene);
-    const auto met = [&](uint32_t key) {
+    const auto hitLayer = [&](uint32_t key) {
       Hit hit;
       return accel.intersect(kThroughLayers, key, hit) ? hit.instance : 2;
     };
     constexpr uint32_t kKeys = 1 << 16;
     std::vector<double> counts(3);
     for (uint32_t key = 0; key < kKeys; ++key) {
-      const uint32_t first = met(key);
+      const uint32_t first = hitLayer(key);
       ++counts[first];
-      ASSERT_EQ(met(key), first);  // the key decides, nothing else
+      ASSERT_EQ(hitLayer(key), first);  // the result depends only on the key
     }
     const std::vector<double> expected{0.3 * kKeys, 0.7 * 0.6 * kKeys, 0.7 * 0.4 * kKeys};
     EXPECT_GT(chiSquareTest(counts, expected).pValue, sidak(1e-3, 2)) << instanced;
   }
 }
 
-TEST(Accel, NothingAndNonsenseAreMissed) {
+TEST(Accel, EmptyScenesAndInvalidRaysHaveNoHit) {
   const Scene empty, box = boxScene(1, vec3(0));
   const Accel nothing(empty), something(box);
   Hit hit;
@@ -359,7 +360,7 @@ TEST(Accel, NothingAndNonsenseAreMissed) {
   }
 }
 
-TEST(Accel, PacketsFindWhatSingleRaysFind) {
+TEST(Accel, PacketsMatchSingleRays) {
   const Scene spheres = sphereScene(1, vec3(0));
   const Scene veils = layerScene(std::vector(3, layer(AlphaMode::Blend, 0.4f)), true);
   Random random;
@@ -382,7 +383,7 @@ TEST(Accel, PacketsFindWhatSingleRaysFind) {
         Hit hit;
         const bool meets = i < count && accel.intersect(rays[i], keys[i], hit);
         found += meets;
-        // On an edge either triangle will do, and on a silhouette either answer.
+        // On an edge both triangles are valid hits; at a silhouette a hit and a miss are valid.
         differing +=
             meets != hits[i].has_value() ||
             (meets && (hit.instance != hits[i]->instance || hit.triangle != hits[i]->triangle ||
@@ -394,13 +395,13 @@ TEST(Accel, PacketsFindWhatSingleRaysFind) {
   }
 }
 
-// Instances outside a ray's mask do not exist for it; the others keep their indices.
+// A ray ignores instances outside its mask; the indices of the others do not change.
 TEST(Accel, MasksHideInstances) {
   Scene scene;
   for (float height : {3.0f, 2.0f, 1.0f})
     addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-1, height, 1}, {2, 0, 0}, {0, 0, -2});
   const Ray down{{0.2f, 4, 0.1f}, {0, -1, 0}};
-  scene.instances[2].toWorld = Transform{};  // an instance of its own for Embree
+  scene.instances[2].toWorld = Transform{};  // makes it a separate Embree instance
   const Accel accel(scene, {1, 2, 4});
   const Ray up{{0.2f, 2.5f, 0.1f}, {0, 1, 0}}, farther{{0.2f, 2.5f, 0.1f}, {0, -1, 0}};
   for (uint32_t i = 0; i < 3; ++i) {

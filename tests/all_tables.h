@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of BSDFs of any material, built once for all tests.
+// BSDF tables for all kinds of materials, built once for all tests.
 #pragma once
 
 #include "shading/bsdf_tables.h"

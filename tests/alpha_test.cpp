@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alpha of pictures: associated (premultiplied) in memory and in EXR, straight in PNG.
+// Alpha of images: associated (premultiplied) in memory and in EXR, straight in PNG.
 #include <gtest/gtest.h>
 
 #include "base/file.h"
@@ -16,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// Colour of radiance 0.25, 0.5 and 1 behind every alpha from nothing to all.
+// Radiance 0.25, 0.5 and 1 with alpha from 0 to 1.
 Image ramp() {
   Image image(9, 1, 4);
   for (int x = 0; x < image.width; ++x) {
@@ -40,7 +40,7 @@ void expectStraight(const std::string& path, const DisplayTransform& transform) 
   }
 }
 
-TEST(Alpha, PngStoresItStraightUnderEveryToneCurve) {
+TEST(Alpha, PngStoresStraightAlphaWithEveryToneCurve) {
   const TemporaryFolder folder;
   for (const char* tone : {"none", "reinhard", "aces", "neutral", "filmic"}) {
     const DisplayTransform transform{parseToneOperator(tone), -0.5f};
@@ -49,12 +49,12 @@ TEST(Alpha, PngStoresItStraightUnderEveryToneCurve) {
   }
 }
 
-TEST(Alpha, ViewKeepsIt) {
+TEST(Alpha, ViewPreservesAlpha) {
   const TemporaryFolder folder;
   writeImage(folder / "a.exr", ramp());
   EXPECT_EQ(runCommand({"image", "view", folder / "a.exr", folder / "a.png"}).status, 0);
   expectStraight(folder / "a.png", {});
-  // A view of the view is the same picture.
+  // Viewing the output again gives the same image.
   EXPECT_EQ(runCommand({"image", "view", folder / "a.png", folder / "b.png"}).status, 0);
   expectStraight(folder / "b.png", {});
 }
@@ -71,8 +71,8 @@ TEST(Alpha, PngIsAssociatedInLinearLight) {
   EXPECT_EQ(findColorAndAlpha(file)->channels, 4);
 }
 
-// A matte wall of albedo 1/2 under radiance 2 has radiance 1. It covers the left of the picture and
-// two fifths of the fifth column of pixels.
+// A matte wall of albedo 1/2 under radiance 2 has radiance 1. It covers the left of the image and
+// two fifths of the fifth pixel column.
 TEST(Alpha, TransparentRendersHaveTheCoverageOfEachPixel) {
   GltfWriter model;
   model.add("materials", {{"pbrMetallicRoughness",

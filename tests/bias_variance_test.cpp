@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates of error, variance and bias for synthetic images of known noise and bias; power laws;
-// agreement of images.
+// Estimates of error, variance and bias from synthetic images with known noise and bias; power-law
+// fits; agreement tests of images.
 #include "measure/bias_variance.h"
 
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@ namespace {
 
 constexpr int kWidth = 24, kHeight = 16;
 
-// Images with means of 0.8 to 1.6, noise that differs from pixel to pixel, and a bias.
+// Images with pixel means of 0.8 to 1.6, a noise level that varies over the image, and a bias.
 struct World {
-  Image truth{kWidth, kHeight, 3}, sigma{kWidth, kHeight, 3}, bias{kWidth, kHeight, 3};
+  Image expectation{kWidth, kHeight, 3}, sigma{kWidth, kHeight, 3}, bias{kWidth, kHeight, 3};
   std::mt19937_64 random;
 
   explicit World(uint64_t seed, float biasScale) : random(seed) {
     std::uniform_real_distribution<float> unit;
-    for (size_t i = 0; i < truth.texels.size(); ++i) {
-      truth.texels[i] = 0.8f + 0.8f * unit(random);
+    for (size_t i = 0; i < expectation.texels.size(); ++i) {
+      expectation.texels[i] = 0.8f + 0.8f * unit(random);
       sigma.texels[i] = 0.02f + 0.1f * unit(random);
       bias.texels[i] = biasScale * (unit(random) - 0.3f);
     }
@@ -31,8 +31,8 @@ struct World {
 
   Image render(float noise, bool biased) {
     std::normal_distribution<float> normal;
-    Image image = truth;
-    for (size_t i = 0; i < truth.texels.size(); ++i)
+    Image image = expectation;
+    for (size_t i = 0; i < expectation.texels.size(); ++i)
       image.texels[i] += noise * sigma.texels[i] * normal(random) + biased * bias.texels[i];
     return image;
   }
@@ -47,15 +47,15 @@ struct World {
     return reference;
   }
 
-  struct Truth {
+  struct Expected {
     double variance = 0, squaredBias = 0, bias = 0;
   };
-  Truth expected(float noise) const {
-    Truth result;
+  Expected expected(float noise) const {
+    Expected result;
     double sum = 0;
-    const double n = double(truth.texels.size());
-    for (size_t i = 0; i < truth.texels.size(); ++i) {
-      const double t = truth.texels[i], s = noise * sigma.texels[i], b = bias.texels[i];
+    const double n = double(expectation.texels.size());
+    for (size_t i = 0; i < expectation.texels.size(); ++i) {
+      const double t = expectation.texels[i], s = noise * sigma.texels[i], b = bias.texels[i];
       result.variance += s * s / (t * t + 0.01) / n;
       result.squaredBias += b * b / (t * t + 0.01) / n;
       result.bias += b;
@@ -66,27 +66,28 @@ struct World {
   }
 };
 
-// The 95% intervals include the truth in at least 93% of the studies, and are not too wide.
+// The 95% intervals contain the true value in at least 93% of the studies, and at most in the
+// fraction `maximum`, so that they are not too wide.
 void expectCovers(int covered, int studies, const char* what, double maximum = 1) {
   const double fraction = double(covered) / studies;
   EXPECT_GE(fraction, 0.93) << what;
   EXPECT_LE(fraction, maximum) << what;
 }
 
-TEST(BiasVariance, intervalsIncludeTheTruth) {
+TEST(BiasVariance, intervalsContainTheTrueValues) {
   constexpr int kStudies = 500;
   for (const float biasScale : {0.0f, 0.05f, 0.5f}) {
     SCOPED_TRACE(biasScale);
     World world(7, biasScale);
-    const World::Truth truth = world.expected(1);
+    const World::Expected exact = world.expected(1);
     int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
     for (int study = 0; study < kStudies; ++study) {
       const BiasVariance error = biasVariance(world.repeats(4, 1), world.reference(0.2f));
       const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
-      relMse += holds(error.relMse, truth.variance + truth.squaredBias);
-      variance += holds(error.variance, truth.variance);
-      squaredBias += holds(error.squaredBias, truth.squaredBias);
-      bias += holds(error.bias, truth.bias);
+      relMse += holds(error.relMse, exact.variance + exact.squaredBias);
+      variance += holds(error.variance, exact.variance);
+      squaredBias += holds(error.squaredBias, exact.squaredBias);
+      bias += holds(error.bias, exact.bias);
     }
     expectCovers(relMse, kStudies, "relMse");
     expectCovers(variance, kStudies, "variance");
@@ -98,7 +99,7 @@ TEST(BiasVariance, intervalsIncludeTheTruth) {
 // The noise of the reference counts as error unless its variance is known.
 TEST(BiasVariance, referenceVarianceIsRemoved) {
   World world(11, 0);
-  const double truth = world.expected(1).variance;
+  const double expected = world.expected(1).variance;
   double with = 0, without = 0;
   constexpr int kStudies = 200;
   for (int study = 0; study < kStudies; ++study) {
@@ -108,8 +109,8 @@ TEST(BiasVariance, referenceVarianceIsRemoved) {
     reference.squaredError = {};
     without += biasVariance(repeats, reference).relMse.mean / kStudies;
   }
-  EXPECT_NEAR(with / truth, 1, 0.02);
-  EXPECT_NEAR(without / truth, 1.25, 0.02);
+  EXPECT_NEAR(with / expected, 1, 0.02);
+  EXPECT_NEAR(without / expected, 1.25, 0.02);
 }
 
 TEST(BiasVariance, partsAddUp) {
@@ -129,7 +130,7 @@ TEST(PowerLaw, isRecovered) {
   EXPECT_FALSE(fitPowerLaw(points));
 }
 
-TEST(PowerLaw, intervalIncludesTheTruth) {
+TEST(PowerLaw, intervalContainsTheTrueExponent) {
   constexpr int kStudies = 2000;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -137,8 +138,8 @@ TEST(PowerLaw, intervalIncludesTheTruth) {
   for (int study = 0; study < kStudies; ++study) {
     std::vector<ConvergencePoint> points;
     for (const double n : {1.0, 2.0, 4.0, 8.0, 16.0}) {
-      const double truth = 5 / n, error = 0.03 * truth;
-      points.push_back({n, {truth + error * normal(random), error}});
+      const double exact = 5 / n, error = 0.03 * exact;
+      points.push_back({n, {exact + error * normal(random), error}});
     }
     const Estimate slope = fitPowerLaw(points)->slope;
     covered += slope.low() <= -1 && -1 <= slope.high();
@@ -154,7 +155,7 @@ TEST(PowerLaw, biasEqualsNoiseAtTheCrossing) {
   EXPECT_NEAR(crossing.samples, 500, 1e-6);
   EXPECT_LT(crossing.low, 500 * 0.85);
   EXPECT_GT(crossing.high, 500 * 1.15);
-  EXPECT_FALSE(biasEqualsNoise(law, {0.004, 0.003})) << "a bias that may be none";
+  EXPECT_FALSE(biasEqualsNoise(law, {0.004, 0.003})) << "a bias whose interval includes 0";
 }
 
 TEST(Agreement, pValuesAreUniformForEqualImages) {
@@ -168,7 +169,7 @@ TEST(Agreement, pValuesAreUniformForEqualImages) {
   }
   // Welch's approximation is conservative with so few repeats.
   expectCovers(kStudies - below5, kStudies, "p-value");
-  EXPECT_EQ(failing, below5) << "a tile fails where the p-value of all is below 5%";
+  EXPECT_EQ(failing, below5) << "a tile fails iff the overall p-value is below 5%";
   EXPECT_GT(below5, kStudies / 100);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tables a scene's materials need, and what the tables hold.
+// Which tables a scene's materials need, and consistency of their values.
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
@@ -51,7 +51,7 @@ TEST(BsdfTables, otherMaterialsNeedOnlyTheirOwn) {
   EXPECT_EQ(builtFor({glass}), (Needs{true, false, false, false}));
 }
 
-// Two tables of the same function, at the same directions.
+// Both tables hold the same function for strength 0.
 TEST(BsdfTables, anisotropyOfStrengthZeroIsIsotropic) {
   const BsdfTables& tables = allTables();
   for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f})

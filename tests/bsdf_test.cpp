@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plain BSDFs: their samplers, their energy, their reciprocity.
+// BSDFs without layers: sampling, energy conservation, reciprocity.
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
@@ -68,7 +68,7 @@ TEST(SlowBsdf, samplesItsPdfOverTheGrid) {
       }
 }
 
-// Fraction of the light from a uniform white surrounding that is reflected, estimated by sampling.
+// Directional albedo, estimated by BSDF sampling.
 struct Albedo {
   double mean, error;
 };
@@ -165,8 +165,8 @@ TEST(Bsdf, noColourOfDielectricGainsEnergy) {
   }
 }
 
-// Interpolated normals that lean away from the triangle must neither blacken it nor let light in
-// from behind.
+// Shading normals that differ from the geometric normal must neither cause black areas nor let
+// light through from behind.
 TEST(Bsdf, shadingNormalsNeitherBlackenNorLeak) {
   for (int i = 0; i < 2000; ++i) {
     Surface surface = flatSurface();

@@ -43,7 +43,7 @@ TEST(Camera, OrthographicRaysAreParallel) {
   expectNear(direction, {0, 0, -1});
 }
 
-TEST(Camera, RaysThroughTheLensMeetInThePlaneInFocus) {
+TEST(Camera, LensRaysMeetInTheFocalPlane) {
   Camera camera = Camera::lookAt({1, 2, 3}, {-4, 0, 1}, {0, 1, 0}, 0.7f);
   camera.lensRadius = 0.3f;
   camera.focus = 5;
@@ -65,8 +65,8 @@ TEST(Camera, RaysThroughTheLensMeetInThePlaneInFocus) {
   }
 }
 
-// A point at distance z appears as a disc of diameter D = aperture |z - focus| / z in the plane in
-// focus, which has the variance D^2 / 16 along each axis.
+// A point at distance z appears as a disc of diameter D = aperture |z - focus| / z in the focal
+// plane, with variance D^2 / 16 along each axis.
 TEST(Camera, CircleOfConfusion) {
   constexpr float kAperture = 0.4f, kFocus = 4, kFov = 0.5f;
   constexpr int kSize = 64;
@@ -91,12 +91,12 @@ TEST(Camera, CircleOfConfusion) {
         sum += image.rgb(x, y).x;
         variance += image.rgb(x, y).x * dx * dx;
       }
-    const double pixel = 2 * kFocus * std::tan(kFov / 2.0) / kSize;  // metres in the plane in focus
+    const double pixel = 2 * kFocus * std::tan(kFov / 2.0) / kSize;  // metres in the focal plane
     const double blur = kAperture * std::fabs(z - kFocus) / z / pixel;
     const double source = 2 * half * kFocus / z / pixel;  // the variance of a square is side^2 / 12
     const double expected = blur * blur / 16 + source * source / 12 + 1 / 12.0;
     EXPECT_NEAR(variance / sum / expected, 1, 0.03) << z;
-    EXPECT_NEAR(sum / (source * source), 1, 0.02) << z;  // defocus loses no light
+    EXPECT_NEAR(sum / (source * source), 1, 0.02) << z;  // defocus conserves energy
   }
 }
 

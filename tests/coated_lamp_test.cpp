@@ -16,12 +16,13 @@ Material lamp(float clearcoat) {
   return m;
 }
 
-double passed(double clearcoat, double cosine) {
+// With Schlick's Fresnel term for ior 1.5.
+double coatTransmittance(double clearcoat, double cosine) {
   return 1 - clearcoat * (0.04 + 0.96 * std::pow(1 - cosine, 5));
 }
 
-// A tile of a lamp, seen under an angle, under a black probe.
-Rgb seenUnder(const Scene& scene, double degrees) {
+// Radiance of a tile of a lamp seen at an angle to its normal, under a black probe.
+Rgb radianceAt(const Scene& scene, double degrees) {
   const double a = degrees * kPiD / 180;
   Camera camera = Camera::lookAt({0, 4 * float(std::cos(a)), 4 * float(std::sin(a))}, vec3(0),
                                  {0, 0, -1}, 0.1f);
@@ -36,18 +37,18 @@ void addTile(Scene& scene, int material) {
   addQuad(scene, material, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
 }
 
-TEST(CoatedLamp, IsDarkenedByWhatTheCoatReflects) {
+TEST(CoatedLamp, EmissionIsScaledByTheCoatsTransmittance) {
   for (const float clearcoat : {0.0f, 0.5f, 1.0f})
     for (const double degrees : {0.0, 45.0, 85.0}) {
       Scene scene;
       addTile(scene, addMaterial(scene, lamp(clearcoat)));
-      const Rgb seen = seenUnder(scene, degrees);
-      const double expected = passed(clearcoat, std::cos(degrees * kPiD / 180));
+      const Rgb seen = radianceAt(scene, degrees);
+      const double expected = coatTransmittance(clearcoat, std::cos(degrees * kPiD / 180));
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c] / (3 - c), expected, 1e-4) << degrees;
     }
 }
 
-// One texel for a whole surface.
+// Adds a texture of one texel.
 TextureSlot addTexel(Scene& scene, const vec4& color) {
   auto grid = std::make_unique<TexelGrid>();
   grid->width = grid->height = 1;
@@ -59,16 +60,16 @@ TextureSlot addTexel(Scene& scene, const vec4& color) {
   return slot;
 }
 
-// The coat's texture and its normal map count, the base's normal map does not.
-TEST(CoatedLamp, HasTheCoatsTextureAndNormal) {
+// The coat's texture and normal map affect the emission, the base's normal map does not.
+TEST(CoatedLamp, UsesTheCoatsTextureAndNormal) {
   const float tilt = float(0.6 * kPiD / 2);
   for (const bool tilted : {false, true}) {
     Scene scene;
     Material m = lamp(0.8f);
     m.extended->clearcoatTexture = addTexel(scene, {0.5f, 0, 0, 1});
-    const TextureSlot leaning =
+    const TextureSlot tiltedNormal =
         addTexel(scene, {0.5f, 0.5f - 0.5f * std::sin(tilt), 0.5f + 0.5f * std::cos(tilt), 1});
-    (tilted ? m.extended->clearcoatNormalTexture : m.normalTexture) = leaning;
+    (tilted ? m.extended->clearcoatNormalTexture : m.normalTexture) = tiltedNormal;
     addTile(scene, addMaterial(scene, m));
     Mesh& mesh = scene.meshes.back();
     mesh.normals.assign(4, {0, 1, 0});
@@ -76,31 +77,32 @@ TEST(CoatedLamp, HasTheCoatsTextureAndNormal) {
     mesh.uvs.assign(1, std::vector<vec2>(4, vec2(0.5f)));
     const double degrees = 20;
     const double cosine = std::cos(degrees * kPiD / 180 - (tilted ? double(tilt) : 0));
-    EXPECT_NEAR(seenUnder(scene, degrees).y / 2, passed(0.4, cosine), 1e-3) << tilted;
+    EXPECT_NEAR(radianceAt(scene, degrees).y / 2, coatTransmittance(0.4, cosine), 1e-3) << tilted;
   }
 }
 
-// Unlit surfaces have no coat, and a body's lies on its outer side.
-TEST(CoatedLamp, OnlyWhereTheCoatIs) {
+// Unlit surfaces have no coat; the coat of a transmissive body is only on its outer side.
+TEST(CoatedLamp, UnlitSurfacesAndInnerSidesHaveNoCoat) {
   Material unlit = lamp(1);
   unlit.unlit = true;
   unlit.baseColor = {0.3f, 0.6f, 0.9f, 1};
   Scene scene;
   addTile(scene, addMaterial(scene, unlit));
-  EXPECT_NEAR(seenUnder(scene, 70).y, 0.6f, 1e-6f);
+  EXPECT_NEAR(radianceAt(scene, 70).y, 0.6f, 1e-6f);
 
   Material body = lamp(1);
   body.extended->transmission = 1;
   body.extended->thinWalled = false;
   Scene inside;
   addQuad(inside, addMaterial(inside, body), {-1, 0, 1}, {0, 0, -2}, {2, 0, 0});
-  EXPECT_NEAR(seenUnder(inside, 70).y, 2, 1e-5f);
+  EXPECT_NEAR(radianceAt(inside, 70).y, 2, 1e-5f);
 }
 
-// Samples of the lamp carry what a ray that finds it would: the irradiance of a floor beside it,
-//   E = integral over the lamp of L passed(cos') cos cos' / d^2 dA.
-TEST(CoatedLamp, ShinesAsItIsSeen) {
-  constexpr double kHeight = 0.5, kAside = 1.5;  // of the lamp's centre; one metre square
+// Light samples and BSDF samples use the same emission: the irradiance of a floor beside the lamp
+// is
+//   E = integral over the lamp of L coatTransmittance(cos') cos cos' / d^2 dA.
+TEST(CoatedLamp, LightSamplesMatchTheIntegral) {
+  constexpr double kHeight = 0.5, kAside = 1.5;  // of the lamp's centre; the lamp is 1 m x 1 m
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-0.01f, 0, 0.01f}, {0.02f, 0, 0},
           {0, 0, -0.02f});
@@ -112,7 +114,7 @@ TEST(CoatedLamp, ShinesAsItIsSeen) {
     for (int j = 0; j < kGrid; ++j) {
       const double x = kAside - 0.5 + (i + 0.5) / kGrid, z = -0.5 + (j + 0.5) / kGrid;
       const double d2 = x * x + kHeight * kHeight + z * z, cosine = kHeight / std::sqrt(d2);
-      expected += 2 * passed(1, cosine) * cosine * cosine / d2 / (double(kGrid) * kGrid);
+      expected += 2 * coatTransmittance(1, cosine) * cosine * cosine / d2 / (double(kGrid) * kGrid);
     }
   Camera camera = topCamera(0.4f, 1);
   const Probe black(constantProbe({4, 2}, Rgb(0)));

@@ -20,7 +20,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 namespace fs = std::filesystem;
 
-// A triangle above a gradient, 16 x 16 pixels.
+// A triangle under a gradient probe, rendered at 16 x 16 pixels.
 class SlowCommandCompare : public testing::Test {
  protected:
   SlowCommandCompare() {
@@ -60,7 +60,7 @@ std::vector<std::string> with(std::vector<std::string> arguments,
   return arguments;
 }
 
-TEST_F(SlowCommandCompare, writesEveryNumberAndContinues) {
+TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   const json first = results();
   EXPECT_TRUE(first["complete"]);
@@ -78,14 +78,15 @@ TEST_F(SlowCommandCompare, writesEveryNumberAndContinues) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2);
   EXPECT_EQ(first["baseline"], "bsdf");
 
-  // The same command renders nothing again; another repeat renders only that.
+  // The same command renders nothing; one more repeat renders only the new images.
   const auto before = renders();
   EXPECT_EQ(before.size(), 8u + 3 * 2 * 3);
   std::ofstream(dir() + "/notes.txt") << "mine";
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   EXPECT_EQ(renders(), before);
   EXPECT_EQ(results()["strategies"], first["strategies"]);
-  ASSERT_EQ(runCommand(command(with(kSmall, {"--repeats", "4"}))).status, 2) << "given twice";
+  ASSERT_EQ(runCommand(command(with(kSmall, {"--repeats", "4"}))).status, 2)
+      << "an option given twice";
   std::vector<std::string> more = kSmall;
   more[5] = "4";
   ASSERT_EQ(runCommand(command(more)).status, 0);
@@ -94,13 +95,13 @@ TEST_F(SlowCommandCompare, writesEveryNumberAndContinues) {
   EXPECT_EQ(fileContents(dir() + "/notes.txt"), "mine");
 }
 
-TEST_F(SlowCommandCompare, stoppedRunKeepsWhatItHas) {
+TEST_F(SlowCommandCompare, interruptedRunKeepsItsRenders) {
   const std::vector<std::string> endless = {
       "--strategies", "bsdf,importance",     "--samples", "1,4,100000",
       "--progress",   "--reference-samples", "64"};
   std::vector<std::string> arguments = command(endless);
   std::erase(arguments, "--quiet");
-  // The largest cells take minutes; by the time the bar says a per cent, smaller ones are done.
+  // The largest cells take minutes; smaller ones are done when the bar shows the first per cent.
   const CommandResult result = runCommand(arguments, "% ");
   EXPECT_EQ(result.status, 130) << result.error;
   EXPECT_NE(result.error.find("the same command continues from there"), std::string::npos);
@@ -144,7 +145,7 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectError(underSun, "biased");
   writeImage(folder_ / "other.exr", Image(8, 8, 3));
   expectInputError({"--reference", folder_ / "other.exr"}, "--size 8x8");
-  EXPECT_FALSE(fs::exists(dir())) << "nothing is made before all is right";
+  EXPECT_FALSE(fs::exists(dir())) << "created before the input was checked";
 
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   expectInputError(with(kSmall, {"--seed", "1"}), "another folder");
@@ -158,10 +159,10 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError(kSmall, stored.filename().c_str());
 }
 
-// Every option of the command, by the help it prints: either it leaves the renders as they are, or
-// those of another setting are not taken for them.
-TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherComparison) {
-  const std::set<std::string> same = {
+// For every option in the command's help: either it does not change the renders, or renders with
+// another value of it are not reused.
+TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison) {
+  const std::set<std::string> irrelevant = {
       "help",           "output",    "strategies",        "samples",
       "times",          "repeats",   "baseline",          "memory",
       "progress",       "quiet",     "tonemap",           "exposure",
@@ -179,31 +180,31 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
   w.root["scene"] = 0;
   w.root["extensions"] = {{"KHR_materials_variants", {{"variants", {{{"name", "Red"}}}}}}};
   writeImage(folder_ / "other.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.6, 0.3, 0.6}));
-  const std::map<std::string, Words> others = {{"probe", {folder_ / "other.exr"}},
-                                               {"probe-mapping", {"lat-long"}},
-                                               {"probe-rotation", {"30"}},
-                                               {"probe-scale", {"2"}},
-                                               {"size", {"16x12"}},
-                                               {"mis", {"power"}},
-                                               {"max-depth", {"3"}},
-                                               {"max-transmission-depth", {"3"}},
-                                               {"single-sided", {"off"}},
-                                               {"lights", {"2"}},
-                                               {"light-units", {"radiometric"}},
-                                               {"camera", {"Far"}},
-                                               {"animation", {"Still"}},
-                                               {"animation-time", {"1"}},
-                                               {"variant", {"Red"}},
-                                               {"seed", {"7"}},
-                                               {"threads", {"1"}}};
-  const std::map<std::string, std::string> usual = {
+  const std::map<std::string, Words> changes = {{"probe", {folder_ / "other.exr"}},
+                                                {"probe-mapping", {"lat-long"}},
+                                                {"probe-rotation", {"30"}},
+                                                {"probe-scale", {"2"}},
+                                                {"size", {"16x12"}},
+                                                {"mis", {"power"}},
+                                                {"max-depth", {"3"}},
+                                                {"max-transmission-depth", {"3"}},
+                                                {"single-sided", {"off"}},
+                                                {"lights", {"2"}},
+                                                {"light-units", {"radiometric"}},
+                                                {"camera", {"Far"}},
+                                                {"animation", {"Still"}},
+                                                {"animation-time", {"1"}},
+                                                {"variant", {"Red"}},
+                                                {"seed", {"7"}},
+                                                {"threads", {"1"}}};
+  const std::map<std::string, std::string> defaults = {
       {"probe", folder_ / "probe.exr"}, {"size", "16x16"}, {"threads", "2"}};
   const std::string model = w.save();
   const auto words = [&](const std::string& changed, const Words& to) {
     Words all{"compare", model,       "-o", dir(),       "--quiet", "--strategies",
               "bsdf",    "--samples", "1",  "--repeats", "3",       "--reference-samples",
               "8"};
-    for (const auto& [name, value] : usual)
+    for (const auto& [name, value] : defaults)
       if (name != changed) all.insert(all.end(), {"--" + name, value});
     if (!changed.empty()) all.push_back("--" + changed);
     all.insert(all.end(), to.begin(), to.end());
@@ -216,24 +217,24 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesThePictureMakesAnotherCompariso
   for (auto at = std::sregex_iterator(help.begin(), help.end(), option);
        at != std::sregex_iterator(); ++at) {
     const std::string name = (*at)[1];
-    if (same.contains(name)) continue;
-    const auto other = others.find(name);
-    if (other == others.end()) {
-      ADD_FAILURE() << "--" << name << ": say here what another setting of it is";
+    if (irrelevant.contains(name)) continue;
+    const auto change = changes.find(name);
+    if (change == changes.end()) {
+      ADD_FAILURE() << "--" << name << ": add it to `irrelevant` or `changes`";
       continue;
     }
-    const CommandResult result = runCommand(words(name, other->second));
+    const CommandResult result = runCommand(words(name, change->second));
     EXPECT_EQ(result.status, 2) << name;
     EXPECT_NE(result.error.find("another comparison"), std::string::npos) << name << result.error;
   }
-  EXPECT_EQ(runCommand(words("", {})).status, 0) << "and this is still the same";
+  EXPECT_EQ(runCommand(words("", {})).status, 0) << "the original command no longer matches";
 
-  // So do the contents of what the files name.
+  // A file that the model refers to changes the comparison too.
   w.write("data.bin", std::vector<uint8_t>(36));
   expectError(words("", {}), "contents of data.bin");
 }
 
-TEST_F(SlowCommandCompare, whatIsStoredStaysOnThePage) {
+TEST_F(SlowCommandCompare, storedResultsStayInTheReport) {
   const Words first = {"--strategies",        "bsdf,uniform",
                        "--samples",           "1,4",
                        "--repeats",           "3",
@@ -251,7 +252,7 @@ TEST_F(SlowCommandCompare, whatIsStoredStaysOnThePage) {
   EXPECT_TRUE(after["complete"]);
 }
 
-TEST_F(SlowCommandCompare, budgetsThatDifferInTheSeventhDigitAreTwo) {
+TEST_F(SlowCommandCompare, almostEqualBudgetsAreDistinct) {
   ASSERT_EQ(runCommand(command({"--strategies", "bsdf", "--times", "0.05,0.0500000001", "--repeats",
                                 "3", "--reference-samples", "8"}))
                 .status,
@@ -260,7 +261,7 @@ TEST_F(SlowCommandCompare, budgetsThatDifferInTheSeventhDigitAreTwo) {
   EXPECT_EQ(renders().size(), 8u + 2 * 3);
 }
 
-TEST_F(SlowCommandCompare, saysInWordsWhoWins) {
+TEST_F(SlowCommandCompare, summarisesTheResultInWords) {
   Words arguments = command(kSmall);
   std::erase(arguments, "--quiet");
   const CommandResult result = runCommand(arguments);
@@ -272,7 +273,7 @@ TEST_F(SlowCommandCompare, saysInWordsWhoWins) {
   EXPECT_LT(page.find("At equal samples"), page.find("How fast the error falls"));
 }
 
-TEST_F(SlowCommandCompare, numbersHaveTheDigitsTheirErrorsAllow) {
+TEST_F(SlowCommandCompare, numbersAreRoundedToTheirErrors) {
   Words arguments = command(kSmall);
   std::erase(arguments, "--quiet");
   const std::string table = runCommand(arguments).out;
@@ -280,11 +281,11 @@ TEST_F(SlowCommandCompare, numbersHaveTheDigitsTheirErrorsAllow) {
   int found = 0;
   for (auto at = std::sregex_iterator(table.begin(), table.end(), number);
        at != std::sregex_iterator(); ++at, ++found) {
-    const auto places = [](const std::string& text) {
+    const auto decimals = [](const std::string& text) {
       const size_t point = text.find('.');
       return point == std::string::npos ? 0 : int(text.size() - point) - 1;
     };
-    EXPECT_EQ(places((*at)[1]), places((*at)[3])) << at->str();
+    EXPECT_EQ(decimals((*at)[1]), decimals((*at)[3])) << at->str();
     EXPECT_EQ((*at)[2], (*at)[4]) << at->str();
     std::string digits = (*at)[3];
     std::erase(digits, '.');

@@ -15,7 +15,7 @@
 namespace chromeball {
 namespace {
 
-// A quad from corner along a and b.
+// Adds a node with the quad corner + s a + t b, s and t in [0, 1].
 int addQuad(GltfWriter& w, const std::string& name, vec3 corner, vec3 a, vec3 b) {
   std::vector<float> positions;
   for (const vec3& p : {corner, corner + a, corner + a + b, corner + b})
@@ -39,7 +39,7 @@ Image alphaOf(const ImageFile& file) {
   return alpha;
 }
 
-// A ground seen from above and a sail that stands on its left half, with a plate and a probe.
+// A ground seen from above and a sail on its left half, with a plate and a probe.
 class CommandComposite : public testing::Test {
  protected:
   CommandComposite() {
@@ -61,7 +61,7 @@ class CommandComposite : public testing::Test {
     return plate;
   }
 
-  // A scene file with these lines in [composite], and others after it.
+  // Writes a scene file with the lines `composite` in [composite], followed by `others`.
   std::string scene(const std::string& composite, const std::string& others = "") const {
     std::ofstream(path("scene.toml")) << "model = \"model.gltf\"\n"
                                          "[camera]\nposition = [0, 4, 0]\nlook_at = [0, 0, 0]\n"
@@ -92,7 +92,7 @@ class SlowCommandComposite : public CommandComposite {};
 
 constexpr const char* kGood = "plate = \"plate.exr\"\nlocal_scene = \"ground\"";
 
-TEST_F(CommandComposite, WritesCompositeAndItsIngredients) {
+TEST_F(CommandComposite, WritesTheCompositeAndItsLayers) {
   const CommandResult r = render(
       scene(kGood),
       {"--aov", "l_obj,l_noobj,alpha,difference,variance,albedo", "--stats", path("stats.json")});
@@ -127,7 +127,7 @@ TEST_F(CommandComposite, WritesCompositeAndItsIngredients) {
   EXPECT_GT(stats["composite"]["objects"], 0);
 }
 
-TEST_F(SlowCommandComposite, TwoPassesAndRatioComeToMuchTheSame) {
+TEST_F(SlowCommandComposite, TwoPassesAndRatioGiveSimilarImages) {
   ASSERT_EQ(render(scene(kGood), {"--samples", "64"}).status, 0);
   const Image one = readImage(path("out.exr"));
   ASSERT_EQ(render(scene(kGood), {"--samples", "64", "--two-pass"}).status, 0);
@@ -139,8 +139,8 @@ TEST_F(SlowCommandComposite, TwoPassesAndRatioComeToMuchTheSame) {
   ASSERT_EQ(render(scene(std::string(kGood) + "\nmode = \"ratio\""), {}).status, 0);
 }
 
-// What has 8 bits is decoded from sRGB, and comes back from where nothing changed as it was.
-TEST_F(CommandComposite, PlatesOfEightBitsComeBack) {
+// An 8-bit plate is decoded from sRGB; where nothing changed, the output has the same codes.
+TEST_F(CommandComposite, PlatesOfEightBitsArePreserved) {
   writePlate(path("plate.png"), 32, 16);
   const CommandResult r = render(scene("plate = \"plate.png\"\nlocal_scene = \"ground\""),
                                  {"-o", path("out.png"), "--aov", "difference,alpha"});
@@ -156,7 +156,7 @@ TEST_F(CommandComposite, PlatesOfEightBitsComeBack) {
       }
 }
 
-TEST_F(CommandComposite, PlatesAreScaledInProportion) {
+TEST_F(CommandComposite, PlatesAreScaledToTheRenderSize) {
   ASSERT_EQ(render(scene(kGood), {"--size", "16x8", "--aov", "difference,alpha"}).status, 0);
   const ImageFile file = readImageFile(path("out.exr"));
   const Image small = *findColor(file), plate = readImage(path("plate.exr"));
@@ -173,13 +173,13 @@ TEST_F(CommandComposite, PlatesAreScaledInProportion) {
                 "plate.exr: the plate has 32x16 pixels, but the image size is 16x9");
 }
 
-// A parent speaks for what hangs on it.
-TEST_F(CommandComposite, NodesStandForThoseBelow) {
+// A node in `local_scene` includes its descendants.
+TEST_F(CommandComposite, LocalNodesIncludeTheirDescendants) {
   expectInputError(scene("plate = \"plate.exr\"\nlocal_scene = [\"ground\", \"boat\"]"),
                    "every node is part of the local scene");
 }
 
-TEST_F(SlowCommandComposite, RejectsWhatMakesNoSense) {
+TEST_F(SlowCommandComposite, RejectsInvalidInput) {
   expectInputError(
       scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
       "scene.toml:11: local_scene: the model has no node `grund`; did you mean `ground`?");
@@ -203,7 +203,7 @@ TEST_F(SlowCommandComposite, RejectsWhatMakesNoSense) {
               "--two-pass");
 }
 
-TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
+TEST_F(SlowCommandComposite, EstimatesReflectanceFromThePlate) {
   for (const char* how : {"plate", "flat"}) {
     const std::string lines = std::string(kGood) + "\nreflectance = \"" + how + "\"";
     const CommandResult r =
@@ -226,7 +226,7 @@ TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
     const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
     EXPECT_GT(stats["reflectance"]["pixels"], 50);
   }
-  // Too dark a probe cannot explain the plate.
+  // With a probe this dark, the plate needs an albedo above 1.
   const CommandResult dark =
       render(scene(std::string(kGood) + "\nreflectance = \"plate\""), {"--probe-scale", "0.2"});
   EXPECT_NE(dark.error.find("plate and probe may differ in exposure; try --probe-scale "),
@@ -240,7 +240,7 @@ TEST_F(SlowCommandComposite, FindsTheReflectanceOfThePlate) {
               "layer `reflectance` needs reflectance =");
 }
 
-TEST_F(SlowCommandComposite, SurroundingsHoldTheModel) {
+TEST_F(SlowCommandComposite, SurroundingsMustContainTheModel) {
   const std::string room = "[surroundings]\nshape = \"box\"\nmin = [-2, 0, -2]\n";
   ASSERT_EQ(render(scene(kGood, room + "max = [2, 5, 2]"), {}).status, 0);
   expectInputError(scene(kGood, room + "max = [0.5, 5, 2]"),
@@ -262,8 +262,8 @@ TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {
                    "hall.glb");
 }
 
-// A phone's photograph and the probe that was taken with it.
-TEST_F(SlowCommandComposite, TakesARealPhotograph) {
+// A photograph taken with a phone, and a probe captured at the same location.
+TEST_F(SlowCommandComposite, ARealPhotographAsPlate) {
   const std::string folder = "reference/differential_rendering/kartikagrawal27/";
   const auto plate = sharedData(folder + "Materials/empty.jpg");
   const auto probe = sharedData(folder + "flattened.hdr");

@@ -26,7 +26,7 @@ CommandResult run(const std::vector<std::string>& arguments) {
   return result;
 }
 
-TEST(CommandImage, ErrorInNumbers) {
+TEST(CommandImage, ErrorMetrics) {
   const TemporaryFolder folder;
   writeImage(folder / "a.exr", filled(4, 3, 3, 1.5f));
   writeImage(folder / "b.pfm", filled(4, 3, 3, 1));
@@ -61,14 +61,14 @@ TEST(CommandImage, ErrorInSigmas) {
   EXPECT_NEAR(double(z["mean"]), 0.5 / std::sqrt(0.0125), 1e-5);
   EXPECT_EQ(z["beyond_3_sigma"], 1.0);
   EXPECT_NEAR(double(z["largest"]), 0.5 / std::sqrt(0.0125), 1e-5);
-  // The chance that one of 36 normal deviates is beyond 4.472: 36 x 7.7e-6.
+  // The probability that any of 36 normal deviates exceeds 4.472 is 36 x 7.7e-6.
   EXPECT_NEAR(double(z["p_value"]), 36 * 7.744e-6, 1e-6);
   const std::string map = folder / "map.png";
   run({"image", "error", folder / "a.exr", folder / "b.exr", "-o", map, "--map", "z"});
   EXPECT_GT(luminance(readImage(map).rgb(1, 1)), 0.5f) << "4.5 of 5 sigma";
 }
 
-TEST(CommandImage, ErrorAsAPicture) {
+TEST(CommandImage, ErrorImage) {
   const TemporaryFolder folder;
   Image a = filled(16, 8, 3, 1);
   writeImage(folder / "b.exr", a);
@@ -152,14 +152,14 @@ TEST(CommandImage, ViewShowsEveryKindOfLayer) {
   EXPECT_LT(luminance(samples.rgb(0, 0)), luminance(samples.rgb(1, 0)));
   EXPECT_LT(luminance(samples.rgb(1, 0)), luminance(samples.rgb(2, 0)));
   EXPECT_LT(luminance(variance.rgb(0, 0)), luminance(variance.rgb(1, 0)));
-  EXPECT_EQ(variance.rgb(2, 0), Rgb(1)) << "nothing is known";
+  EXPECT_EQ(variance.rgb(2, 0), Rgb(1)) << "an unknown variance";
   EXPECT_NEAR(view("invalid").first.rgb(1, 0).x, 0.5f, 0.01f);
   const Image depth = view("depth").first;
   EXPECT_EQ(depth.rgb(0, 0), Rgb(0));
   EXPECT_EQ(depth.rgb(1, 0), Rgb(1));
   EXPECT_LT(depth.rgb(2, 0).x, 0.1f);
 
-  // Without a layer of that name, the colour's own alpha.
+  // Without a layer `alpha`, the alpha of the colour channels is used.
   writeImage(path, row(4, {1, 1, 1, 0.5f}));
   EXPECT_NEAR(view("alpha").first.rgb(0, 0).x, 0.5f, 0.01f);
 }
@@ -182,7 +182,7 @@ TEST(SlowCommandImage, BadInputIsRejected) {
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "b.exr"}));
 }
 
-// Files from fuzzers: shown or rejected with one line, never a crash, never half an output.
+// Files from fuzzers are shown or rejected with one line, without a crash or partial output.
 TEST(SlowCommandImage, DamagedFilesAreShownOrRejected) {
   const auto root = sharedData("bad/images");
   if (!root) GTEST_SKIP() << "no bad/images";

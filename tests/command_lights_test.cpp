@@ -79,7 +79,7 @@ TEST(CommandLights, SunsHaveTheirAngle) {
   EXPECT_NEAR(lights[0]["angle"], 4, 0.7);  // texels of 1.4 degrees blur it
 }
 
-TEST(SlowCommandLights, FitFindsItsNumberOfLights) {
+TEST(SlowCommandLights, IrradianceFitChoosesTheNumberOfLights) {
   const TemporaryFolder folder;
   const std::string probe = folder / "studio.exr", out = folder / "a.json";
   writeImage(probe, studioProbe({64, 32}));
@@ -127,7 +127,7 @@ TEST(SlowCommandLights, ErrorTableCsvAndPlot) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(SlowCommandLights, ABlackProbeIsNoError) {
+TEST(SlowCommandLights, ABlackProbeIsAccepted) {
   const TemporaryFolder folder;
   const std::string probe = folder / "black.exr";
   writeImage(probe, constantProbe({32, 16}, Rgb(0)));

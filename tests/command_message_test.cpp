@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command says: slips of the hand and of other renderers' users, warnings, notes.
+// Messages of the command: typing errors, options of other renderers, warnings, notes.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -37,7 +37,7 @@ class SlowCommandMessage : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(SlowCommandMessage, OptionsOfOtherRenderersAreKnown) {
+TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
   for (const auto& [theirs, ours] :
        std::vector<std::pair<std::string, std::string>>{{"--spp", "--samples"},
                                                         {"--output-file", "--output"},
@@ -57,7 +57,7 @@ TEST_F(SlowCommandMessage, OptionsOfOtherRenderersAreKnown) {
   }
 }
 
-TEST_F(SlowCommandMessage, NumbersThatAreNoneAreNamed) {
+TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   EXPECT_EQ(render({"--noise", "30%"}).status, 0);
   const auto expectInputError = [&](const Words& words, const char* reason) {
     Words all{"render", w_.save()};
@@ -70,30 +70,32 @@ TEST_F(SlowCommandMessage, NumbersThatAreNoneAreNamed) {
   expectInputError({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
 }
 
-TEST_F(SlowCommandMessage, SettingsWithoutEffectAreWarnedOf) {
+TEST_F(SlowCommandMessage, WarnsAboutSettingsWithoutEffect) {
   for (const char* output : {"a.exr", "a.hdr", "a.pfm"}) {
-    const std::string said = render({"--tonemap", "aces", "--exposure", "1"}, output).error;
+    const std::string messages = render({"--tonemap", "aces", "--exposure", "1"}, output).error;
     for (const char* option : {"--tonemap", "--exposure"})
-      EXPECT_NE(said.find(std::string("warning: ") + option + " has no effect"), std::string::npos);
+      EXPECT_NE(messages.find(std::string("warning: ") + option + " has no effect"),
+                std::string::npos);
   }
   EXPECT_EQ(render({"--tonemap", "aces", "--exposure", "1"}, "a.png").error.find("no effect"),
             std::string::npos);
   EXPECT_EQ(render({}).error.find("warning"), std::string::npos);
 }
 
-TEST_F(SlowCommandMessage, ASquareProbeReadAsLatLongIsWarnedOf) {
-  const auto said = [&](ImageSize size, const char* mapping) {
+TEST_F(SlowCommandMessage, WarnsAboutASquareProbeReadAsLatLong) {
+  const auto messages = [&](ImageSize size, const char* mapping) {
     writeImage(folder_ / "probe.exr", constantProbe(size, Rgb(1)));
     return render({"--probe-mapping", mapping}).error;
   };
-  EXPECT_NE(said({8, 8}, "lat-long").find("warning: " + (folder_ / "probe.exr") + ": is square"),
-            std::string::npos);
-  EXPECT_EQ(said({8, 8}, "angular").find("is square"), std::string::npos);
-  EXPECT_EQ(said({8, 4}, "lat-long"), "");
+  EXPECT_NE(
+      messages({8, 8}, "lat-long").find("warning: " + (folder_ / "probe.exr") + ": is square"),
+      std::string::npos);
+  EXPECT_EQ(messages({8, 8}, "angular").find("is square"), std::string::npos);
+  EXPECT_EQ(messages({8, 4}, "lat-long"), "");
 }
 
-TEST_F(SlowCommandMessage, AngleThatLooksLikeRadiansIsWarnedOf) {
-  const auto said = [&](const char* fov) {
+TEST_F(SlowCommandMessage, WarnsAboutAnAngleThatLooksLikeRadians) {
+  const auto messages = [&](const char* fov) {
     w_.save();
     const std::string scene = (w_.folder() / "scene.toml").string();
     std::ofstream(scene)
@@ -105,13 +107,13 @@ TEST_F(SlowCommandMessage, AngleThatLooksLikeRadiansIsWarnedOf) {
                        folder_ / "a.exr"})
         .error;
   };
-  EXPECT_NE(said("0.6").find("scene.toml:5: `fov` is in degrees"), std::string::npos)
-      << said("0.6");
-  EXPECT_NE(said("0.6").find("34.4 degrees"), std::string::npos) << said("0.6");
-  EXPECT_EQ(said("4"), "");
+  EXPECT_NE(messages("0.6").find("scene.toml:5: `fov` is in degrees"), std::string::npos)
+      << messages("0.6");
+  EXPECT_NE(messages("0.6").find("34.4 degrees"), std::string::npos) << messages("0.6");
+  EXPECT_EQ(messages("4"), "");
 }
 
-TEST_F(SlowCommandMessage, QuietSilencesNotesAndKeepsWarnings) {
+TEST_F(SlowCommandMessage, QuietHidesNotesButNotWarnings) {
   w_.root["animations"] = {
       {{"name", "Wave"}, {"channels", json::array()}, {"samplers", json::array()}}};
   w_.root["extensionsUsed"] = {"KHR_unheard_of"};
@@ -120,7 +122,7 @@ TEST_F(SlowCommandMessage, QuietSilencesNotesAndKeepsWarnings) {
                             ": shown in its rest pose"),
             std::string::npos)
       << loud.error;
-  EXPECT_NE(loud.error.find("`Wave`"), std::string::npos) << "it names the animations";
+  EXPECT_NE(loud.error.find("`Wave`"), std::string::npos) << "the names of the animations";
   EXPECT_NE(loud.error.find("detected as a lat-long probe because its shape is 2:1"),
             std::string::npos)
       << loud.error;
@@ -130,7 +132,7 @@ TEST_F(SlowCommandMessage, QuietSilencesNotesAndKeepsWarnings) {
   EXPECT_NE(quiet.error.find("KHR_unheard_of"), std::string::npos);
 }
 
-TEST_F(SlowCommandMessage, CamerasGoByTheirNodesNamesToo) {
+TEST_F(SlowCommandMessage, CamerasAreFoundByCameraOrNodeName) {
   EXPECT_EQ(render({"--camera", "Lens"}).status, 0);
   EXPECT_EQ(render({"--camera", "Tripod"}).status, 0);
   const CommandResult none = render({"--camera", "Tripot"});

@@ -45,7 +45,7 @@ TEST(SlowCommand, UnknownWordsAreRejectedWithASuggestion) {
   expectError({"probe", "synth", "sun-sky", "a.exr", "--turbidity", "much"}, "--turbidity");
 }
 
-TEST(SlowCommandProbe, SynthInfoAgree) {
+TEST(SlowCommandProbe, SynthAndInfoAgree) {
   const TemporaryFolder folder;
   const std::string path = folder / "sun.exr";
   run({"probe", "synth", "one-hot", path, "--size", "64x32", "--texel", "5,20", "--radiance",
@@ -94,7 +94,7 @@ TEST(SlowCommandProbe, EveryKindAndFormat) {
   }
 }
 
-TEST(SlowCommandProbe, ConvertThereAndBack) {
+TEST(SlowCommandProbe, ConvertRoundTrip) {
   const TemporaryFolder folder;
   run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
   for (const char* to : {"angular", "mirror-ball", "cube-cross", "cube-strip", "lat-long"}) {

@@ -18,16 +18,15 @@ namespace {
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-constexpr float kEmission = 0.75f;  // of the scene's lamp
-
-// A box a metre wide with a grey material, another of 0.2 m to its right that glows, seen from the
-// front (2 m from the box's face) and from the left (4 m); and probes.
+constexpr float kEmission = 0.75f;  // radiance of the scene's lamp
+// A grey box of 1 m and to its right an emissive box of 0.2 m, with cameras in front (2 m from the
+// face of the grey box) and to the left (4 m); and probes.
 class RenderScene {
   GltfWriter writer_;
 
  public:
   const std::string model, gradient, constant;
-  TemporaryFolder out;  // holds nothing but what renders wrote
+  TemporaryFolder out;  // contains only the output of renders
 
   RenderScene()
       : model((makeModel(writer_), writer_.save())),
@@ -87,7 +86,7 @@ class RenderScene {
   }
 };
 
-// What an EXR file's header says (OpenEXR's file layout, version 2).
+// The header of an EXR file (OpenEXR file layout, version 2).
 struct ExrHeader {
   std::map<std::string, int> channels;  // 2: float32
   int compression = -1;                 // 3: ZIP
@@ -203,7 +202,7 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   expectWithin(readImage(scene.out / "a.hdr"), color, 0.02f);
   EXPECT_EQ(readImage(scene.out / "a.png").width, 24);
   EXPECT_EQ(readImage(scene.out / "a.png").height, 18);
-  // The middle of the picture looks at the middle of the box's front, 2 m away.
+  // The central pixel shows the centre of the box's front face, 2 m away.
   const auto middle = [&](const char* channel) { return texel(exr, channel, 12, 9); };
   EXPECT_NEAR(middle("depth.Z"), 2, 1e-4f);
   EXPECT_NEAR(middle("normal.Z"), 1, 1e-5f);
@@ -214,7 +213,7 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
 }
 
-TEST(CommandRender, OneSampleHasNoNoiseToTell) {
+TEST(CommandRender, OneSampleHasNoNoiseEstimate) {
   const RenderScene s;
   const CommandResult result =
       s.render({"--probe", s.constant, "--size", "16x16", "--samples", "1", "-o", s.out / "a.exr"});
@@ -222,7 +221,7 @@ TEST(CommandRender, OneSampleHasNoNoiseToTell) {
   EXPECT_EQ(result.out.find("nan"), std::string::npos) << result.out;
 }
 
-TEST(SlowCommandRender, ThreadsChangeNoBitAndSeedsDo) {
+TEST(SlowCommandRender, ImagesDependOnTheSeedButNotOnThreads) {
   const RenderScene scene;
   const auto render = [&](const char* threads, const char* seed) {
     scene.render({"--probe", scene.gradient, "--size", "40x30", "--samples", "4", "--threads",
@@ -287,12 +286,12 @@ TEST(CommandRender, DepthZeroShowsEmissionAndBackgroundOnly) {
   const Image image = readImage(scene.out / "a.pfm");
   EXPECT_EQ(image.rgb(0, 0), Rgb(0.5f, 1, 2));
   EXPECT_EQ(image.rgb(32, 24), Rgb(0));
-  // The lamp: 0.9 m to the right, 2.4 m away; half the picture's height is 2.4 tan(0.4) there.
+  // The lamp: 0.9 m to the right, 2.4 m away; half the image height there is 2.4 tan(0.4).
   const int column = 32 + int(std::lround(0.9f / (2.4f * std::tan(0.4f)) * 24));
   EXPECT_EQ(image.rgb(column, 24), Rgb(kEmission));
 }
 
-TEST(SlowCommandRender, ProbeScaleAndRotationAct) {
+TEST(SlowCommandRender, ProbeScaleAndRotation) {
   const RenderScene scene;
   const auto render = [&](const Words& more) {
     Words options{"--size", "32x24", "--samples", "4", "-o", scene.out / "a.pfm"};
@@ -300,15 +299,15 @@ TEST(SlowCommandRender, ProbeScaleAndRotationAct) {
     scene.render(options);
     return readImage(scene.out / "a.pfm");
   };
-  // From the left the lamp, whose light the probe's scale leaves alone, hides behind the box.
+  // From the left, the box hides the lamp, whose radiance does not depend on the probe's scale.
   const Image one = render({"--probe", scene.gradient, "--camera", "Left", "--max-depth", "1"});
   Image two = render(
       {"--probe", scene.gradient, "--camera", "Left", "--max-depth", "1", "--probe-scale", "2"});
   for (float& x : two.texels) x /= 2;
   EXPECT_EQ(two.texels, one.texels);
 
-  // A quarter turn, counter-clockwise from above, brings what was ahead (-Z, the middle column) to
-  // the left (-X, a quarter of the width).
+  // A rotation by 90 degrees, counter-clockwise from above, moves -Z (the middle column) to -X (a
+  // quarter of the width).
   const Image probe = readImage(scene.gradient);
   Image turned = probe;
   for (int y = 0; y < probe.height; ++y)
@@ -339,7 +338,7 @@ TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
   EXPECT_GT(measured["noise"].get<double>(), 0.005);
 }
 
-TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
+TEST(SlowCommandRender, AnInterruptSavesTheImageSoFar) {
   const RenderScene scene;
   const CommandResult result =
       runCommand({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples",
@@ -356,7 +355,7 @@ TEST(SlowCommandRender, AnInterruptSavesThePictureSoFar) {
   EXPECT_GT(*std::max_element(color.texels.begin(), color.texels.end()), 0);
 }
 
-TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
+TEST(SlowCommandRender, OptionsAndSceneFileHaveTheSameRanges) {
   const RenderScene scene;
   struct Setting {
     const char *option, *key, *maximum, *tooMany;
@@ -382,7 +381,7 @@ TEST(SlowCommandRender, SettingsHaveOneRangeEverywhere) {
   }
 }
 
-TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
+TEST(SlowCommandRender, ErrorsAreOneLine) {
   const RenderScene scene;
   const std::string output = scene.out / "a.exr", corrupt = scene.folder() + "/corrupt.exr";
   const std::string whole = fileContents(scene.gradient);
@@ -432,7 +431,7 @@ TEST(SlowCommandRender, WhatIsWrongIsSaidInOneLine) {
   EXPECT_EQ(scene.out.files(), Words{});
 }
 
-// A model that no probe lights shows what it emits, and one that emits nothing asks for a probe.
+// Without a probe, a model with emission is rendered; without both, the command requires --probe.
 TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
   const RenderScene scene;
   scene.render({"--size", "8x6", "--samples", "1", "-o", scene.out / "a.pfm"});
@@ -443,7 +442,7 @@ TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
   EXPECT_EQ(scene.out.files(), Words{"a.pfm"});
 }
 
-// The options that an EXR's header states, as the command line takes them.
+// The command-line options recorded in an EXR header.
 Words optionsIn(const ImageFile& file) {
   const std::string help = runCommand({"render", "--help"}).out;
   const auto limit = file.metadata.find("noise-limit");
@@ -451,7 +450,7 @@ Words optionsIn(const ImageFile& file) {
   if (limit != file.metadata.end())
     options = {"--noise", fmt::format("{}", std::get<float>(limit->second))};
   for (const auto& [name, value] : file.metadata) {
-    // `noise` and, under a limit, `samples` are what was reached.
+    // `noise` and, with a noise limit, `samples` are results, not options.
     if (help.find("--" + name + " ") == std::string::npos || name == "noise" ||
         (name == "samples" && !options.empty() && options[0] == "--noise"))
       continue;
@@ -468,7 +467,7 @@ Words optionsIn(const ImageFile& file) {
   return options;
 }
 
-TEST(SlowCommandRender, AHeaderSaysHowToMakeThePictureAgain) {
+TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
   const RenderScene scene;
   const std::string file = scene.folder() + "/scene.toml";
   std::ofstream(file) << "model = 'model.gltf'\n[probe]\nfile = 'gradient.exr'\nscale = 3.3\n"
@@ -520,20 +519,20 @@ TEST(SlowCommandRender, AHeaderSaysHowToMakeThePictureAgain) {
     EXPECT_NE(std::get<std::string>(first.metadata.at("files")).find("model.gltf"),
               std::string::npos);
 
-    // The command itself, in a shell.
+    // The recorded command, run by a shell.
     std::string command = std::get<std::string>(first.metadata.at("command"));
     ASSERT_EQ(std::system((command + " --quiet > /dev/null").c_str()), 0) << command;
     EXPECT_EQ(scene.image("a.exr").image.texels, first.image.texels) << command;
   }
 }
 
-TEST(CommandRender, AHeaderHasTheCamerasMatrices) {
+TEST(CommandRender, TheHeaderHasTheCameraMatrices) {
   const RenderScene scene;
   scene.render({"--probe", scene.gradient, "--size", "24x18", "--samples", "1", "--camera", "Left",
                 "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
   const Metadata metadata = scene.image("a.exr").metadata;
-  // A row vector times the matrix, homogeneous.
-  const auto through = [&](const char* name, const glm::dvec3& point) {
+  // Homogeneous row vector times matrix.
+  const auto transformed = [&](const char* name, const glm::dvec3& point) {
     const Matrix44& m = std::get<Matrix44>(metadata.at(name));
     const glm::dvec4 p(point, 1);
     glm::dvec4 q(0);
@@ -544,14 +543,15 @@ TEST(CommandRender, AHeaderHasTheCamerasMatrices) {
   const auto expectNear = [](const glm::dvec3& a, const glm::dvec3& b) {
     EXPECT_NEAR(glm::distance(a, b), 0, 1e-6) << a.x << " " << a.y << " " << a.z;
   };
-  // At (-4.5, 0, 0), looking along +X; to the right is +Z. Camera space looks along +Z.
-  expectNear(through("worldToCamera", {-4.5, 0, 0}), {0, 0, 0});
-  expectNear(through("worldToCamera", {-0.5, 0.25, 2}), {2, 0.25, 4});
+  // The camera is at (-4.5, 0, 0) and looks along +X, with +Z to the right. In camera space it
+  // looks along +Z.
+  expectNear(transformed("worldToCamera", {-4.5, 0, 0}), {0, 0, 0});
+  expectNear(transformed("worldToCamera", {-0.5, 0.25, 2}), {2, 0.25, 4});
   const double half = std::tan(0.4), aspect = 24 / 18.0;
-  const glm::dvec3 seen = through("worldToNDC", {-0.5, 0.25, 2});
+  const glm::dvec3 seen = transformed("worldToNDC", {-0.5, 0.25, 2});
   EXPECT_NEAR(seen.x, 0.5 + 2 / (2 * aspect * half * 4), 1e-6);
   EXPECT_NEAR(seen.y, 0.5 - 0.25 / (2 * half * 4), 1e-6);
-  EXPECT_LT(through("worldToNDC", {-2, 0, 0}).z, seen.z) << "the third number grows with distance";
+  EXPECT_LT(transformed("worldToNDC", {-2, 0, 0}).z, seen.z) << "z must grow with distance";
 
   const json job = scene.stats("a.json").at("job");
   EXPECT_EQ(job.at("cameraPosition"), json({-4.5, 0, 0}));
@@ -562,7 +562,7 @@ TEST(CommandRender, AHeaderHasTheCamerasMatrices) {
   EXPECT_EQ(job.at("mis"), "balance");
 }
 
-TEST(CommandRender, NumbersOfNodesAndMaterialsHaveTheirNamesInTheHeader) {
+TEST(CommandRender, TheHeaderMapsNodeAndMaterialIdsToNames) {
   GltfWriter w;
   w.root["materials"] = {{{"name", "unused"}}, {{"name", "say \"x\"\n\xc3\xa9"}}};
   addTriangle(w, {{"material", 1}}, {{"name", "<Blatt>"}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differential rendering: what the objects change, and to the last bit nothing else.
+// Differential rendering: pixels that the objects do not affect equal the plate bit by bit.
 #include "composite/compose.h"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,15 @@
 namespace chromeball {
 namespace {
 
-// A scene in which some instances are objects.
+// A scene in which some instances are synthetic objects and the others are the local scene.
 struct Worlds {
   Scene scene;
   ObjectMask isObject;
   Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.4f, 0}, {0, 1, 0}, 0.7f);
 
-  void isLocalSoFar() { isObject.resize(scene.instances.size(), false); }
-  void areObjectsFromHere() { isObject.resize(scene.instances.size(), true); }
+  // Mark the instances that were added since the last call.
+  void markRestLocal() { isObject.resize(scene.instances.size(), false); }
+  void markRestObjects() { isObject.resize(scene.instances.size(), true); }
 };
 
 CompositeRender composite(const Worlds& w, const Probe& probe, const std::string& strategy,
@@ -33,7 +34,7 @@ CompositeRender composite(const Worlds& w, const Probe& probe, const std::string
       world, w.camera, *lighting, plate, settings, passes, true, [](double) {}, stop);
 }
 
-// Numbers that no arithmetic leaves alone by accident.
+// Arbitrary values, so that rounding in any arithmetic shows.
 Image noisyPlate(int width, int height) {
   Image plate(width, height, 3);
   for (size_t i = 0; i < plate.texels.size(); ++i) plate.texels[i] = toUnit(uint32_t(hash(i))) / 3;
@@ -46,7 +47,8 @@ Image sunnyProbe() {
   return probe;
 }
 
-// A red ball, a mirror, a veil and a lamp over a grey ground with a wall.
+// Objects: a red ball, a mirror ball, a transparent quad (veil) and a lamp. Local scene: a grey
+// ground and a wall.
 Worlds stillLife() {
   Worlds w;
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
@@ -55,7 +57,7 @@ Worlds stillLife() {
   wall.metallic = 0;
   wall.roughness = 0.4f;
   addQuad(w.scene, addMaterial(w.scene, wall), {-3, 0, -1.5f}, {6, 0, 0}, {0, 2, 0});
-  w.isLocalSoFar();
+  w.markRestLocal();
   addSphere(w.scene, addMaterial(w.scene, lambert({0.8f, 0.1f, 0.1f})), {-0.8f, 0.5f, 0}, 0.5f, 16);
   Material mirror;
   mirror.roughness = 0;
@@ -67,7 +69,7 @@ Worlds stillLife() {
   Material lamp = lambert(Rgb(0.2f));
   lamp.emission = {4, 3, 2};
   addSphere(w.scene, addMaterial(w.scene, lamp), {-0.2f, 0.2f, 0.8f}, 0.2f, 12);
-  w.areObjectsFromHere();
+  w.markRestObjects();
   return w;
 }
 
@@ -76,8 +78,8 @@ constexpr const char* kStrategies[] = {"bsdf",          "uniform",
                                        "median-cut:16", "kollig-keller-strata:4",
                                        "penrose:32",    "irradiance-fit-ambient:4"};
 
-// Objects that nobody sees, buried under the ground: the plate, to the last bit.
-TEST(Composite, IsThePlateWhereObjectsChangeNothing) {
+// An object below the ground is invisible: the composite equals the plate bit by bit.
+TEST(Composite, EqualsThePlateWhereObjectsChangeNothing) {
   Worlds w;
   Material ground = lambert(Rgb(0.5f));
   ground.specular = 1;
@@ -89,9 +91,9 @@ TEST(Composite, IsThePlateWhereObjectsChangeNothing) {
   veil.baseColor.w = 0.3f;
   for (float z : {1.0f, 1.1f, 1.2f})
     addQuad(w.scene, addMaterial(w.scene, veil), {-1, 0.1f, z}, {2, 0, 0}, {0, 1, 0});
-  w.isLocalSoFar();
+  w.markRestLocal();
   addSphere(w.scene, addMaterial(w.scene, lambert(Rgb(0.9f))), {0, -2, 0}, 1, 16);
-  w.areObjectsFromHere();
+  w.markRestObjects();
 
   const Image plate = noisyPlate(24, 16);
   for (const char* strategy : kStrategies) {
@@ -104,18 +106,18 @@ TEST(Composite, IsThePlateWhereObjectsChangeNothing) {
   }
 }
 
-// A local wall that hides its back from the camera stands before an object: the object is seen in
-// both ways of rendering, and the wall in neither.
-TEST(Composite, SeesObjectsThroughHiddenBacks) {
+// A single-sided local wall in front of an object turns its back to the camera: with one pass and
+// with two, the camera sees the object and not the wall.
+TEST(Composite, ObjectsAreVisibleThroughSingleSidedBacks) {
   Worlds w;
   w.camera = Camera::lookAt({0, 1, 4}, {0, 1, 0}, {0, 1, 0}, 0.5f);
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
   Material wall = lambert(Rgb(0.5f));
   wall.doubleSided = false;
   addQuad(w.scene, addMaterial(w.scene, wall), {3, 0, 2}, {-6, 0, 0}, {0, 3, 0});
-  w.isLocalSoFar();
+  w.markRestLocal();
   addSphere(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {0, 1, 0}, 0.5f, 24);
-  w.areObjectsFromHere();
+  w.markRestObjects();
   const Probe probe(sunnyProbe());
   const Image plate = noisyPlate(16, 16);
   std::vector<Image> alphas;
@@ -127,16 +129,16 @@ TEST(Composite, SeesObjectsThroughHiddenBacks) {
   EXPECT_EQ(alphas[0].texels, alphas[1].texels);
 }
 
-// Every sample of a lamp is beyond floats: a defect of its own kind, in one pass and in two.
+// A lamp of infinite radiance: its samples count as infinite, with one pass and with two.
 TEST(Composite, InvalidSamplesAreCountedByCause) {
   Worlds w;
   w.camera = topCamera(6, 40);
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
-  w.isLocalSoFar();
+  w.markRestLocal();
   Material lamp = lambert(Rgb(0));
   lamp.emission = Rgb(INFINITY);
   addSphere(w.scene, addMaterial(w.scene, lamp), {0, 1, 0}, 0.5f, 16);
-  w.areObjectsFromHere();
+  w.markRestObjects();
   for (const Passes passes : {Passes::One, Passes::Two}) {
     const CompositeRender r = composite(w, Probe(sunnyProbe()), "bsdf", smallRender(16, 16, 4, 0),
                                         noisyPlate(16, 16), passes);
@@ -148,15 +150,15 @@ TEST(Composite, InvalidSamplesAreCountedByCause) {
   }
 }
 
-// A wall higher than the object keeps its light and its shadow on one side; there they show.
+// A wall higher than the object confines its shadow and indirect light to one side.
 TEST(Composite, ChangesNothingBehindAWall) {
   Worlds w;
   w.camera = topCamera(6, 40);
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {0, 0, 3}, {0, 0, -6}, {0, 1, 0});
-  w.isLocalSoFar();
+  w.markRestLocal();
   addSphere(w.scene, addMaterial(w.scene, lambert({0.9f, 0.1f, 0.1f})), {1, 0.4f, 0}, 0.4f, 16);
-  w.areObjectsFromHere();
+  w.markRestObjects();
   const Image plate = noisyPlate(32, 32);
   const CompositeRender r =
       composite(w, Probe(sunnyProbe()), "importance", smallRender(32, 32, 32, 6), plate);
@@ -172,10 +174,11 @@ TEST(Composite, ChangesNothingBehindAWall) {
   EXPECT_GT(changed, 300);
 }
 
-// L_obj and L_noobj are what plain renders with the same random numbers make of the two scenes.
-TEST(Composite, BothWorldsArePlainRenders) {
+// L_obj and L_noobj equal plain renders of the scenes with and without objects, with the same
+// random numbers.
+TEST(Composite, LayersEqualPlainRenders) {
   Worlds w = stillLife();
-  w.scene.materials.back().emission = Rgb(0);  // without a table of lamps both are the same
+  w.scene.materials.back().emission = Rgb(0);  // without emitters both use the same random numbers
   const Probe probe(sunnyProbe(), 25);
   RenderSettings settings = smallRender(32, 24, 16, 6);
   settings.hideProbe = true;
@@ -199,7 +202,7 @@ TEST(Composite, BothWorldsArePlainRenders) {
   }
 }
 
-// [tile and channel][repeat]
+// Sums of the composite over tiles, indexed [tile x 3 + channel][repeat].
 std::vector<std::vector<double>> tileMeans(const Worlds& w, const char* strategy, Passes passes,
                                            int samples, uint64_t firstSeed) {
   constexpr int kSize = 24, kTile = 8, kRepeats = 12;
@@ -222,7 +225,7 @@ std::vector<std::vector<double>> tileMeans(const Worlds& w, const char* strategy
   return means;
 }
 
-// One pass along shared paths against two renders subtracted: the same, and far less noisy.
+// One pass with shared paths has the same expectation as the difference of two renders.
 TEST(SlowComposite, OnePassAgreesWithTwo) {
   const Worlds w = stillLife();
   for (const char* strategy : {"importance", "suns", "median-cut:16"}) {
@@ -235,17 +238,18 @@ TEST(SlowComposite, OnePassAgreesWithTwo) {
   }
 }
 
-// A lamp that is put in shows in a floor too smooth for lights in the probe's place.
-TEST(Composite, LampsShineOnNearMirrorsWhateverTheStrategy) {
+// A lamp among the objects lights a glossy floor even with strategies that replace the probe by
+// lights, which do not light glossy surfaces.
+TEST(Composite, LampsLightGlossySurfacesWithEveryStrategy) {
   Worlds w;
   Material metal;
   metal.roughness = 0.3f;
   addQuad(w.scene, addMaterial(w.scene, metal), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
-  w.isLocalSoFar();
+  w.markRestLocal();
   Material lamp = lambert(Rgb(0));
   lamp.emission = {4, 3, 2};
   addQuad(w.scene, addMaterial(w.scene, lamp), {-1, 2, -2}, {2, 0, 0}, {0, 0.7f, -0.7f});
-  w.areObjectsFromHere();
+  w.markRestObjects();
   const Probe dim(constantProbe({16, 8}, Rgb(1e-5f)));
   const auto difference = [&](const char* strategy, Mis mis) {
     RenderSettings settings = smallRender(24, 16, 64, 3);
@@ -259,21 +263,20 @@ TEST(Composite, LampsShineOnNearMirrorsWhateverTheStrategy) {
     EXPECT_NEAR(difference("median-cut:16", mis) / expected, 1, 0.02) << int(mis);
 }
 
-// Light that objects focus (caustics) is noise of L_obj alone, which nothing can cancel: matte
-// ones.
+// The objects are matte, because caustics are noise of L_obj alone and do not cancel.
 TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
   Worlds w;
-  // A courtyard, whose walls light each other.
+  // A courtyard with interreflection between its walls.
   w.camera = Camera::lookAt({0, 5, 7}, {0, 0.8f, 0}, {0, 1, 0}, 0.9f);
   const int wall = addMaterial(w.scene, lambert(Rgb(0.6f)));
   addQuad(w.scene, wall, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
   addQuad(w.scene, wall, {-4, 0, -4}, {8, 0, 0}, {0, 5, 0});
   addQuad(w.scene, wall, {-4, 0, 4}, {0, 0, -8}, {0, 5, 0});
   addQuad(w.scene, wall, {4, 0, 4}, {0, 5, 0}, {0, 0, -8});
-  w.isLocalSoFar();
+  w.markRestLocal();
   addSphere(w.scene, addMaterial(w.scene, lambert({0.8f, 0.1f, 0.1f})), {-0.8f, 0.5f, 0}, 0.5f, 16);
   addSphere(w.scene, addMaterial(w.scene, lambert(Rgb(0.6f))), {0.6f, 0.5f, -0.4f}, 0.5f, 24);
-  w.areObjectsFromHere();
+  w.markRestObjects();
   constexpr int kSize = 32, kRepeats = 8;
   double variance[2] = {};
   for (Passes passes : {Passes::One, Passes::Two}) {
@@ -291,13 +294,13 @@ TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
   EXPECT_LT(10 * variance[0], variance[1]);
 }
 
-// The error that is stated for the composite is the spread over seeds.
-TEST(Composite, StatesItsError) {
+// The estimated error of the composite matches the variance over seeds.
+TEST(Composite, EstimatedErrorMatchesTheVarianceOverSeeds) {
   Worlds w = stillLife();
-  w.scene.materials[3].roughness = 1;  // the mirror's caustics would take more samples to state
+  w.scene.materials[3].roughness = 1;  // caustics of the mirror would need more samples
   constexpr int kSize = 24, kRepeats = 16;
   std::vector<std::vector<double>> pixels(size_t(kSize) * kSize * 3);
-  double stated = 0, spread = 0;
+  double estimated = 0, spread = 0;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     const RenderSettings settings = smallRender(kSize, kSize, 64, 5, 70 + uint64_t(repeat));
     const CompositeRender r =
@@ -305,32 +308,33 @@ TEST(Composite, StatesItsError) {
     const Image variance = varianceImage(r.errors);
     for (size_t i = 0; i < pixels.size(); ++i) {
       pixels[i].push_back(r.mean.texels[i]);
-      stated += variance.texels[i] / kRepeats;
+      estimated += variance.texels[i] / kRepeats;
     }
   }
   for (const auto& repeats : pixels) spread += Moments::of(repeats).variance;
-  // The layer is wide where few pixels meet most of the light.
-  EXPECT_GT(stated / spread, 0.9);
-  EXPECT_LT(stated / spread, 1.4);
+  // The estimate is too large where few pixels receive most of the light.
+  EXPECT_GT(estimated / spread, 0.9);
+  EXPECT_LT(estimated / spread, 1.4);
 }
 
-// What is said of the noise is of the picture that is written: by the ratio, and of two passes.
-TEST(SlowComposite, NoiseIsOfThePictureThatIsWritten) {
+// The noise estimate describes the composite that is written, also in ratio mode and with two
+// passes.
+TEST(SlowComposite, NoiseEstimateMatchesTheComposite) {
   Worlds w = stillLife();
   w.scene.materials[3].roughness = 1;
   constexpr int kSize = 24, kRepeats = 16;
   Image plate = noisyPlate(kSize, kSize);
   for (float& x : plate.texels) x += 0.5f;  // bright enough to stay positive
-  struct Way {
+  struct Mode {
     Passes passes;
     CompositeMode mode;
   };
-  for (const Way way :
-       {Way{Passes::One, CompositeMode::Difference}, Way{Passes::One, CompositeMode::Ratio},
-        Way{Passes::Two, CompositeMode::Difference}}) {
+  for (const Mode way :
+       {Mode{Passes::One, CompositeMode::Difference}, Mode{Passes::One, CompositeMode::Ratio},
+        Mode{Passes::Two, CompositeMode::Difference}}) {
     std::vector<std::vector<double>> pixels(size_t(kSize) * kSize);
     std::vector<double> squared(pixels.size(), 0.0);
-    double stated = 0, spread = 0;  // sums of standard errors
+    double estimated = 0, spread = 0;  // sums of standard errors
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       const CompositeRender r =
           composite(w, Probe(sunnyProbe()), "importance",
@@ -343,15 +347,15 @@ TEST(SlowComposite, NoiseIsOfThePictureThatIsWritten) {
       }
     }
     for (const auto& repeats : pixels) spread += std::sqrt(Moments::of(repeats).variance);
-    for (double s : squared) stated += std::sqrt(s);
-    // The ratio's estimate takes L_noobj for known.
-    EXPECT_NEAR(stated / spread, 1, way.mode == CompositeMode::Ratio ? 0.3 : 0.1)
+    for (double s : squared) estimated += std::sqrt(s);
+    // The estimate for the ratio neglects the variance of L_noobj.
+    EXPECT_NEAR(estimated / spread, 1, way.mode == CompositeMode::Ratio ? 0.3 : 0.1)
         << int(way.passes) << int(way.mode);
   }
 }
 
-// A photograph of the local scene, with objects put in, is the picture of the whole scene.
-TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
+// With a render of the local scene as the plate, the composite equals a render of the whole scene.
+TEST(SlowComposite, MatchesTheReferenceIfTheLocalSceneIsExact) {
   const Worlds w = stillLife();
   const Probe probe(sunnyProbe(), 25);
   constexpr int kSize = 32;
@@ -359,31 +363,33 @@ TEST(SlowComposite, MatchesTheTruthWhereTheLocalSceneIsExact) {
   settings.hideProbe = true;
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
-  Scene local = stillLife().scene;  // without the objects, and their lamps
+  Scene local = stillLife().scene;  // without the objects, which include the lamp
   local.instances.resize(2);
   const World localWorld(local), wholeWorld(w.scene);
   const auto quiet = [](double) {};
   const Film photograph = render(localWorld, w.camera, *lighting, settings, quiet, stop).film;
   settings.seed = 8;
-  const Film truth = render(wholeWorld, w.camera, *lighting, settings, quiet, stop).film;
+  const Film reference = render(wholeWorld, w.camera, *lighting, settings, quiet, stop).film;
   const CompositeRender r =
       composite(w, probe, "importance", smallRender(kSize, kSize, 256, 5, 9), photograph.mean());
-  const Image truthMean = truth.mean(), truthError = varianceImage(truth.errors()),
+  const Image referenceMean = reference.mean(), referenceError = varianceImage(reference.errors()),
               plateError = varianceImage(photograph.errors());
   for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio}) {
     const Composite c = compose(r.film, r.mean, photograph.mean(), mode);
     const Image error = varianceImage(compositeErrors(r.film, c, r.errors));
     double sum = 0, squares = 0, n = 0;
-    for (size_t i = 0; i < truthMean.texels.size(); ++i) {
-      const double variance = double(error.texels[i]) + truthError.texels[i] + plateError.texels[i];
-      const double z = (c.color.texels[i] - truthMean.texels[i]) / std::sqrt(variance);
+    for (size_t i = 0; i < referenceMean.texels.size(); ++i) {
+      const double variance =
+          double(error.texels[i]) + referenceError.texels[i] + plateError.texels[i];
+      const double z = (c.color.texels[i] - referenceMean.texels[i]) / std::sqrt(variance);
       if (!(variance > 1e-12)) continue;
       sum += z, squares += z * z, ++n;
     }
     EXPECT_GT(n, 2000);
     EXPECT_NEAR(sum / n, 0, 0.1) << int(mode);
     EXPECT_LT(std::sqrt(squares / n), 1.1) << int(mode);
-    EXPECT_GT(std::sqrt(squares / n), 0.4) << int(mode);  // wide around the mirror's caustics
+    // Below 1 because errors near the mirror's caustics are overestimated.
+    EXPECT_GT(std::sqrt(squares / n), 0.4) << int(mode);
   }
 }
 
@@ -401,9 +407,11 @@ DifferentialFilm onePixel(const DifferentialPixel& pixel) {
   return DifferentialFilm(std::move(film));
 }
 
-// alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or the plate times L_obj / L_noobj.
-TEST(Composite, FollowsTheFormulas) {
-  // Four samples: one on the object (2, 4, 6); three that see 0.5 without and 0.2 with objects.
+// Difference: alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj).
+// Ratio: alpha L_obj + (1 - alpha) plate L_obj / L_noobj.
+TEST(Composite, MatchesTheFormulas) {
+  // Four samples: one hits the object, with L_obj = (2, 4, 6); three have L_noobj = 0.5, L_obj =
+  // 0.2.
   const DifferentialFilm film =
       onePixel({4, 1, {2, 4, 6}, {}, glm::dvec3(1.5), glm::dvec3(3 * (0.2 - 0.5))});
   Image plate(2, 1, 3);
@@ -421,9 +429,9 @@ TEST(Composite, FollowsTheFormulas) {
   EXPECT_EQ(*compositeLayer(film, CompositeLayer::Alpha).at(0, 0), 0.25f);
 }
 
-// Below a thousandth of the picture's mean L_noobj the ratio is the difference; from twice that on
-// it is the ratio, and between the two it has no jump.
-TEST(Composite, RatioGivesWayToTheDifferenceInTheDark) {
+// Ratio mode blends continuously from the difference, for L_noobj below 1/1000 of the image's mean,
+// to the ratio, above 2/1000.
+TEST(Composite, RatioFallsBackToTheDifferenceInTheDark) {
   Image plate(2, 1, 3);
   plate.setRgb(0, 0, Rgb(0.02f));
   double before = -1;
@@ -450,8 +458,8 @@ TEST(Composite, RatioGivesWayToTheDifferenceInTheDark) {
   }
 }
 
-// The difference may ask for more than the plate has.
-TEST(Composite, IsNeverDarkerThanBlack) {
+// plate + L_obj - L_noobj may be negative; it is clamped to 0 and counted.
+TEST(Composite, NegativeValuesAreClamped) {
   const DifferentialFilm film = onePixel({1, 0, {}, {}, glm::dvec3(1), glm::dvec3(-0.5)});
   Image plate(2, 1, 3), mean(2, 1, 3);
   plate.setRgb(0, 0, {0.3f, 0.6f, 0.7f});
@@ -461,17 +469,17 @@ TEST(Composite, IsNeverDarkerThanBlack) {
   EXPECT_EQ(c.darkerThanBlack, 1u);
 }
 
-// Coverage by a veil is its alpha; by an edge, its share of the pixel.
+// A transparent quad covers a pixel by its alpha, an edge by its fraction of the pixel's area.
 TEST(Composite, AlphaIsFractional) {
   Worlds w;
   w.camera = topCamera(4, 53.1301f);  // sees 4 x 4 metres of the ground
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
-  w.isLocalSoFar();
+  w.markRestLocal();
   Material veil = lambert(Rgb(0));
   veil.alphaMode = AlphaMode::Blend;
   veil.baseColor.w = 0.3f;
   addQuad(w.scene, addMaterial(w.scene, veil), {-3, 1e-3f, 3}, {3.5f, 0, 0}, {0, 0, -6});
-  w.areObjectsFromHere();
+  w.markRestObjects();
   const CompositeRender r = composite(w, Probe(constantProbe({8, 4}, Rgb(1))), "importance",
                                       smallRender(4, 4, 1024, 1), Image(4, 4, 3));
   const Image alpha = compositeLayer(r.film, CompositeLayer::Alpha);

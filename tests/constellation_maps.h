@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps and lights by method, for the tests of constellations.
+// Test helpers for constellations: maps, and the light count of each method.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace chromeball {
 
-// The methods whose lights keep the energy of the map.
+// The methods whose lights have the same total energy as the map.
 inline std::vector<std::string_view> constellationNames() {
   std::vector<std::string_view> names;
   for (const LightingMethod& method : lightingMethods())
@@ -21,7 +21,8 @@ inline std::vector<std::string_view> constellationNames() {
   return names;
 }
 
-// The count for about `lights` lights: the largest grid with at most so many, for cube-grid.
+// The `count` that gives about `lights` lights; for cube-grid, the largest grid with at most
+// `lights`.
 inline int countFor(std::string_view method, int lights) {
   return method == "cube-grid" ? std::clamp(int(std::sqrt(lights / 6.0)), 1, 26) : lights;
 }
@@ -31,7 +32,7 @@ inline Constellation make(std::string_view method, const Image& map, int lights,
   return makeLights(method, map, {.count = countFor(method, lights), .seed = seed}).lights;
 }
 
-// Positive noise: no symmetry, no ties.
+// Positive noise, without symmetry or equal texels.
 inline Image noise(int width, int height) {
   Image map(width, height, 3);
   for (size_t i = 0; i < map.texels.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties of each constellation method.
+// Properties of each constellation method.
 #include <gtest/gtest.h>
 
 #include "constellation_maps.h"
@@ -25,7 +25,7 @@ TEST(Constellation, MedianCutHalvesEnergy) {
   for (int n = 2; n <= 64; ++n) {
     const std::vector<Region> after = medianCutRegions(table, n);
     ASSERT_EQ(int(after.size()), n);
-    // The region of most energy was cut; its parts are at its index and at the end.
+    // The region with most energy was cut; the parts are at its index and at the end.
     int cut = -1;
     for (int i = 0; i < n - 1; ++i)
       if (!same(before[i], after[i])) {
@@ -127,7 +127,7 @@ TEST(Constellation, StrataSampleByPower) {
     EXPECT_GT(glm::dot(glm::normalize(mean[i]), dvec3(means[i].direction)), std::cos(0.06));
 }
 
-// Lights in a map of constant importance are evenly distributed and keep a distance.
+// In a map of constant importance, lights are evenly distributed with a minimum distance.
 TEST(Constellation, PenroseIsEvenAndSpaced) {
   Image map(512, 256, 3);
   for (int y = 0; y < 256; ++y)
@@ -146,15 +146,16 @@ TEST(Constellation, PenroseIsEvenAndSpaced) {
   double squares = 0;
   for (const int n : found) squares += std::pow(n - double(count) / (columns * rows), 2);
   EXPECT_LT(std::sqrt(squares / (columns * rows)), 2);
-  // A hexagonal grid of cell area 2 / count has a minimum distance of 0.034; random points about
-  // 0.0005.
+  // A hexagonal grid of cell area 2 / count has a minimum distance of 0.034, random points have
+  // about 0.0005.
   double minimum = 1;
   for (size_t i = 0; i < points.size(); ++i)
     for (size_t j = 0; j < i; ++j) minimum = std::min(minimum, glm::distance(points[i], points[j]));
   EXPECT_GT(minimum, 0.25 * std::sqrt(2.0 / count));
 }
 
-// Madsen and Laursen's measure: mean |E_lights - E_probe| over normals and channels, over mean E.
+// Error measure of Madsen and Laursen: mean |E_lights - E_probe| over normals and channels, divided
+// by mean E.
 double irradianceError(const Image& map, const Constellation& lights) {
   std::vector<vec3> normals;
   for (int i = 0; i < 300; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Properties of the constellations of every method, above all that they keep the energy of the map.
+// Properties that all constellation methods share, such as conservation of the map's energy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ int litTexels(const Image& map) {
   return lit;
 }
 
-// Energy per channel, unit directions, no black or negative light.
-void expectSound(const Constellation& lights, const Image& map) {
+// Checks the energy of each channel, unit directions, and that no light is black or negative.
+void expectValid(const Constellation& lights, const Image& map) {
   dvec3 sum(0);
   for (const DirectionalLight& light : lights) {
     EXPECT_NEAR(glm::length(light.direction), 1, 1e-6);
@@ -39,7 +39,7 @@ Image sunOverGrey() {
   return map;
 }
 
-TEST(Constellation, KeepsEnergyAndNumbersOfLights) {
+TEST(Constellation, ConservesEnergyAndHasTheRequestedCount) {
   const std::vector<std::pair<const char*, Image>> maps = {
       {"constant", constantProbe({48, 24}, Rgb(1, 2, 3))},
       {"one-hot", oneHotProbe({48, 24}, 5, 9, Rgb(3, 0, 1))},
@@ -56,7 +56,7 @@ TEST(Constellation, KeepsEnergyAndNumbersOfLights) {
       for (const int count : {2, 3, 7, 64, 300, 1000}) {
         SCOPED_TRACE(fmt::format("{} {}:{}", name, method, count));
         const Constellation lights = make(method, map, count);
-        expectSound(lights, map);
+        expectValid(lights, map);
         const int lit = litTexels(map), n = countFor(method, count);
         if (method == "cube-grid")
           EXPECT_LE(int(lights.size()), std::min(6 * n * n, lit));
@@ -67,7 +67,7 @@ TEST(Constellation, KeepsEnergyAndNumbersOfLights) {
       }
 }
 
-TEST(SlowConstellation, KeepsEnergyOfRealProbes) {
+TEST(SlowConstellation, ConservesEnergyOfRealProbes) {
   const std::vector<Image> maps = realProbes(3);
   if (maps.empty()) GTEST_SKIP() << "no shared probes";
   for (const Image& map : maps)
@@ -75,14 +75,14 @@ TEST(SlowConstellation, KeepsEnergyOfRealProbes) {
       for (const int count : {2, 64}) {
         SCOPED_TRACE(fmt::format("{}:{}", method, count));
         const Constellation lights = make(method, map, count);
-        expectSound(lights, map);
+        expectValid(lights, map);
         if (method != "cube-grid") {
           EXPECT_EQ(int(lights.size()), count);
         }
       }
 }
 
-TEST(Constellation, SameSeedSameBitsOtherSeedOtherLights) {
+TEST(Constellation, LightsAreDeterminedByTheSeed) {
   const Image map = noise(64, 32);
   const auto same = [](const Constellation& a, const Constellation& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -97,7 +97,7 @@ TEST(Constellation, SameSeedSameBitsOtherSeedOtherLights) {
   }
 }
 
-TEST(Constellation, RejectsWhatItCannotDo) {
+TEST(Constellation, RejectsInvalidMethodsAndCounts) {
   const Image map = constantProbe({8, 4}, Rgb(1));
   try {
     makeLights("medain-cut", map, {.count = 8});
@@ -122,7 +122,7 @@ TEST(Constellation, RejectsWhatItCannotDo) {
   EXPECT_THROW(makeLights("lightgen", constantProbe({8, 4}, Rgb(3e38f)), {.count = 8}), InputError);
 }
 
-// The left half of the map shows -X.
+// The left half of the map is the hemisphere x < 0.
 TEST(Constellation, ColoursStayInTheirHemisphere) {
   Image map(64, 32, 3);
   for (int y = 0; y < 32; ++y)
@@ -141,11 +141,11 @@ TEST(Constellation, SumsLargeMapsInBlocks) {
   EXPECT_EQ(TexelTable(map, kFineCells).block(), 2);
   for (const std::string_view method : {"median-cut", "variance-cut", "cube-grid", "penrose"}) {
     SCOPED_TRACE(method);
-    expectSound(make(method, map, 100), map);
+    expectValid(make(method, map, 100), map);
   }
 }
 
-// variance-cut may leave the sun in one region with its nearest neighbours.
+// variance-cut may put the sun into one region with its neighbouring texels.
 TEST(Constellation, ASunDoesNotTakeTheEnergyOfItsRow) {
   Image map = noise(16384, 16);
   const dvec3 rest = meanRadiance(map) * 4.0 * kPiD;

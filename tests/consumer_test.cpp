@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library as others use it: tests/consumer, a project of its own, built against an installed
-// copy and configured with this source tree as its subdirectory.
+// Use of the library by other projects: tests/consumer is a separate project, built against an
+// installed copy and configured with this source tree as a subdirectory.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -47,7 +47,7 @@ std::string writeScene(const TemporaryFolder& folder) {
   return folder / "scene.toml";
 }
 
-// Of a colour PFM as the command writes it: three lines of text, then little-endian floats.
+// Mean of a colour PFM that the command wrote: three lines of text, then little-endian floats.
 glm::dvec3 meanOfPfm(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
@@ -59,7 +59,7 @@ glm::dvec3 meanOfPfm(const std::string& path) {
   return sum / double(pixels);
 }
 
-TEST(SlowConsumer, RendersWithAnInstalledLibraryAsTheCommandDoes) {
+TEST(SlowConsumer, InstalledLibraryRendersLikeTheCommand) {
   if (!kCanInstall) GTEST_SKIP() << kSkipped;
   const TemporaryFolder prefix, folder;
   const std::string installed = prefix / "", build = folder / "build";
@@ -79,7 +79,7 @@ TEST(SlowConsumer, RendersWithAnInstalledLibraryAsTheCommandDoes) {
   printed >> width >> height >> mean.x >> mean.y >> mean.z;
   EXPECT_EQ(width, 24);
   EXPECT_EQ(height, 16);
-  // Not to the bit: the consumer is compiled without FMA, and may contribute inline functions.
+  // Not bit-identical: the consumer is compiled without FMA and may instantiate inline functions.
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(mean[c], expected[c], 1e-5 * expected[c]) << "channel " << c;
 }
@@ -96,7 +96,7 @@ TEST(SlowConsumer, InstalledFilesAreComplete) {
     EXPECT_TRUE(fs::exists(prefix / file)) << file;
 }
 
-// Every installed header, with nothing but the public dependencies.
+// Every installed header compiles with only the public dependencies.
 TEST(SlowConsumer, InstalledHeadersCompile) {
   if (!kCanInstall) GTEST_SKIP() << kSkipped;
   const TemporaryFolder prefix;
@@ -119,7 +119,7 @@ TEST(SlowConsumer, InstalledHeadersCompile) {
       quoted(include) + " " + quoted(prefix / "all.cpp"));
 }
 
-// Compiles the consumer's own source alone; the library would take minutes, and is the same.
+// Compiles only the consumer's own source: the library takes minutes and is tested above.
 TEST(SlowConsumer, ConfiguresAndCompilesWithTheSourceTreeAsSubdirectory) {
   const TemporaryFolder folder;
   const std::string build = folder / "build";
@@ -130,7 +130,8 @@ TEST(SlowConsumer, ConfiguresAndCompilesWithTheSourceTreeAsSubdirectory) {
       run(quoted(CHROMEBALL_CMAKE) + " --build " + quoted(build) + " --target help");
   EXPECT_NE(targets.find("chromeball_renderer"), std::string::npos);
   for (const char* ours : {"... tests\n", "... benchmarks\n", "... make_demo\n"})
-    EXPECT_EQ(targets.find(ours), std::string::npos) << ours << "is built for others too";
+    EXPECT_EQ(targets.find(ours), std::string::npos)
+        << ours << " is also a target of the consumer's project";
 }
 
 }  // namespace

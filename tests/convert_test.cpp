@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversion between mappings, and repair.
+// Conversion between mappings; repair of invalid texels.
 #include "probe/convert.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ dvec3 firstMoment(const Image& image) {
   return sum / (4 * kPiD);
 }
 
-TEST(Convert, GradientKeepsItsMoments) {
+TEST(Convert, PreservesTheFirstMomentOfAGradient) {
   const dvec3 slope(0.5, -0.3, 0.6);
   const Image gradient = gradientProbe({128, 64}, Rgb(2), slope);
   for (const Mapping through : kMappings) {
@@ -78,8 +78,8 @@ TEST(Convert, SameSizeIsACopy) {
   EXPECT_EQ(convert(image, Mapping::LatLong, Mapping::LatLong, {37, 11}).texels, image.texels);
 }
 
-TEST(Convert, RotationTurnsCounterClockwise) {
-  // A light at -Z goes to -X.
+TEST(Convert, RotationIsCounterClockwise) {
+  // It moves a light from -Z to -X.
   Image image(128, 64, 3);
   for (int y = 30; y < 34; ++y)
     for (int x = 62; x < 66; ++x) image.setRgb(x, y, Rgb(100));
@@ -94,7 +94,7 @@ TEST(Convert, RotationTurnsCounterClockwise) {
   }
 }
 
-TEST(Convert, ShrinkingKeepsASun) {
+TEST(Convert, ShrinkingPreservesASun) {
   const Image sun = oneHotProbe({1024, 512}, 300, 200, Rgb(1e6f));
   const Image small = convert(sun, Mapping::LatLong, Mapping::LatLong, {32, 16});
   EXPECT_NEAR(meanRadiance(small).x / meanRadiance(sun).x, 1, 1e-3);
@@ -113,19 +113,19 @@ TEST(Repair, CountsLocatesAndReplaces) {
   EXPECT_EQ(report.negative, 1u);
   EXPECT_EQ(report.firstX, 0);
   EXPECT_EQ(report.firstY, 1);
-  EXPECT_FLOAT_EQ(image.rgb(0, 1).x, (7 * 1 + 5) / 8.0f);  // over the seam, too
+  EXPECT_FLOAT_EQ(image.rgb(0, 1).x, (7 * 1 + 5) / 8.0f);  // also across the seam
   EXPECT_EQ(image.rgb(3, 2), Rgb(1, 5, 1));
   EXPECT_EQ(image.rgb(5, 3), Rgb(0, 3, 1));
   EXPECT_EQ(repair(image, true).total(), 0u);
 
-  Image hopeless(2, 2, 3);
-  std::fill(hopeless.texels.begin(), hopeless.texels.end(), nan);
-  EXPECT_EQ(repair(hopeless, true).nan, 4u);
-  EXPECT_EQ(hopeless.rgb(1, 1), Rgb(0));
+  Image allNan(2, 2, 3);
+  std::fill(allNan.texels.begin(), allNan.texels.end(), nan);
+  EXPECT_EQ(repair(allNan, true).nan, 4u);
+  EXPECT_EQ(allNan.rgb(1, 1), Rgb(0));
 }
 
-// Mean over the sphere of |a - b|, over that of b, after `a` is scaled to b's mean.
-double disagreement(const Image& a, const Image& b) {
+// Mean of |a - b| over the sphere, divided by the mean of b, after scaling `a` to b's mean.
+double relativeDifference(const Image& a, const Image& b) {
   Image difference(b.width, b.height, 3);
   const double meanB = luminance(Rgb(meanRadiance(b)));
   const float scale = float(meanB / luminance(Rgb(meanRadiance(a))));
@@ -147,13 +147,13 @@ TEST(Convert, CrossAgreesWithAngularMap) {
     return convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, small);
   };
   const Image a = load(*cross, Mapping::VerticalCross), b = load(*angular, Mapping::AngularMap);
-  EXPECT_LT(disagreement(a, b), 0.05);
+  EXPECT_LT(relativeDifference(a, b), 0.05);
   EXPECT_NEAR(luminance(Rgb(meanRadiance(a))) / luminance(Rgb(meanRadiance(b))), 1, 0.005);
   // Control: a rotation by 10 degrees gives a large difference.
-  EXPECT_GT(disagreement(convert(a, Mapping::LatLong, Mapping::LatLong, small, 10), b), 0.2);
+  EXPECT_GT(relativeDifference(convert(a, Mapping::LatLong, Mapping::LatLong, small, 10), b), 0.2);
 }
 
-// The centre of OpenEXR's lat-long maps shows +Z, here -Z: they are turned when loaded.
+// The centre of a lat-long map is +Z in OpenEXR and -Z here: the loader rotates OpenEXR's maps.
 TEST(Convert, StripAgreesWithOpenExrsLatLong) {
   const auto strip = sharedData("probes/openexr/StageEnvCube.exr");
   const auto latLong = sharedData("probes/openexr/StageEnvLatLong.exr");
@@ -161,8 +161,8 @@ TEST(Convert, StripAgreesWithOpenExrsLatLong) {
   const ImageSize small{128, 64};
   const Image a = convert(loadProbe(*strip).latLong, Mapping::LatLong, Mapping::LatLong, small);
   const Image b = convert(loadProbe(*latLong).latLong, Mapping::LatLong, Mapping::LatLong, small);
-  EXPECT_LT(disagreement(a, b), 0.1);
-  EXPECT_GT(disagreement(convert(a, Mapping::LatLong, Mapping::LatLong, small, 90), b), 0.3);
+  EXPECT_LT(relativeDifference(a, b), 0.1);
+  EXPECT_GT(relativeDifference(convert(a, Mapping::LatLong, Mapping::LatLong, small, 90), b), 0.3);
 }
 
 }  // namespace

@@ -18,11 +18,11 @@ Surroundings room() {
   return s;
 }
 
-enum class Furnishing { None, Screen };
+enum class Furniture { None, Screen };
 
 // The box as a mesh, with walls of both orientations. The screen hides a corner of the room from
 // the capture point.
-Scene boxModel(bool hasCeiling, Furnishing furnishing) {
+Scene boxModel(bool hasCeiling, Furniture furniture) {
   Scene scene;
   const int grey = addMaterial(scene, lambert(Rgb(0.5f)));
   const vec3 size = kMax - kMin, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
@@ -32,13 +32,12 @@ Scene boxModel(bool hasCeiling, Furnishing furnishing) {
   addQuad(scene, grey, kMax, -x, -y);
   addQuad(scene, grey, kMax, -y, -z);
   if (hasCeiling) addQuad(scene, grey, kMax, -z, -x);
-  if (furnishing == Furnishing::Screen)
-    addQuad(scene, grey, {-1, 0, 0.6f}, {0, 2, 0}, {0, 0, 1.4f});
+  if (furniture == Furniture::Screen) addQuad(scene, grey, {-1, 0, 0.6f}, {0, 2, 0}, {0, 0, 1.4f});
   return scene;
 }
 
 TEST(Room, AModelOfABoxEqualsTheAnalyticBox) {
-  const Room walls(boxModel(true, Furnishing::None), kCapture, "test");
+  const Room walls(boxModel(true, Furniture::None), kCapture, "test");
   for (uint64_t i = 0; i < 1000; ++i) {
     const vec3 from = kCapture + 0.9f * toUnit(uint32_t(hash(i, 7))) * sphereDirection(i + 1000);
     const auto expected = box().behind(from, sphereDirection(i));
@@ -50,7 +49,7 @@ TEST(Room, AModelOfABoxEqualsTheAnalyticBox) {
 }
 
 TEST(Room, AnOpeningShowsTheDistantProbe) {
-  const Room walls(boxModel(false, Furnishing::None), kCapture, "test");
+  const Room walls(boxModel(false, Furniture::None), kCapture, "test");
   const Surroundings surroundings = room();
   const Probe probe(gradientProbe({32, 16}, Rgb(0.3f), {0.2, 0.6, 0.3}));
   const FiniteSurroundings lighting(makeStrategy("importance", probe, Mis::Balance, "test"), probe,
@@ -62,7 +61,7 @@ TEST(Room, AnOpeningShowsTheDistantProbe) {
 }
 
 TEST(Room, AScreenOccludesTheWallBehindIt) {
-  const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
+  const Room walls(boxModel(true, Furniture::Screen), kCapture, "test");
   const vec3 corner(-1.99f, 0.5f, 1.5f);
   EXPECT_FALSE(walls.isSeen(corner, kCapture));
   EXPECT_TRUE(walls.isSeen(corner, {-1.9f, 0.5f, 0}));
@@ -73,7 +72,7 @@ TEST(Room, AScreenOccludesTheWallBehindIt) {
 // BSDF samples do not depend on visibility from the capture point; light samples must agree.
 TEST(SlowRoom, StrategiesAgreeWhenWallsOccludeEachOther) {
   const Probe probe(spotted(), 25);
-  const Room walls(boxModel(true, Furnishing::Screen), kCapture, "test");
+  const Room walls(boxModel(true, Furniture::Screen), kCapture, "test");
   const Surroundings surroundings = room();
   const auto lighting = [&](const char* name) {
     return FiniteSurroundings(makeStrategy(name, probe, Mis::Balance, "test"), probe, surroundings,
@@ -91,7 +90,7 @@ TEST(SlowRoom, StrategiesAgreeWhenWallsOccludeEachOther) {
 
 TEST(Room, RejectsEmptyModelsAndCapturePointsOutside) {
   EXPECT_THROW(Room(Scene(), kCapture, "test"), InputError);
-  EXPECT_THROW(Room(boxModel(true, Furnishing::None), {0, 5, 0}, "test"), InputError);
+  EXPECT_THROW(Room(boxModel(true, Furniture::None), {0, 5, 0}, "test"), InputError);
 }
 
 }  // namespace
