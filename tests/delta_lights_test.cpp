@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rendering with directional lights in the probe's place: all of the light, and each of it once.
+// Rendering with directional lights instead of the probe: no light is lost or counted twice.
 #include "lighting/delta_lights.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ void expectNear(const Rgb& a, const dvec3& b, double relative) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], relative * b[c]);
 }
 
-// Sum over the samples at `point` of f(wi) x irradiance, averaged over many random numbers.
+// Mean over random numbers of the sum over light samples of f(wi) x irradiance at `point`.
 template <class F>
 dvec3 meanEstimate(const LightingStrategy& lighting, const LightPoint& point, uint64_t seed, F f,
                    uint32_t count = 1024) {
@@ -76,7 +76,7 @@ TEST(SlowDeltaLights, fittedLightsGiveTheExactIrradianceWithinTheErrorOfTheFit) 
   }
 }
 
-TEST(DeltaLights, ambientLightIsSeenFromEveryPointOfAPlane) {
+TEST(DeltaLights, ambientLightReachesEveryPointOfAPlane) {
   const Probe probe(constantProbe({8, 4}, Rgb(100)));
   const DeltaLights lighting(probe, {{glm::normalize(vec3(1, 1, 0)), Rgb(2, 0, 1)}},
                              Rgb(0.5f, 0.25f, 0));
@@ -93,7 +93,7 @@ TEST(DeltaLights, ambientLightIsSeenFromEveryPointOfAPlane) {
   }
 }
 
-TEST(DeltaLights, perfectMirrorsSeeTheProbeAndNoLights) {
+TEST(DeltaLights, perfectMirrorsReflectTheProbeAndNoLights) {
   Scene scene;
   Material mirror;
   mirror.roughness = 0;
@@ -107,9 +107,9 @@ TEST(DeltaLights, perfectMirrorsSeeTheProbeAndNoLights) {
               expected.texels);
 }
 
-// A nearly perfect mirror, which the lights would leave black but for points: within the noise the
-// picture is the one of the unbiased strategy, and a white one keeps its energy.
-TEST(DeltaLights, nearMirrorsSeeTheProbe) {
+// On a nearly perfect mirror, directional lights would show only as bright dots. Up to noise, the
+// image equals that of the unbiased strategy, and a mirror of albedo 1 conserves energy.
+TEST(DeltaLights, nearMirrorsReflectTheProbe) {
   const Camera camera = Camera::lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.7f);
   const RenderSettings settings = smallRender(16, 16, 64, 3);
   for (const float roughness : {0.03f, 0.15f}) {
@@ -132,9 +132,9 @@ TEST(DeltaLights, nearMirrorsSeeTheProbe) {
   }
 }
 
-// In a constant probe everything white is as bright as the probe, whatever bounces there are. Light
-// that counted twice, or never, would show by a multiple of what the lights are off by.
-TEST(DeltaLights, aWhiteFurnaceKeepsItsEnergy) {
+// White furnace test with interreflection. Light that is lost or counted twice causes an error many
+// times larger than the approximation error of the lights.
+TEST(DeltaLights, aWhiteFurnaceConservesEnergy) {
   Scene scene;
   const int white = addMaterial(scene, lambert(Rgb(1)));
   addQuad(scene, white, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
@@ -151,8 +151,9 @@ TEST(DeltaLights, aWhiteFurnaceKeepsItsEnergy) {
   }
 }
 
-// Chosen in proportion to irradiance x cosine and raised by as much: the same light on average.
-TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
+// At later hits, a few lights are chosen with a probability proportional to irradiance x cosine and
+// divided by it: the estimate is unbiased.
+TEST(DeltaLights, laterHitsSampleFewLightsWithoutBias) {
   const Probe probe(studioProbe({64, 32}), 70);
   const Constellation lights =
       makeLights("lightgen", probe.latLong(), {.count = 40, .seed = 1}).lights;
@@ -160,7 +161,7 @@ TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
   LightPoint point{};
   point.normal = glm::normalize(vec3(0.5f, 0.3f, -0.4f));
   const auto cosine = [&](const vec3& wi) { return std::max(glm::dot(wi, point.normal), 0.0f); };
-  // Half of the lights in shadow, and a lobe around a direction.
+  // An integrand with half of the lights in shadow and a lobe around a direction.
   const auto other = [&](const vec3& wi) {
     return wi.x > 0.2f ? cosine(wi) * std::pow(std::max(wi.y, 0.0f), 5.0f) : 0;
   };
@@ -180,14 +181,14 @@ TEST(DeltaLights, laterHitsGetFewLightsWorthAllOfThem) {
   }
 }
 
-// A point whose light may come from behind its normal, or from beyond it to a layer that has
-// another.
+// A point whose BSDF is not 0 below the shading normal: by transmission, or by a coat with another
+// normal.
 class ExtendedLightPoint {
  public:
   ExtendedLightPoint(float roughness, float transmission, bool thinWalled, bool coated) {
     Surface surface{};
     surface.geometricNormal = {0, 0, 1};
-    surface.normal = glm::normalize(vec3(1, 0.5f, 0.8f));  // as a bump's; the coat has none
+    surface.normal = glm::normalize(vec3(1, 0.5f, 0.8f));  // as of a bump map; the coat has none
     surface.frontFace = true;
     ExtendedPoint extended;
     extended.transmission = transmission;
@@ -208,7 +209,7 @@ class ExtendedLightPoint {
     return point;
   }
   float reflected(const vec3& wi) const { return bsdf_->evaluate(wi).fCos.y; }
-  float fromBeyond(const vec3& wi) const {
+  float fromBelow(const vec3& wi) const {
     return glm::dot(wi, bsdf_->normal()) > 0 ? 0 : reflected(wi);
   }
 
@@ -217,8 +218,9 @@ class ExtendedLightPoint {
   LightPoint point_;
 };
 
-// No light that shines on a surface may be out of the reach of later hits, whatever the strategy.
-TEST(SlowDeltaLights, laterHitsReachEveryLightThatShines) {
+// At later hits, every light with a contribution must have a probability above 0, in all
+// strategies.
+TEST(SlowDeltaLights, laterHitsSampleEveryContributingLight) {
   struct Case {
     const char* name;
     float roughness, transmission;
@@ -240,23 +242,23 @@ TEST(SlowDeltaLights, laterHitsReachEveryLightThatShines) {
         return meanEstimate(*lighting, here.at(depth), 1, f, depth == 0 ? 1 : 256);
       };
       const auto reflected = [&](const vec3& wi) { return here.reflected(wi); };
-      const auto fromBeyond = [&](const vec3& wi) { return here.fromBeyond(wi); };
+      const auto fromBelow = [&](const vec3& wi) { return here.fromBelow(wi); };
       const dvec3 all = mean(0, reflected), few = mean(1, reflected);
-      const dvec3 allBeyond = mean(0, fromBeyond), fewBeyond = mean(1, fromBeyond);
+      const dvec3 allBelow = mean(0, fromBelow), fewBelow = mean(1, fromBelow);
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(few[k] / all[k], 1, 0.02) << name << ", " << c.name;
-        EXPECT_NEAR(fewBeyond[k] / all[k], allBeyond[k] / all[k], 0.02) << name << ", " << c.name;
+        EXPECT_NEAR(fewBelow[k] / all[k], allBelow[k] / all[k], 0.02) << name << ", " << c.name;
       }
-      EXPECT_GT(allBeyond.y, 1e-3 * all.y) << name << ", " << c.name;
+      EXPECT_GT(allBelow.y, 1e-3 * all.y) << name << ", " << c.name;
     }
   }
 }
 
-TEST(DeltaLights, turnWithTheProbe) {
+TEST(DeltaLights, rotateWithTheProbe) {
   Scene scene;
   addSphere(scene, addMaterial(scene, lambert(Rgb(0.8f))), vec3(0), 1, 32);
   const Image map = studioProbe({64, 32});
-  const auto picture = [&](const vec3& eye, float rotation, const char* strategy) {
+  const auto renderMean = [&](const vec3& eye, float rotation, const char* strategy) {
     const Camera camera = Camera::lookAt(eye, vec3(0), {0, 1, 0}, 0.6f);
     return meanColor(
         renderScene(scene, camera, Probe(map, rotation), strategy, smallRender(16, 16, 16, 1))
@@ -264,13 +266,13 @@ TEST(DeltaLights, turnWithTheProbe) {
   };
   // Counter-clockwise seen from above, +Z goes to +X.
   for (const char* strategy : {"median-cut:16", "kollig-keller-strata:16"}) {
-    const Rgb still = picture({0, 1, 4}, 0, strategy);
-    expectNear(picture({4, 1, 0}, 90, strategy), still, 5e-3);
-    EXPECT_GT(std::fabs(picture({4, 1, 0}, -90, strategy).y - still.y), 0.05 * still.y);
+    const Rgb unrotated = renderMean({0, 1, 4}, 0, strategy);
+    expectNear(renderMean({4, 1, 0}, 90, strategy), unrotated, 5e-3);
+    EXPECT_GT(std::fabs(renderMean({4, 1, 0}, -90, strategy).y - unrotated.y), 0.05 * unrotated.y);
   }
 }
 
-TEST(DeltaLights, blackProbesGiveBlackPictures) {
+TEST(DeltaLights, blackProbesGiveBlackImages) {
   const Probe probe(constantProbe({8, 4}, Rgb(0)));
   for (const char* strategy :
        {"median-cut:4", "variance-cut:4", "lightgen:4", "kollig-keller:4", "kollig-keller-strata:4",
@@ -317,7 +319,7 @@ TEST(StrategyTable, helpListsEveryStrategy) {
   EXPECT_NE(help.find("(N 2 to 4096, default 300)"), std::string::npos);
 }
 
-TEST(StrategyTable, namesAreSpelledOut) {
+TEST(StrategyTable, resolvedNamesIncludeTheCount) {
   EXPECT_EQ(resolveStrategy("importance"), "importance");
   EXPECT_EQ(resolveStrategy("median-cut:7"), "median-cut:7");
   EXPECT_TRUE(resolveStrategy("median-cut").starts_with("median-cut:"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of depth: what they count, and what they take.
+// Limits of path length: which bounces they count, and how much light they cut.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ Material glass(float roughness) {
   return m;
 }
 
-// A hollow ball of glass, whose walls carry light along their rim.
+// A hollow glass ball; its walls guide light along the rim, by long paths of total reflection.
 Scene vase(float roughness) {
   Scene scene;
   const int material = addMaterial(scene, glass(roughness));
@@ -34,14 +34,15 @@ Scene vase(float roughness) {
   return scene;
 }
 
-RenderResult look(const Scene& scene, RenderSettings settings, const Probe& probe = whiteProbe()) {
+RenderResult renderTop(const Scene& scene, RenderSettings settings,
+                       const Probe& probe = whiteProbe()) {
   return renderScene(scene, topCamera(4, 30), probe, "importance", settings);
 }
 
-// All that is missing of white is what the limits cut.
-TEST(Depth, AWhiteFurnaceHidesAVaseAtTheUsualDepth) {
+// White furnace test: only the light that the default limits cut is missing.
+TEST(Depth, AVaseAtTheDefaultDepthPassesTheWhiteFurnaceTest) {
   for (const float roughness : {0.0f, 0.2f}) {
-    const RenderResult r = look(vase(roughness), smallRender(16, 16, 40, 8));
+    const RenderResult r = renderTop(vase(roughness), smallRender(16, 16, 40, 8));
     const Image image = r.film.mean();
     EXPECT_NEAR(meanColor(image).y, 1, roughness > 0 ? 0.01 : 0.003) << roughness;
     float darkest = 1;
@@ -51,54 +52,55 @@ TEST(Depth, AWhiteFurnaceHidesAVaseAtTheUsualDepth) {
   }
 }
 
-TEST(Depth, GlassHasALimitOfItsOwn) {
+TEST(Depth, TransmissiveBodiesHaveTheirOwnLimit) {
   RenderSettings settings = smallRender(16, 16, 64, 8);
   settings.maxTransmissionDepth = 2;
-  const RenderResult r = look(vase(0), settings);
+  const RenderResult r = renderTop(vase(0), settings);
   EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
   const DepthCut& cut = r.depthCut;
   EXPECT_EQ(cut.byDepth, 0);
   EXPECT_NEAR(cut.fraction(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
 }
 
-// Other materials count their bounces as ever: 0 is what the camera sees shine, 1 direct light.
-TEST(Depth, MirrorsAndMatteThingsUseItUp) {
+// Bounces on other materials count for maxDepth: 0 is visible emission only, 1 adds direct light.
+TEST(Depth, MirrorsAndMatteSurfacesCountForMaxDepth) {
   Material mirror;
   mirror.roughness = 0;
   for (const Material& m : {mirror, lambert(Rgb(1))}) {
     Scene scene;
     addQuad(scene, addMaterial(scene, m), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
-    EXPECT_EQ(meanColor(look(scene, smallRender(4, 4, 16, 0)).film.mean()).y, 0);
-    EXPECT_NEAR(meanColor(look(scene, smallRender(4, 4, 256, 1)).film.mean()).y, 1, 0.01);
+    EXPECT_EQ(meanColor(renderTop(scene, smallRender(4, 4, 16, 0)).film.mean()).y, 0);
+    EXPECT_NEAR(meanColor(renderTop(scene, smallRender(4, 4, 256, 1)).film.mean()).y, 1, 0.01);
   }
 }
 
-// A floor under a pane: the bounce on the floor is the one that counts, whatever the pane's
-// refraction takes; what the pane throws back would be a second.
-TEST(Depth, GlassBeforeMatteThingsLeavesThemTheirBounces) {
+// A floor below a pane: with maxDepth 1, the only counted bounce is that on the floor, because
+// refraction by the pane does not count. Light reflected by the pane onto the floor needs two.
+TEST(Depth, RefractionDoesNotCountForMaxDepth) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
   const int pane = addMaterial(scene, glass(0));
   addQuad(scene, pane, {-9, 2, 9}, {18, 0, 0}, {0, 0, -18});
   addQuad(scene, pane, {-9, 1.9f, -9}, {18, 0, 0}, {0, 0, 18});
-  // Found by the bounce from the floor through the pane alone, until maxDepth lets the floor see
-  // itself in it.
+  // With depth 1 the floor is lit through the pane only; with depth 2 also by its own reflection in
+  // the pane.
   const auto mean = [&](int depth) {
-    return meanColor(look(scene, smallRender(8, 8, 256, depth)).film.mean()).y;
+    return meanColor(renderTop(scene, smallRender(8, 8, 256, depth)).film.mean()).y;
   };
   EXPECT_GT(mean(1), 0.4f);
   EXPECT_GT(mean(2), mean(1) + 0.01f);
 }
 
-// In a closed room of albedo a that shines evenly, d bounces find 1 - a^(d+1) of the light.
-TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
+// In a closed room of albedo a and uniform emission, d bounces find the fraction 1 - a^(d+1) of the
+// light.
+TEST(Depth, TheCutFractionIsEstimatedWithoutBias) {
   constexpr double kAlbedo = 0.7;
   Scene scene;
   Material wall = lambert(Rgb(float(kAlbedo)));
   wall.emission = Rgb(1);
   addSphere(scene, addMaterial(scene, wall), vec3(0), -5, 16, false);
   for (const int depth : {1, 3}) {
-    const RenderResult r = look(scene, smallRender(16, 16, 512, depth));
+    const RenderResult r = renderTop(scene, smallRender(16, 16, 512, depth));
     const DepthCut& cut = r.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
     EXPECT_NEAR(cut.fraction(cut.byDepth) / expected, 1, 0.12) << depth;
@@ -107,10 +109,10 @@ TEST(Depth, TheShareThatIsCutIsToldWithoutBias) {
   }
 }
 
-TEST(Depth, NothingIsCutOfAnOpenScene) {
+TEST(Depth, NothingIsCutInAConvexOpenScene) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
-  const DepthCut cut = look(scene, smallRender(16, 16, 64, 1)).depthCut;
+  const DepthCut cut = renderTop(scene, smallRender(16, 16, 64, 1)).depthCut;
   EXPECT_EQ(cut.byDepth, 0);
   EXPECT_GT(cut.found, 0);
 }
@@ -120,11 +122,11 @@ TEST(Depth, LargestLimitsDoNotOverflow) {
   settings.maxTransmissionDepth = INT_MAX;
   Scene scene = vase(0);
   scene.materials[0].extended->attenuation = Rgb(1);
-  EXPECT_GT(meanColor(look(scene, settings).film.mean()).y, 0.3f);
+  EXPECT_GT(meanColor(renderTop(scene, settings).film.mean()).y, 0.3f);
 }
 
-// A composite's paths have the same limits, alone and in both worlds.
-TEST(Depth, AVaseInAPhotographIsWhiteToo) {
+// The paths of composites have the same limits, with one pass and with two.
+TEST(Depth, AVaseInACompositePassesTheWhiteFurnaceTest) {
   Scene scene = vase(0);
   addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
   const ObjectMask isObject{true, true, false};
@@ -145,14 +147,14 @@ TEST(Depth, AVaseInAPhotographIsWhiteToo) {
         covered += r.film.at(x, y).covered;
       }
     EXPECT_GT(covered, 0);
-    // The camera's background is the plate, black here: only what glass sees by reflection and
-    // refraction, which is the probe.
+    // Camera rays see the black plate as background; rays reflected or refracted by glass see the
+    // probe.
     EXPECT_NEAR(objects.y / covered, 1, 0.03) << int(passes);
   }
 }
 
-TEST(Depth, TheCommandSaysWhatIsCut) {
-  GltfWriter w;  // a closed room that shines: a tetrahedron seen from inside
+TEST(Depth, TheCommandReportsTheCutFraction) {
+  GltfWriter w;  // a closed emissive room: a tetrahedron seen from inside
   w.add("materials", {{"doubleSided", true},
                       {"emissiveFactor", {1, 1, 1}},
                       {"pbrMetallicRoughness",

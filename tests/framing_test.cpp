@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras for scenes without one: ground planes are not framed, rooms are seen from inside.
+// Cameras for scenes without one: ground planes are not framed, rooms are viewed from inside.
 #include "scene/framing.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kAspect = 1.5f;
 
-// The image point of a position: u right and v down, both in [0, 1].
-vec2 seenAt(const Camera& camera, const vec3& point) {
+// Projects a position to the image: u right and v down, both in [0, 1].
+vec2 project(const Camera& camera, const vec3& point) {
   const vec3 q = point - camera.position;
   const float depth = -glm::dot(q, camera.back), half = std::tan(0.5f * camera.fov);
   return {0.5f + 0.5f * glm::dot(q, camera.right) / (depth * half * kAspect),
@@ -21,12 +21,12 @@ vec2 seenAt(const Camera& camera, const vec3& point) {
 
 // The fraction of the image's width or height that a mesh covers, whichever is larger; 0 if a part
 // of it is out of view.
-float samplesOf(const Camera& camera, const Mesh& mesh) {
+float imageFraction(const Camera& camera, const Mesh& mesh) {
   vec2 minimum(1e9f), maximum(-1e9f);
   for (const vec3& p : mesh.positions) {
     if (glm::dot(p - camera.position, camera.back) >= 0) return 0;
-    minimum = glm::min(minimum, seenAt(camera, p));
-    maximum = glm::max(maximum, seenAt(camera, p));
+    minimum = glm::min(minimum, project(camera, p));
+    maximum = glm::max(maximum, project(camera, p));
   }
   if (std::min(minimum.x, minimum.y) < 0 || std::max(maximum.x, maximum.y) > 1) return 0;
   return std::max(maximum.x - minimum.x, maximum.y - minimum.y);
@@ -45,7 +45,7 @@ void addGround(Scene& scene, vec2 from, float size) {
 TEST(Framing, GroundsOfAnySizeAndNumberOfTilesAreNotFramed) {
   Scene scene = ball();
   const Camera alone = framingCamera(scene, kAspect);
-  EXPECT_GT(samplesOf(alone, scene.meshes[0]), 0.9f);
+  EXPECT_GT(imageFraction(alone, scene.meshes[0]), 0.9f);
   for (const float size : {20.0f, 100.0f, 10000.0f}) {
     Scene grounded = ball();
     addGround(grounded, vec2(-size / 2), size);
@@ -53,17 +53,17 @@ TEST(Framing, GroundsOfAnySizeAndNumberOfTilesAreNotFramed) {
   }
   for (int x = -5; x < 5; ++x)
     for (int z = -5; z < 5; ++z) addGround(scene, 10.0f * vec2(x, z), 10);
-  EXPECT_GT(samplesOf(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
+  EXPECT_GT(imageFraction(framingCamera(scene, kAspect), scene.meshes[0]), 0.5f);
 }
 
 TEST(Framing, FlatObjectsOtherThanGroundsAreFramed) {
-  Scene board = ball();  // on a board twice as wide
+  Scene board = ball();  // a ball on a board twice as wide
   addGround(board, vec2(-2), 4);
-  EXPECT_GT(samplesOf(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
-  Scene flat;  // with nothing on it
+  EXPECT_GT(imageFraction(framingCamera(board, kAspect), board.meshes[1]), 0.7f);
+  Scene flat;  // a board without anything on it
   addMaterial(flat, lambert(Rgb(0.5f)));
   addGround(flat, vec2(-50), 100);
-  EXPECT_GT(samplesOf(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
+  EXPECT_GT(imageFraction(framingCamera(flat, kAspect), flat.meshes[0]), 0.7f);
 }
 
 // Walls, floor and ceiling of a room with the given outline (counter-clockwise seen from above),
@@ -100,7 +100,7 @@ TEST(Framing, RoomsAreSeenFromInsideAlongTheirLength) {
     EXPECT_TRUE(eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
     EXPECT_TRUE(eye.y > 1 && eye.y < 2.2f) << eye.y;
     const float wall = camera.back.x < 0 ? 8 - eye.x : eye.x;
-    EXPECT_GT(wall, 6) << "it looks at the far wall";
+    EXPECT_GT(wall, 6) << "must look at the far wall";
     EXPECT_GT(std::fabs(camera.back.x), 0.7f);
     EXPECT_NEAR(camera.right.y, 0, 1e-6f);
   }
@@ -134,13 +134,13 @@ TEST(Framing, MirroredInstancesKeepTheirFrontFaces) {
   EXPECT_TRUE(eye.x < 0 && eye.x > -8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
 }
 
-// Walls with two faces, 0.2 m thick, around `furniture` boxes; no ceiling.
+// Walls with inner and outer faces, 0.2 m thick, around `furniture` balls, without a ceiling.
 Scene doubleWalls(int furniture, float scale) {
   Scene scene = room(kHall, 3);
   const Scene outer = room({{-0.2f, -0.2f}, {-0.2f, 5.2f}, {8.2f, 5.2f}, {8.2f, -0.2f}}, 3, false);
   for (const Mesh& mesh : outer.meshes) addMesh(scene, 0, mesh);
   addQuad(scene, 0, vec3(0), vec3(0, 0, 5), vec3(8, 0, 0));
-  Mesh shell;  // as a single mesh
+  Mesh shell;  // walls and floor as a single mesh
   for (const Mesh& mesh : scene.meshes) {
     const uint32_t first = uint32_t(shell.positions.size());
     shell.positions.insert(shell.positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -160,8 +160,8 @@ TEST(Framing, FurnishedRoomsAreSeenFromInsideAndCupsFromOutside) {
     return eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5 && eye.y > 0 && eye.y < 3;
   };
   EXPECT_TRUE(isInside(doubleWalls(5, 1), 1));
-  EXPECT_FALSE(isInside(doubleWalls(0, 1), 1)) << "nothing in it";
-  EXPECT_FALSE(isInside(doubleWalls(5, 0.02f), 0.02f)) << "a box of beads";
+  EXPECT_FALSE(isInside(doubleWalls(0, 1), 1)) << "an empty box";
+  EXPECT_FALSE(isInside(doubleWalls(5, 0.02f), 0.02f)) << "a small box, 16 cm long";
 }
 
 TEST(Framing, OpenBoxesAreSeenFromOutside) {

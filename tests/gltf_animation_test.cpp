@@ -142,7 +142,7 @@ TEST(GltfAnimation, SkinsFollowTheirJoints) {
   EXPECT_NEAR(glm::distance(scene.meshes[0].normals[1], vec3(1, 0, 0)), 0, 1e-6);
 }
 
-TEST(GltfAnimation, IsChosenByNameOrIndex) {
+TEST(GltfAnimation, IsSelectedByNameOrIndex) {
   GltfWriter w;
   addTriangle(w);
   animate(w, 0, "translation", "STEP", scalars(w, {0}), w.vec3s({1, 0, 0}));
@@ -174,7 +174,7 @@ TEST(GltfAnimation, ChannelsWithoutANodeAreIgnored) {
     animate(w, 0, "translation", "STEP", scalars(w, {0}), w.vec3s({1, 0, 0}));
     w.root["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", target}});
     EXPECT_EQ(origin(w.load()).x, 0);
-    EXPECT_EQ(origin(at(w, 0)).x, 1) << "its other channels move";
+    EXPECT_EQ(origin(at(w, 0)).x, 1) << "the other channels must be applied";
     ASSERT_FALSE(w.warnings.empty());
     EXPECT_NE(w.warnings.back().find("animation"), std::string::npos) << w.warnings.back();
   }

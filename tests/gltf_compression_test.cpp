@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using Data = std::vector<uint8_t>;
 
-// The unit square in the plane z = 0, by the encoders of meshoptimizer and Draco: positions
+// The unit square in the plane z = 0, encoded by meshoptimizer and Draco: positions
 // (0,0) (1,0) (0,1) (1,1), indices 0 1 2 2 1 3, and for Draco the same as texture coordinates.
 const std::vector<float> kCorners = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 const Data kPositions = {0xa0, 0, 0,    1,    0x3f, 0, 0, 0, 0xff, 0xff, 0xff, 1, 0x3f, 0,

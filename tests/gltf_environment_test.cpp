@@ -99,7 +99,7 @@ TEST(GltfEnvironment, AlphaDividesAndIntensityMultiplies) {
       w.load(), [](const vec3& d) { return 15.0f * colors(d); }, 0.45f);
 }
 
-TEST(GltfEnvironment, RotationTurnsIt) {
+TEST(GltfEnvironment, RotationIsApplied) {
   GltfWriter w;
   addEnvironment(w);
   const glm::quat q = glm::normalize(glm::quat(0.7f, 0.3f, -0.5f, 0.2f));
@@ -108,7 +108,7 @@ TEST(GltfEnvironment, RotationTurnsIt) {
       w.load(), [&](const vec3& d) { return colors(glm::inverse(q) * d); }, 0.03f);
 }
 
-TEST(GltfEnvironment, IsReadOnlyIfTheSceneHasItAndItIsWanted) {
+TEST(GltfEnvironment, IsReadOnlyIfTheSceneHasItAndItIsRequested) {
   GltfWriter w;
   addEnvironment(w);
   const std::string path = w.save();
@@ -140,17 +140,17 @@ TEST(GltfEnvironment, InconsistentCoefficientsGiveAWarning) {
 }
 
 TEST(GltfEnvironment, InvalidEnvironmentsAreRejected) {
-  const auto errorMessage = [](const std::function<void(GltfWriter&)>& spoil) {
+  const auto errorMessage = [](const std::function<void(GltfWriter&)>& corrupt) {
     GltfWriter w;
     addEnvironment(w);
-    spoil(w);
+    corrupt(w);
     return w.errorMessage();
   };
   const auto expect = [&](const std::string& reason,
-                          const std::function<void(GltfWriter&)>& spoil) {
-    const std::string said = errorMessage(spoil);
-    EXPECT_NE(said.find(reason), std::string::npos) << "\"" << said << "\", not " << reason;
-    EXPECT_EQ(said.find('\n'), std::string::npos);
+                          const std::function<void(GltfWriter&)>& corrupt) {
+    const std::string message = errorMessage(corrupt);
+    EXPECT_NE(message.find(reason), std::string::npos) << "\"" << message << "\", not " << reason;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
   };
   const char* used = "EXT_lights_image_based";
   expect("lights[1] does not exist",
@@ -179,15 +179,15 @@ TEST(SlowGltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
   GltfWriter w;
   addEnvironment(w, [](const vec3&) { return Rgb(1); });
   const TemporaryFolder folder;
-  const std::string model = w.save(), picture = folder / "a.pfm";
+  const std::string model = w.save(), image = folder / "a.pfm";
   const auto corner =
       [&](std::vector<std::string> more) {  // of the image, where the environment is visible
-        std::vector<std::string> arguments = {"render", model, "-o",        picture,
+        std::vector<std::string> arguments = {"render", model, "-o",        image,
                                               "--size", "8x8", "--samples", "4"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const CommandResult result = runCommand(arguments);
         EXPECT_EQ(result.status, 0) << result.error;
-        return readImage(picture).rgb(7, 0).y;
+        return readImage(image).rgb(7, 0).y;
       };
   EXPECT_NEAR(corner({}), 1, 1e-3f);
   EXPECT_NEAR(corner({"--probe-scale", "3"}), 3, 3e-3f);

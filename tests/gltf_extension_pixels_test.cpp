@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample models of material extensions, normal maps and UV sets: the pixels show what their
-// documentation says.
+// Sample models of material extensions, normal maps and UV sets: the pixels match the models'
+// documentation.
 #include <gtest/gtest.h>
 
 #include "probe/synth.h"

@@ -133,9 +133,9 @@ TEST(GltfFile, FilesOutsideTheFolderNeedPermission) {
       {(elsewhere.folder() / "data.bin").string(), "is an absolute path"},
       {"link/data.bin", "is outside of the model's folder through a link"}};
   for (const auto& [uri, reason] : outside) {
-    const std::string said = errorMessage(uri, ExternalFiles::Refuse);
-    EXPECT_NE(said.find(reason), std::string::npos) << uri << ": " << said;
-    EXPECT_NE(said.find("--allow-external"), std::string::npos) << said;
+    const std::string message = errorMessage(uri, ExternalFiles::Refuse);
+    EXPECT_NE(message.find(reason), std::string::npos) << uri << ": " << message;
+    EXPECT_NE(message.find("--allow-external"), std::string::npos) << message;
     EXPECT_EQ(errorMessage(uri, ExternalFiles::Allow), "") << uri;
   }
   for (const char* uri : {"file:///etc/passwd", "https://example.org/x.bin", "C:/x", "data%3ax"})
@@ -192,7 +192,7 @@ TEST(GltfFile, RejectsAmplificationByReferences) {
   EXPECT_NE(w.errorMessage().find("out of proportion to the length"), std::string::npos);
 }
 
-// The message names the member that is missing or of the wrong type.
+// The message contains the member that is missing or has the wrong type.
 TEST(GltfFile, SkinsWithoutJointsAreNamedInTheMessage) {
   for (const json& joints : {json(), json("x"), json(3), json({1, "x"}), json::object()}) {
     GltfWriter w;

@@ -148,10 +148,10 @@ TEST(GltfMaterial, DanglingVariantsGiveAWarning) {
     w.root["materials"] = {{{"name", "own"}}, {{"name", "dark"}}};
     const json mappings = {{"mappings", {mapping}}};
     addTriangle(w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", mappings}}}});
-    std::string said;
-    loadGltf(w.save(), {}, [&](const std::string& line) { said += line + "\n"; },
+    std::string messages;
+    loadGltf(w.save(), {}, [&](const std::string& line) { messages += line + "\n"; },
              {.animation = {}, .variant = VariantChoice{variant, "--variant"}});
-    return said;
+    return messages;
   };
   const auto holds = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
@@ -186,7 +186,7 @@ TEST(GltfMaterial, MediaScaleWithTheModel) {
   EXPECT_NEAR(scene.materials[0].extended->attenuation.x, std::log(2) / 4, 1e-6);
 }
 
-TEST(GltfMaterial, OneImageServesBothEncodings) {
+TEST(GltfMaterial, OneImageCanBeUsedAsSrgbAndLinear) {
   GltfWriter w;
   const Scene scene = loadWith(
       w, {{"pbrMetallicRoughness",

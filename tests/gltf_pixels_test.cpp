@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample models that define their correct appearance: the renders must show it.
+// Sample models that document their correct appearance: the renders must match.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// Seen from the front by an orthographic camera of exactly the size of the model, in uniform light.
+// A front view by an orthographic camera of exactly the size of the model, under a constant probe.
 struct Front {
   Bounds box;
   Image image;

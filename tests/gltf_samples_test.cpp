@@ -26,7 +26,7 @@ std::vector<fs::path> modelsBelow(const fs::path& folder) {
 }
 
 // Checks the invariants of a scene.
-void expectSound(const Scene& scene) {
+void expectValid(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     const size_t n = mesh.positions.size();
     EXPECT_FALSE(mesh.triangles.empty());
@@ -73,7 +73,7 @@ TEST(SlowGltfSamples, EveryGoodModelLoads) {
     const std::string name = model.string();
     SCOPED_TRACE(name);
     try {
-      expectSound(loadGltf(name, {}, nullptr));
+      expectValid(loadGltf(name, {}, nullptr));
     } catch (const InputError& e) {
       const std::string message = e.what();
       EXPECT_TRUE(message.starts_with(name + ": "));
@@ -94,7 +94,7 @@ TEST(SlowGltfSamples, EveryMalformedModelIsRejectedInOneLineOrValid) {
   for (const fs::path& model : modelsBelow(*folder)) {
     SCOPED_TRACE(model.string());
     try {
-      expectSound(loadGltf(model.string(), {}, nullptr));
+      expectValid(loadGltf(model.string(), {}, nullptr));
     } catch (const InputError& e) {
       EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
     }
@@ -115,7 +115,7 @@ TEST(SlowGltfSamples, DamagedBytesNeverCrash) {
     if (i % 10 == 0) bad.resize(at);
     std::ofstream(target, std::ios::binary) << bad;
     try {
-      expectSound(loadGltf(target.string(), {}, nullptr));
+      expectValid(loadGltf(target.string(), {}, nullptr));
     } catch (const InputError&) {
     }
   }

@@ -52,7 +52,7 @@ TEST(Gltf, UnusedVerticesAreDropped) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(Gltf, MeshesWithOneInstanceAreBakedAndOthersShared) {
+TEST(Gltf, MeshesWithOneInstanceAreBakedOthersAreShared) {
   GltfWriter w;
   addTriangle(w, {}, {{"translation", {10, 0, 0}}, {"name", "alone"}});
   const int shared = w.mesh({{"attributes", {{"POSITION", w.vec3s({0, 0, 0, 2, 0, 0, 0, 2, 0})}}}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grid tables: interpolation, and what happens at their edges.
+// Grid tables: interpolation, and clamping at the edges.
 #include <gtest/gtest.h>
 
 #include "math/grid_table.h"
@@ -77,7 +77,7 @@ TEST(GridTable, positionsLieBetweenTwoNodes) {
     }
 }
 
-// Values of a type of their own are mixed by the function beside it.
+// Values of a user-defined type are interpolated by the type's own mix().
 struct Pair {
   float a, b;
   friend Pair mix(const Pair& x, const Pair& y, float t) {
@@ -85,7 +85,7 @@ struct Pair {
   }
 };
 
-TEST(GridTable, mixesValuesOfAnyType) {
+TEST(GridTable, interpolatesValuesOfAnyType) {
   GridTable<Pair, 2> line;
   line.node({0}) = {1, 10};
   line.node({1}) = {3, 30};

@@ -40,7 +40,7 @@ std::vector<fs::path> filesBelow(const fs::path& root, const std::set<std::strin
 }
 
 // Expects a single line that is not truncated: all brackets and quotes are closed.
-void expectWhole(const std::string& message) {
+void expectCompleteLine(const std::string& message) {
   const auto count = [&](char c) { return std::count(message.begin(), message.end(), c); };
   EXPECT_EQ(count('\n'), 0) << message;
   EXPECT_EQ(count('('), count(')')) << message;
@@ -61,7 +61,7 @@ std::string modelErrorMessage(const fs::path& path) {
   } catch (const InputError& error) {
     const std::string message = error.what();
     EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
-    expectWhole(message);
+    expectCompleteLine(message);
     return message.substr(std::min(message.size(), path.string().size() + 2));
   }
 }
@@ -75,14 +75,14 @@ std::string imageErrorMessage(const fs::path& path) {
     EXPECT_TRUE(isFinite(probe.radiance({0, 1, 0}))) << path;
     return "";
   } catch (const InputError& error) {
-    expectWhole(error.what());
+    expectCompleteLine(error.what());
     return error.what();
   }
 }
 
 TEST(SlowHostile, MalformedModelsAreRejectedOrRendered) {
   const auto root = sharedData("bad");
-  if (!root) GTEST_SKIP() << "../shared/data/bad is not there";
+  if (!root) GTEST_SKIP() << "no ../shared/data/bad";
   int rejected = 0, rendered = 0;
   for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"}))
     ++(modelErrorMessage(path).empty() ? rendered : rejected);
@@ -93,7 +93,7 @@ TEST(SlowHostile, MalformedModelsAreRejectedOrRendered) {
 // Models in which Khronos's validator finds no error must load.
 TEST(SlowHostile, ValidModelsAreRead) {
   const auto root = sharedData("bad/gltf-validator/base");
-  if (!root) GTEST_SKIP() << "../shared/data/bad/gltf-validator is not there";
+  if (!root) GTEST_SKIP() << "no ../shared/data/bad/gltf-validator";
   // Only warnings for the validator: a URI scheme, a missing file, an accessor of unknown type.
   const std::set<std::string> kRejected = {"non_relative_uri.gltf", "min_version_valid.gltf",
                                            "unknown_type.gltf"};
@@ -113,7 +113,7 @@ TEST(SlowHostile, ValidModelsAreRead) {
 
 TEST(SlowHostile, DamagedImagesAreRejectedOrRead) {
   const auto root = sharedData("bad/images");
-  if (!root) GTEST_SKIP() << "../shared/data/bad/images is not there";
+  if (!root) GTEST_SKIP() << "no ../shared/data/bad/images";
   int rejected = 0;
   for (const fs::path& path : filesBelow(*root, {".exr", ".png"})) {
     const bool isRejected = !imageErrorMessage(path).empty();
@@ -131,7 +131,7 @@ TEST(SlowHostile, DamagedImagesAreRejectedOrRead) {
 // The command prints one line and uses at most a gibibyte of memory.
 TEST(SlowHostile, TheCommandRejectsInOneLine) {
   const auto root = sharedData("bad");
-  if (!root) GTEST_SKIP() << "../shared/data/bad is not there";
+  if (!root) GTEST_SKIP() << "no ../shared/data/bad";
   const TemporaryFolder out;
   const std::string probe = out / "probe.hdr";
   writeImage(probe, constantProbe({8, 4}, Rgb(1)));

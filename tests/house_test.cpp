@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layout of the source tree: which folder may include which, which one folder includes each
-// third-party library, what the top level holds, and the licence of every file.
+// The layout of the source tree: the allowed includes between folders, the one folder that includes
+// each third-party library, the contents of the top level, and the licence of every file.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folder of renderer/: the folders it may include besides itself. A folder within another has a row
-// of its own, and neither includes the other unless its row says so.
+// Folder of renderer/: the folders it may include besides itself. A nested folder has its own row;
+// it and its parent may include each other only if their rows list it.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"base", {}},
     {"math", {"base"}},
@@ -51,8 +51,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"base", "math", "image", "image/io", "probe", "lighting", "measure", "job", "study"}},
 };
 
-// Header of a library: the only folder or file that may include it, as the start of its path.
-const std::map<std::string, std::string> kSeenBy = {
+// Header of a library: the only folder or file that may include it, as a path prefix.
+const std::map<std::string, std::string> kIncludedBy = {
     {"rtcore.h", "renderer/trace/"},
     {"OpenImageIO/", "renderer/image/io/"},
     {"webp/", "renderer/image/io/decode_webp.cpp"},
@@ -65,7 +65,7 @@ const std::map<std::string, std::string> kSeenBy = {
     {"CLI/", "tools/command/"},
 };
 
-// The faults of the includes of the file `path` (relative to the project), one line each.
+// The forbidden includes in the file `path` (relative to the project), one line each.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   static const std::regex kInclude(R"((?:^|\n)\s*#\s*include\s*([<"])([^>"]+)[>"])");
@@ -75,7 +75,7 @@ std::vector<std::string> violations(const std::string& path, const std::string& 
 
   for (std::sregex_iterator match(text.begin(), text.end(), kInclude), end; match != end; ++match) {
     const std::string header = (*match)[2];
-    for (const auto& [library, location] : kSeenBy)
+    for (const auto& [library, location] : kIncludedBy)
       if (header.find(library) != std::string::npos && !path.starts_with(location))
         found.push_back(path + " includes " + header + ": only " + location + " may");
     if (!inLibrary || (*match)[1] == "<") continue;
@@ -98,7 +98,7 @@ std::string contents(const fs::path& path) {
   return text.str();
 }
 
-TEST(House, IncludeCheckFindsFaults) {
+TEST(House, IncludeCheckFindsViolations) {
   const auto count = [](const char* path, const char* text) {
     return violations(path, text).size();
   };
@@ -121,7 +121,7 @@ TEST(House, IncludeCheckFindsFaults) {
             0u);
 }
 
-// The project's source and text files, relative to its folder; generated folders are left out.
+// The project's source and text files, relative to its folder, without generated folders.
 std::vector<fs::path> projectFiles(const std::set<std::string>& extensions) {
   const fs::path root = kSourceDir;
   std::vector<fs::path> files;
@@ -134,15 +134,15 @@ std::vector<fs::path> projectFiles(const std::set<std::string>& extensions) {
   return files;
 }
 
-TEST(House, IncludesGoOneWay) {
+TEST(House, IncludesFollowTheTable) {
   const std::vector<fs::path> files = projectFiles({".h", ".cpp"});
   for (const fs::path& path : files)
     for (const auto& violation : violations(path.generic_string(), contents(kSourceDir / path)))
       ADD_FAILURE() << violation;
-  EXPECT_GT(files.size(), 10u) << "the source tree is not where it was";
+  EXPECT_GT(files.size(), 10u) << "the source tree was not found";
 }
 
-TEST(House, SourcesNameTheirLicenceAtTheTop) {
+TEST(House, SourcesStartWithTheirLicence) {
   static const std::regex kSpdx(
       "(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n");
   std::vector<fs::path> files =
@@ -155,7 +155,7 @@ TEST(House, SourcesNameTheirLicenceAtTheTop) {
   }
 }
 
-TEST(House, TopLevelHoldsOnlyWhatIsListed) {
+TEST(House, TopLevelHasOnlyListedFiles) {
   const std::set<std::string> allowed = {"renderer",
                                          "tools",
                                          "tests",
@@ -172,7 +172,7 @@ TEST(House, TopLevelHoldsOnlyWhatIsListed) {
     const std::string name = entry.path().filename().string();
     const bool generated = entry.is_directory() && (name.starts_with("build") || name == "out");
     if (name.starts_with('.') || generated) continue;
-    EXPECT_TRUE(allowed.contains(name)) << name << " does not belong at the top level";
+    EXPECT_TRUE(allowed.contains(name)) << name << " is not in the list of the top level";
   }
 }
 

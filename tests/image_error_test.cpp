@@ -72,7 +72,8 @@ TEST(ImageError, ZScoresOfNormalNoise) {
   EXPECT_NEAR(z->standardDeviation, 1, 4 / std::sqrt(2 * 60000.0));
   EXPECT_NEAR(z->fractionBeyond3, 0.0027, 0.001);
 
-  // With only one of the variances the scores scatter more. A shift of one sigma is detected.
+  // With only one of the variances, the scores have a larger variance. A shift of one sigma is
+  // detected.
   EXPECT_GT(imageError(a, b, nullptr, &varianceB).zScores->standardDeviation, 1.5);
   for (size_t i = 0; i < a.texels.size(); ++i)
     a.texels[i] += std::sqrt(varianceA.texels[i] + varianceB.texels[i]);

@@ -18,8 +18,8 @@
 namespace chromeball {
 namespace {
 
-// Numbers over the whole range of float, with full mantissas.
-Image awkwardImage(int width, int height, int channels) {
+// Values over the whole range of float, with full mantissas.
+Image fullRangeImage(int width, int height, int channels) {
   Image image(width, height, channels);
   for (size_t i = 0; i < image.texels.size(); ++i)
     image.texels[i] = std::ldexp(1 + float(i % 97) / 97, int(i * 7 % 120) - 60);
@@ -40,9 +40,9 @@ void expectInputError(const std::string& path, const std::string& reason) {
   }
 }
 
-TEST(Image, ExrAndPfmKeepEveryBit) {
+TEST(Image, ExrAndPfmAreLossless) {
   const TemporaryFolder folder;
-  Image image = awkwardImage(17, 9, 3);
+  Image image = fullRangeImage(17, 9, 3);
   image.at(0, 0)[0] = std::numeric_limits<float>::infinity();
   image.at(1, 0)[0] = -1e6f;
   image.at(2, 0)[0] = 1e-40f;
@@ -52,7 +52,7 @@ TEST(Image, ExrAndPfmKeepEveryBit) {
   }
 }
 
-TEST(Image, ExrBeyondTheRangeOfHalf) {
+TEST(Image, ExrExceedsTheRangeOfHalf) {
   const TemporaryFolder folder;
   Image image(1, 1, 3);
   image.setRgb(0, 0, Rgb(1e7f, 3e38f, 1e-30f));
@@ -63,7 +63,7 @@ TEST(Image, ExrBeyondTheRangeOfHalf) {
 TEST(Image, HdrRoundsToTheNearestMantissa) {
   const TemporaryFolder folder;
   for (const int width : {3, 8, 200, 300}) {
-    const Image image = awkwardImage(width, 5, 3);
+    const Image image = fullRangeImage(width, 5, 3);
     writeImage(folder / "a.hdr", image);
     const Image back = readImage(folder / "a.hdr");
     ASSERT_EQ(back.width, width);
@@ -87,7 +87,7 @@ TEST(Image, HdrIsNotBiased) {
   EXPECT_NEAR(sumBack / sum, 1, 1e-4);
 }
 
-TEST(Image, HdrLongRunsSurvive) {
+TEST(Image, HdrLongRunsRoundTrip) {
   const TemporaryFolder folder;
   Image image(1000, 3, 3);
   for (int x = 0; x < 1000; ++x)
@@ -97,7 +97,7 @@ TEST(Image, HdrLongRunsSurvive) {
   EXPECT_EQ(readImage(folder / "a.hdr").texels, image.texels);
 }
 
-TEST(Image, HdrHeaderIsApplied) {
+TEST(Image, HdrExposureAndOrientationAreApplied) {
   const TemporaryFolder folder;
   const std::string texels{"\x80\x40\x20\x81\x10\x80\x10\x81", 8};  // (1, .5, .25), (.125, 1, .125)
   write(folder / "a.hdr",
@@ -166,8 +166,8 @@ TEST(Image, PngIsSrgbBothWays) {
 TEST(Image, LayersAndMetadata) {
   const TemporaryFolder folder;
   const std::string path = folder / "layers.exr";
-  const Image color = awkwardImage(4, 3, 4), albedo = awkwardImage(4, 3, 3);
-  const Image depth = awkwardImage(4, 3, 1), samples = awkwardImage(4, 3, 1);
+  const Image color = fullRangeImage(4, 3, 4), albedo = fullRangeImage(4, 3, 3);
+  const Image depth = fullRangeImage(4, 3, 1), samples = fullRangeImage(4, 3, 1);
   writeImage(path, OutputImage{{{"", "RGBA", color},
                                 {"normal", "XYZ", albedo},
                                 {"variance", "RGB", albedo},
@@ -191,7 +191,7 @@ TEST(Image, LayersAndMetadata) {
 
 TEST(Image, ColourOfLayersAndGrey) {
   const TemporaryFolder folder;
-  const Image color = awkwardImage(4, 3, 3), grey = awkwardImage(4, 3, 1);
+  const Image color = fullRangeImage(4, 3, 3), grey = fullRangeImage(4, 3, 1);
   writeImage(folder / "a.exr", OutputImage{{{"beauty", "RGB", color}}, {}});
   EXPECT_EQ(readImage(folder / "a.exr").texels, color.texels);
   for (const char* name : {"g.exr", "g.pfm"}) {
@@ -204,7 +204,7 @@ TEST(Image, ColourOfLayersAndGrey) {
 
 TEST(Image, WritesAllOrNothing) {
   const TemporaryFolder folder;
-  const Image image = awkwardImage(4, 4, 3);
+  const Image image = fullRangeImage(4, 4, 3);
   for (const char* name : {"a.exr", "a.hdr", "a.pfm", "a.png"}) {
     writeImage(folder / name, image);
     writeImage(folder / name, image);  // replaces
@@ -265,9 +265,9 @@ TEST(ToneMap, KnownPoints) {
   EXPECT_NEAR(display({ToneOperator::PbrNeutral}, Rgb(0.5f)).x, 0.46f, 1e-6f);
   EXPECT_NEAR(display({ToneOperator::Filmic}, Rgb(11.2f)).x, 1, 1e-5f);
   const float infinity = std::numeric_limits<float>::infinity();
-  const Rgb odd(infinity, -1, std::numeric_limits<float>::quiet_NaN());
+  const Rgb invalid(infinity, -1, std::numeric_limits<float>::quiet_NaN());
   for (const std::string_view name : toneOperatorNames())
-    EXPECT_TRUE(isFinite(display({parseToneOperator(name)}, odd))) << name;
+    EXPECT_TRUE(isFinite(display({parseToneOperator(name)}, invalid))) << name;
 }
 
 }  // namespace

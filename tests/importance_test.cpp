@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe's radiance function, and its importance sampling.
+// The probe's radiance function and its importance sampling.
 #include <gtest/gtest.h>
 
 #include "lighting/importance.h"
@@ -31,7 +31,7 @@ TEST(Probe, interpolatesBetweenTexelCentres) {
   EXPECT_NEAR(at(0.7, 1 - 1e-7), 24 + 3.5, 1e-3);
 }
 
-TEST(Probe, rotationTurnsTheEnvironmentCounterClockwiseFromAbove) {
+TEST(Probe, rotationIsCounterClockwiseSeenFromAbove) {
   const Image image = spot(64, 32, 32, 16, 1, 0);  // along -Z, a little right and down
   const vec3 feature(*uvToDirection(Mapping::LatLong, {32.5 / 64, 16.5 / 32}));
   for (float degrees : {0.0f, 90.0f, -30.0f, 725.0f}) {

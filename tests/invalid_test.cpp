@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that are no radiance, and those the user had clamped: what is left out is accounted for.
+// Invalid samples and clamped samples: what is discarded is counted.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = INFINITY;
 
-// Which of its samples a pixel is at.
+// Counts the samples of each pixel.
 class Counter {
  public:
   int next(const CameraSample& sample) const { return seen_[size_t(sample.y * 9 + sample.x)]++; }
@@ -23,7 +23,7 @@ class Counter {
   mutable std::array<std::atomic<int>, 64> seen_{};
 };
 
-// Every pixel's radiance is 1, but for each second sample of some.
+// Radiance 1, except for every second sample of a few pixels, which is invalid.
 class Faulty : public Integrator {
  public:
   Sample sample(const CameraSample& camera, PathContext&) const override {
@@ -48,7 +48,7 @@ RenderResult renderWith(const Integrator& integrator, RenderSettings settings) {
       integrator, world, Camera(), settings, [](double) {}, stop);
 }
 
-TEST(InvalidSamples, AreCountedByCauseAndPixelAndLeftOut) {
+TEST(InvalidSamples, AreCountedByCauseAndPixelAndDiscarded) {
   RenderSettings settings = smallRender(9, 6, 8, 1);
   settings.aovs = {Aov::Invalid};
   const RenderResult r = renderWith(Faulty(), settings);
@@ -56,7 +56,7 @@ TEST(InvalidSamples, AreCountedByCauseAndPixelAndLeftOut) {
   EXPECT_EQ(r.invalid.of(Defect::Infinite), 8u);
   EXPECT_EQ(r.invalid.of(Defect::Negative), 4u);
   EXPECT_EQ(r.invalid.total(), 16u);
-  EXPECT_EQ(std::pair(r.invalid.x, r.invalid.y), std::pair(5, 2));  // the first in reading order
+  EXPECT_EQ(std::pair(r.invalid.x, r.invalid.y), std::pair(5, 2));  // the first in scanline order
 
   const Image counts = r.aovs.finished(Aov::Invalid), mean = r.film.mean();
   const Image samples = r.film.sampleCounts();
@@ -85,27 +85,28 @@ class Firefly : public Integrator {
   Counter counter_;
 };
 
-TEST(Clamp, IsOffUnlessAskedAndSaysWhatItTook) {
+TEST(Clamp, IsOffByDefaultAndReportsTheLoss) {
   RenderSettings settings = smallRender(3, 2, 4, 1);
   RenderResult r = renderWith(Firefly(), settings);
   const double bright = luminance(Rgb(20, 10, 0));
   EXPECT_EQ(r.clamped.count, 0u);
   EXPECT_EQ(r.clamped.fractionRemoved(), 0);
-  EXPECT_NEAR(luminance(r.film.mean().rgb(0, 0)), 0.5 * (1 + bright), 1e-5);  // two blocks of two
+  EXPECT_NEAR(luminance(r.film.mean().rgb(0, 0)), 0.5 * (1 + bright),
+              1e-5);  // 2 blocks of 2 samples
 
   settings.clamp = 4.0f;
   r = renderWith(Firefly(), settings);
   EXPECT_EQ(r.clamped.count, 12u);
   EXPECT_NEAR(r.clamped.fractionRemoved(), bright * 0.8 / (1 + bright), 1e-6);
   const Rgb clamped = r.film.mean().rgb(0, 0);
-  EXPECT_NEAR(clamped.x, 0.5 * (1 + 4), 1e-6);  // the hue stays
+  EXPECT_NEAR(clamped.x, 0.5 * (1 + 4), 1e-6);  // preserves the hue
   EXPECT_NEAR(clamped.y, 0.5 * (1 + 2), 1e-6);
 
   settings.clamp = 20.0f;
   EXPECT_EQ(renderWith(Firefly(), settings).clamped.count, 0u);
 }
 
-TEST(Clamp, LimitsDifferencesBothWaysAndLeavesInvalidOnesToBeCounted) {
+TEST(Clamp, LimitsDifferencesOfBothSignsAndKeepsInvalidOnes) {
   Clamp clamp(2.0f);
   EXPECT_EQ(clamp(Rgb(-8, 4, 0)), Rgb(-2, 1, 0));
   EXPECT_EQ(clamp.clamped().count, 1u);
@@ -114,8 +115,8 @@ TEST(Clamp, LimitsDifferencesBothWaysAndLeavesInvalidOnesToBeCounted) {
   EXPECT_EQ(clamp.clamped().count, 1u);
 }
 
-// A direction that is not a number finds no texel, and no memory outside the map.
-TEST(InvalidSamples, AProbeAnswersNanWithNan) {
+// For a NaN direction, the probe returns NaN without reading memory outside the map.
+TEST(InvalidSamples, AProbeReturnsNanForNanDirections) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   const Rgb radiance = probe.radiance(vec3(kNan));
   EXPECT_TRUE(std::isnan(radiance.x));

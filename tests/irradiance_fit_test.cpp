@@ -132,7 +132,7 @@ TEST(LightDescent, GradientAgreesWithFiniteDifferences) {
   }
 }
 
-TEST(LightDescent, NeverIncreasesTheMisfit) {
+TEST(LightDescent, DoesNotIncreaseTheMisfit) {
   const RadiancePoints probe(studioProbe(kSize), 32, 1);
   FittedLights lights = someLights();
   solveColors(lights, probe, true);
@@ -289,11 +289,11 @@ void expectErrorsToFall(const Image& probe, const std::vector<int>& counts) {
   EXPECT_LT(last, 0.2);
 }
 
-TEST(SlowIrradianceFit, ErrorNeverGrowsInAStudio) {
+TEST(SlowIrradianceFit, ErrorFallsWithTheCountInAStudio) {
   expectErrorsToFall(studioProbe(kSize), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 15, 16, 17, 18, 32, 64});
 }
 
-TEST(SlowIrradianceFit, ErrorNeverGrowsUnderTheSky) {
+TEST(SlowIrradianceFit, ErrorFallsWithTheCountUnderTheSky) {
   expectErrorsToFall(clearSkyProbe(kSize, {}), {1, 2, 3, 4, 5, 6, 7, 8, 16, 17, 32, 64});
 }
 

@@ -47,8 +47,8 @@ TEST(Icosphere, DistancesBetweenNeighboursAreBounded) {
   }
 }
 
-// Texels cut by the horizon make the sum too small: by h^2/12 on average over all orientations, by
-// three times that if the horizon halves a whole ring of texels.
+// Texels cut by the horizon make the sum too small, by h^2/12 on average over all orientations and
+// by three times as much if the horizon halves a whole ring of texels.
 TEST(Irradiance, OfAConstantMap) {
   const std::vector<vec3> normals = icosphereNormals(2);
   for (const int width : {64, 128, 256, 512}) {
@@ -78,7 +78,7 @@ TEST(Irradiance, OfALitHemisphere) {
   const auto irradiance = exactIrradiance(sky, normals);
   for (size_t i = 0; i < normals.size(); ++i)
     EXPECT_NEAR(irradiance[i].x, kPiD / 2 * (1 + normals[i].y), 2e-4);
-  // The horizon of these cuts no texel: exact on any map.
+  // The horizon of these normals cuts no texel, so the sum is exact for any map size.
   Image coarse(4, 2, 3);
   for (int x = 0; x < 4; ++x) coarse.setRgb(x, 0, Rgb(1));
   const std::vector<vec3> upAndDown{{0, 1, 0}, {0, -1, 0}};
@@ -112,7 +112,7 @@ TEST(Irradiance, OfOneTexelAnywhere) {
 }
 
 // A map whose texels span ten orders of magnitude.
-Image wildProbe(const ImageSize& size) {
+Image highRangeProbe(const ImageSize& size) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> exponent(-4, 6);
   Image image(size.width, size.height, 3);
@@ -122,7 +122,7 @@ Image wildProbe(const ImageSize& size) {
 
 TEST(Irradiance, AgreesWithASumInDoubleToOneMillionth) {
   const ImageSize size{192, 96};
-  const Image probe = wildProbe(size);
+  const Image probe = highRangeProbe(size);
   const std::vector<vec3> normals = icosphereNormals(1);
   const auto irradiance = exactIrradiance(probe, normals);
   for (size_t i = 0; i < normals.size(); ++i) {
@@ -136,8 +136,8 @@ TEST(Irradiance, AgreesWithASumInDoubleToOneMillionth) {
   }
 }
 
-TEST(Irradiance, SameBitsForAnyThreadsAndOtherNormals) {
-  const Image probe = wildProbe({64, 32});
+TEST(Irradiance, IsIndependentOfThreadsAndOtherNormals) {
+  const Image probe = highRangeProbe({64, 32});
   const std::vector<vec3> normals = icosphereNormals(3);
   const auto together = exactIrradiance(probe, normals);
   {
@@ -156,7 +156,7 @@ TEST(Irradiance, OfABlackMapIsZero) {
 }
 
 TEST(Irradiance, MapIsAtTexelCentres) {
-  const Image probe = wildProbe({16, 8});
+  const Image probe = highRangeProbe({16, 8});
   const Image map = irradianceMap(probe, {12, 6});
   ASSERT_EQ(map.texels.size(), 12u * 6 * 3);
   const dvec3 direction = *uvToDirection(Mapping::LatLong, {7.5 / 12, 1.5 / 6});
@@ -179,7 +179,7 @@ TEST(Irradiance, OfThePointSourceOfOneLux) {
 
 // The polynomial of Ramamoorthi and Hanrahan 2001, eq. 13, with its printed constants. Its z axis
 // is reversed; that changes no term because coefficients and direction change together.
-TEST(ShIrradiance, IsThePublishedPolynomial) {
+TEST(ShIrradiance, EqualsThePublishedPolynomial) {
   const ShCoefficients l = projectSh(studioProbe({64, 32}));
   const double c1 = 0.429043, c2 = 0.511664, c3 = 0.743125, c4 = 0.886227, c5 = 0.247708;
   for (const vec3& n : icosphereNormals(1)) {
@@ -192,7 +192,7 @@ TEST(ShIrradiance, IsThePublishedPolynomial) {
   }
 }
 
-// Mean over the normals of |SH - exact|, over the mean.
+// Mean over the normals of |SH - exact|, divided by the mean of the exact irradiance.
 double shError(const Image& probe, std::span<const vec3> normals) {
   const auto exact = exactIrradiance(probe, normals), sh = shIrradiance(probe, normals);
   double difference = 0, sum = 0;
@@ -208,7 +208,7 @@ TEST(ShIrradiance, OfAGradientIsExact) {
             2e-4);
 }
 
-// The bands above 2 hold little of a smooth probe's irradiance, and much of a sun's.
+// Bands above 2 contribute little to the irradiance of a smooth probe, and much to that of a sun.
 TEST(ShIrradiance, IsAccurateToOnePercentOnSmoothProbesButNotUnderASun) {
   const std::vector<vec3> normals = icosphereNormals(3);
   const ClearSky sky{.sunElevation = 30};

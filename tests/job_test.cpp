@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job rendered by a program, without the command.
+// A job rendered with the library, without the command.
 #include "job/job.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(Job, RendersASceneFileToAnImageAndPrintsNothing) {
   EXPECT_EQ(readImage(folder / "a.pfm").texels, result.color().texels);
 }
 
-TEST(Job, ErrorsNameTheSettingThatHelps) {
+TEST(Job, ErrorsSuggestASetting) {
   const TemporaryFolder folder;
   writeSmallModel(folder / "model.gltf");
   try {

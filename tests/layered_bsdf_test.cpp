@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BSDFs of materials with extensions: their samplers, their energy, where they are reciprocal.
+// BSDFs of materials with extensions: sampling, energy conservation, reciprocity.
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
@@ -29,7 +29,7 @@ MaterialPoint dielectric(float roughness, float ior = 1.5f, Rgb color = Rgb(1)) 
   return {color, 0, roughness, Rgb(r * r), 1};
 }
 
-// One corner of the space of extended materials.
+// A material with extensions.
 struct Case {
   std::string name;
   MaterialPoint material;
@@ -80,7 +80,7 @@ ExtendedPoint filmed(float ior, float thickness) {
   return e;
 }
 
-// White in every part: no light may be lost.
+// Every lobe has an albedo of 1, so that no energy may be lost.
 std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
   std::vector<Case> cases;
   for (float r : roughnesses) {
@@ -174,8 +174,8 @@ TEST(SlowLayeredBsdf, whiteFurnaceLosesNothing) {
     }
 }
 
-// KHR_materials_specular changes how much glass reflects, and so how much of it is masked; what it
-// does not reflect passes. Also at a boundary with another body, where the index is relative.
+// KHR_materials_specular scales the reflection of glass and so its energy compensation; light that
+// is not reflected is transmitted. Also at a boundary with another body, with a relative index.
 TEST(SlowLayeredBsdf, glassOfAnySpecularStrengthLosesNothing) {
   struct Index {
     float ior, outer;
@@ -223,8 +223,9 @@ TEST(LayeredBsdf, weightsAreValueOverPdf) {
   }
 }
 
-// The limit decides which lobes see what, and changes none of them; samples are of one kind.
-TEST(LayeredBsdf, broadAndNarrowLobesAreTheWhole) {
+// The roughness limit only divides the lobes into broad and narrow ones: their sum is the BSDF, and
+// each sample is of one kind.
+TEST(LayeredBsdf, broadAndNarrowLobesSumToTheBsdf) {
   for (const float limit : {0.05f, 0.3f})
     for (const Case& c : whiteCases({0.1f, 0.4f, 0.8f})) {
       const Layered whole = c.from(50), parts = c.from(50, limit);
@@ -247,7 +248,7 @@ TEST(LayeredBsdf, broadAndNarrowLobesAreTheWhole) {
     }
 }
 
-// The coat lies on a body's outer side: from within there is none.
+// The coat is on the outer side of a body only.
 TEST(LayeredBsdf, bodiesHaveNoCoatFromInside) {
   for (const float roughness : {0.0f, 0.4f})
     for (const bool frontFace : {true, false}) {
@@ -285,7 +286,7 @@ TEST(LayeredBsdf, smoothGlassAndSheetsAreDeltas) {
     }
 }
 
-// A base without specular reflection is a Lambert lobe, and needs no tables.
+// A base without specular reflection is a Lambert lobe and needs no tables.
 TEST(LayeredBsdf, baseWithoutSpecularIsLambert) {
   const BsdfTables none({});
   const MaterialPoint matte{Rgb(0.8f), 0, 0.5f, Rgb(0), 0};
@@ -304,7 +305,8 @@ TEST(Dielectric, followsFresnelAndSnell) {
     const float r = (ior - 1) / (ior + 1);
     EXPECT_NEAR(fresnelDielectric(1, ior), r * r, 1e-6f);
     EXPECT_NEAR(fresnelDielectric(1, 1 / ior), r * r, 1e-6f);
-    const float brewster = std::cos(std::atan(ior));  // p-light is not reflected, s-light is by
+    // At Brewster's angle, the reflectance is 0 for p-polarised and s^2 for s-polarised light.
+    const float brewster = std::cos(std::atan(ior));
     const float s = (1 - ior * ior) / (1 + ior * ior);
     EXPECT_NEAR(fresnelDielectric(brewster, ior), s * s / 2, 1e-6f);
     const float critical = std::sqrt(1 - 1 / (ior * ior));
@@ -317,7 +319,8 @@ TEST(Dielectric, followsFresnelAndSnell) {
   }
 }
 
-// For basic radiance: f(a to b) / n_a^2 is the same both ways, where no energy is made up for.
+// Reciprocity of basic radiance: f(a to b) / n_a^2 is symmetric where there is no energy
+// compensation.
 TEST(LayeredBsdf, smootherGlassIsReciprocal) {
   constexpr float kIor = 1.5f, kRoughness = 0.2f;
   int compared = 0;
@@ -342,8 +345,8 @@ TEST(LayeredBsdf, smootherGlassIsReciprocal) {
   EXPECT_GT(compared, 100);
 }
 
-// The film's colour takes light from the base's specular part or adds to it, never to the whole.
-TEST(LayeredBsdf, filmsOnDielectricsGainNothing) {
+// A film changes the specular reflection of the base, but must not raise the total albedo above 1.
+TEST(LayeredBsdf, filmsOnDielectricsDoNotGainEnergy) {
   for (float thickness : {0.0f, 150.0f, 400.0f, 1000.0f})
     for (float angle : {0.0f, 45.0f, 80.0f}) {
       Case c{"", dielectric(0.3f), {}};
@@ -354,8 +357,8 @@ TEST(LayeredBsdf, filmsOnDielectricsGainNothing) {
     }
 }
 
-// Rounding makes cosines a little larger than 1.
-TEST(LayeredBsdf, sheenIsFiniteStraightOn) {
+// At normal incidence, rounding makes cosines slightly larger than 1.
+TEST(LayeredBsdf, sheenIsFiniteAtNormalIncidence) {
   Surface surface = flatSurface();
   surface.normal.z = 1 + 2e-7f;
   const vec3 wo(0, 0, 1);
@@ -377,8 +380,8 @@ TEST(ThinFilm, vanishesWithItsThickness) {
     }
 }
 
-// A film of a quarter of green's wavelength, whose index is the root of the base's, cancels the
-// reflection of green; of half of it, does nothing.
+// A film of index sqrt(n_base) cancels the reflection of green light if its thickness is 1/4 of the
+// wavelength in it, and has no effect if it is 1/2.
 TEST(ThinFilm, quarterWaveCoatingIsDark) {
   const float base = 1.9f, film = std::sqrt(base), f0 = 0.9f * 0.9f / (2.9f * 2.9f);
   const float quarter = 550 / (4 * film);
@@ -399,7 +402,7 @@ TEST(LayeredBsdf, brushedHighlightsSpreadAlongTheTangent) {
 TEST(LayeredBsdf, sheetMirrorsItsHighlightBelow) {
   const Layered bsdf(dielectric(0.4f), transmissive(1, true), {Rgb(1.5f), 1.5f}, flatSurface(),
                      directionAt(30), allTables());
-  // The brightest direction below is straight on.
+  // The maximum below the sheet is in the direction -wo, straight through.
   float maximum = 0, at = 0;
   for (float angle = 0; angle < 80; angle += 1) {
     const vec3 wi = directionAt(-angle);

@@ -75,7 +75,7 @@ bool hasWord(const std::string& text, const std::string& word) {
   return std::regex_search(text, std::regex("(^|[^\\w-])" + word + "($|[^\\w-])"));
 }
 
-TEST(Manual, HelpIsUnderstoodHere) {
+TEST(Manual, HelpIsParsed) {
   const auto& commands = allCommands();
   ASSERT_TRUE(commands.contains("probe info"));
   EXPECT_TRUE(hasWord(joined(commands.at("probe info").options), "--json"));
@@ -104,7 +104,7 @@ TEST(Manual, BashAndZshCompleteEveryCommandAndOption) {
     const std::string completion = projectFile(file);
     for (const auto& [command, names] : allCommands()) {
       const std::string section = part(completion, "\n    '" + command + "')\n", " ;;\n");
-      EXPECT_NE(section, "") << file << ": nothing for `" << command << "`; " << kRemedy;
+      EXPECT_NE(section, "") << file << ": no section on `" << command << "`; " << kRemedy;
       for (const Words& words : {names.subcommands, names.options})
         for (const std::string& word : words)
           EXPECT_TRUE(hasWord(section, word))

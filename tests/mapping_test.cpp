@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The omnidirectional mappings, each way.
+// Omnidirectional mappings: direction to image position and back, solid angles, detection.
 #include "probe/mapping.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST(Mapping, ImageToDirectionAndBack) {
   }
 }
 
-TEST(Mapping, CentresLookForwardAndUpIsUp) {
+TEST(Mapping, CentresAreForwardAndTopsAreUp) {
   const auto expectUv = [](Mapping mapping, const dvec3& d, double u, double v) {
     const dvec2 uv = directionToUv(mapping, d);
     EXPECT_NEAR(uv.x, u, 1e-12) << mappingName(mapping);
@@ -96,7 +96,7 @@ TEST(Mapping, CentresLookForwardAndUpIsUp) {
   expectUv(Mapping::VerticalCross, {1, 0, 0}, 5.0 / 6, 3.0 / 8);
   expectUv(Mapping::HorizontalCross, {0, 0, 1}, 7.0 / 8, 0.5);
   expectUv(Mapping::VerticalStrip, {0, 0, -1}, 0.5, 11.0 / 12);
-  // Opposite the view, the whole rim is one direction.
+  // The whole rim is the direction opposite to the view axis.
   EXPECT_NEAR(glm::distance(directionToUv(Mapping::AngularMap, {0, 0, 1}), dvec2(0.5)), 0.5, 1e-12);
   EXPECT_FALSE(uvToDirection(Mapping::AngularMap, {0.02, 0.02}));
   EXPECT_FALSE(uvToDirection(Mapping::VerticalCross, {0.1, 0.1}));
@@ -105,7 +105,7 @@ TEST(Mapping, CentresLookForwardAndUpIsUp) {
 
 // Across each edge between faces of the vertical cross the mapping is continuous: a small step in
 // the image is a small step in direction.
-TEST(Mapping, CrossIsContinuousInside) {
+TEST(Mapping, CrossIsContinuousAtInnerEdges) {
   const double tiny = 1e-7;
   const std::array<dvec2, 5> edges{
       {{1 / 3., 3 / 8.}, {2 / 3., 3 / 8.}, {0.5, 0.25}, {0.5, 0.5}, {0.5, 0.75}}};

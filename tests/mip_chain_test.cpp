@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texture filtering: mip levels are means, and renders neither alias nor blur.
+// Texture filtering: mip levels are means; renders have neither aliasing nor blur.
 #include "scene/mip_chain.h"
 
 #include <gtest/gtest.h>
@@ -64,11 +64,11 @@ TEST(MipChain, TransparentTexelsDoNotTint) {
   EXPECT_EQ(makeMipLevels(kHoles, false, true)[0].texels8[0], white);
   EXPECT_EQ(makeMipLevels(kHoles, false)[0].texels8[0], grey);
   // Weighted by alpha at every level; the plain mean where alpha is 0.
-  TexelGrid odd{3, 1, {}, {vec4(1, 0, 0, 0.75f), vec4(0, 1, 0, 0.25f), vec4(0, 0, 1, 0)}};
-  const vec4 mean = makeMipLevels(odd, false, true)[0].texelsFloat[0];
+  TexelGrid oddWidth{3, 1, {}, {vec4(1, 0, 0, 0.75f), vec4(0, 1, 0, 0.25f), vec4(0, 0, 1, 0)}};
+  const vec4 mean = makeMipLevels(oddWidth, false, true)[0].texelsFloat[0];
   EXPECT_NEAR(glm::distance(mean, vec4(0.75f, 0.25f, 0, 1 / 3.0f)), 0, 1e-6);
-  for (vec4& texel : odd.texelsFloat) texel.w = 0;
-  const vec4 nothing = makeMipLevels(odd, false, true)[0].texelsFloat[0];
+  for (vec4& texel : oddWidth.texelsFloat) texel.w = 0;
+  const vec4 nothing = makeMipLevels(oddWidth, false, true)[0].texelsFloat[0];
   EXPECT_NEAR(glm::distance(nothing, vec4(vec3(1 / 3.0f), 0)), 0, 1e-6);
   // Opaque textures are filtered without weights, with the same bits.
   TexelGrid opaque{4, 2, {}, {}};
@@ -77,7 +77,7 @@ TEST(MipChain, TransparentTexelsDoNotTint) {
   EXPECT_EQ(makeMipLevels(opaque, true, true)[0].texels8, makeMipLevels(opaque, true)[0].texels8);
 }
 
-TEST(MipChain, LookupsAreWeightedByAlphaIfTheTextureAsksForIt) {
+TEST(MipChain, LookupsAreWeightedByAlphaIfTheTextureHasTheFlag) {
   Texture texture{&kHoles};
   texture.mipLevels = std::make_shared<std::vector<TexelGrid>>(makeMipLevels(kHoles, false, true));
   EXPECT_NEAR(texture.lookup({0.5f, 0.5f}).x, 0.5f, 1e-6);
@@ -195,10 +195,10 @@ double rmsDifference(const std::vector<double>& a, const std::vector<double>& b)
 }
 
 // The contrast of the image as a fraction of that of the reference.
-double contrast(const std::vector<double>& picture, const std::vector<double>& reference) {
+double contrast(const std::vector<double>& image, const std::vector<double>& reference) {
   double both = 0, own = 0;
-  for (size_t i = 0; i < picture.size(); ++i) {
-    both += (picture[i] - 0.5) * (reference[i] - 0.5);
+  for (size_t i = 0; i < image.size(); ++i) {
+    both += (image[i] - 0.5) * (reference[i] - 0.5);
     own += (reference[i] - 0.5) * (reference[i] - 0.5);
   }
   return both / own;
@@ -206,17 +206,18 @@ double contrast(const std::vector<double>& picture, const std::vector<double>& r
 
 TEST(SlowMipChain, AFarCheckerboardNeitherAliasesNorBlurs) {
   for (const bool steep : {false, true}) {
-    const auto truth = seen(steep, false, 2048, 1);
+    const auto reference = seen(steep, false, 2048, 1);
     const auto few = seen(steep, true, 16, 2), fewPoints = seen(steep, false, 16, 2);
     const auto many = seen(steep, true, 1024, 3), manyPoints = seen(steep, false, 1024, 3);
     // The error of unfiltered lookups is 0.065 and 0.099, that of filtered ones 0.032 and 0.005.
-    EXPECT_LT(rmsDifference(few, truth), (steep ? 0.1 : 0.6) * rmsDifference(fewPoints, truth));
-    EXPECT_LT(rmsDifference(many, truth), 1.1 * rmsDifference(manyPoints, truth));
+    EXPECT_LT(rmsDifference(few, reference),
+              (steep ? 0.1 : 0.6) * rmsDifference(fewPoints, reference));
+    EXPECT_LT(rmsDifference(many, reference), 1.1 * rmsDifference(manyPoints, reference));
     if (steep) continue;  // uniform grey
-    EXPECT_GT(contrast(few, truth), 0.97);
-    EXPECT_NEAR(contrast(many, truth), 1, 0.002);
+    EXPECT_GT(contrast(few, reference), 0.97);
+    EXPECT_NEAR(contrast(many, reference), 1, 0.002);
     // The same sharpness if the number of samples is not known in advance.
-    EXPECT_NEAR(contrast(seen(steep, true, 1024, 4, 1e-9), truth), 1, 0.003);
+    EXPECT_NEAR(contrast(seen(steep, true, 1024, 4, 1e-9), reference), 1, 0.003);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lobes too narrow for lights in the probe's place: of the probe they see the probe itself, and
-// lamps of the scene light them as under any other strategy.
+// Strategies that replace the probe by lights: lobes too narrow for these lights reflect the probe
+// itself, and the scene's lamps light such lobes as with other strategies.
 #include <gtest/gtest.h>
 
 #include "measure/statistics.h"
@@ -10,13 +10,13 @@
 namespace chromeball {
 namespace {
 
-struct Surfacing {
+struct NamedMaterial {
   const char* name;
   Material material;
 };
 
 // GGX's alpha is 0.09, far below the limit of 16 lights, 0.25.
-std::vector<Surfacing> narrowSurfacings() {
+std::vector<NamedMaterial> narrowMaterials() {
   constexpr float kRoughness = 0.3f;
   Material metal;
   metal.baseColor = {1, 0.8f, 0.4f, 1};
@@ -43,7 +43,7 @@ std::vector<Surfacing> narrowSurfacings() {
 constexpr int kRepeats = 8;
 constexpr const char* kLights[] = {"median-cut:16", "irradiance-fit-ambient:2"};
 
-// A tile between two lamps, one before it and one behind.
+// A tile; the tests add a lamp in front of it and one behind.
 Scene tile(const Material& material) {
   Scene scene;
   addQuad(scene, addMaterial(scene, material), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
@@ -53,7 +53,7 @@ Scene tile(const Material& material) {
   return scene;
 }
 
-// Means of the picture's luminance under a probe that is all but dark.
+// Mean luminance of each of kRepeats renders under a nearly black probe.
 std::vector<double> means(const Scene& scene, const char* strategy, Mis mis, uint64_t firstSeed) {
   const Probe dim(constantProbe({16, 8}, Rgb(1e-5f)));
   const Camera camera = Camera::lookAt({0.5f, 2, 2}, vec3(0), {0, 1, 0}, 0.5f);
@@ -67,6 +67,7 @@ std::vector<double> means(const Scene& scene, const char* strategy, Mis mis, uin
   return all;
 }
 
+// Every strategy in kLights must have the same expectation as `importance`.
 void expectSameLight(const Scene& scene, const char* name) {
   const std::vector<double> expected = means(scene, "importance", Mis::Balance, 1);
   const Moments b = Moments::of(expected);
@@ -81,11 +82,11 @@ void expectSameLight(const Scene& scene, const char* name) {
     }
 }
 
-TEST(SlowNarrowLobes, reflectLampsWithoutExtent) {
-  for (const auto& [name, material] : narrowSurfacings()) {
+TEST(SlowNarrowLobes, reflectPunctualLights) {
+  for (const auto& [name, material] : narrowMaterials()) {
     Scene scene = tile(material);
     for (const float side : {1.0f, -1.0f}) {
-      PunctualLight lamp;  // in the mirror's direction, and seen through the tile
+      PunctualLight lamp;  // in the mirror direction of the camera, or behind the tile
       lamp.position = {-0.5f, side * 2, -2};
       lamp.intensity = Rgb(2);
       scene.lights.push_back(lamp);
@@ -94,8 +95,8 @@ TEST(SlowNarrowLobes, reflectLampsWithoutExtent) {
   }
 }
 
-TEST(SlowNarrowLobes, reflectLampsOfSomeSize) {
-  for (const auto& [name, material] : narrowSurfacings()) {
+TEST(SlowNarrowLobes, reflectAreaLights) {
+  for (const auto& [name, material] : narrowMaterials()) {
     Scene scene = tile(material);
     Material glow = lambert(Rgb(0));
     glow.emission = Rgb(5, 4, 3);

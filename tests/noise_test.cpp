@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `noise` and the variance layer claim each pixel's standard error: held to the spread over
-// independent seeds.
+// `noise` and the layer `variance` estimate each pixel's standard error: compared with the standard
+// deviation over independent seeds.
 #include <gtest/gtest.h>
 
 #include "probe/load.h"
@@ -18,7 +18,7 @@ struct Case {
   const char* strategy;
 };
 
-// One of the three scenes; under another probe than its own where one is given.
+// One of the three scenes, under its own probe or, if given, under `probe`.
 Case caseOf(size_t index, const char* strategy, const char* name = nullptr, Image probe = {}) {
   Case c{std::move(threeScenes()[index]), strategy};
   if (!name) return c;
@@ -27,7 +27,7 @@ Case caseOf(size_t index, const char* strategy, const char* name = nullptr, Imag
   return c;
 }
 
-Image sunny() { return clearSkyProbe({64, 32}, {.sunElevation = 40}); }
+Image clearSky() { return clearSkyProbe({64, 32}, {.sunElevation = 40}); }
 
 std::vector<Case> eightCases() {
   std::vector<Case> cases;
@@ -35,7 +35,7 @@ std::vector<Case> eightCases() {
   cases.push_back(caseOf(1, "importance"));
   cases.push_back(caseOf(2, "importance"));
   cases.push_back(caseOf(1, "product"));
-  cases.push_back(caseOf(0, "suns", "matte spheres under a sun", sunny()));
+  cases.push_back(caseOf(0, "suns", "matte spheres under a sun", clearSky()));
   cases.push_back(caseOf(0, "uniform", "matte spheres in a studio", studioProbe({64, 32})));
   cases.push_back(caseOf(1, "bsdf", "metals and plastics under an overcast sky",
                          overcastProbe({32, 16}, Rgb(0.5f), 0.2)));
@@ -44,9 +44,9 @@ std::vector<Case> eightCases() {
   return cases;
 }
 
-// A ball of glass over the ground: all light in its shadow is a caustic.
+// A glass ball above the ground: all light in its shadow is a caustic.
 Case glassBall() {
-  Case c{{"a ball of glass under a sun", {}, sunny()}, "importance"};
+  Case c{{"a ball of glass under a sun", {}, clearSky()}, "importance"};
   Scene& s = c.named.scene;
   addQuad(s, addMaterial(s, lambert(Rgb(0.6f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
   Material glass;
@@ -58,9 +58,9 @@ Case glassBall() {
   return c;
 }
 
-// A closed room, but for a window of a hundredth of its walls, seen from within.
+// The inside of a room with a window of about 1/100 of the walls' area.
 Case darkRoom() {
-  Case c{{"a room with a small window", {}, sunny()}, "importance"};
+  Case c{{"a room with a small window", {}, clearSky()}, "importance"};
   Scene& s = c.named.scene;
   const int wall = addMaterial(s, lambert(Rgb(0.7f)));
   addQuad(s, wall, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});      // floor
@@ -95,8 +95,8 @@ std::vector<Seed> renderSeeds(const Case& c, RenderSettings settings) {
   return seeds;
 }
 
-// The same number as `noise`, from how the pixels' luminances scatter over the seeds.
-double trueNoise(const std::vector<Seed>& seeds) {
+// `noise` computed from the variance of each pixel's luminance over the seeds.
+double noiseOverSeeds(const std::vector<Seed>& seeds) {
   double meanLuminance = 0;
   std::vector<glm::dvec2> pixels;  // mean, variance
   const int width = seeds[0].mean.width, count = width * seeds[0].mean.height;
@@ -119,8 +119,8 @@ double trueNoise(const std::vector<Seed>& seeds) {
   return std::sqrt(squared);
 }
 
-// How often the interval of +-z standard errors that a render claims for a number holds the mean of
-// the others.
+// Fraction of the renders' values whose interval of +-z estimated standard errors contains the mean
+// over the other seeds.
 double coverage(const std::vector<Seed>& seeds, double z = 1.96) {
   size_t covered = 0, count = 0;
   for (size_t i = 0; i < seeds[0].mean.texels.size(); ++i) {
@@ -128,7 +128,7 @@ double coverage(const std::vector<Seed>& seeds, double z = 1.96) {
     for (const Seed& seed : seeds) sum += seed.mean.texels[i];
     for (const Seed& seed : seeds) {
       const double others = (sum - seed.mean.texels[i]) / (kSeeds - 1);
-      // The mean of the others has an error too.
+      // The mean of the other seeds has an error too.
       const double error = std::sqrt(seed.squaredError.texels[i] * (1 + 1.0 / (kSeeds - 1)));
       covered += std::fabs(seed.mean.texels[i] - others) <= z * error;
       ++count;
@@ -137,60 +137,61 @@ double coverage(const std::vector<Seed>& seeds, double z = 1.96) {
   return double(covered) / double(count);
 }
 
-// The reported noise over the true one, as roots of mean squares: the square is unbiased.
-double honesty(const std::vector<Seed>& seeds) {
+// Root mean square of the reported noise divided by noiseOverSeeds(). The square of the reported
+// noise is the unbiased estimate.
+double noiseRatio(const std::vector<Seed>& seeds) {
   double reported = 0;
   for (const Seed& seed : seeds) reported += seed.noise * seed.noise / kSeeds;
-  return std::sqrt(reported) / trueNoise(seeds);
+  return std::sqrt(reported) / noiseOverSeeds(seeds);
 }
 
 constexpr int kSize = 24;
 
-// Powers of two and others; the halves of 65 samples differ in size.
-TEST(SlowNoise, IsTheNoiseThereIs) {
+// 65 samples divide into halves of different size.
+TEST(SlowNoise, MatchesTheVarianceOverSeeds) {
   for (const Case& c : eightCases())
     for (const uint32_t samples : {16u, 65u}) {
       SCOPED_TRACE(std::string(c.named.name) + ", " + c.strategy);
       const std::vector<Seed> seeds = renderSeeds(c, smallRender(kSize, kSize, samples, 6));
-      EXPECT_NEAR(honesty(seeds), 1, 0.1);
+      EXPECT_NEAR(noiseRatio(seeds), 1, 0.1);
       EXPECT_NEAR(coverage(seeds), 0.95, samples < 32 ? 0.035 : 0.02);
       EXPECT_GT(coverage(seeds, 3), 0.975);
     }
 }
 
-// Few pixels meet most of the light: the mean over seeds still tells the noise, and the others'
-// intervals are wide.
-TEST(SlowNoise, IsTheNoiseThereIsWhereLightIsRare) {
-  constexpr int kLarge = 48;  // a window of 7 x 7 pixels holds one thing, as in real pictures
+// A few pixels receive most of the light: the estimate is still correct on average over seeds, and
+// the intervals of the other pixels are wide.
+TEST(SlowNoise, MatchesTheVarianceOverSeedsWithRareLight) {
+  constexpr int kLarge = 48;  // so that a window of 7 x 7 pixels covers one object
   std::vector<Case> cases;
-  cases.push_back(caseOf(1, "importance", "metals and plastics under a sun", sunny()));
+  cases.push_back(caseOf(1, "importance", "metals and plastics under a sun", clearSky()));
   cases.push_back(glassBall());
   cases.push_back(caseOf(0, "median-cut:16", "matte spheres in a studio", studioProbe({64, 32})));
   cases.push_back(darkRoom());
   for (const Case& c : cases) {
     SCOPED_TRACE(std::string(c.named.name) + ", " + c.strategy);
     const std::vector<Seed> seeds = renderSeeds(c, smallRender(kLarge, kLarge, 64, 6));
-    EXPECT_NEAR(honesty(seeds), 1, 0.12);
-    if (&c == &cases.back()) continue;  // a pixel that is still black cannot know
+    EXPECT_NEAR(noiseRatio(seeds), 1, 0.12);
+    if (&c == &cases.back()) continue;  // pixels that are still black have no error estimate
     EXPECT_NEAR(coverage(seeds), 0.95, 0.03);
     EXPECT_GT(coverage(seeds, 3), 0.955);
   }
 }
 
-TEST(SlowNoise, IsWideOnMetalsUnderRealProbes) {
+TEST(SlowNoise, IsConservativeOnMetalsUnderRealProbes) {
   for (const char* file : {"probes/debevec/grace_probe.hdr", "probes/debevec/stpeters_cross.hdr"}) {
     const auto path = sharedData(file);
     if (!path) GTEST_SKIP() << "no " << file << " here";
     const Case c = caseOf(1, "importance", file, loadProbe(path->string(), "auto", "test").latLong);
     const std::vector<Seed> seeds = renderSeeds(c, smallRender(48, 48, 32, 6));
-    EXPECT_GT(honesty(seeds), 0.9) << file;
-    EXPECT_LT(honesty(seeds), 1.3) << file;  // nearer to 1 in larger pictures: 1.07 at 96 x 96
+    EXPECT_GT(noiseRatio(seeds), 0.9) << file;
+    EXPECT_LT(noiseRatio(seeds), 1.3) << file;  // closer to 1 in larger images: 1.07 at 96 x 96
     EXPECT_NEAR(coverage(seeds), 0.95, 0.025) << file;
   }
 }
 
-// What is said at a stop is true, and it takes few samples more than needed.
-TEST(SlowNoise, IsTrueWhereItStopsTheRender) {
+// When the noise limit stops a render, the estimate is correct and few samples were superfluous.
+TEST(SlowNoise, IsCorrectWhenItStopsTheRender) {
   constexpr double kLimit = 0.05;
   for (const Case& c :
        {caseOf(0, "importance"), caseOf(1, "importance"), caseOf(2, "importance")}) {
@@ -199,14 +200,15 @@ TEST(SlowNoise, IsTrueWhereItStopsTheRender) {
     settings.noiseLimit = kLimit;
     const std::vector<Seed> seeds = renderSeeds(c, settings);
     for (const Seed& seed : seeds) EXPECT_LE(seed.upper, kLimit);
-    EXPECT_NEAR(honesty(seeds), 1, 0.1);
-    EXPECT_LE(trueNoise(seeds), kLimit);
-    EXPECT_GE(trueNoise(seeds), 0.65 * kLimit);
+    EXPECT_NEAR(noiseRatio(seeds), 1, 0.1);
+    EXPECT_LE(noiseOverSeeds(seeds), kLimit);
+    EXPECT_GE(noiseOverSeeds(seeds), 0.65 * kLimit);
     EXPECT_NEAR(coverage(seeds), 0.95, 0.025);
   }
 }
 
-// Light that one of `period` samples meets; 0: none does.
+// Radiance `period` in one of `period` samples on average and 0 in the others; always 0 if `period`
+// is 0.
 class RareLight : public Integrator {
  public:
   explicit RareLight(uint64_t period) : period_(period) {}
@@ -227,13 +229,13 @@ RenderResult renderRareLight(uint64_t period, RenderSettings settings) {
       RareLight(period), world, Camera(), settings, [](double) {}, stop);
 }
 
-TEST(Noise, DoesNotStopARenderThatHasSeenNoLight) {
+TEST(Noise, DoesNotStopARenderWithoutLightSoFar) {
   RenderSettings settings = smallRender(8, 8, 1u << 20, 1);
   settings.noiseLimit = 0.2;
   const RenderResult rare = renderRareLight(20000, settings);
   EXPECT_GT(rare.samples, 10000u);
   EXPECT_NEAR(meanColor(rare.film.mean()).x, 1, 0.2);
-  const RenderResult none = renderRareLight(0, settings);  // there is an end to looking
+  const RenderResult none = renderRareLight(0, settings);  // stops in the end
   EXPECT_EQ(none.samples, 4096u);
   EXPECT_TRUE(std::isnan(none.film.noise().noise));
 }
@@ -242,10 +244,10 @@ TEST(Noise, IsUnknownWithoutTwoSamplesNotZero) {
   const RenderResult one = renderRareLight(1, smallRender(4, 4, 1, 1));
   EXPECT_TRUE(std::isnan(one.film.noise().noise));
   for (float x : varianceImage(one.film.errors()).texels) EXPECT_TRUE(std::isnan(x));
-  EXPECT_EQ(renderRareLight(1, smallRender(4, 4, 2, 1)).film.noise().noise, 0);  // all are alike
+  EXPECT_EQ(renderRareLight(1, smallRender(4, 4, 2, 1)).film.noise().noise, 0);  // equal samples
 }
 
-// The square of `noise` is unbiased from the smallest numbers of samples on.
+// The square of `noise` is unbiased, also for the smallest numbers of samples.
 TEST(Noise, HasAnUnbiasedSquare) {
   constexpr int kPeriod = 4;
   for (const uint32_t samples : {2u, 3u, 5u, 16u}) {
@@ -256,13 +258,14 @@ TEST(Noise, HasAnUnbiasedSquare) {
           renderRareLight(kPeriod, smallRender(8, 8, samples, 1, uint64_t(seed))).film.errors();
       for (const glm::dvec4& halves : errors.halves) squared += halves.w / (64 * kRenders);
     }
-    const double truth = double(kPeriod - 1) / samples;  // samples of mean 1 are independent here
-    EXPECT_NEAR(squared / truth, 1, 0.05) << samples;
+    // The variance of the mean of independent samples.
+    const double expected = double(kPeriod - 1) / samples;
+    EXPECT_NEAR(squared / expected, 1, 0.05) << samples;
   }
 }
 
-// The edge of a lamp is no rare light: what lies beside it keeps its own small error.
-TEST(Noise, EdgesOfLampsAreNoRareLight) {
+// The edge of a lamp must not be treated as rare light: the error of the pixels beside it is small.
+TEST(Noise, EdgesOfLampsAreNotRareLight) {
   Scene scene;
   Material lamp = lambert(Rgb(0));
   lamp.emission = Rgb(10);
@@ -272,11 +275,12 @@ TEST(Noise, EdgesOfLampsAreNoRareLight) {
   const PixelErrors errors =
       renderScene(scene, camera, dim, "importance", smallRender(64, 64, 64, 1)).film.errors();
   const NoiseQuantiles quantiles = noiseQuantiles(errors, squaredStandardErrors(errors));
-  // 5% of the pixels hold at most the whole mean square, 1 / sqrt(0.05) = 4.5; twice that is lax.
+  // If 5% of the pixels have the whole mean square, p95 / noise = 1 / sqrt(0.05) = 4.5; the bound
+  // is twice that.
   EXPECT_LT(quantiles.p95, 9 * estimateNoise(errors).noise);
 }
 
-// A pixel without a valid sample is unknown; the noise of the others is not.
+// A pixel without a valid sample has an unknown variance, which does not affect the others.
 TEST(Noise, ToleratesPixelsWithoutAValidSample) {
   Film film(8, 8);
   for (int y = 0; y < 8; ++y)

@@ -288,7 +288,7 @@ TEST(StripMetadata, JpegWithTooManyScansIsRejected) {
 
 TEST(StripMetadata, FilesFromFuzzing) {
   const auto folder = sharedData("hostile");
-  if (!folder) GTEST_SKIP() << "../shared/data/hostile is not there";
+  if (!folder) GTEST_SKIP() << "no ../shared/data/hostile";
   const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();
   const TemporaryFolder out;
   expectError({"probe", "info", bomb}, "65500 x 65500 texels cannot fit into 522 bytes", kSmall);
