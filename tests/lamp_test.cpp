@@ -72,7 +72,7 @@ TEST(Lamps, PowerIsTheIntegralOfTheIntensity) {
     for (int i = 0; i < kSteps; ++i) {  // rings of equal solid angle about +Y
       const float z = 1 - 2 * (float(i) + 0.5f) / kSteps;
       const vec3 at(std::sqrt(1 - z * z), z, 0);
-      power += shine(*lamp.punctual, at).irradiance.x * 4 * kPiD / kSteps;
+      power += incidentLight(*lamp.punctual, at).irradiance.x * 4 * kPiD / kSteps;
     }
     EXPECT_NEAR(power, 10, 0.02) << text;
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSeeds = 24;
 
 struct Case {
-  Named named;
+  NamedScene named;
   const char* strategy;
 };
 

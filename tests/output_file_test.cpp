@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No command overwrites what it reads, or one of its results by another.
+// No command overwrites its input files, or one of its outputs with another.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -13,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-// A folder with everything that a composite is made of: scene file, plate, probe, model with its
-// buffer and texture, the room around it.
+// A folder with all inputs of a composite: scene file, plate, probe, model with buffer and texture,
+// and a model of the room.
 class SlowOutputFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -39,8 +39,8 @@ class SlowOutputFiles : public testing::Test {
 
   std::string in(const std::string& name) const { return (model_.folder() / name).string(); }
 
-  // Refused with `reason`, before anything in the folder changed.
-  void expectKept(const Words& words, const std::string& reason) const {
+  // Expects an error with `reason` and no changes in the folder.
+  void expectErrorWithoutChanges(const Words& words, const std::string& reason) const {
     const auto contents = [&] {
       std::vector<std::string> all;
       for (const auto& entry : fs::recursive_directory_iterator(model_.folder()))
@@ -60,79 +60,80 @@ class SlowOutputFiles : public testing::Test {
   GltfWriter model_, room_;
 };
 
-TEST_F(SlowOutputFiles, RenderKeepsAllThatItReads) {
+TEST_F(SlowOutputFiles, RenderDoesNotOverwriteItsInputs) {
   const auto render = [&](const std::string& output, const Words& more = {}) {
     Words words{"render", in("scene.toml"), "--samples", "1", "-o", output};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
   for (const char* name : {"probe.exr", "plate.exr", "wood.png"})
-    expectKept(render(in(name)), kInput);
+    expectErrorWithoutChanges(render(in(name)), kInput);
   for (const char* name : {"scene.toml", "model.gltf", "data.bin", "room/model.gltf",
-                           "room/data.bin"}) {  // by a link whose name is that of an image
+                           "room/data.bin"}) {  // through a link with the file name of an image
     fs::create_symlink(in(name), in("link.exr"));
-    expectKept(render(in("link.exr")), kInput);
+    expectErrorWithoutChanges(render(in("link.exr")), kInput);
     fs::remove(in("link.exr"));
   }
   fs::create_hard_link(in("probe.exr"), in("same.exr"));
-  expectKept(render(in("same.exr")), kInput);
-  expectKept(render((model_.folder() / ".." / model_.folder().filename() / "probe.exr").string()),
-             kInput);
+  expectErrorWithoutChanges(render(in("same.exr")), kInput);
+  expectErrorWithoutChanges(
+      render((model_.folder() / ".." / model_.folder().filename() / "probe.exr").string()), kInput);
   fs::create_symlink(in("model.gltf"), in("link.json"));
-  expectKept(render(in("a.exr"), {"--stats", in("link.json")}), kInput);
-  // Results against each other, though none is there yet.
+  expectErrorWithoutChanges(render(in("a.exr"), {"--stats", in("link.json")}), kInput);
+  // Two outputs with the same path, although the file does not exist yet.
   constexpr const char* kOther = "would overwrite the other output";
-  expectKept(render(in("a.exr"), {"-o", in("a.exr")}), kOther);
+  expectErrorWithoutChanges(render(in("a.exr"), {"-o", in("a.exr")}), kOther);
   fs::create_directory_symlink(in("room"), in("again"));
-  expectKept(render(in("room/a.exr"), {"-o", in("again/a.exr")}), kOther);
+  expectErrorWithoutChanges(render(in("room/a.exr"), {"-o", in("again/a.exr")}), kOther);
   std::ofstream(in("a.json")) << "old";
   fs::create_symlink(in("a.json"), in("b.exr"));
-  expectKept(render(in("b.exr"), {"--stats", in("a.json")}), kOther);
-  // And what is neither is written.
+  expectErrorWithoutChanges(render(in("b.exr"), {"--stats", in("a.json")}), kOther);
+  // Any other path is written.
   const CommandResult result = runCommand(render(in("fresh.exr"), {"--quiet"}));
   EXPECT_EQ(result.status, 0) << result.error;
 }
 
-TEST_F(SlowOutputFiles, OtherCommandsKeepWhatTheyRead) {
+TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
   const std::string probe = in("probe.exr"), plate = in("plate.exr");
-  expectKept({"probe", "convert", probe, probe, "--to", "angular"}, kInput);
-  expectKept({"probe", "irradiance", probe, probe}, kInput);
+  expectErrorWithoutChanges({"probe", "convert", probe, probe, "--to", "angular"}, kInput);
+  expectErrorWithoutChanges({"probe", "irradiance", probe, probe}, kInput);
   fs::create_symlink(probe, in("link.png"));
-  expectKept({"image", "view", probe, in("link.png")}, kInput);
-  expectKept({"image", "error", plate, probe, "-o", in("link.png")}, kInput);
-  expectKept({"image", "error", probe, plate, "-o", in("link.png")}, kInput);
+  expectErrorWithoutChanges({"image", "view", probe, in("link.png")}, kInput);
+  expectErrorWithoutChanges({"image", "error", plate, probe, "-o", in("link.png")}, kInput);
+  expectErrorWithoutChanges({"image", "error", probe, plate, "-o", in("link.png")}, kInput);
   for (const char* name : {"a.json", "a.csv", "a.svg"}) fs::create_symlink(probe, in(name));
   const Words lights = {"lights", probe, "--method", "median-cut", "--count", "4"};
   const auto with = [](Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  expectKept(with(lights, {"-o", in("a.json")}), kInput);
-  expectKept(with(lights, {"-o", in("b.json"), "--preview", probe}), kInput);
+  expectErrorWithoutChanges(with(lights, {"-o", in("a.json")}), kInput);
+  expectErrorWithoutChanges(with(lights, {"-o", in("b.json"), "--preview", probe}), kInput);
   const Words errors = {"lights-error", probe, "--methods", "median-cut", "--counts", "2"};
-  expectKept(with(errors, {"--csv", in("a.csv")}), kInput);
-  expectKept(with(errors, {"--plot", in("a.svg")}), kInput);
+  expectErrorWithoutChanges(with(errors, {"--csv", in("a.csv")}), kInput);
+  expectErrorWithoutChanges(with(errors, {"--plot", in("a.svg")}), kInput);
   std::ofstream(in("new.svg")) << "old";
   fs::create_hard_link(in("new.svg"), in("new.csv"));
-  expectKept(with(errors, {"--csv", in("new.csv"), "--plot", in("new.svg")}), "the other output");
+  expectErrorWithoutChanges(with(errors, {"--csv", in("new.csv"), "--plot", in("new.svg")}),
+                            "the other output");
   fs::create_directory(in("report"));
   fs::create_symlink(probe, in("report/index.html"));
-  expectKept({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8", "--samples", "1",
-              "-o", in("report")},
-             kInput);
+  expectErrorWithoutChanges({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8",
+                             "--samples", "1", "-o", in("report")},
+                            kInput);
 }
 
-// A folder for results that a scene file names is the scene file's to make; one that the user names
-// must be there.
-TEST_F(SlowOutputFiles, TheFolderThatASceneFileNamesIsMade) {
+// The folder of an output path in the scene file is created if its parent exists; that of --output
+// must exist.
+TEST_F(SlowOutputFiles, TheOutputFolderOfASceneFileIsCreated) {
   const auto scene = [&](const std::string& output) {
     std::ofstream(in("plain.toml")) << "model = \"model.gltf\"\n[probe]\nfile = \"probe.exr\"\n"
                                        "[render]\nsize = [8, 8]\nsamples = 1\n[output]\nfile = \""
                                     << output << "\"\n";
     return in("plain.toml");
   };
-  const CommandResult made = runCommand({"render", scene("out/a.exr"), "--quiet"});
-  EXPECT_EQ(made.status, 0) << made.error;
+  const CommandResult result = runCommand({"render", scene("out/a.exr"), "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.error;
   EXPECT_TRUE(fs::exists(in("out/a.exr")));
   EXPECT_EQ(runCommand({"render", scene("out/a.exr"), "--quiet"}).status, 0);
   expectError({"render", scene("none/deeper/a.exr")}, "no folder");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the build put things.
+// Paths of the source tree and of this build.
 #pragma once
 
 extern const char kSourceDir[];  // the project

@@ -17,7 +17,7 @@
 namespace chromeball {
 namespace {
 
-TEST(ProbeFile, LatLongOfAnyShapeKeepsItsTexels) {
+TEST(ProbeFile, LatLongOfAnyShapeIsNotResampled) {
   const TemporaryFolder folder;
   for (const auto& [w, h] : {std::pair{1, 1}, {2, 1}, {3, 2}, {1, 2}, {5, 5}, {64, 32}}) {
     const Image image = gradientProbe({w, h}, Rgb(1, 2, 3), {0.2, 0.3, 0.4});
@@ -29,7 +29,7 @@ TEST(ProbeFile, LatLongOfAnyShapeKeepsItsTexels) {
   }
 }
 
-TEST(ProbeFile, GivenMappingWins) {
+TEST(ProbeFile, GivenMappingOverridesDetection) {
   const TemporaryFolder folder;
   writeImage(folder / "p.exr", constantProbe({32, 32}, Rgb(1)));
   const LoadedProbe latLong = loadProbe(folder / "p.exr", "lat-long");
@@ -60,13 +60,13 @@ void writeEnvironment(const std::string& path, const Image& image, const char* f
   writeImage(path, OutputImage{{{"", "RGB", image}}, {{"textureformat", format}}});
 }
 
-// The same environment as a cube and as a lat-long map, both by OpenEXR's convention. A linear
-// function of direction identifies every orientation.
-TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
+// The same environment as a cube and as a lat-long map, both in OpenEXR's convention. Its radiance
+// is a linear function of direction, which differs for every orientation.
+TEST(ProbeFile, OpenExrCubeAndLatLongMapsAgree) {
   const TemporaryFolder folder;
   const dvec3 slope(0.3, 0.2, -0.4);
   const Image ours = gradientProbe({64, 32}, Rgb(1), slope);
-  // OpenEXR: the centre shows +Z, the left quarter +X.
+  // In OpenEXR's lat-long maps, the centre is +Z and +X is a quarter of the width from the left.
   writeEnvironment(folder / "even.exr", gradientProbe({64, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
                    "LatLong Environment");
   writeEnvironment(folder / "odd.exr", gradientProbe({63, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
@@ -77,15 +77,15 @@ TEST(ProbeFile, OpenExrEnvironmentMapsOfOnePlaceAgree) {
   writeImage(folder / "plain.exr", ours);
   for (const char* name : {"even.exr", "odd.exr", "cube.exr", "plain.exr"}) {
     const LoadedProbe loaded = loadProbe(folder / name);
-    const bool isStated = std::string(name) == "even.exr" || std::string(name) == "odd.exr";
-    EXPECT_EQ(loaded.turned, isStated) << name;
-    EXPECT_EQ(warnings(loaded, name).size(), isStated ? 1u : 0u) << name;
+    const bool hasAttribute = std::string(name) == "even.exr" || std::string(name) == "odd.exr";
+    EXPECT_EQ(loaded.turned, hasAttribute) << name;
+    EXPECT_EQ(warnings(loaded, name).size(), hasAttribute ? 1u : 0u) << name;
     const Probe probe(loaded.latLong);
     for (const vec3& d :
          {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0.6f, 0.64f, 0.48f)})
       EXPECT_NEAR(probe.radiance(d).x, 1 + glm::dot(slope, dvec3(d)), 0.02) << name;
   }
-  // The attribute also counts if the mapping is given.
+  // The attribute is used even if the mapping is given.
   EXPECT_TRUE(loadProbe(folder / "even.exr", "lat-long").turned);
 }
 
@@ -111,18 +111,19 @@ TEST(ProbeFile, RealOpenExrEnvironmentMapsAgree) {
 TEST(ProbeFile, ClippedLightIsReported) {
   const TemporaryFolder folder;
   Image image = gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3});
-  const auto said = [&](const char* name, const Image& probe) {
+  const auto messages = [&](const char* name, const Image& probe) {
     writeImage(folder / name, probe);
     std::string all;
     for (const std::string& line : warnings(loadProbe(folder / name), name)) all += line;
     return all;
   };
-  EXPECT_EQ(said("a.exr", image), "");
-  EXPECT_EQ(said("constant.exr", constantProbe({64, 32}, Rgb(1))), "");
-  EXPECT_NE(said("a.png", image).find("radiance above 1 was clipped"), std::string::npos);
-  EXPECT_NE(said("black.exr", constantProbe({64, 32}, Rgb(0))).find("is black"), std::string::npos);
+  EXPECT_EQ(messages("a.exr", image), "");
+  EXPECT_EQ(messages("constant.exr", constantProbe({64, 32}, Rgb(1))), "");
+  EXPECT_NE(messages("a.png", image).find("radiance above 1 was clipped"), std::string::npos);
+  EXPECT_NE(messages("black.exr", constantProbe({64, 32}, Rgb(0))).find("is black"),
+            std::string::npos);
   for (float& x : image.texels) x = std::min(x, 1.0f);
-  EXPECT_NE(said("clipped.exr", image).find("have the maximum value, 1:"), std::string::npos);
+  EXPECT_NE(messages("clipped.exr", image).find("have the maximum value, 1:"), std::string::npos);
   EXPECT_GT(loadProbe(folder / "clipped.exr").fractionAtMaximum, 0.2);
 }
 

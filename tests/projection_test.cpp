@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture thrown from a camera lands where the camera sees it, and nowhere else.
+// Projection of an image from a camera: lookups return the pixel that sees a point, if any.
 #include "scene/projection.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace chromeball {
 namespace {
 
-Camera slanted(bool orthographic) {
+Camera obliqueCamera(bool orthographic) {
   Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.4f, 0}, {0.1f, 1, 0}, 0.7f);
   camera.orthographic = orthographic;
   camera.halfHeight = 1.3f;
@@ -25,7 +25,7 @@ Image depths(int width, int height, float depth) {
 TEST(Projection, InvertsTheCamerasRays) {
   constexpr int kWidth = 24, kHeight = 16;
   for (bool orthographic : {false, true}) {
-    const Camera camera = slanted(orthographic);
+    const Camera camera = obliqueCamera(orthographic);
     const CameraRays rays(camera, float(kWidth) / kHeight);
     Projection projection(camera, kWidth, kHeight);
     projection.setDepth(depths(kWidth, kHeight, 10));
@@ -38,7 +38,7 @@ TEST(Projection, InvertsTheCamerasRays) {
       const vec3 point =
           origin + 9 * toUnit(uint32_t(hash(3 * i + 2))) * direction + 0.1f * direction;
       const float x = u * kWidth, y = v * kHeight;
-      const float margin = 1e-3f;  // of a pixel, in which rounding may choose the next one
+      const float margin = 1e-3f;  // pixels; closer to an edge, rounding may select the next pixel
       if (std::min({x - std::floor(x), y - std::floor(y)}) < margin ||
           std::max({x - std::floor(x), y - std::floor(y)}) > 1 - margin)
         continue;
@@ -49,7 +49,7 @@ TEST(Projection, InvertsTheCamerasRays) {
   }
 }
 
-TEST(Projection, DoesNotReachWhatIsHiddenBehindOrBeside) {
+TEST(Projection, HasNoValueForPointsThatTheCameraDoesNotSee) {
   Camera camera;  // at the origin, looks along -Z
   camera.fov = glm::radians(90.0f);
   Projection projection(camera, 9, 9);
@@ -57,11 +57,11 @@ TEST(Projection, DoesNotReachWhatIsHiddenBehindOrBeside) {
   *depth.at(4, 4) = 2;
   projection.setDepth(depth);
   EXPECT_TRUE(projection.lookup({0, 0, -1.9f}));
-  EXPECT_FALSE(projection.lookup({0, 0, -2.1f}));     // hidden
+  EXPECT_FALSE(projection.lookup({0, 0, -2.1f}));     // occluded
   EXPECT_FALSE(projection.lookup({0, 0, 1.9f}));      // behind the camera
-  EXPECT_FALSE(projection.lookup({0.9f, 0, -1.9f}));  // a pixel that sees nothing
-  EXPECT_FALSE(projection.lookup({3, 0, -1.9f}));     // out of the picture
-  *depth.at(5, 4) = 3;                                // a pixel sees as far as its neighbours
+  EXPECT_FALSE(projection.lookup({0.9f, 0, -1.9f}));  // a pixel without a hit
+  EXPECT_FALSE(projection.lookup({3, 0, -1.9f}));     // outside of the image
+  *depth.at(5, 4) = 3;  // a lookup uses the maximum depth of the neighbours
   projection.setDepth(depth);
   EXPECT_TRUE(projection.lookup({0, 0, -2.9f}));
   EXPECT_FALSE(projection.lookup({0, 0, -3.1f}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights without extent: the closed forms of their falloff, and what they make of a plane.
+// Punctual lights: closed forms of their falloff and of the radiance of a plane.
 #include "lighting/punctual.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Punctual, InverseSquareAndRange) {
   EXPECT_NEAR(incidentLight(light, vec3(0)).irradiance.x, 2 * (1 - 1.0 / 16), 1e-6);
   EXPECT_EQ(incidentLight(light, {0, -3, 0}).irradiance, Rgb(0));
   EXPECT_EQ(incidentLight(light, {0, -9, 0}).irradiance, Rgb(0));
-  EXPECT_EQ(incidentLight(light, light.position).irradiance, Rgb(0));  // no direction, no light
+  EXPECT_EQ(incidentLight(light, light.position).irradiance, Rgb(0));  // no direction is defined
 }
 
 TEST(Punctual, DirectionalIsTheSameEverywhere) {
@@ -72,19 +72,20 @@ TEST(Punctual, SpotFadesBetweenItsCones) {
   EXPECT_NEAR(at(0.502f), 1, 1e-5);
 }
 
-// A Lambertian plane y = 0 from straight above, 8 m wide.
+// A Lambertian plane y = 0.
 Scene plane(float albedo = 0.5f) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(albedo))), {-10, 0, 10}, {20, 0, 0}, {0, 0, -20});
   return scene;
 }
+// A view of 8 m x 8 m from above.
 Camera above() {
   Camera camera = topCamera(50, 10);
   camera.orthographic = true;
   camera.halfHeight = 4;
   return camera;
 }
-Image picture(const Scene& scene, int samples = 4, uint64_t seed = 0, int size = 33) {
+Image renderFromAbove(const Scene& scene, int samples = 4, uint64_t seed = 0, int size = 33) {
   const Probe black(Image(2, 1, 3));
   return renderScene(scene, above(), black, "importance", smallRender(size, size, samples, 1, seed))
       .film.mean();
@@ -95,7 +96,7 @@ TEST(Punctual, PlaneUnderALampFollowsTheCosineAndInverseSquareLaws) {
   Scene scene = plane();
   scene.lights.push_back(lampAt({1, 2, 0}, Rgb(8, 4, 2)));
   const int n = 33;
-  const Image image = picture(scene, 4, 0, n);
+  const Image image = renderFromAbove(scene, 4, 0, n);
   for (int y = 0; y < n; y += 4)
     for (int x = 0; x < n; x += 4) {
       const double px = 8 * (x + 0.5) / n - 4, pz = 8 * (y + 0.5) / n - 4;
@@ -106,13 +107,14 @@ TEST(Punctual, PlaneUnderALampFollowsTheCosineAndInverseSquareLaws) {
     }
 }
 
-TEST(Punctual, WhatStandsBetweenShadesAndWhatStandsBehindDoesNot) {
+TEST(Punctual, OnlyOccludersBetweenLightAndSurfaceCastShadows) {
   for (const float height : {1.0f, 3.0f}) {
     Scene scene = plane();
     scene.lights.push_back(lampAt({0, 2, 0}, Rgb(1)));
     addQuad(scene, 0, {-0.5f, height, 0.5f}, {1, 0, 0}, {0, 0, -1});
-    // Off the plate, which hides the centre from the camera; its shadow reaches to x = 1.
-    const Rgb beside = picture(scene).rgb(33 * 4.75 / 8, 16);
+    // A point beside the occluder, which hides the centre from the camera; its shadow extends to
+    // x = 1.
+    const Rgb beside = renderFromAbove(scene).rgb(33 * 4.75 / 8, 16);
     EXPECT_EQ(beside.x > 0, height > 2);
   }
 }
@@ -130,8 +132,8 @@ TEST(Punctual, DirectionalLightAddsToTheProbe) {
   EXPECT_NEAR(meanColor(image).x, 0.5 * 0.25 + 0.5 / kPiD * 2 * std::sqrt(0.5), 2e-4);
 }
 
-// More lamps than are all taken: those chosen stand for the others.
-TEST(Punctual, ChosenLampsAreUnbiased) {
+// With more lights than are evaluated at every point, the sampled ones are an unbiased estimate.
+TEST(Punctual, SampledLightsAreUnbiased) {
   Scene scene = plane();
   double expected = 0;  // at the centre
   for (int i = 0; i < 3 * PunctualLights::kFirst; ++i) {
@@ -155,9 +157,9 @@ TEST(Punctual, ChosenLampsAreUnbiased) {
   EXPECT_LT(std::sqrt(m.variance), 0.05 * expected);
 }
 
-// In a composite lamps shine with the objects and without them: on the ground as the closed form
-// says, whatever stands there, and on the objects too.
-TEST(Punctual, ShineOnBothWorldsOfAComposite) {
+// In a composite, lights contribute to L_obj and to L_noobj: L_noobj of the ground equals the
+// closed form, also at shadows of objects, and L_obj equals a render of the whole scene.
+TEST(Punctual, LightBothScenesOfAComposite) {
   Scene scene = plane();
   scene.lights.push_back(lampAt({1, 2, 0}, Rgb(8)));
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.9f))), {-1, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
@@ -174,7 +176,7 @@ TEST(Punctual, ShineOnBothWorldsOfAComposite) {
         stop);
     const Image with = compositeLayer(r.film, CompositeLayer::WithObjects);
     const Image without = compositeLayer(r.film, CompositeLayer::WithoutObjects);
-    const Image whole = picture(scene, 64, 1, kSize);
+    const Image whole = renderFromAbove(scene, 64, 1, kSize);
     int shadowed = 0;
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
@@ -189,7 +191,7 @@ TEST(Punctual, ShineOnBothWorldsOfAComposite) {
   }
 }
 
-TEST(GltfLights, StandWhereTheirNodesAre) {
+TEST(GltfLights, AreTransformedByTheirNodes) {
   GltfWriter w;
   addTriangle(w);
   w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
@@ -207,7 +209,7 @@ TEST(GltfLights, StandWhereTheirNodesAre) {
     w.add("nodes", node);
   }
   const std::vector<PunctualLight> lights = w.load().lights;
-  ASSERT_EQ(lights.size(), 2u);  // the black one is nobody's
+  ASSERT_EQ(lights.size(), 2u);  // the black one is dropped
   EXPECT_EQ(lights[0].kind, Kind::Spot);
   EXPECT_EQ(lights[0].position, vec3(1, 2, 3));
   EXPECT_NEAR(glm::distance(lights[0].direction, vec3(0, 1, 0)), 0, 1e-6);
@@ -223,7 +225,7 @@ TEST(GltfLights, StandWhereTheirNodesAre) {
   EXPECT_EQ(loadGltf(w.save(), {}, nullptr, radiometric).lights[0].intensity, Rgb(3, 1.5f, 0));
 }
 
-TEST(GltfLights, AreRejectedWhereTheyAreNotWellFormed) {
+TEST(GltfLights, InvalidLightsAreRejected) {
   const auto errorMessage = [](const json& light, int index = 0) {
     GltfWriter w;
     addTriangle(w);
@@ -249,7 +251,7 @@ TEST(GltfLights, AreRejectedWhereTheyAreNotWellFormed) {
                     "innerConeAngle"));
 }
 
-// A triangle before the camera, lit by a directional light of 683 lx.
+// A triangle in front of the camera, lit by a directional light of 683 lx.
 std::string litTriangle(GltfWriter& w) {
   addTriangle(w);
   w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
@@ -258,7 +260,7 @@ std::string litTriangle(GltfWriter& w) {
   return w.save();
 }
 
-TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
+TEST(SlowGltfLights, OptionsScaleThemAndSetTheirUnits) {
   GltfWriter w;
   const std::string model = litTriangle(w);
   const TemporaryFolder folder;
@@ -290,7 +292,7 @@ TEST(SlowGltfLights, AreScaledSwitchedOffAndTakenInOtherUnits) {
   expectOptionError({"--light-units", "lux"}, "--light-units: `lux` is not known");
 }
 
-TEST(GltfLights, ClippedPicturesAreSaidToBe) {
+TEST(GltfLights, ClippedImagesAreReported) {
   GltfWriter w;
   const std::string model = litTriangle(w);
   const TemporaryFolder folder;
@@ -312,8 +314,9 @@ TEST(GltfLights, ClippedPicturesAreSaidToBe) {
   EXPECT_EQ(errorOf({"-o", folder / "a.exr"}).find("clipped"), std::string::npos);
 }
 
-// Glass bends the light of lamps away from what stands behind: that is said once, and only of them.
-TEST(GltfLights, ThatGlassStopsAreSaidToBe) {
+// Punctual lights do not light surfaces through refractive bodies: one warning if the scene has
+// both. Thin sheets give no warning.
+TEST(GltfLights, BlockingByRefractiveBodiesIsReported) {
   for (const bool volume : {false, true}) {
     GltfWriter w;
     addTriangle(w, {{"material", 0}});

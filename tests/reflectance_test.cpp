@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The local scene's reflectance, found from a picture of it whose reflectance is known.
+// The reflectance of the local scene, estimated from a render with known reflectance.
 #include "composite/reflectance.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace chromeball {
 namespace {
 
 constexpr int kSize = 24;
-const std::atomic<bool> kGoOn = false;
+const std::atomic<bool> kStop = false;
 const auto kQuiet = [](double) {};
 
 Image skyProbe() {
@@ -23,7 +23,7 @@ Image skyProbe() {
   return probe;
 }
 
-// A floor, and for a corner a wall beside it, all of it local scene.
+// A local scene of a floor and, if given, a wall that forms a corner with it.
 struct Local {
   Scene scene;
   Camera camera = Camera::lookAt({0.3f, 2, 2.2f}, {0, 0.3f, 0}, {0, 1, 0}, 0.6f);
@@ -37,25 +37,25 @@ struct Local {
     isObject.resize(scene.instances.size(), false);
   }
 
-  // As a photographer who leaves the probe out of the picture would see it.
+  // A render without the probe in the background.
   Image photograph(int samples = 512, uint64_t seed = 1) const {
     RenderSettings settings = smallRender(kSize, kSize, samples, 8, seed);
     settings.hideProbe = true;
     return renderScene(scene, camera, probe, "importance", settings).film.mean();
   }
 
-  // Forgets the model's reflectance and finds it again from the plate.
+  // Estimates the reflectance from the plate; `projected` replaces the model's own reflectance.
   ReflectanceSolution solve(const Image& plate, int iterations, Projection& projection,
                             bool projected = true) {
     if (projected) makeProjected(scene, isObject, projection);
     const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
     const World world(scene, rayMasks(isObject));
     return solveReflectance({world, camera, *lighting, plate}, smallRender(kSize, kSize, 512, 8, 2),
-                            iterations, projection, kQuiet, kGoOn);
+                            iterations, projection, kQuiet, kStop);
   }
 };
 
-// Mean over pixels that see only the floor (below the middle of the picture) or only the wall.
+// Mean over pixels that see only the floor (the lower third of the image) or only the wall.
 Rgb meanOf(const Image& image, bool floor) {
   glm::dvec3 sum(0);
   int count = 0;
@@ -68,17 +68,17 @@ void expectNear(const Rgb& found, const Rgb& expected, float tolerance) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "channel " << c;
 }
 
-// Where nothing of the local scene sees another part of it one iteration is exact, by rendering as
-// by the exact irradiance of the ground's normal.
-TEST(Reflectance, OfAFlatGroundBothWays) {
-  const Rgb truth(0.6f, 0.3f, 0.1f);
-  Local local(truth, std::nullopt);
+// Without interreflection in the local scene, one iteration is exact, both with rendered irradiance
+// and with the exact irradiance for the ground's normal.
+TEST(Reflectance, OfAFlatGroundRenderedAndExact) {
+  const Rgb expected(0.6f, 0.3f, 0.1f);
+  Local local(expected, std::nullopt);
   const Image plate = local.photograph();
   Projection rendered(local.camera, kSize, kSize), exact = rendered;
   const ReflectanceSolution solution = local.solve(plate, 1, rendered);
   EXPECT_EQ(solution.clamped, 0u);
   EXPECT_NEAR(solution.exposureRatio, 1, 0.01);
-  expectNear(meanOf(rendered.colors(), true), truth, 0.006f);
+  expectNear(meanOf(rendered.colors(), true), expected, 0.006f);
 
   const auto normal = flatNormal(local.scene, local.isObject);
   ASSERT_TRUE(normal);
@@ -87,12 +87,12 @@ TEST(Reflectance, OfAFlatGroundBothWays) {
   const auto lighting = makeStrategy("importance", local.probe, Mis::Balance, "test");
   const World world(local.scene, rayMasks(local.isObject));
   solveFlatReflectance({world, local.camera, *lighting, plate}, smallRender(kSize, kSize, 1, 8),
-                       irradiance, exact, kGoOn);
-  expectNear(meanOf(exact.colors(), true), truth, 0.006f);
+                       irradiance, exact, kStop);
+  expectNear(meanOf(exact.colors(), true), expected, 0.006f);
   expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
 }
 
-TEST(Reflectance, OnlyAFlatGroundIsFlat) {
+TEST(Reflectance, FlatNormalExistsOnlyForOnePlane) {
   EXPECT_FALSE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, false}));
   EXPECT_TRUE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, true}));
   Scene steps;
@@ -101,7 +101,7 @@ TEST(Reflectance, OnlyAFlatGroundIsFlat) {
   EXPECT_FALSE(flatNormal(steps, {false, false}));
 }
 
-// In a corner the walls light each other: the first guess is off, the iterations are not.
+// With interreflection in a corner, the first iteration has an error and later ones converge.
 TEST(SlowReflectance, OfACornerConverges) {
   const Rgb floor(0.8f, 0.7f, 0.6f), wall(0.9f, 0.5f, 0.3f);
   const Image plate = Local(floor, wall).photograph();
@@ -119,9 +119,9 @@ TEST(SlowReflectance, OfACornerConverges) {
   EXPECT_LT(before, 0.04);
 }
 
-// Solved and projected, the local scene alone looks like the plate, whatever is painted there; and
-// so does what a small mirror shows of it.
-TEST(SlowReflectance, MakesTheLocalSceneLookLikeThePlate) {
+// With the estimated and projected reflectance, a render of the local scene equals the plate, also
+// if the plate has a pattern that the model lacks; the same for its reflection in a small mirror.
+TEST(SlowReflectance, RenderWithEstimatedReflectanceEqualsThePlate) {
   Local local(Rgb(0.5f), std::nullopt);
   Image plate = local.photograph();
   for (int y = 0; y < kSize; ++y)
@@ -149,7 +149,7 @@ TEST(SlowReflectance, MakesTheLocalSceneLookLikeThePlate) {
   int compared = 0;
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
-      // Where the corners of the pixel land on the floor by way of the mirror.
+      // Look up the points of the floor that the pixel's corners see in the mirror.
       std::optional<Rgb> colour;
       bool isWhole = true;
       for (int corner = 0; corner < 4; ++corner) {
@@ -170,8 +170,9 @@ TEST(SlowReflectance, MakesTheLocalSceneLookLikeThePlate) {
   EXPECT_GE(compared, 6);
 }
 
-// A plate twice as bright as the probe explains asks for more than all light, and says by how much.
-TEST(Reflectance, SaysWhenExposuresDisagree) {
+// If the plate is twice as bright as the probe implies, the reflectance would need an albedo above
+// 1; the ratio of exposures is reported.
+TEST(Reflectance, ReportsDifferentExposures) {
   Local local(Rgb(0.7f), std::nullopt);
   Image plate = local.photograph();
   for (float& texel : plate.texels) texel *= 2;
@@ -182,17 +183,17 @@ TEST(Reflectance, SaysWhenExposuresDisagree) {
   EXPECT_LE(maxComponent(meanOf(projection.colors(), true)), 1);
 }
 
-// The highlights of a polished floor are taken off the plate before it is solved.
-TEST(SlowReflectance, OfAGlossyFloorLeavesItsHighlightsOut) {
-  const Rgb truth(0.3f, 0.2f, 0.1f);
-  Local local(truth, std::nullopt);
+// The specular reflection of a glossy floor is subtracted from the plate before solving.
+TEST(SlowReflectance, OfAGlossyFloorExcludesItsHighlights) {
+  const Rgb expected(0.3f, 0.2f, 0.1f);
+  Local local(expected, std::nullopt);
   makeGlossy(local.scene, local.isObject, 1, 0.3f);
   const Image plate = local.photograph(1024);
   Projection projection(local.camera, kSize, kSize);
   makeProjected(local.scene, local.isObject, projection);
   makeGlossy(local.scene, local.isObject, 1, 0.3f);
   local.solve(plate, 1, projection, false);
-  expectNear(meanOf(projection.colors(), true), truth, 0.012f);
+  expectNear(meanOf(projection.colors(), true), expected, 0.012f);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures whose exact answer is known, and what must not change them.
+// Renders with known exact results, and independence of the number of threads.
 #include "integrate/render.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Scene plane(const Material& material) {
   return scene;
 }
 
-// Irradiance of the plane y = 0 by brute force over the radiance function.
+// Irradiance of the plane y = 0 by quadrature over the upper hemisphere.
 double irradiance(const Probe& probe, int rows) {
   double sum = 0;
   for (int i = 0; i < rows; ++i)
@@ -33,9 +33,9 @@ double irradiance(const Probe& probe, int rows) {
   return sum * (kPiD / 2 / rows) * (2 * kPiD / (4 * rows));
 }
 
-// Mean luminance of a small picture, over independent seeds.
-Moments pictures(const Scene& scene, const Camera& camera, const Probe& probe,
-                 const std::string& strategy, RenderSettings settings, int repeats) {
+// Mean luminance of a render; moments over independent seeds.
+Moments renderMeans(const Scene& scene, const Camera& camera, const Probe& probe,
+                    const std::string& strategy, RenderSettings settings, int repeats) {
   std::vector<double> means;
   for (int i = 0; i < repeats; ++i) {
     settings.seed = 100 + uint64_t(i);
@@ -58,8 +58,8 @@ TEST(Render, lambertUnderConstantAndGradientProbes) {
       {gradientProbe({512, 256}, Rgb(1), {0.2, 0.6, 0.3}), 0.5 * (1 + 2.0 / 3 * 0.6)}};
   for (const Case& c : cases)
     for (const char* strategy : kUnbiased) {
-      const Moments m = pictures(scene, topCamera(3, 40), Probe(c.probe), strategy,
-                                 smallRender(16, 16, 64, 1), 8);
+      const Moments m = renderMeans(scene, topCamera(3, 40), Probe(c.probe), strategy,
+                                    smallRender(16, 16, 64, 1), 8);
       EXPECT_NEAR(m.mean, c.expected, 1e-3 * c.expected) << strategy;
     }
 }
@@ -73,7 +73,7 @@ TEST(SlowRender, lambertUnderOneTexel) {
   const Scene scene = plane(lambert(Rgb(0.5f)));
   for (const char* strategy : kUnbiased) {
     const Moments m =
-        pictures(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 256, 1), 12);
+        renderMeans(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 256, 1), 12);
     EXPECT_GT(tTest(m, expected), sidak(1e-3, 3)) << strategy << ": " << m.mean;
     if (std::string(strategy) == "importance") {
       EXPECT_NEAR(m.mean, expected, 2e-3 * expected);
@@ -81,8 +81,8 @@ TEST(SlowRender, lambertUnderOneTexel) {
   }
 }
 
-// A sun of 0.5323 degrees and radiance 46,700 puts radiance 1 (to 1%) on a white surface that faces
-// it: exactly 46,700 sin^2(0.5323 / 2 degrees).
+// A white surface facing a sun of 0.5323 degrees and radiance 46,700 has radiance 1 to 1%: exactly
+// 46,700 sin^2(0.5323 / 2 degrees).
 TEST(Render, theSunOf46700) {
   const double sine = std::sin(0.5323 / 2 * kPiD / 180), expected = 46700 * sine * sine;
   EXPECT_NEAR(expected, 1, 0.01);
@@ -97,12 +97,13 @@ TEST(Render, theSunOf46700) {
             2.0f * along);
     const Camera camera = Camera::lookAt(3.0f * vec3(sun), vec3(0), along, 0.4f);
     const Moments m =
-        pictures(scene, camera, Probe(image), "importance", smallRender(8, 8, 64, 1), 4);
+        renderMeans(scene, camera, Probe(image), "importance", smallRender(8, 8, 64, 1), 4);
     EXPECT_NEAR(m.mean, expected, 2e-3);
   }
 }
 
-// Inside a closed sphere that emits 1 and reflects half, depth d sees 1 + 1/2 + ... + 1/2^d.
+// Inside a closed sphere of emission 1 and albedo 1/2, the radiance at maximum depth d is
+// 1 + 1/2 + ... + 1/2^d.
 TEST(SlowRender, closedEmittingSphereCountsEveryBounce) {
   Scene scene;
   Material material = lambert(Rgb(0.5f));
@@ -115,14 +116,14 @@ TEST(SlowRender, closedEmittingSphereCountsEveryBounce) {
     for (Mis mis : {Mis::Off, Mis::Balance, Mis::Power}) {
       RenderSettings settings = smallRender(16, 16, 64, depth);
       settings.mis = mis;
-      const Moments m = pictures(scene, camera, dark, "importance", settings, 8);
+      const Moments m = renderMeans(scene, camera, dark, "importance", settings, 8);
       EXPECT_GT(tTest(m, expected), sidak(1e-3, 15)) << depth << ": " << m.mean;
       EXPECT_NEAR(m.mean, expected, (mis == Mis::Off ? 0.02 : 0.005) * expected) << depth;
     }
   }
 }
 
-// A white object in a uniformly white surrounding cannot be seen.
+// A white object under constant radiance 1 has radiance 1.
 TEST(Render, whiteFurnace) {
   for (float metallic : {-1.0f, 0.0f, 0.5f, 1.0f})  // -1: Lambert
     for (float roughness : {0.05f, 0.5f, 1.0f}) {
@@ -137,8 +138,8 @@ TEST(Render, whiteFurnace) {
       addSphere(scene, addMaterial(scene, material), vec3(0), 1, 96);
       RenderSettings settings = smallRender(24, 24, 64, 16);
       for (const char* strategy : {"bsdf", "importance"}) {
-        const Moments m = pictures(scene, topCamera(2.2f, 40), Probe(constantProbe({8, 4}, Rgb(1))),
-                                   strategy, settings, 4);
+        const Moments m = renderMeans(scene, topCamera(2.2f, 40),
+                                      Probe(constantProbe({8, 4}, Rgb(1))), strategy, settings, 4);
         EXPECT_NEAR(m.mean, 1, metallic < 0 ? 1e-3 : 5e-3)
             << strategy << " metallic " << metallic << " roughness " << roughness;
         EXPECT_LT(m.mean, 1 + 1e-3);
@@ -154,7 +155,7 @@ TEST(Render, sameBitsForAnyNumberOfThreads) {
   const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));
   RenderSettings settings = smallRender(70, 50, 6, 5);
   settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Node};
-  std::vector<std::vector<float>> pictures;
+  std::vector<std::vector<float>> images;
   for (int threads : {1, 2, 3}) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "importance", settings);
@@ -162,13 +163,13 @@ TEST(Render, sameBitsForAnyNumberOfThreads) {
     for (float x : varianceImage(r.film.errors()).texels) all.push_back(x);
     for (float x : r.aovs.finished(Aov::Albedo).texels) all.push_back(x);
     all.push_back(float(r.rays.shadow));
-    pictures.push_back(all);
+    images.push_back(all);
   }
-  EXPECT_EQ(pictures[0], pictures[1]);
-  EXPECT_EQ(pictures[0], pictures[2]);
+  EXPECT_EQ(images[0], images[1]);
+  EXPECT_EQ(images[0], images[2]);
 }
 
-TEST(Render, pixelsGetExactlyTheSamplesAskedFor) {
+TEST(Render, pixelsHaveExactlyTheRequestedSamples) {
   const Scene scene = plane(lambert(Rgb(0.7f)));
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   for (const uint32_t samples : {1u, 2u, 3u, 7u, 64u, 100u, 255u, 8192u, 8195u, 20000u}) {
@@ -180,7 +181,7 @@ TEST(Render, pixelsGetExactlyTheSamplesAskedFor) {
   }
 }
 
-TEST(Render, stopsAtTheNoiseAskedFor) {
+TEST(Render, stopsAtTheNoiseLimit) {
   const Scene scene = plane(lambert(Rgb(0.7f)));
   const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));
   RenderSettings settings = smallRender(32, 32, 1 << 20, 3);
@@ -191,8 +192,8 @@ TEST(Render, stopsAtTheNoiseAskedFor) {
   EXPECT_GE(r.samples, 16u);
 }
 
-// Half of a blended plane's light passes; a mask's holes let all of it through.
-TEST(Render, alphaLetsItsShareOfLightThrough) {
+// A blended plane transmits 1 - alpha; below the cutoff, a mask transmits all light.
+TEST(Render, blendedSurfacesTransmitOneMinusAlpha) {
   const Probe probe(constantProbe({8, 4}, Rgb(1)));
   Scene scene;
   Material black = lambert(Rgb(0));
@@ -202,12 +203,12 @@ TEST(Render, alphaLetsItsShareOfLightThrough) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-500, 0, 500}, {1000, 0, 0}, {0, 0, -1000});
   for (const char* strategy : kUnbiased) {
     const Moments m =
-        pictures(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 64, 1), 8);
+        renderMeans(scene, topCamera(3, 40), probe, strategy, smallRender(16, 16, 64, 1), 8);
     EXPECT_GT(tTest(m, 0.75 * 0.75), sidak(1e-3, 4)) << strategy << ": " << m.mean;
   }
   scene.materials[0].alphaMode = AlphaMode::Mask;  // 0.25 is below the cutoff
   const Moments m =
-      pictures(scene, topCamera(3, 40), probe, "importance", smallRender(16, 16, 16, 1), 4);
+      renderMeans(scene, topCamera(3, 40), probe, "importance", smallRender(16, 16, 16, 1), 4);
   EXPECT_NEAR(m.mean, 1, 2e-3);
 }
 

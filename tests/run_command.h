@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the command that was built beside the tests.
+// Runs the executable of this build.
 #pragma once
 
 #include <fcntl.h>
@@ -20,7 +20,7 @@
 
 #include "paths.h"
 
-// A folder of the running test's own, removed with its contents at the end.
+// A temporary folder, removed with its contents by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -48,7 +48,7 @@ class TemporaryFolder {
 };
 
 struct CommandResult {
-  int status = -1;  // exit status, or minus the number of the signal that ended it
+  int status = -1;  // exit status, or minus the number of the terminating signal
   std::string out, error;
 };
 
@@ -58,11 +58,11 @@ inline std::string fileContents(const std::string& path) {
   return text.str();
 }
 
-// What the command is given to live on, in bytes; 0 is as much as there is.
+// Resource limits of the command, in bytes; 0 is unlimited.
 struct CommandLimits {
   size_t memory = 0;         // address space
-  size_t fileSize = 0;       // of each file it writes, as on a disk that fills up
-  bool permissions = false;  // those of files bind it, even where root runs the tests
+  size_t fileSize = 0;       // of each written file; writing fails as on a full disk
+  bool permissions = false;  // drop root's capability to ignore file permissions
 
   void apply() const {
     const rlimit addressSpace{memory, memory}, file{fileSize, fileSize};
@@ -74,7 +74,7 @@ struct CommandLimits {
   }
 };
 
-// Where `signalAt` is given, sends `signal` as soon as standard error holds it.
+// If `signalAt` is not empty, sends `signal` as soon as standard error contains it.
 inline CommandResult runCommand(const std::vector<std::string>& arguments,
                                 const std::string& signalAt = "", int signal = SIGINT,
                                 const CommandLimits& limits = {}) {
@@ -108,8 +108,8 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments,
   return result;
 }
 
-// The input was refused as the command line promises: status 2, nothing on standard output, and one
-// line `chromeball: ...` that holds `reason`.
+// Runs the command and expects an input error: status 2, nothing on standard output, and one line
+// `chromeball: ...` that contains `reason`.
 inline CommandResult expectError(const std::vector<std::string>& arguments,
                                  const std::string& reason, const CommandLimits& limits = {}) {
   const CommandResult result = runCommand(arguments, "", SIGINT, limits);

@@ -14,7 +14,7 @@ inline std::optional<Scene> sampleModel(const std::string& name) {
   return loadGltf(path->string(), {}, nullptr);
 }
 
-// An orthographic camera along -Z on a square of the scene around `centre`.
+// Renders the square of half-side `halfHeight` around `centre`, orthographically along -Z.
 inline Image squareView(const Scene& scene, const vec3& centre, float halfHeight, int pixels,
                         const Probe& probe, RenderSettings settings) {
   Camera camera;
@@ -31,7 +31,7 @@ inline Material& materialNamed(Scene& scene, const std::string& name) {
   throw std::runtime_error("no material " + name);
 }
 
-// A black material that emits white.
+// Replaces the material by a black one of emission 1.
 inline void makeLamp(Material& material) {
   material.baseColor = vec4(0, 0, 0, 1);
   material.specular = material.metallic = 0;

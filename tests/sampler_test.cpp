@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stratification of the Sobol table, and what its numbers may depend on.
+// Stratification of the Sobol table, and independence of its numbers.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -10,8 +10,8 @@
 namespace chromeball {
 namespace {
 
-// How many of the 2^k elementary intervals of every shape 2^-a x 2^-(k-a) hold exactly one of the
-// 2^k points first, first + 1, ... of the pixel, in dimensions d and d + 1.
+// Whether each of the 2^k elementary intervals of every shape 2^-a x 2^-(k-a) contains exactly one
+// of the pixel's 2^k points first, first + 1, ..., in dimensions d and d + 1.
 bool isNet(const PixelSampler& prototype, uint32_t first, int k, int d) {
   PixelSampler sampler = prototype;
   for (int a = 0; a <= k; ++a) {
@@ -53,7 +53,7 @@ TEST(Sampler, dependsOnPixelSampleDimensionAndSeedOnly) {
     a.startSample(i);
     b.startSample(i);
     c.startSample(i);
-    for (int d = 0; d < 40; ++d) {  // past the table: plain random numbers
+    for (int d = 0; d < 40; ++d) {  // beyond the table: independent random numbers
       ASSERT_EQ(a.bits(d), b.bits(d));
       ASSERT_NE(a.bits(d), c.bits(d));
       seen.insert(a.bits(d));

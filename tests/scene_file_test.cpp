@@ -43,7 +43,7 @@ class SceneFileTest : public testing::Test {
     }
     return "(no error)";
   }
-  // The error is one line, names `line` of the scene file, and contains all of `words`.
+  // Expects an error of one line that names `line` of the scene file and contains all of `words`.
   void expectError(const std::string& toml, int line, const std::vector<std::string>& words) const {
     const std::string error = errorOf(toml);
     const std::string location = fmt::format("{}:{}: ", scenePath(), line);
@@ -56,7 +56,7 @@ class SceneFileTest : public testing::Test {
   fs::path root_;
 };
 
-TEST_F(SceneFileTest, AModelAloneGivesNoOtherSetting) {
+TEST_F(SceneFileTest, AModelAloneSetsNothingElse) {
   const SceneFile scene = readWithModel("");
   ASSERT_EQ(scene.models.size(), 1u);
   EXPECT_EQ(scene.models[0].file, (root_ / "ball.glb").string());
@@ -118,7 +118,7 @@ TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
   expectError(location + "orthographic = -3", 5, {"`orthographic`", "above 0"});
 }
 
-TEST_F(SceneFileTest, EveryKeyArrives) {
+TEST_F(SceneFileTest, EveryKeyIsRead) {
   const SceneFile scene = readWithModel(R"([camera]
 position = [0, 0, 5]
 look_at = [0, 0, 0]
@@ -176,8 +176,9 @@ TEST_F(SceneFileTest, CameraAndOutputByName) {
             std::vector{(root_ / "scenes/a.exr").string()});
 }
 
-// T R S: (1, 2, 3) scaled by (2, 3, 4), turned 90 degrees about Y (z to x, x to -z), moved.
-TEST_F(SceneFileTest, PlacementScalesThenRotatesThenMoves) {
+// T R S: (1, 2, 3) scaled by (2, 3, 4), rotated by 90 degrees about Y (z to x, x to -z),
+// translated.
+TEST_F(SceneFileTest, PlacementScalesThenRotatesThenTranslates) {
   const char* const rotations[] = {"[0, 90, 0]", "[0, 0.70710678, 0, 0.70710678]",
                                    "[0, 5.0, 0, 5.0]"};
   for (const char* rotation : rotations) {
@@ -189,8 +190,9 @@ TEST_F(SceneFileTest, PlacementScalesThenRotatesThenMoves) {
   }
 }
 
-// Angles about fixed axes, X first: 90 about X takes y to z, and then 90 about Z leaves it there.
-TEST_F(SceneFileTest, AnglesTurnAboutXThenYThenZ) {
+// Angles about fixed axes, X first: 90 degrees about X rotate y to z; 90 about Z then leave it
+// there.
+TEST_F(SceneFileTest, AnglesRotateAboutXThenYThenZ) {
   const SceneFile scene = read("[[model]]\nfile='../ball.glb'\nrotation=[90,0,90]\n");
   EXPECT_LT(glm::distance(scene.models.at(0).placement.point({0, 1, 0}), vec3(0, 0, 1)), 1e-6f);
   EXPECT_LT(glm::distance(scene.models.at(0).placement.point({1, 0, 0}), vec3(0, 1, 0)), 1e-6f);
@@ -244,7 +246,7 @@ TEST_F(SceneFileTest, OutOfRangeNamesKeyAndLine) {
   expectError("[camera]\nposition=[0,0,1]\nlook_at=[0,0,0]\nfov = 180\n", 5, {"`fov`"});
 }
 
-TEST_F(SceneFileTest, CameraMustBeOneOrTheOther) {
+TEST_F(SceneFileTest, CameraHasEitherANameOrAPosition) {
   expectError("[camera]\nname = 'A'\nfov = 30\n", 4, {"`name`", "`fov`"});
   expectError("\n[camera]\nposition = [0,0,1]\n", 3, {"look_at"});
   expectError("[camera]\nposition = [0,0,1]\nlook_at = [0,0,1]\n", 2, {"same point"});
@@ -252,24 +254,24 @@ TEST_F(SceneFileTest, CameraMustBeOneOrTheOther) {
 }
 
 TEST_F(SceneFileTest, BadModelsAreRejected) {
-  const auto expectError = [&](const std::string& toml) {
+  const auto expectThrow = [&](const std::string& toml) {
     EXPECT_THROW(read(toml), InputError) << toml;
   };
-  expectError("");
-  expectError("model = []");
-  expectError("model = 3");
-  expectError("[[model]]\nscale = 2\n");
-  expectError("[[model]]\nfile='../ball.glb'\nscale = 0\n");
-  expectError("[[model]]\nfile='../ball.glb'\nscale = [1, 0, 1]\n");
-  expectError("[[model]]\nfile='../ball.glb'\nrotation = [0, 0]\n");
-  expectError("[[model]]\nfile='../ball.glb'\nrotation = [0, 0, 0, 0]\n");
-  expectError("[[model]]\nfile='../ball.glb'\ntranslation = [0, nan, 0]\n");
+  expectThrow("");
+  expectThrow("model = []");
+  expectThrow("model = 3");
+  expectThrow("[[model]]\nscale = 2\n");
+  expectThrow("[[model]]\nfile='../ball.glb'\nscale = 0\n");
+  expectThrow("[[model]]\nfile='../ball.glb'\nscale = [1, 0, 1]\n");
+  expectThrow("[[model]]\nfile='../ball.glb'\nrotation = [0, 0]\n");
+  expectThrow("[[model]]\nfile='../ball.glb'\nrotation = [0, 0, 0, 0]\n");
+  expectThrow("[[model]]\nfile='../ball.glb'\ntranslation = [0, nan, 0]\n");
 }
 
 TEST_F(SceneFileTest, MissingFilesAreNamedWithTheirLine) {
   expectError("[probe]\nfile = '../moon.exr'\n", 3, {"`file`", "moon.exr"});
-  expectError("[probe]\nfile = '..'\n", 3, {"`file`"});    // a folder is no probe
-  EXPECT_THROW(read("model = 'ball.glb'\n"), InputError);  // not relative to where we run
+  expectError("[probe]\nfile = '..'\n", 3, {"`file`"});    // a folder is not a probe
+  EXPECT_THROW(read("model = 'ball.glb'\n"), InputError);  // not relative to the working directory
 }
 
 TEST_F(SceneFileTest, BrokenTomlNamesItsLine) {

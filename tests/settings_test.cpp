@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of settings, and everything that comes from it.
+// The table of settings, and the command line, scene file and manual page that use it.
 #include "job/settings.h"
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ std::vector<const Setting*> scalars() {
   return rows;
 }
 
-// Texts of an option, and whether they are valid.
-struct Sample {
+// The text of an option's value, and whether it is valid.
+struct OptionValue {
   std::string text;
   bool valid;
 };
@@ -36,55 +36,55 @@ std::string decimal(double x) {
   return x == std::floor(x) ? fmt::format("{:.0f}", x) : fmt::format("{}", x);
 }
 
-std::vector<Sample> samplesOf(const Setting& s) {
-  std::vector<Sample> samples;
+std::vector<OptionValue> valuesOf(const Setting& s) {
+  std::vector<OptionValue> values;
   const auto limit = [&](double at, bool excluded, double beyond) {
     if (!std::isfinite(at)) return;
-    samples.push_back({decimal(at), !excluded});
-    samples.push_back({decimal(at + beyond), false});
+    values.push_back({decimal(at), !excluded});
+    values.push_back({decimal(at + beyond), false});
   };
   switch (s.type) {
     case SettingType::Integer:
       limit(s.range.min, false, -1);
       limit(s.range.max, false, 1);
-      samples.push_back({"1.5", false});
-      samples.push_back({"many", false});
-      samples.push_back({"2x", false});
+      values.push_back({"1.5", false});
+      values.push_back({"many", false});
+      values.push_back({"2x", false});
       break;
     case SettingType::Factor:
-      samples.push_back({"off", true});
-      samples.push_back({"on", false});
+      values.push_back({"off", true});
+      values.push_back({"on", false});
       [[fallthrough]];
     case SettingType::Number:
       limit(s.range.min, s.range.excludesMin, -0.001);
       limit(s.range.max, s.range.excludesMax, 0.001);
-      samples.push_back({"0.25", true});
+      values.push_back({"0.25", true});
       for (const char* text : {"nan", "inf", "1e300", "much", "", "1 2"})
-        samples.push_back({text, false});
+        values.push_back({text, false});
       break;
     case SettingType::Choice:
     case SettingType::Choices:
-      for (const std::string_view name : s.choices()) samples.push_back({std::string(name), true});
-      samples.push_back({"nonsense", false});
+      for (const std::string_view name : s.choices()) values.push_back({std::string(name), true});
+      values.push_back({"nonsense", false});
       break;
     case SettingType::Size:
-      samples = {{"1x1", true},  {"800x600", true}, {"0x9", false},     {"9x-1", false},
-                 {"800", false}, {"8by6", false},   {"65537x1", false}, {"8x6x", false}};
+      values = {{"1x1", true},  {"800x600", true}, {"0x9", false},     {"9x-1", false},
+                {"800", false}, {"8by6", false},   {"65537x1", false}, {"8x6x", false}};
       break;
     case SettingType::Flag:
-      samples = {{"true", true}, {"false", true}, {"perhaps", false}};
+      values = {{"true", true}, {"false", true}, {"perhaps", false}};
       break;
     default:
-      samples = {{"something", true}};
+      values = {{"something", true}};
   }
-  return samples;
+  return values;
 }
 
 TEST(Settings, EveryRowIsComplete) {
   std::set<std::string> names, options;
   for (const Setting& s : settingTable()) {
     SCOPED_TRACE(s.name());
-    EXPECT_TRUE(names.insert(s.name()).second) << "two rows of this name";
+    EXPECT_TRUE(names.insert(s.name()).second) << "two rows have this name";
     if (!s.option.empty()) {
       EXPECT_TRUE(options.insert(std::string(s.option)).second);
     }
@@ -110,9 +110,9 @@ TEST(Settings, EveryRowIsComplete) {
   }
 }
 
-TEST(Settings, EveryOptionTakesItsRangeAndNothingElse) {
+TEST(Settings, EveryOptionAcceptsExactlyItsRange) {
   for (const Setting* s : scalars())
-    for (const auto& [text, valid] : samplesOf(*s)) {
+    for (const auto& [text, valid] : valuesOf(*s)) {
       try {
         const SettingValue value = parseSetting(*s, {text}, "--it");
         EXPECT_TRUE(valid) << s->name() << " took `" << text << "`";
@@ -133,7 +133,7 @@ class SettingsInAFile : public testing::Test {
       std::ofstream(folder_ / name) << "x";
   }
 
-  // "" without an error.
+  // The error message, or "" without an error.
   std::string errorOf(const std::string& toml) const {
     std::ofstream(path_) << toml;
     try {
@@ -144,7 +144,7 @@ class SettingsInAFile : public testing::Test {
     return "";
   }
 
-  // A scene file in which the only mistake can be `value`, on the last line.
+  // A scene file whose only possible error is `value`, on the last line.
   static std::string sceneWith(const Setting& s, const std::string& value) {
     const std::string key = fmt::format("{} = {}\n", s.key, value);
     const bool isModel = s.section == "model";
@@ -200,11 +200,11 @@ std::string asToml(const Setting& s, const std::string& text) {
   }
 }
 
-TEST_F(SettingsInAFile, EveryKeyTakesItsRangeAndNothingElse) {
+TEST_F(SettingsInAFile, EveryKeyAcceptsExactlyItsRange) {
   for (const Setting* s : scalars()) {
     if (s->key.empty() || s->key == "shape" || (s->section == "light" && s->key == "type"))
       continue;
-    for (const auto& [text, valid] : samplesOf(*s)) {
+    for (const auto& [text, valid] : valuesOf(*s)) {
       const std::string toml = sceneWith(*s, asToml(*s, text)), error = errorOf(toml);
       EXPECT_EQ(error.empty(), valid) << s->name() << " with " << text << ": " << error << toml;
     }
@@ -222,7 +222,7 @@ TEST_F(SettingsInAFile, WrongTypesNameLineAndKey) {
   }
 }
 
-TEST_F(SettingsInAFile, CompoundsTakeTheirRange) {
+TEST_F(SettingsInAFile, CompoundsAcceptTheirRange) {
   for (const Setting& s : settingTable()) {
     const bool isNumber = s.form.starts_with("a number");
     if (s.type != SettingType::Compound || !isNumber || !std::isfinite(s.range.min)) continue;
@@ -237,7 +237,7 @@ TEST_F(SettingsInAFile, CompoundsTakeTheirRange) {
   }
 }
 
-TEST_F(SettingsInAFile, GivenOverFileOverDefault) {
+TEST_F(SettingsInAFile, OptionsOverrideTheFileAndTheFileOverridesDefaults) {
   std::ofstream(path_)
       << "model = 'ball.glb'\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
          "[render]\nsamples = 5\nnoise = 2\nmax_depth = 3\nseed = 9\n";
@@ -255,36 +255,36 @@ TEST_F(SettingsInAFile, GivenOverFileOverDefault) {
   EXPECT_EQ(job.settings.seed, 7u);
   EXPECT_EQ(job.settings.maxDepth, 3);
   EXPECT_EQ(job.settings.timeLimit, 1.5);
-  EXPECT_FALSE(job.settings.noiseLimit) << "samples, time and noise are one decision";
+  EXPECT_FALSE(job.settings.noiseLimit) << "--time replaces the limits of the file";
   EXPECT_EQ(job.settings.samples, kMaxSamples);
   EXPECT_FALSE(job.file.camera);
 }
 
-TEST(Settings, DefaultsAreTheIntegratorsOwn) {
+TEST(Settings, DefaultsEqualThoseOfRenderSettings) {
   SceneFile scene;
   scene.models.push_back({"a.glb", {}, {}});
-  const RenderSettings planned = planJob(scene).settings, usual;
-  EXPECT_EQ(planned.samples, usual.samples);
-  EXPECT_EQ(planned.maxDepth, usual.maxDepth);
-  EXPECT_EQ(planned.maxTransmissionDepth, usual.maxTransmissionDepth);
-  EXPECT_EQ(planned.seed, usual.seed);
-  EXPECT_EQ(planned.mis, usual.mis);
-  EXPECT_EQ(planned.hideProbe, usual.hideProbe);
-  EXPECT_EQ(planned.clamp, usual.clamp);
+  const RenderSettings planned = planJob(scene).settings, defaults;
+  EXPECT_EQ(planned.samples, defaults.samples);
+  EXPECT_EQ(planned.maxDepth, defaults.maxDepth);
+  EXPECT_EQ(planned.maxTransmissionDepth, defaults.maxTransmissionDepth);
+  EXPECT_EQ(planned.seed, defaults.seed);
+  EXPECT_EQ(planned.mis, defaults.mis);
+  EXPECT_EQ(planned.hideProbe, defaults.hideProbe);
+  EXPECT_EQ(planned.clamp, defaults.clamp);
   EXPECT_TRUE(planned.aovs.empty());
 }
 
-TEST(Settings, ProgramsAreToldTheirMistakes) {
+TEST(Settings, MisuseByProgramsThrows) {
   Settings settings;
   EXPECT_THROW(settings.has("render.sampels"), std::logic_error);
   EXPECT_THROW(settings.get<double>("render.samples"), std::logic_error);
-  EXPECT_THROW(settings.get<std::string>("probe.file"), std::logic_error) << "has no default";
+  EXPECT_THROW(settings.get<std::string>("probe.file"), std::logic_error) << "it has no default";
   EXPECT_THROW(settings.set("render.samples", uint64_t(0)), InputError);
   EXPECT_THROW(settings.set("render.samples", 1.0), InputError);
   EXPECT_THROW(settings.parse("lighting.mis", "powr"), InputError);
 }
 
-TEST(Settings, EveryMappingIsOne) {
+TEST(Settings, EveryMappingNameIsParsed) {
   for (const std::string_view name : settingNamed("probe.mapping").choices()) {
     const ImageSize size = name == "cube-strip"   ? ImageSize{6, 1}
                            : name == "cube-cross" ? ImageSize{4, 3}

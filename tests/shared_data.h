@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real probes and models that live beside the project, where they are present.
+// Real probes and models, stored outside of the source tree; tests skip if they are absent.
 #pragma once
 
 #include <cstdlib>
@@ -9,8 +9,8 @@
 
 #include "paths.h"
 
-// The folder is $CHROMEBALL_DATA, or ../shared/data beside the source tree. Tests that get nullopt
-// skip, and say so.
+// A path in the folder $CHROMEBALL_DATA or, if that is not set, ../shared/data relative to the
+// source tree; nullopt if it does not exist.
 inline std::optional<std::filesystem::path> sharedData(const std::string& relative) {
   const char* folder = std::getenv("CHROMEBALL_DATA");
   const std::filesystem::path root =

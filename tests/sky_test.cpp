@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Synthetic probes.
+// Synthetic probes: skies and suns, overcast, gradient, studio.
 #include "probe/sky.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ dvec3 irradiance(const Image& image, const dvec3& normal) {
   return sum;
 }
 
-TEST(SlowSky, SunsIrradianceIsTheSameAtEveryResolution) {
+TEST(SlowSky, SunIrradianceIsIndependentOfResolution) {
   const dvec3 given(3, 2, 1);
   for (const double elevation : {0.0, 30.0, 89.9, 90.0}) {
     ClearSky sky;
@@ -43,7 +43,7 @@ TEST(SlowSky, SunsIrradianceIsTheSameAtEveryResolution) {
   }
 }
 
-TEST(Sky, SunHasItsDiameterAndConstantRadiance) {
+TEST(Sky, SunHasTheGivenDiameterAndConstantRadiance) {
   ClearSky sky;
   Image image(8192, 4096, 3);
   addSunDisc(image, sunDirection(sky), kSunDiameter, dvec3(kPiD));
@@ -55,14 +55,14 @@ TEST(Sky, SunHasItsDiameterAndConstantRadiance) {
       if (radiance > 0) solidAngle += texelSolidAngle(y, image.width, image.height);
       brightest = std::max(brightest, radiance);
     }
-  // A sun of 0.5323 degrees that puts radiance 1 on a white surface has radiance 46,700, to 1%.
+  // If a sun of 0.5323 degrees gives a white surface the radiance 1, its radiance is 46,700 to 1%.
   EXPECT_NEAR(brightest, 46700, 467);
   const double radius = kSunDiameter / 2 * kPiD / 180;
-  // Texels at the rim count in full: the radius is up to half a texel (0.044 degrees) larger.
+  // Texels at the rim count as covered: the radius is up to half a texel (0.044 degrees) larger.
   EXPECT_NEAR(std::sqrt(solidAngle / kPiD) / radius, 1, 0.15);
 }
 
-TEST(Sky, SunIsWhereItsAnglesSay) {
+TEST(Sky, SunHasTheGivenDirection) {
   ClearSky sky;
   sky.sunElevation = 30;
   sky.sunAzimuth = 90;  // counter-clockwise seen from above: from -Z to -X
@@ -89,7 +89,7 @@ TEST(Sky, ClearSkyIsPlausible) {
   EXPECT_LT(luminance(Rgb(sunIrradiance(noon))), 1.28 * kPiD);
   const dvec3 evening = sunIrradiance({.sunElevation = 5});
   EXPECT_GT(evening.x, 2 * evening.z);
-  // More haze, less sun.
+  // More haze attenuates the sun.
   EXPECT_LT(sunIrradiance({.turbidity = 6}).y, sunIrradiance({.turbidity = 3}).y);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model of one triangle, in a file.
+// Writes a model file of one triangle.
 #pragma once
 
 #include <fstream>

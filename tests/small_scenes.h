@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three scenes with their probes that together hold most of what paths meet.
+// Three scenes with probes that together cover most kinds of materials and lights.
 #pragma once
 
 #include "probe/synth.h"
@@ -7,14 +7,14 @@
 
 namespace chromeball {
 
-struct Named {
+struct NamedScene {
   const char* name;
   Scene scene;
   Image probe;
 };
 
-inline std::vector<Named> threeScenes() {
-  std::vector<Named> scenes(3);
+inline std::vector<NamedScene> threeScenes() {
+  std::vector<NamedScene> scenes(3);
   {
     scenes[0].name = "matte spheres on a plane under a gradient with a lamp";
     Scene& s = scenes[0].scene;

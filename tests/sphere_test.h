@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chi-square test over the sphere: do samples of directions follow their pdf?
+// A chi-square test over the sphere of whether sampled directions follow their pdf.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@
 
 namespace chromeball {
 
-// Integral of f over a rectangle, subdivided at least `minimum` times (so that no feature falls
-// between the points), then until a finer rule agrees.
+// Integral of f over a rectangle, subdivided at least `minimum` times (so that the points do not
+// miss a feature), then until a finer rule agrees.
 inline double integrate(const std::function<double(double, double)>& f, double x0, double x1,
                         double y0, double y1, double tolerance, int minimum, int depth = 0) {
   const auto rule = [&](int n) {

@@ -39,7 +39,7 @@ TEST(SphericalHarmonics, GradientHasOnlyItsOwnTerms) {
 }
 
 // Published tables (Ramamoorthi and Hanrahan 2001; Rost's "OpenGL Shading Language"), each up to a
-// scale factor. Their z points into the image, ours out of it.
+// scale factor. Their z axis points into the image, ours out of it.
 TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
   const auto table = sharedData("reference/sh_coefficients_debevec.json");
   if (!table) GTEST_SKIP() << "no reference/sh_coefficients_debevec.json";

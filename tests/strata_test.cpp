@@ -59,7 +59,7 @@ TEST(Strata, samplesFollowThePdfInEveryRegion) {
   }
 }
 
-TEST(Strata, samplesStayInTheirRegionAndHaveThePdfOfTheirDirection) {
+TEST(Strata, samplesAreInTheirRegionAndHaveThePdfOfTheirDirection) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const Probe probe(c.map);
@@ -83,8 +83,8 @@ TEST(Strata, samplesStayInTheirRegionAndHaveThePdfOfTheirDirection) {
   }
 }
 
-// The pdf follows the radiance, so every sample has the energy of its region; the sum over all
-// regions is that of the probe.
+// The pdf is proportional to the radiance, so radiance / pdf is the energy of the sample's region;
+// the sum over all regions is the energy of the probe.
 TEST(Strata, samplesOfAGreyProbeHaveConstantWeight) {
   Image map = constantProbe({256, 128}, Rgb(1));
   for (int i = 0; i < 256 * 128; ++i)
@@ -104,7 +104,7 @@ TEST(Strata, samplesOfAGreyProbeHaveConstantWeight) {
   EXPECT_NEAR(all, 4 * kPiD * meanRadiance(map).y, 0.005 * all);
 }
 
-TEST(Strata, laterHitsSampleProportionallyToLuminance) {
+TEST(Strata, laterHitsChooseRegionsInProportionToLuminance) {
   for (const Case& c : cases()) {
     const Probe probe(c.map, 12);
     const Strata strata(probe, 7);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kSize = 32, kTile = 8, kRepeats = 12;
 
-// Tile means, for each repeat: [tile and channel][repeat].
-std::vector<std::vector<double>> tileMeans(const Named& named, const char* strategy, Mis mis,
+// Tile means, indexed [tile x 3 + channel][repeat].
+std::vector<std::vector<double>> tileMeans(const NamedScene& named, const char* strategy, Mis mis,
                                            uint64_t firstSeed) {
   const int tiles = kSize / kTile;
   std::vector<std::vector<double>> means(size_t(tiles * tiles * 3));
@@ -40,7 +40,7 @@ TEST(SlowStrategies, allUnbiasedOnesRenderTheSameImage) {
     const char* strategy;
     Mis mis;
   };
-  // The reference is "bsdf", which takes no light samples, so MIS cannot change it.
+  // The reference strategy is "bsdf", which has no light samples and so does not depend on MIS.
   const Choice choices[] = {{"uniform", Mis::Balance},
                             {"uniform", Mis::Off},
                             {"importance", Mis::Balance},
@@ -50,9 +50,9 @@ TEST(SlowStrategies, allUnbiasedOnesRenderTheSameImage) {
                             {"product", Mis::Off},
                             {"kollig-keller-strata:16", Mis::Balance},
                             {"kollig-keller-strata:16", Mis::Off}};
-  const std::vector<Named> scenes = threeScenes();
+  const std::vector<NamedScene> scenes = threeScenes();
   const int comparisons = int(scenes.size() * std::size(choices));
-  for (const Named& named : scenes) {
+  for (const NamedScene& named : scenes) {
     const auto expected = tileMeans(named, "bsdf", Mis::Balance, 1000);
     uint64_t seed = 2000;
     for (const Choice& choice : choices) {

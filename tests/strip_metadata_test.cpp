@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Libraries never see the metadata of image files, whichever way a file is read.
+// Metadata of image files is removed before any library reads them.
 #include "image/io/strip_metadata.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +116,7 @@ std::string saved(const std::string& path, const Bytes& bytes) {
   return path;
 }
 
-TEST(StripMetadata, JpegKeepsTheSegmentsThatDefineItsColour) {
+TEST(StripMetadata, JpegKeepsTheSegmentsThatDefineTheColourSpace) {
   const Bytes jpeg = stripJpeg(seed("a.jpg"), "a").file;
   const Bytes adobe = segment(0xee, joined({text("Adobe"), Bytes(7)}));
   const size_t first = 4 + size_t(jpeg[4] << 8 | jpeg[5]);  // after the JFIF segment
@@ -265,7 +265,7 @@ TEST(SlowStripMetadata, JpegFramesAreCheckedBeforeTheFileIsOpened) {
   large.resize(9 << 20);
   expectError({"probe", "info", saved(folder / "large.jpg", large)}, "exceed the limit", kSmall);
   EXPECT_THROW(decodeImage(large, "large"), InputError);
-  // No frame, and a truncated one.
+  // A file without a frame header, and one with a truncated frame header.
   EXPECT_EQ(reason(Bytes(jpeg.begin(), jpeg.begin() + std::ptrdiff_t(frame) + 8)),
             "a: damaged image: no frame header");
 }

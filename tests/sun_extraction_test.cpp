@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sun extraction: the suns found, and the energy of suns and remainder.
+// Sun extraction: the extracted suns, and the energy of suns plus remainder.
 #include <gtest/gtest.h>
 
 #include "math/icosphere.h"
@@ -43,8 +43,8 @@ void addGlowingSun(Image& image, const dvec3& towards, double diameter) {
   addSunDisc(image, towards, diameter, {10, 9, 7});
 }
 
-// The radiance that was removed from the map, as parts of texels small enough to use the direction
-// at their centres.
+// The radiance that was removed from the map, for parts of texels that are small enough to be
+// represented by the direction at their centre.
 struct Part {
   dvec3 direction, flux;
 };
@@ -66,11 +66,11 @@ std::vector<Part> removedParts(const Image& map, const Image& remainder) {
   return parts;
 }
 
-// The largest difference over the normals between the irradiance of suns and remainder and that of
-// the map, averaged over RGB, as a percentage of the map's mean irradiance.
+// Difference between the irradiance of suns plus remainder and that of the map, averaged over RGB:
+// the maximum over the normals, as a percentage of the map's mean irradiance.
 double energyError(const Image& map, const SunExtraction& extraction) {
-  // Parts grouped by the nearest sun. If a surface sees all or none of a group, its moment
-  // suffices.
+  // Parts are grouped by the nearest sun. If all or none of a group is above the horizon, its first
+  // moment gives the irradiance.
   struct Group {
     std::vector<Part> parts;
     dvec3 moment[3] = {dvec3(0), dvec3(0), dvec3(0)};
@@ -168,7 +168,7 @@ TEST(SunExtraction, MeasuresDiscs) {
       ASSERT_EQ(extraction.suns.size(), 1u);
       const Sun& sun = extraction.suns[0];
       EXPECT_LT(degreesBetween(sun.direction, towards), 0.02);
-      // The texels' blur adds almost in quadrature.
+      // The blur by texels adds almost in quadrature.
       const double texel = 180.0 / 512;
       EXPECT_NEAR(sun.angle, std::sqrt(diameter * diameter + 1.3 * texel * texel), 0.1);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(sun.irradiance[c], c + 1, 1e-3 * (c + 1));
@@ -196,14 +196,14 @@ TEST(SunExtraction, RemovesTheGlowAndNothingElse) {
     }
 }
 
-TEST(SunExtraction, TwoSunsAndOneBehindABranch) {
-  for (const double apart : {4.0, 40.0}) {
+TEST(SunExtraction, TwoSunsAndAPartlyOccludedOne) {
+  for (const double distance : {4.0, 40.0}) {
     Image map = constantProbe({1024, 512}, Rgb(0.1f));
     addSunDisc(map, direction(30, 0), 0.6, dvec3(4));
-    addSunDisc(map, direction(30 + apart, 0), 0.6, {8, 6, 1});
+    addSunDisc(map, direction(30 + distance, 0), 0.6, {8, 6, 1});
     const SunExtraction extraction = extractSuns(map);
     ASSERT_EQ(extraction.suns.size(), 2u);
-    EXPECT_NEAR(elevationOf(extraction.suns[0]), 30 + apart, 0.05);
+    EXPECT_NEAR(elevationOf(extraction.suns[0]), 30 + distance, 0.05);
     EXPECT_NEAR(elevationOf(extraction.suns[1]), 30, 0.05);
     EXPECT_LT(energyError(map, extraction), 0.1);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `suns`: its pdfs, its radiance, and the penumbras of its discs.
+// `suns`: pdfs, radiance, and the penumbras of its discs.
 #include <gtest/gtest.h>
 
 #include "integrate/mis.h"
@@ -47,8 +47,9 @@ class Samples {
   std::vector<DirectionSample> samples_;
 };
 
-TEST(Suns, PdfIsThatOfAllSamplesTogether) {
-  for (const int count : {2, 6}) {  // of six, one is chosen
+// The pdf is the mixture density of all samples of a point.
+TEST(Suns, PdfIsTheMixtureOfAllSamples) {
+  for (const int count : {2, 6}) {  // with 2, all suns are sampled; with 6, one is chosen
     SCOPED_TRACE(count);
     const Probe probe(sunnySky(count), 40);
     const Suns suns(probe, false, 25.0);  // wide enough to overlap one another and the bins
@@ -71,7 +72,7 @@ TEST(Suns, PdfIsThatOfAllSamplesTogether) {
   }
 }
 
-// The irradiance from all radiance of a strategy, by a fine grid.
+// Irradiance from a strategy's radiance, by quadrature.
 dvec3 irradianceOf(const LightingStrategy& strategy, const vec3& normal) {
   constexpr int kWidth = 1600, kHeight = 800;
   dvec3 sum(0);
@@ -97,8 +98,8 @@ TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
       std::vector<double> estimates;
       for (int i = 0; i < 20000; ++i) {
         double sum = 0;
-        // Light samples, and BSDF samples of a white surface; combined by the balance heuristic if
-        // compensation leaves a part to the BSDF samples.
+        // Light samples and, if compensated, BSDF samples of a white surface, combined by the
+        // balance heuristic: compensation leaves a part of the probe to BSDF samples.
         for (const DirectionSample& s : samples.take(i)) {
           const float cosine = std::max(0.0f, glm::dot(normal, s.wi));
           const float weight = compensated ? misWeight(Mis::Balance, s.pdf, cosine / kPi) : 1;
@@ -113,26 +114,26 @@ TEST(Suns, EstimatesAreUnbiasedWhereTechniquesOverlap) {
         }
         estimates.push_back(sum);
       }
-      const double truth = luminance(Rgb(irradianceOf(suns, normal)));
+      const double expected = luminance(Rgb(irradianceOf(suns, normal)));
       const Moments moments = Moments::of(estimates);
-      EXPECT_GT(tTest(moments, truth), sidak(1e-3, 8)) << moments.mean << " and " << truth;
+      EXPECT_GT(tTest(moments, expected), sidak(1e-3, 8)) << moments.mean << " and " << expected;
     }
 }
 
-// The background is the probe, except for the shape of its suns.
-TEST(Suns, KeepTheProbesIrradiance) {
+// The background differs from the probe only in the shape of the suns.
+TEST(Suns, PreserveTheProbesIrradiance) {
   const Probe probe(sunnySky(2), 70);
   for (const vec3 n : {vec3(0, 1, 0), vec3(1, 3, 1), vec3(0.3f, 1, -0.2f)}) {
     const vec3 normal = glm::normalize(n);
     const dvec3 whole = irradianceOf(Importance(probe, false), normal);
-    for (const double angle : {15.0, 40.0}) {  // above the horizon, and wide beside the grid
+    for (const double angle : {15.0, 40.0}) {  // above the horizon, and wide relative to the grid
       const dvec3 found = irradianceOf(Suns(probe, false, angle), normal);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / whole[c], 1, 0.002);
     }
   }
 }
 
-TEST(Suns, WithoutSunsIsImportance) {
+TEST(Suns, WithoutSunsEqualsImportance) {
   const Probe probe(overcastProbe({64, 32}, Rgb(1), 0.2), 33);
   const Suns suns(probe, false);
   const Importance importance(probe, false);
@@ -189,8 +190,8 @@ TEST(Suns, PenumbraOfAStraightEdge) {
   }
 }
 
-// With suns, discs change the shape of sources, so the strategy is biased.
-TEST(Suns, AreUnbiasedIfThereAreNone) {
+// Discs change the shape of the sources, so the strategy is biased if the probe has suns.
+TEST(Suns, IsUnbiasedOnlyWithoutSuns) {
   const Probe sunny(sunnySky(1)), overcast(overcastProbe({64, 32}, Rgb(1), 0.2));
   EXPECT_FALSE(Suns(sunny, true).unbiased());
   EXPECT_TRUE(Suns(overcast, true).unbiased());

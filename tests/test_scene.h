@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes made in code, and a render of one without files.
+// Helpers that build small scenes and render them without files.
 #pragma once
 
 #include "integrate/render.h"
@@ -59,7 +59,7 @@ inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int
   addMesh(scene, material, std::move(mesh));
 }
 
-// Looks straight down at the origin from `height`, -Z up in the picture.
+// Looks down at the origin from `height`; -Z is up in the image.
 inline Camera topCamera(float height, float fovDegrees) {
   return Camera::lookAt({0, height, 0}, {0, 0, 0}, {0, 0, -1}, fovDegrees * kPi / 180);
 }

@@ -74,7 +74,7 @@ TEST(Texture, LinearAcrossTheSeam) {
   EXPECT_NEAR(wrapped(Wrap::MirroredRepeat, Filter::Linear, 1), 3, 1e-5f);
 }
 
-TEST(Texture, SrgbFollowsItsClosedFormAndLeavesAlphaAlone) {
+TEST(Texture, SrgbMatchesItsClosedFormAndAlphaIsLinear) {
   std::vector<uint8_t> codes(256);
   for (int i = 0; i < 256; ++i) codes[size_t(i)] = uint8_t(i);
   const TexelGrid grid = row(codes);

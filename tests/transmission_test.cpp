@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through bodies and sheets of glass, as pictures.
+// Renders of light through bodies and thin sheets of glass.
 #include <gtest/gtest.h>
 
 #include "probe/rasterize.h"
@@ -30,8 +30,8 @@ Rgb meanUnder(const Scene& scene, const Probe& probe, const std::string& strateg
                        .film.mean());
 }
 
-// A white furnace does not show what is inside it.
-TEST(Transmission, aFurnaceHidesGlass) {
+// White furnace test.
+TEST(Transmission, glassInAWhiteFurnaceIsInvisible) {
   for (float roughness : {0.0f, 0.4f})
     for (bool thinWalled : {false, true}) {
       Scene scene;
@@ -41,23 +41,23 @@ TEST(Transmission, aFurnaceHidesGlass) {
     }
 }
 
-// One layer of a stack of parallel slabs: the index on its far side, and what passes of the light
-// on the way to the next boundary.
+// A boundary of a stack of parallel slabs: the index on its far side, and the transmittance of the
+// medium from there to the next boundary.
 struct Layer {
-  double ior, passed;
+  double ior, transmittance;
 };
 
-// What a stack reflects and lets through together of a uniform white surrounding, by adding up the
-// reflections between its boundaries from the last to the first:
+// Radiance of a stack under constant radiance 1, R + T, summed over all reflections between its
+// boundaries from the last to the first:
 //   R = r + (1-r)^2 a^2 R' / (1 - r a^2 R'),   T = (1-r) a T' / (1 - r a^2 R')
-// with r Fresnel's reflectance at the angle that Snell's law gives there. `coat` is what another
-// reflector on the first boundary, from outside alone, takes first.
-double throughStack(std::vector<Layer> layers, double sine, double coat = 0) {
+// with r the Fresnel reflectance at the angle given by Snell's law and a the transmittance of the
+// medium. `coat` is the reflectance of a coat on the outer side of the first boundary.
+double stackRadiance(std::vector<Layer> layers, double sine, double coat = 0) {
   double reflected = 0, through = 1;
   for (size_t i = layers.size(); i-- > 0;) {
     const double before = i > 0 ? layers[i - 1].ior : 1, s = sine / before;
     const double r = fresnelDielectric(float(std::sqrt(1 - s * s)), float(layers[i].ior / before));
-    const double a = layers[i].passed, again = 1 - r * a * a * reflected;
+    const double a = layers[i].transmittance, again = 1 - r * a * a * reflected;
     through = (1 - r) * a * through / again;
     reflected = r + (1 - r) * (1 - r) * a * a * reflected / again;
     if (i == 0) return coat + (1 - coat) * (reflected + through);
@@ -72,8 +72,8 @@ void addSlab(Scene& scene, const Material& m, float top, float bottom) {
   addQuad(scene, material, {-99, bottom, -99}, {198, 0, 0}, {0, 0, 198});
 }
 
-// Seen by parallel rays under an angle to the normal.
-Rgb seenUnder(const Scene& scene, double sine, int samples) {
+// Radiance seen by parallel rays at an angle to the normal, given by its sine.
+Rgb radianceAt(const Scene& scene, double sine, int samples) {
   const float s = float(sine), c = std::sqrt(1 - s * s);
   Camera camera = Camera::lookAt({0, 8 * c, 8 * s}, vec3(0), {0, 0, -1}, 0.4f);
   camera.orthographic = true;
@@ -83,7 +83,7 @@ Rgb seenUnder(const Scene& scene, double sine, int samples) {
           .film.mean());
 }
 
-// With faces at right angles to the view and aslant.
+// At normal and oblique incidence.
 TEST(Transmission, aSlabAbsorbsByBeersLaw) {
   constexpr float kThickness = 0.5f;
   const Rgb attenuation(0.3f, 1, 3);
@@ -94,18 +94,19 @@ TEST(Transmission, aSlabAbsorbsByBeersLaw) {
       m.extended->attenuation = attenuation;
       Scene scene;
       addSlab(scene, m, 0, -kThickness);
-      const Rgb mean = seenUnder(scene, sine, 1024);
+      const Rgb mean = radianceAt(scene, sine, 1024);
       const double slant = std::sqrt(1 - sine * sine / (ior * ior));
       for (int c = 0; c < 3; ++c) {
-        const double passed = std::exp(-attenuation[c] * kThickness / slant);
-        EXPECT_NEAR(mean[c], throughStack({{ior, passed}, {1, 1}}, sine), 2e-3f) << ior << " " << c;
+        const double transmittance = std::exp(-attenuation[c] * kThickness / slant);
+        EXPECT_NEAR(mean[c], stackRadiance({{ior, transmittance}, {1, 1}}, sine), 2e-3f)
+            << ior << " " << c;
       }
     }
 }
 
-// Bodies within bodies: at each boundary the light is bent and reflected by the indices of the two
-// that meet there, and absorbed by the innermost one. A fifth is not there.
-TEST(Transmission, upToFourBodiesLieWithinEachOther) {
+// Nested bodies: refraction and reflection at a boundary depend on the indices on both sides, and
+// absorption on the innermost body. At most four nested bodies are tracked: a fifth has no effect.
+TEST(Transmission, upToFourNestedBodies) {
   const float iors[] = {1.5f, 1.2f, 2.0f, 1.33f, 2.4f};
   const float attenuations[] = {0.5f, 1.5f, 0.2f, 3, 9};
   for (const double sine : {0.0, 0.6})
@@ -126,32 +127,32 @@ TEST(Transmission, upToFourBodiesLieWithinEachOther) {
       }
       down.insert(down.end(), up.begin(), up.end());
       down.push_back({1, 1});
-      EXPECT_NEAR(seenUnder(scene, sine, 1024).y, throughStack(down, sine), 3e-3)
+      EXPECT_NEAR(radianceAt(scene, sine, 1024).y, stackRadiance(down, sine), 3e-3)
           << bodies << " bodies, sine " << sine;
     }
 }
 
-// A coat lies on the outer side: it takes its share from light that comes in, and none from light
-// that is reflected within.
-TEST(Transmission, aCoatIsNotSeenFromInside) {
+// A coat is on the outer side: it reflects light that arrives from outside, but not light inside
+// the body.
+TEST(Transmission, aCoatReflectsOnlyOutside) {
   Material m = glass(0, false);
   m.extended->clearcoat = 1;
   m.extended->attenuation = Rgb(1.2f);
   Scene scene;
   addSlab(scene, m, 0, -0.5f);
-  EXPECT_NEAR(seenUnder(scene, 0, 4096).y,
-              throughStack({{1.5, std::exp(-1.2 * 0.5)}, {1, 1}}, 0, 0.04), 1e-3);
+  EXPECT_NEAR(radianceAt(scene, 0, 4096).y,
+              stackRadiance({{1.5, std::exp(-1.2 * 0.5)}, {1, 1}}, 0, 0.04), 1e-3);
 }
 
-// Through a prism each channel goes where Snell's law sends it with its own index, by the extension
-// n -+ (n - 1) / (2 V) for red and blue, V = 20 / dispersion being Abbe's number. The radiance that
-// the probe shows tells the angle in the plane of the rays.
+// A prism refracts each channel by Snell's law with its own index: by KHR_materials_dispersion,
+// n -+ (n - 1) / (2 V) for red and blue with Abbe number V = 20 / dispersion. The probe's radiance
+// is a linear function of the angle in the plane of the rays, which gives the deviation.
 TEST(Transmission, aPrismSplitsColoursByAbbesNumber) {
   constexpr double kApex = 30 * kPiD / 180, kSlope = 40, kOffset = 1.5, kIor = 1.6, kAbbe = 15;
   Material m = glass(0, false);
   m.ior = float(kIor);
   m.extended->dispersion = float(20 / kAbbe);
-  Scene scene;  // the upper face is level; the lower one rises towards +X by the apex
+  Scene scene;  // the upper face is horizontal; the lower one rises towards +X by the apex angle
   const int material = addMaterial(scene, m);
   const float rise = 18 * float(std::tan(kApex));
   addQuad(scene, material, {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
@@ -162,21 +163,21 @@ TEST(Transmission, aPrismSplitsColoursByAbbesNumber) {
   Camera camera = topCamera(4, 20);
   camera.orthographic = true;
   camera.halfHeight = 0.05f;
-  // Two boundaries: what is reflected within would need a third. What the first one reflects is
-  // black.
+  // Maximum depth 2 excludes internal reflection. The first boundary reflects the black upper half
+  // of the probe.
   const Rgb seen = meanColor(
       renderScene(scene, camera, probe, "importance", smallRender(8, 8, 4096, 2)).film.mean());
   for (int c = 0; c < 3; ++c) {
     const double n = kIor + (c - 1) * (kIor - 1) / (2 * kAbbe);
-    const double passed = (1 - fresnelDielectric(1, float(n))) *
-                          (1 - fresnelDielectric(float(std::cos(kApex)), float(1 / n)));
+    const double transmittance = (1 - fresnelDielectric(1, float(n))) *
+                                 (1 - fresnelDielectric(float(std::cos(kApex)), float(1 / n)));
     const double deviation = std::asin(n * std::sin(kApex)) - kApex;  // towards the thick end, -X
-    EXPECT_NEAR(seen[c] / passed / kSlope - kOffset, -deviation, 3e-3) << "channel " << c;
+    EXPECT_NEAR(seen[c] / transmittance / kSlope - kOffset, -deviation, 3e-3) << "channel " << c;
   }
 }
 
-// A sphere of the same index within a body is not there; one of air is seen.
-TEST(Transmission, nestedBodiesKnowTheirSurroundings) {
+// A sphere inside a body of the same index is invisible; a sphere of air is visible.
+TEST(Transmission, nestedBodiesUseRelativeIndices) {
   const auto nested = [](float innerIor) {
     Scene scene;
     Material outer = glass(0, false), inner = glass(0, false);
@@ -188,17 +189,17 @@ TEST(Transmission, nestedBodiesKnowTheirSurroundings) {
         .film.mean();
   };
   const Image alone = nested(0), same = nested(1.5f), air = nested(1);
-  double unseen = 0, seen = 0;
+  double sameDifference = 0, airDifference = 0;
   for (int y = 0; y < alone.height; ++y)
     for (int x = 0; x < alone.width; ++x) {
-      unseen += std::fabs(alone.rgb(x, y).x - same.rgb(x, y).x);
-      seen += std::fabs(alone.rgb(x, y).x - air.rgb(x, y).x);
+      sameDifference += std::fabs(alone.rgb(x, y).x - same.rgb(x, y).x);
+      airDifference += std::fabs(alone.rgb(x, y).x - air.rgb(x, y).x);
     }
-  EXPECT_LT(unseen, 0.1 * seen);
+  EXPECT_LT(sameDifference, 0.1 * airDifference);
 }
 
-// Shadow rays pass a smooth sheet, so that the floor beneath is lit without noise; and however the
-// light is sampled, at whatever depth paths end, it is the same light.
+// Shadow rays pass through smooth thin sheets. Light samples and BSDF samples give the same
+// radiance of the floor below, at any maximum depth.
 TEST(Transmission, sheetsColourTheLightBeneath) {
   Scene scene;
   Material sheet = glass(0, true);
@@ -218,15 +219,15 @@ TEST(Transmission, sheetsColourTheLightBeneath) {
   }
 }
 
-// One sheet under a lamp straight above: (1 - F0) times the colour.
-TEST(Transmission, aSheetPassesItsShareStraightOn) {
+// At normal incidence, the transmittance of a sheet is (1 - F0) times its colour.
+TEST(Transmission, sheetTransmittanceAtNormalIncidence) {
   Scene scene;
   Material sheet = glass(0, true);
   sheet.baseColor = {0.9f, 0.5f, 0.1f, 1};
   addQuad(scene, addMaterial(scene, sheet), {-9, 1, 9}, {18, 0, 0}, {0, 0, -18});
   const Accel accel(scene);
-  const Rgb passed = accel.transmittance({{0.1f, 0, 0.2f}, {0, 1, 0}});
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(passed[c], 0.96f * sheet.baseColor[c], 1e-5f);
+  const Rgb transmittance = accel.transmittance({{0.1f, 0, 0.2f}, {0, 1, 0}});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(transmittance[c], 0.96f * sheet.baseColor[c], 1e-5f);
   EXPECT_EQ(accel.transmittance({{0.1f, 0, 0.2f}, {0, 1, 0}, 0.5f}), Rgb(1));
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every strategy on every kind of transmissive surface: light from behind counts as well as light
-// from the front.
+// Every strategy on every kind of transmissive surface must sample light from both sides.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -13,7 +12,7 @@
 namespace chromeball {
 namespace {
 
-struct Surfacing {
+struct NamedMaterial {
   const char* name;
   Material material;
 };
@@ -30,15 +29,15 @@ Material transmissive(float roughness, bool thinWalled, float fraction = 1) {
   return m;
 }
 
-// Rough ones have an alpha above `leastAlpha`.
-std::vector<Surfacing> surfacings(float minAlpha) {
+// The rough materials have a GGX alpha above `minAlpha`.
+std::vector<NamedMaterial> roughMaterials(float minAlpha) {
   const float rough = std::sqrt(minAlpha) + 0.05f;
-  std::vector<Surfacing> all = {{"rough sheet", transmissive(rough, true)},
-                                {"rough body", transmissive(rough, false)},
-                                {"rougher body", transmissive(0.9f, false)},
-                                {"half body", transmissive(rough, false, 0.5f)},
-                                {"half sheet", transmissive(rough, true, 0.5f)},
-                                {"coated body", transmissive(rough, false)}};
+  std::vector<NamedMaterial> all = {{"rough sheet", transmissive(rough, true)},
+                                    {"rough body", transmissive(rough, false)},
+                                    {"rougher body", transmissive(0.9f, false)},
+                                    {"half body", transmissive(rough, false, 0.5f)},
+                                    {"half sheet", transmissive(rough, true, 0.5f)},
+                                    {"coated body", transmissive(rough, false)}};
   all.back().material.extended->clearcoat = 1;
   all.back().material.extended->clearcoatRoughness = rough;
   return all;
@@ -89,7 +88,7 @@ void expectSame(const std::array<std::vector<double>, 3>& found,
 
 TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
   const Probe probe(gradientProbe({32, 16}, Rgb(0.6f, 0.5f, 0.4f), {0.5, -0.6, 0.4}), 25);
-  std::vector<Surfacing> all = surfacings(0.1f);
+  std::vector<NamedMaterial> all = roughMaterials(0.1f);
   all.push_back({"smooth sheet", transmissive(0, true)});
   all.push_back({"smooth body", transmissive(0, false)});
   struct Choice {
@@ -115,15 +114,15 @@ TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
   }
 }
 
-// Lights that replace a probe equal directional lamps in a black probe.
-TEST(SlowTransmissiveStrategies, lightsThatReplaceTheProbeAddUp) {
+// Lights that replace a probe give the same image as directional lamps under a black probe.
+TEST(SlowTransmissiveStrategies, lightsThatReplaceTheProbeEqualLamps) {
   const Probe black(constantProbe({4, 2}, Rgb(0)));
   for (const int count : {5, 40}) {
     const Constellation lights =
         makeLights("lightgen", studioProbe({64, 32}), {.count = count, .seed = 1}).lights;
-    const DeltaLights inPlace(black, lights);
+    const DeltaLights deltaLights(black, lights);
     const auto none = makeStrategy("bsdf", black, Mis::Balance, "test");
-    for (const auto& [name, material] : surfacings(inPlace.mirrorAlpha())) {
+    for (const auto& [name, material] : roughMaterials(deltaLights.mirrorAlpha())) {
       const View view(material);
       View lit(material);
       for (const DirectionalLight& light : lights) {
@@ -133,8 +132,9 @@ TEST(SlowTransmissiveStrategies, lightsThatReplaceTheProbeAddUp) {
         lamp.intensity = light.irradiance;
         lit.scene.lights.push_back(lamp);
       }
-      expectSame(view.means(inPlace, Mis::Balance, 100), lit.means(*none, Mis::Balance, 500, 64),
-                 2 * 6, fmt::format("{}, {} lights", name, count));
+      expectSame(view.means(deltaLights, Mis::Balance, 100),
+                 lit.means(*none, Mis::Balance, 500, 64), 2 * 6,
+                 fmt::format("{}, {} lights", name, count));
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzz targets share: the readers take files, the fuzzer gives bytes.
+// Helpers of the fuzz targets: the readers need files, the fuzzer provides bytes.
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
@@ -15,20 +15,20 @@
 
 namespace chromeball {
 
-// Inputs are so small that a second thread only adds waiting; and one runs the same every time.
+// One thread is faster for such small inputs, and deterministic.
 inline const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
 
-// The bytes as a file in a folder of this process's own; the same file every time.
+// Writes the bytes to a file in a folder of this process; every call overwrites the same file.
 inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string& name) {
   static const std::filesystem::path folder = [] {
     const auto base = std::filesystem::exists("/dev/shm") ? std::filesystem::path("/dev/shm")
                                                           : std::filesystem::temp_directory_path();
     const auto path = base / ("chromeball-fuzz-" + std::to_string(getpid()));
     std::filesystem::create_directories(path);
-    static const std::filesystem::path remembered = path;
+    static const std::filesystem::path atExitPath = path;
     std::atexit([] {
       std::error_code ignored;
-      std::filesystem::remove_all(remembered, ignored);
+      std::filesystem::remove_all(atExitPath, ignored);
     });
     return path;
   }();
@@ -38,8 +38,8 @@ inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string
   return path;
 }
 
-// Whatever is wrong with the input must come out as an InputError of one line; anything else that
-// is thrown ends the fuzzer.
+// Invalid input must throw an InputError with a one-line message. Any other exception ends the
+// fuzzer.
 template <class Read>
 int readOrReject(const Read& read) {
   try {

@@ -4,7 +4,8 @@
 #include "fuzz.h"
 #include "scene/surface.h"
 
-// Beside reading: every vertex a triangle names must exist, and every surface be found.
+// Reads the model, then checks that the vertices of its triangles exist and that its surfaces and
+// materials can be evaluated.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;
   const std::string path = fuzzFile(bytes, size, "model.glb");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every image reader (the first bytes choose which) by the way of a model's textures and by that of
-// pictures, the layers of an EXR, and what makes a probe of the colour.
+// Every image reader (selected by the first bytes), as a texture of a model and as an image file;
+// the layers of an EXR; and the conversion to a probe.
 #include "fuzz.h"
 #include "image/io/decode_image.h"
 #include "image/io/read_image.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `compare` and `image` read of renders: the layers, colour and metadata of an EXR of any
-// compression, in rows or tiles.
+// The part of renders that `compare` and `image` read: layers, colour and metadata of an EXR of any
+// compression, with scanlines or tiles.
 #include <algorithm>
 #include <vector>
 
