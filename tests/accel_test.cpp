@@ -26,7 +26,7 @@ class Random {
   uint64_t count_ = 0;
 };
 
-// Six inward-facing quads, each a mesh of its own.
+// Six inward-facing quads, one mesh each.
 Scene boxScene(float side, vec3 centre) {
   Scene scene;
   const int material = addMaterial(scene, lambert(Rgb(0.5f)));

@@ -42,9 +42,9 @@ TEST(CoatedLamp, EmissionIsScaledByTheCoatsTransmittance) {
     for (const double degrees : {0.0, 45.0, 85.0}) {
       Scene scene;
       addTile(scene, addMaterial(scene, lamp(clearcoat)));
-      const Rgb seen = radianceAt(scene, degrees);
+      const Rgb found = radianceAt(scene, degrees);
       const double expected = coatTransmittance(clearcoat, std::cos(degrees * kPiD / 180));
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c] / (3 - c), expected, 1e-4) << degrees;
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / (3 - c), expected, 1e-4) << degrees;
     }
 }
 

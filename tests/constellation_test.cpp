@@ -146,7 +146,7 @@ TEST(Constellation, SumsLargeMapsInBlocks) {
 }
 
 // variance-cut may put the sun into one region with its neighbouring texels.
-TEST(Constellation, ASunDoesNotTakeTheEnergyOfItsRow) {
+TEST(Constellation, ASunDoesNotAbsorbTheEnergyOfItsRow) {
   Image map = noise(16384, 16);
   const dvec3 rest = meanRadiance(map) * 4.0 * kPiD;
   map.setRgb(100, 8, Rgb(1e12f));

@@ -23,7 +23,7 @@ constexpr bool kCanInstall = CHROMEBALL_INSTALLS && !CHROMEBALL_INSTRUMENTED;
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
-// Runs a shell command. Returns what it prints; a failure fails the test with the whole output.
+// Runs a shell command and returns its output; if it fails, so does the test, with the output.
 std::string run(const std::string& command) {
   const TemporaryFolder folder;
   const int status = std::system((command + " > " + folder / "out" + " 2>&1").c_str());

@@ -143,7 +143,7 @@ TEST(SlowGltfPixels, TransmissionTest) {
 }
 
 // The middle column has the highlights of both others: the base, attenuated by the coating, and the
-// coating alone. Tiles are rendered one by one, since they would shadow each other.
+// coating alone. Tiles are rendered one by one, because they would shadow each other.
 TEST(SlowGltfPixels, ClearCoatTest) {
   auto scene = sampleModel("ClearCoatTest");
   if (!scene) GTEST_SKIP() << "no sample models";

@@ -232,7 +232,7 @@ TEST(ShIrradiance, IsNegativeNextToASun) {
 }
 
 // On captured probes, nine coefficients lose little energy, but the error is larger.
-TEST(SlowShIrradiance, OfRealProbesKeepsTheEnergyWithAnErrorOfPercents) {
+TEST(SlowShIrradiance, OfRealProbesHasSmallEnergyLossAndAnErrorOfPercents) {
   int probes = 0;
   double minimum = 1, maximum = 0;
   const std::vector<vec3> normals = icosphereNormals(3);

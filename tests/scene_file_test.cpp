@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder with an (empty) model and probe, and the scene file under test in a folder of its own.
+// A folder with an (empty) model and probe, and the scene file under test in a subfolder.
 class SceneFileTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -294,7 +294,7 @@ TEST_F(SceneFileTest, InvalidFilesAreRejected) {
   EXPECT_THROW(read("# " + std::string(size_t(5) << 20, 'x')), InputError);
 }
 
-TEST(SceneFileOfTheDemo, IsValidAndItsFilesAreThere) {
+TEST(SceneFileOfTheDemo, IsValidAndItsFilesExist) {
   for (const char* name : {"demo", "terrace"}) {
     const SceneFile scene = readSceneFile(std::string(kSourceDir) + "/scenes/" + name + ".toml");
     EXPECT_EQ(scene.models.size(), 1u);

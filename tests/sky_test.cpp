@@ -93,7 +93,7 @@ TEST(Sky, ClearSkyIsPlausible) {
   EXPECT_LT(sunIrradiance({.turbidity = 6}).y, sunIrradiance({.turbidity = 3}).y);
 }
 
-TEST(Sky, GroundReflectsWhatItReceives) {
+TEST(Sky, GroundReflectsItsIrradiance) {
   const ClearSky sky{.sunElevation = 40, .groundAlbedo = 0.5};
   const Image image = clearSkyProbe({512, 256}, sky);
   const dvec3 received = irradiance(image, dvec3(0, 1, 0));

@@ -259,7 +259,7 @@ TEST(SunExtraction, OneTexelOfAnyMap) {
     }
 }
 
-// Elevations and irradiances measured by another program, from the notes beside the data.
+// Elevations and irradiances measured by another program, from the notes stored with the data.
 // Directions are those of the brightest texel's centre; irradiances include the sky within two
 // degrees.
 TEST(SunExtraction, SunsOfRealProbes) {

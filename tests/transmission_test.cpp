@@ -165,14 +165,14 @@ TEST(Transmission, aPrismSplitsColoursByAbbesNumber) {
   camera.halfHeight = 0.05f;
   // Maximum depth 2 excludes internal reflection. The first boundary reflects the black upper half
   // of the probe.
-  const Rgb seen = meanColor(
+  const Rgb found = meanColor(
       renderScene(scene, camera, probe, "importance", smallRender(8, 8, 4096, 2)).film.mean());
   for (int c = 0; c < 3; ++c) {
     const double n = kIor + (c - 1) * (kIor - 1) / (2 * kAbbe);
     const double transmittance = (1 - fresnelDielectric(1, float(n))) *
                                  (1 - fresnelDielectric(float(std::cos(kApex)), float(1 / n)));
     const double deviation = std::asin(n * std::sin(kApex)) - kApex;  // towards the thick end, -X
-    EXPECT_NEAR(seen[c] / transmittance / kSlope - kOffset, -deviation, 3e-3) << "channel " << c;
+    EXPECT_NEAR(found[c] / transmittance / kSlope - kOffset, -deviation, 3e-3) << "channel " << c;
   }
 }
 
