@@ -21,8 +21,8 @@ struct Needs {
 
 Needs builtFor(const std::vector<Material>& materials) {
   const BsdfTables tables(materials);
-  return {tables.energy.has_value(), tables.anisotropic.has_value(), tables.sheen.has_value(),
-          tables.glass.has_value()};
+  return {tables.energy != nullptr, tables.anisotropic != nullptr, tables.sheen != nullptr,
+          tables.glass != nullptr};
 }
 
 TEST(BsdfTables, lambertianMaterialsNeedNone) {

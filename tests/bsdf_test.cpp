@@ -130,7 +130,9 @@ TEST(Bsdf, smoothSamplesAreDeltas) {
     ASSERT_TRUE(bsdf.sample({0.3f, 0.4f}, 0.5f, s));
     EXPECT_EQ(s.isDelta, roughness < 0.01f) << roughness;
     EXPECT_EQ(s.pdf == 0, s.isDelta) << roughness;
-    if (s.isDelta) EXPECT_FALSE(bsdf.has(Lobes::Narrow)) << roughness;
+    if (s.isDelta) {
+      EXPECT_FALSE(bsdf.has(Lobes::Narrow)) << roughness;
+    }
   }
 }
 

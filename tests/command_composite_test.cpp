@@ -170,7 +170,7 @@ TEST_F(CommandComposite, PlatesAreScaledToTheRenderSize) {
       EXPECT_LT(glm::length(small.rgb(x, y) - mean), 1e-6f);
     }
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--size", "16x9"},
-                "plate.exr: the plate has 32x16 pixels, but the image size is 16x9");
+              "plate.exr: the plate has 32x16 pixels, but the image size is 16x9");
 }
 
 // A node in `local_scene` includes its descendants.

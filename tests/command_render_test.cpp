@@ -376,7 +376,9 @@ TEST(SlowCommandRender, OptionsAndSceneFileHaveTheSameRanges) {
     };
     for (const bool inFile : {false, true}) {
       EXPECT_EQ(run(s.tooMany, inFile).status, 2) << s.key << inFile;
-      if (*s.maximum) EXPECT_EQ(run(s.maximum, inFile).status, 0) << s.key << inFile;
+      if (*s.maximum) {
+        EXPECT_EQ(run(s.maximum, inFile).status, 0) << s.key << inFile;
+      }
     }
   }
 }

@@ -27,7 +27,7 @@ struct Worlds {
 CompositeRender composite(const Worlds& w, const Probe& probe, const std::string& strategy,
                           const RenderSettings& settings, const Image& plate,
                           Passes passes = Passes::One) {
-  const World world(w.scene, rayMasks(w.isObject));
+  const World world(w.scene, rayMasks(w.isObject), allTables());
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
   return renderComposite(

@@ -131,7 +131,7 @@ TEST(Depth, AVaseInACompositePassesTheWhiteFurnaceTest) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-9, -40, 9}, {18, 0, 0}, {0, 0, -18});
   const ObjectMask isObject{true, true, false};
   const Probe probe = whiteProbe();
-  const World world(scene, rayMasks(isObject));
+  const World world(scene, rayMasks(isObject), allTables());
   const RenderSettings settings = smallRender(8, 8, 64, 8);
   const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
   const std::atomic<bool> stop = false;

@@ -124,7 +124,9 @@ TEST(EnvelopeProbe, TheErrorEstimateHoldsFrom1e_35To1e35) {
     EXPECT_NEAR(film.mean().rgb(0, 0).x / radiance, 1.125, 1e-5) << radiance;
     EXPECT_NEAR(film.noise().noise, 0.125 / 1.125, 1e-5) << radiance;
     const float variance = varianceImage(film.errors()).texels[0];
-    if (radiance > 1e20f) EXPECT_EQ(variance, INFINITY);  // as a float; never 0 or NaN
+    if (radiance > 1e20f) {
+      EXPECT_EQ(variance, INFINITY);  // as a float; never 0 or NaN
+    }
   }
 }
 

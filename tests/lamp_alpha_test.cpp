@@ -116,7 +116,7 @@ TEST(LampAlpha, CompositesScaleTheDifferenceByAlpha) {
   const auto difference = [](const Material& lamp) {
     const Scene scene = floorUnder(lamp);
     const ObjectMask isObject{false, true};
-    const World world(scene, rayMasks(isObject));
+    const World world(scene, rayMasks(isObject), allTables());
     const RenderSettings settings = smallRender(8, 8, 1024, 1);
     const auto lighting = makeStrategy("importance", blackProbe(), settings.mis, "test");
     const std::atomic<bool> stop = false;

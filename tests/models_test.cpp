@@ -58,7 +58,7 @@ TEST(SlowModels, EveryModelUnderEveryProbeHasNoInvalidSample) {
     }
     if (scene.instances.empty()) continue;
     ++rendered;
-    const World world(scene);
+    const World world(scene, {}, allTables());
     const Camera camera = scene.cameras.empty() ? framingCamera(scene, 1) : scene.cameras.front();
     for (const LitBy& by : lit) {
       const RenderResult r = render(

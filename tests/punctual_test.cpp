@@ -165,7 +165,7 @@ TEST(Punctual, LightBothScenesOfAComposite) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.9f))), {-1, 0.5f, 0.5f}, {1, 0, 0}, {0, 0, -1});
   const ObjectMask isObject{false, true};
   const Probe black(Image(2, 1, 3));
-  const World world(scene, rayMasks(isObject));
+  const World world(scene, rayMasks(isObject), allTables());
   constexpr int kSize = 33;
   const RenderSettings settings = smallRender(kSize, kSize, 16, 1);
   const auto lighting = makeStrategy("importance", black, settings.mis, "test");

@@ -49,7 +49,7 @@ struct Local {
                             bool projected = true) {
     if (projected) makeProjected(scene, isObject, projection);
     const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
-    const World world(scene, rayMasks(isObject));
+    const World world(scene, rayMasks(isObject), allTables());
     return solveReflectance({world, camera, *lighting, plate}, smallRender(kSize, kSize, 512, 8, 2),
                             iterations, projection, kQuiet, kStop);
   }

@@ -2,6 +2,7 @@
 // Helpers that build small scenes and render them without files.
 #pragma once
 
+#include "all_tables.h"
 #include "integrate/render.h"
 #include "math/warp.h"
 
@@ -66,7 +67,7 @@ inline Camera topCamera(float height, float fovDegrees) {
 
 inline RenderResult renderScene(const Scene& scene, const Camera& camera, const Probe& probe,
                                 const std::string& strategy, const RenderSettings& settings) {
-  const World world(scene);
+  const World world(scene, {}, allTables());
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   const std::atomic<bool> stop = false;
   return render(

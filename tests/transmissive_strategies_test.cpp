@@ -59,7 +59,7 @@ struct View {
   // The image's mean for each channel, for consecutive seeds from `firstSeed`.
   std::array<std::vector<double>, 3> means(const LightingStrategy& lighting, Mis mis,
                                            uint64_t firstSeed, int samples = 16) const {
-    const World world(scene);
+    const World world(scene, {}, allTables());
     const std::atomic<bool> stop = false;
     std::array<std::vector<double>, 3> all;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {

@@ -4,10 +4,13 @@
 namespace chromeball {
 
 World::World(const Scene& described, const std::vector<RayMask>& masks)
+    : World(described, masks, BsdfTables(described.materials)) {}
+
+World::World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables)
     : scene(described),
       accel(described, masks),
       emitters(Emitters::make(described)),
       punctual(PunctualLights::make(described)),
-      bsdfTables(described.materials) {}
+      bsdfTables(tables) {}
 
 }  // namespace chromeball

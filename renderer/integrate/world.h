@@ -19,6 +19,8 @@ struct World {
   // `masks`: by instance, for rays that see part of the scene (trace/ray.h); empty: all rays see
   // all instances. `described` must outlive this. Throws RunError.
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {});
+  // With the tables of another world, for materials that need no others.
+  World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables);
 
   const Scene& scene;
   const Accel accel;

@@ -12,7 +12,7 @@ using glm::dvec2;
 constexpr double kTau = 2 * kPiD;
 
 // A profile (radius, height) turned about the axis x = center.x, z = center.z.
-Parametrisation lathe(dvec3 center, std::function<dvec2(double v)> profile) {
+Parametrisation lathe(dvec3 center, const std::function<dvec2(double v)>& profile) {
   return [=](double u, double v) {
     const dvec2 p = profile(v);
     return center + dvec3(p.x * std::cos(kTau * u), p.y, -p.x * std::sin(kTau * u));

@@ -36,7 +36,7 @@ std::vector<Mapping> mappingsOf(const Value& extension) {
   for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
     const Value& mapping = mappings.Get(int(i));
     if (!mapping.Get("material").IsInt()) continue;
-    Mapping& m = result.emplace_back(mapping.Get("material").GetNumberAsInt());
+    Mapping& m = result.emplace_back(Mapping{mapping.Get("material").GetNumberAsInt(), {}});
     const Value& variants = mapping.Get("variants");
     for (size_t k = 0; k < variants.ArrayLen(); ++k)
       if (variants.Get(int(k)).IsInt()) m.variants.push_back(variants.Get(int(k)).GetNumberAsInt());
