@@ -16,7 +16,8 @@ bool needsGlass(const Material& m) { return m.isBody() && m.roughness > 0; }
 
 BsdfTables::BsdfTables(std::span<const Material> materials) {
   if (std::ranges::any_of(materials, needsEnergy)) energy = std::make_shared<EnergyTable>();
-  if (std::ranges::any_of(materials, needsAnisotropic)) anisotropic = std::make_shared<AnisotropicTable>();
+  if (std::ranges::any_of(materials, needsAnisotropic))
+    anisotropic = std::make_shared<AnisotropicTable>();
   if (std::ranges::any_of(materials, needsSheen)) sheen = std::make_shared<SheenTable>();
   if (std::ranges::any_of(materials, needsGlass)) glass = std::make_shared<GlassTable>();
 }
