@@ -153,7 +153,8 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(lights, {"median-cut", "--ambient"}), "--ambient");
   expectError(with(lights, {"median-cut", "--max-error", "5%"}), "--max-error");
   expectError(with(lights, {"irradiance-fit", "--max-error", "-5"}), "--max-error");
-  expectError(with(lights, {"irradiance-fit", "--max-error", "five"}), "--max-error");
+  expectError(with(lights, {"irradiance-fit", "--max-error", "five"}),
+              "--max-error: `five` is not a number");
   expectError(with(lights, {"median-cut", "--preview", folder / "a.jpg"}), ".png");
   expectError({"lights", in, "--method", "median-cut", "-o", out}, "--count");
   expectError({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "a.txt"},

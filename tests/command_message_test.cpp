@@ -70,6 +70,12 @@ TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   expectInputError({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
 }
 
+TEST_F(SlowCommandMessage, OptionsTakeOneValue) {
+  expectError({"render", w_.save(), "--samples", "1", "--samples", "2"},
+              "--samples: given more than once");
+  expectError({"render", w_.save(), "--samples"}, "--samples: needs a value, N");
+}
+
 TEST_F(SlowCommandMessage, WarnsAboutSettingsWithoutEffect) {
   for (const char* output : {"a.exr", "a.hdr", "a.pfm"}) {
     const std::string messages = render({"--tonemap", "aces", "--exposure", "1"}, output).error;

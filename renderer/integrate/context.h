@@ -37,7 +37,7 @@ struct PathContext {
   DepthCut depthCut;
   Clamp clamp;              // integrators apply it to the radiance that they return
   std::vector<Rgb> layers;  // of the current sample (Integrator::layers)
-  // The transmittance of a shadow ray differs between PathSettings::visible and ::compared.
+  // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.
   bool shadowsDiffer = false;
   RayLog* log = nullptr;  // null: no log
 };

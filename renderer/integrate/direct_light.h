@@ -35,7 +35,7 @@ class DirectLight {
   Rgb probe(const Vertex& vertex, PathContext& context) const;
   // From one point on an emissive triangle. World::emitters must not be null.
   Rgb emitter(const Vertex& vertex, PathContext& context) const;
-  // From the lamps without extent. World::punctual must not be null.
+  // From point, spot and directional lights. World::punctual must not be null.
   Rgb punctual(const Vertex& vertex, PathContext& context) const;
 
  private:

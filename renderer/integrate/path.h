@@ -99,7 +99,7 @@ class PathTracer {
 inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
   if (depth < 2) return true;
   const float survival = std::min(maxComponent(throughput), 1.0f);
-  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN survives: is counted
+  if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN survives, to be counted
   throughput /= survival;
   return true;
 }

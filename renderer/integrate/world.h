@@ -19,7 +19,7 @@ struct World {
   // `masks`: by instance, for rays that see part of the scene (trace/ray.h); empty: all rays see
   // all instances. `described` must outlive this. Throws RunError.
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {});
-  // With the tables of another world, for materials that need no others.
+  // Copies the BSDF tables of another world, which must include those that the materials need.
   World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables);
 
   const Scene& scene;

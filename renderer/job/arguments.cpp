@@ -52,13 +52,13 @@ LightUnits parseLightUnits(const NamedSetting& setting) {
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location) {
   std::vector<double> numbers(count);
   std::string_view rest = text;
-  for (size_t i = 0; i < count; ++i)
-    if ((i > 0 && !takeLetter(rest, ',')) || !takeNumber(rest, numbers[i]) ||
-        !std::isfinite(numbers[i]))
-      throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
-  if (!rest.empty())
-    throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
-  return numbers;
+  bool valid = true;
+  for (size_t i = 0; i < count && valid; ++i)
+    valid = (i == 0 || takeLetter(rest, ',')) && takeNumber(rest, numbers[i]) &&
+            std::isfinite(numbers[i]);
+  if (valid && rest.empty()) return numbers;
+  if (count == 1) throwInput("{}: `{}` is not a number", location, text);
+  throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
 }
 
 }  // namespace chromeball

@@ -17,8 +17,7 @@ void checkOutputFile(const std::string& path, const std::vector<std::string_view
 void checkDistinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 // For an image that a scene file names: as checkWritable (image/io/write_image.h), but the image's
-// folder may be missing from a folder that exists. makeFolder() then makes it, after all other
-// checks.
+// folder may be missing if its parent exists. makeFolder() then creates it, after all other checks.
 void checkSceneOutput(const std::string& path);
 void makeFolder(const std::string& path);  // throws RunError
 

@@ -29,7 +29,7 @@ Rgb readColor(const Entry& entry) {
 vec3 readDirection(const Section& light) {
   const Entry entry = light.required("direction");
   const glm::dvec3 direction(entry.vector());
-  if (!(glm::length(direction) > 0)) entry.mustBe("other than 0, 0, 0");
+  if (!(glm::length(direction) > 0)) failAt(entry.location(), "`direction` must not be 0, 0, 0");
   return vec3(glm::normalize(direction));
 }
 

@@ -40,8 +40,8 @@ std::span<const SettingSection> settingSections() {
        "them is given, `samples` is a maximum. On the command line, any of the three replaces all "
        "three of the file."},
       {"output", "[output]", "Output",
-       "The files to write. If the folder of one is missing from a folder that exists, it is "
-       "made."},
+       "The files to write. The folder of a file is created if it is missing and its parent "
+       "exists."},
       {"composite", "[composite]", "Composite",
        "Differential rendering: composites the model's nodes into a photograph, except those of "
        "the local scene, which model real surfaces in the photograph."},

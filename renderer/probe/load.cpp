@@ -67,7 +67,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   } else if (stated) {
     probe.mapping = *stated;
     probe.detected = true;
-    probe.reason = "its `envmap` attribute says so";
+    probe.reason = "its `envmap` attribute defines it";
   } else {
     DetectedMapping detected = detectMapping(image);
     probe.mapping = detected.mapping;

@@ -10,6 +10,7 @@
 #include "lighting/light_file.h"
 #include "lighting/light_preview.h"
 #include "lighting/methods.h"
+#include "messages.h"
 #include "probe/load.h"
 
 namespace chromeball {
@@ -52,8 +53,7 @@ void run(Arguments arguments) {
   checkDistinct({arguments.output, arguments.preview}, {arguments.probe});
 
   const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.probe))
-    fmt::print(stderr, "chromeball: {}\n", warning);
+  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
   const auto [lights, ambient, meanError] = makeLights(arguments.method, probe.latLong, request);
   writeLights(arguments.output, {.probe = arguments.probe,
                                  .method = arguments.method,
@@ -65,8 +65,8 @@ void run(Arguments arguments) {
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
-    fmt::print(stderr, "chromeball: --max-error: {} lights do not reach {}%\n", lights.size(),
-               *request.maxErrorPercent);
+    warn(fmt::format("--max-error: {} lights do not reach {}%", lights.size(),
+                     *request.maxErrorPercent));
 }
 
 }  // namespace

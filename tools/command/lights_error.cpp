@@ -10,6 +10,7 @@
 #include "lighting/fit/light_error.h"
 #include "lighting/methods.h"
 #include "math/icosphere.h"
+#include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "study/report/log_log_plot.h"
@@ -81,8 +82,7 @@ void run(const Arguments& arguments) {
   checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
   const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
   const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.probe))
-    fmt::print(stderr, "chromeball: {}\n", warning);
+  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
   const std::vector<dvec3> irradiance = exactIrradiance(probe.latLong, normals);
 
   std::vector<Row> rows;

@@ -47,6 +47,20 @@ std::string describeConversion(const CLI::App& command, const std::string& error
                                       : "a number");
 }
 
+// "--samples: given more than once" for CLI11's "--samples: At Most 1 required but received 2", and
+// "--samples: needs a value, N" for "--samples: 1 required N missing".
+std::string describeMismatch(const std::string& error) {
+  const std::string_view kTwice = ": At Most 1 required", kNone = ": 1 required ",
+                         kMissing = " missing";
+  if (const size_t twice = error.find(kTwice); twice != std::string::npos)
+    return error.substr(0, twice) + ": given more than once";
+  const size_t none = error.find(kNone);
+  if (none == std::string::npos || !error.ends_with(kMissing)) return "";
+  const size_t argument = none + kNone.size();
+  return fmt::format("{}: needs a value, {}", error.substr(0, none),
+                     error.substr(argument, error.size() - kMissing.size() - argument));
+}
+
 // Rewrites an error message of CLI11; for an unknown word, adds the nearest known one.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> commands = namedCommands(app);
@@ -57,6 +71,9 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   if (error.get_exit_code() == int(CLI::ExitCodes::ConversionError))
     if (const std::string message = describeConversion(command, error.what()); !message.empty())
+      return message;
+  if (error.get_exit_code() == int(CLI::ExitCodes::ArgumentMismatch))
+    if (const std::string message = describeMismatch(error.what()); !message.empty())
       return message;
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 

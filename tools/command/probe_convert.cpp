@@ -6,6 +6,7 @@
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "messages.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe_commands.h"
@@ -38,8 +39,7 @@ void run(const Arguments& arguments) {
   checkDistinct({arguments.out}, {arguments.in});
   if (!std::isfinite(arguments.rotation)) throwInput("--rotation: should be a number of degrees");
   const LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
-  for (const std::string& warning : warnings(probe, arguments.in))
-    fmt::print(stderr, "chromeball: {}\n", warning);
+  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
   const auto [mapping, size] = target(arguments, probe.latLong);
   writeImage(arguments.out,
              convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation));

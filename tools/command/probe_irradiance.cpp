@@ -5,6 +5,7 @@
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe_commands.h"
@@ -26,8 +27,7 @@ void run(const Arguments& arguments) {
   const std::optional<ImageSize> given =
       arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
   const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.in))
-    fmt::print(stderr, "chromeball: {}\n", warning);
+  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
   const ImageSize size = given.value_or(ImageSize{probe.latLong.width, probe.latLong.height});
   writeImage(arguments.out,
              exact ? irradianceMap(probe.latLong, size) : shIrradianceMap(probe.latLong, size));

@@ -107,8 +107,9 @@ void addMissingLight(const RenderJob& job, const RenderResult& result, Messages&
         invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
         invalid.of(Defect::Negative), invalid.x, invalid.y));
   if (result.clamped.count)
-    warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the image's light",
-                        result.clamped.count, 100 * result.clamped.fractionRemoved()));
+    warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",
+                        result.clamped.count, 100 * result.clamped.fractionRemoved(),
+                        job.composite ? "objects and differences" : "the image"));
   const DepthCut& cut = result.depthCut;
   addDepthCut("--max-depth", job.settings.maxDepth, cut.fraction(cut.byDepth), messages);
   addDepthCut("--max-transmission-depth", job.settings.maxTransmissionDepth,
@@ -123,8 +124,9 @@ Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
   addMissingLight(job, result.render, messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   if (job.composite) return messages;
-  if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
-    messages.push_back({Message::Kind::Warning, *why});
+  if (job.settings.maxDepth > 0)  // at 0, only emitters are not black
+    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
+      messages.push_back({Message::Kind::Warning, *why});
   if (const auto why = whyWhite(job, loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
