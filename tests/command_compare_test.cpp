@@ -73,7 +73,7 @@ TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
       EXPECT_GT(cell["seconds"]["mean"], 0);
     }
   }
-  EXPECT_EQ(first["same_picture"].size(), 1u) << "one pair of unbiased strategies";
+  EXPECT_EQ(first["agreement"].size(), 1u) << "one pair of unbiased strategies";
   const std::string csv = fileContents(dir() + "/results.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2);
   EXPECT_EQ(first["baseline"], "bsdf");

@@ -93,14 +93,14 @@ Json resultsJson(const Study& study, const StudyResults& results, const Machine&
   json["strategies"] = Json::array();
   for (const StrategyResult& strategy : results.strategies)
     json["strategies"].push_back(toJson(strategy));
-  json["same_picture"] = Json::array();
+  json["agreement"] = Json::array();
   for (const PairResult& pair : results.pairs)
-    json["same_picture"].push_back({{"a", pair.a},
-                                    {"b", pair.b},
-                                    {"budget", pair.budget.label()},
-                                    {"tiles", pair.agreement.tiles},
-                                    {"share_failing", pair.agreement.fraction},
-                                    {"p_value", pair.agreement.pValue}});
+    json["agreement"].push_back({{"a", pair.a},
+                                 {"b", pair.b},
+                                 {"budget", pair.budget.label()},
+                                 {"tiles", pair.agreement.tiles},
+                                 {"fraction_failing", pair.agreement.fraction},
+                                 {"p_value", pair.agreement.pValue}});
   return json;
 }
 
