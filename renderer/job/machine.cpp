@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/machine.h"
 
+#include <fmt/format.h>
 #include <sys/utsname.h>
 #include <tbb/global_control.h>
 
@@ -44,7 +45,7 @@ std::string commandLine() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string command;
   for (std::string argument; std::getline(file, argument, '\0');)
-    command += (command.empty() ? "" : " ") + shellWord(argument);
+    command += fmt::format("{}{}", command.empty() ? "" : " ", shellWord(argument));
   return command;
 }
 

@@ -111,10 +111,10 @@ std::string settingsPage() {
   std::string page(kIntroduction);
   for (const SettingSection& section : settingSections()) {
     const bool hasKeys = !section.name.empty();
-    page += fmt::format(
-        "\n## {}\n\n{}\n\n",
-        hasKeys ? "`" + std::string(section.heading) + "`" : std::string(section.heading),
-        section.about);
+    page +=
+        fmt::format("\n## {}\n\n{}\n\n",
+                    hasKeys ? fmt::format("`{}`", section.heading) : std::string(section.heading),
+                    section.about);
     page += hasKeys ? "| Key | Type | Range | Unit | Default | Option | Meaning |\n"
                       "| --- | --- | --- | --- | --- | --- | --- |\n"
                     : "| Option | Type | Range | Unit | Default | Meaning |\n"
