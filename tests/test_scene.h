@@ -82,6 +82,7 @@ inline RenderSettings smallRender(int width, int height, uint32_t samples, int m
   s.samples = samples;
   s.maxDepth = maxDepth;
   s.seed = seed;
+  s.adaptive = false;
   return s;
 }
 

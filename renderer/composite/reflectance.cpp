@@ -118,6 +118,7 @@ VisibleSurfaces findVisibleSurfaces(const ReflectanceProblem& problem,
   RenderSettings quick;
   quick.width = settings.width, quick.height = settings.height;
   quick.samples = kVisibilitySamples;
+  quick.adaptive = false;
   quick.maxDepth = 0;
   quick.seed = settings.seed;
   const CameraRays camera(problem.camera, float(settings.width) / float(settings.height));
@@ -235,6 +236,7 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   step.samples = std::min(settings.samples, kMaxSamples);
   step.timeLimit.reset();
   step.noiseLimit.reset();
+  step.adaptive = false;  // images with and without reflectance share their samples
   const Scene& scene = problem.world.scene;
   bool blackIsLit = false;  // whether a black base colour has radiance: emission or a highlight
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {

@@ -11,6 +11,7 @@
 #include <bit>
 #include <mutex>
 
+#include "film/allocation.h"
 #include "integrate/schedule.h"
 
 namespace chromeball {
@@ -25,6 +26,12 @@ constexpr int kTabulatedVertices = 6;
 // How many of a pixel's first `samples` samples belong to the half.
 uint32_t samplesOf(int half, uint32_t samples) {
   return samples / 2 + (half == 0 ? samples % 2 : 0);
+}
+
+// An adaptive render takes several times the mean in some pixels.
+uint32_t tableSize(const RenderSettings& settings) {
+  const uint64_t samples = uint64_t(samplesOf(0, settings.samples)) * (settings.adaptive ? 4 : 1);
+  return uint32_t(std::bit_ceil(std::min<uint64_t>(samples, kLargestTable)));
 }
 
 struct Worker {
@@ -42,7 +49,7 @@ class Renderer {
         cameraRays_(camera, float(settings.width) / float(settings.height)),
         settings_(settings),
         result_(result),
-        table_(std::bit_ceil(std::min(samplesOf(0, settings.samples), kLargestTable)),
+        table_(tableSize(settings),
                dimension::kVertex + dimension::kPerVertex *
                                         (std::min(settings.maxDepth, kTabulatedVertices - 1) + 1),
                settings.seed),
@@ -52,7 +59,14 @@ class Renderer {
                          .layers = std::vector<Rgb>(integrator_.layers().size())}};
         }) {}
 
-  // Takes samples [done, wanted) of every pixel. Reports the completed fraction of the pass.
+  // From here on, each pixel takes samples by the noise around it so far.
+  void adapt(uint32_t done) {
+    allocation_.emplace(result_.film.errors(), done);
+    result_.adaptive = true;
+  }
+
+  // Raises the image's mean number of samples per pixel from `done` to `wanted`. `progress`
+  // receives the fraction of the pass.
   void pass(uint32_t done, uint32_t wanted, const Progress& progress,
             const std::atomic<bool>& stop) {
     const Beam beam = beamOfPass(wanted);
@@ -67,7 +81,7 @@ class Renderer {
           for (int tile = range.begin(); tile < range.end() && !stop; ++tile) {
             forPixels(tile % columns * kTile, tile / columns * kTile, [&](int x, int y) {
               for (int half = 0; half < Film::kHalves; ++half)
-                renderHalf(worker, x, y, half, done, wanted, beam);
+                renderHalf(worker, x, y, half, countOf(x, y, done), countOf(x, y, wanted), beam);
             });
             const int count = ++finished;
             if (std::unique_lock lock(reporting, std::try_to_lock); lock)
@@ -93,6 +107,10 @@ class Renderer {
     if (world_.scene.textures.empty()) return {};
     const bool open = settings_.timeLimit || settings_.noiseLimit;
     return beamOf(camera_, settings_.height, open ? wanted : settings_.samples);
+  }
+
+  uint32_t countOf(int x, int y, uint32_t mean) const {
+    return allocation_ ? allocation_->count(x, y, mean) : mean;
   }
 
   template <class Visit>
@@ -176,6 +194,7 @@ class Renderer {
   const RenderSettings& settings_;
   RenderResult& result_;
   SobolTable table_;
+  std::optional<SampleAllocation> allocation_;  // none: the same number of samples everywhere
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 
@@ -199,6 +218,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {
+    if (schedule.endsPilot()) renderer.adapt(done);
     const auto report = [&](double fraction) {
       progress(schedule.progress(done + fraction * (wanted - done)));
     };

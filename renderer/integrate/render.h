@@ -22,7 +22,8 @@ struct RenderResult {
   DepthCut depthCut;
   InvalidSamples invalid;
   ClampedSamples clamped;
-  uint32_t samples = 0;  // of every pixel; 0 where the first pass was interrupted
+  uint32_t samples = 0;   // mean per pixel; 0 where the first pass was interrupted
+  bool adaptive = false;  // whether pixels took different numbers of samples
   bool interrupted = false;
 };
 

@@ -16,7 +16,9 @@ struct RenderSettings {
   uint32_t samples = 256;            // per pixel, >= 1; the maximum where a limit below is set
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
-  int maxDepth = 8;                  // as in PathSettings, like maxTransmissionDepth
+  // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
+  bool adaptive = true;
+  int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;

@@ -7,22 +7,36 @@
 namespace chromeball {
 namespace {
 
-constexpr uint32_t kFirstPass = 4;        // samples per pixel
-constexpr uint32_t kMinForNoise = 16;     // samples per pixel before an estimate of noise is used
+constexpr uint32_t kFirstPass = 4;     // samples per pixel
+constexpr uint32_t kMinForNoise = 16;  // samples per pixel before an estimate of noise is used
+constexpr uint32_t kMinToAdapt = 16;   // samples per pixel of an adaptive render
+constexpr double kPilot = 16;          // samples per pixel of the pilot of an adaptive render;
+constexpr double kMinPilot = 1.0 / 8, kMaxPilot = 1.0 / 4;  // relative to the whole render
 constexpr uint32_t kMaxInTheDark = 4096;  // samples per pixel before a black image is final
 constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples before it
 
 }  // namespace
 
-Schedule::Schedule(const RenderSettings& settings) : settings_(settings) {}
+Schedule::Schedule(const RenderSettings& settings)
+    : settings_(settings), pilot_(settings.adaptive && settings.samples >= kMinToAdapt) {}
 
 uint32_t Schedule::next(uint32_t done, const Film& film) {
   if (done == 0) return std::min(kFirstPass, settings_.samples);
-  double wanted = std::min(2.0 * done, double(settings_.samples));
-  if (settings_.timeLimit) wanted = std::min(wanted, untilTime(done));
-  if (settings_.noiseLimit && done >= kMinForNoise)
-    wanted = std::min(wanted, untilNoise(done, film));
+  const double goal = goalAfter(done, film);
+  double wanted = std::min(2.0 * done, goal);
+  const double pilot = std::floor(std::clamp(kPilot, kMinPilot * goal, kMaxPilot * goal));
+  endsPilot_ = pilot_ && done >= pilot && goal >= kMinToAdapt;
+  pilot_ = pilot_ && !endsPilot_;
+  if (pilot_ && pilot > done) wanted = std::min(wanted, pilot);
   return uint32_t(wanted);
+}
+
+// The number of samples per pixel at which the render ends, as far as is known.
+double Schedule::goalAfter(uint32_t done, const Film& film) {
+  double goal = settings_.samples;
+  if (settings_.timeLimit) goal = std::min(goal, untilTime(done));
+  if (settings_.noiseLimit && done >= kMinForNoise) goal = std::min(goal, untilNoise(done, film));
+  return goal;
 }
 
 double Schedule::progress(double samples) const {

@@ -21,16 +21,22 @@ class Schedule {
   // the render is finished.
   uint32_t next(uint32_t done, const Film& film);
 
+  // Whether the samples so far are the pilot of an adaptive render, so that the pass that next()
+  // returned last is the first whose samples are allotted by its noise.
+  bool endsPilot() const { return endsPilot_; }
+
   // Completed fraction after `samples` samples per pixel; NaN under a noise limit without a time
   // limit.
   double progress(double samples) const;
 
  private:
+  double goalAfter(uint32_t done, const Film& film);
   double untilTime(uint32_t done) const;
   double untilNoise(uint32_t done, const Film& film);
 
   const RenderSettings& settings_;
   Stopwatch elapsed_;
+  bool pilot_, endsPilot_ = false;
   struct {
     uint32_t samples = 0;
     double noise = 0;

@@ -34,6 +34,7 @@ json describe(const RenderResult& result) {
   const DepthCut& cut = result.depthCut;
   return {
       {"samples_per_pixel", result.samples},
+      {"adaptive", result.adaptive},
       {"width", result.film.width()},
       {"height", result.film.height()},
       {"rays",

@@ -78,6 +78,7 @@ RenderSettings integratorSettings(const SceneFile& file) {
   if (r.noiseLimit) *r.noiseLimit /= 100;
   r.samples = uint32_t(s.get<uint64_t>("render.samples"));
   if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
+  r.adaptive = s.get<std::string>("render.adaptive") == "on";
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
   r.maxTransmissionDepth = int(s.get<uint64_t>("render.max_transmission_depth"));
   r.seed = s.get<uint64_t>("render.seed");

@@ -61,6 +61,19 @@ void addRender(std::vector<Setting>& rows) {
        .help = "Stops when the upper end of the noise's 95% interval is below this.",
        .effect = Effect::Limit,
        .renderOnly = true});
+  add({.key = "adaptive",
+       .option = "adaptive",
+       .argument = "on|off",
+       .type = Choice,
+       .fallback = usual.adaptive ? "on" : "off",
+       .choices =
+           [] {
+             return Names{"on", "off"};
+           },
+       .help = "Takes more samples in noisier pixels, if there are at least 16 per pixel; "
+               "`samples` is then their mean.",
+       .effect = Effect::Limit,
+       .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
        .argument = "N",

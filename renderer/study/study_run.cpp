@@ -34,6 +34,7 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
 RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
   RenderSettings settings = settings_;
+  settings.adaptive = false;  // strategies are compared at equal samples in every pixel
   settings.seed = seedOf(key, study_.seed);
   settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many samples each pixel takes: more where the image is noisier (adaptive sampling).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "film/noise.h"
+
+namespace chromeball {
+
+// Allots the samples that follow a pilot render with the same number of samples in every pixel. A
+// pixel's number is proportional to the root of the relative variance of the pixels around it,
+// which minimizes the sum of the relative variances of the means.
+//
+// The mean of a pixel remains unbiased, since its number of samples is independent of its own
+// samples: its weight, the normalization of the weights and the exposure all exclude it.
+class SampleAllocation {
+ public:
+  // `pilotSamples`: per pixel.
+  SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples);
+
+  // Samples of the pixel when the image has `mean` samples per pixel, the pilot's included. Does
+  // not decrease with `mean`; equals it up to the pilot's number.
+  uint32_t count(int x, int y, uint32_t mean) const;
+
+ private:
+  int width_;
+  uint32_t pilotSamples_;
+  std::vector<float> rates_;  // samples of the pixel per mean sample, after the pilot
+};
+
+}  // namespace chromeball
