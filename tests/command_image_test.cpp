@@ -176,6 +176,7 @@ TEST(SlowCommandImage, BadInputIsRejected) {
   expectError({"image", "error", a, a, "--map", "flipp", "-o", png}, "`flip`");
   expectError({"image", "error", a, a, "-o", folder / "map.exr"}, ".png");
   expectError({"image", "view", a, folder / "a.gif"}, ".png");
+  expectError({"image", "view", a, folder / "b.exr"}, ".png");
   expectError({"image", "view", a, png, "--tonemap", "reinhart"}, "`reinhard`");
   expectError({"image", "view", a, png, "--exposure", "nan"}, "--exposure");
   expectError({"image", "view", a, png, "--layer", "depth"}, "depth");

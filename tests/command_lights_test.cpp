@@ -174,6 +174,12 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
   expectError({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},
               "suns-cut");
+  // All counts are checked before the first row.
+  const CommandResult late =
+      runCommand({"lights-error", in, "--methods", "median-cut,cube-grid", "--counts", "2,300"});
+  EXPECT_EQ(late.status, 2);
+  EXPECT_EQ(late.out, "");
+  EXPECT_NE(late.error.find("cube-grid: a count of 300 is out of range"), std::string::npos);
   expectError({"probe", "irradiance", in, folder / "o.exr", "--method", "exakt"}, "`exact`");
   expectError({"probe", "irradiance", in, folder / "o.exr", "--size", "0x2"}, "--size");
   expectError({"probe", "irradiance", in, folder / "o.jpg"}, ".exr");

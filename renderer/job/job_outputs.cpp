@@ -19,15 +19,20 @@ Messages checkOutputs(const RenderJob& job) {
   if (const auto stats = settings.getIfGiven<std::string>("stats"))
     checkOutputFile(*stats, {".json"});
 
+  const auto has = [&](std::string_view extension) {
+    return std::any_of(job.outputs.begin(), job.outputs.end(),
+                       [&](const auto& output) { return lowerExtension(output) == extension; });
+  };
   Messages messages;
-  const bool hasPng = std::any_of(job.outputs.begin(), job.outputs.end(), [](const auto& output) {
-    return lowerExtension(output) == ".png";
-  });
-  for (const char* name : {"tonemap", "exposure"})
-    if (!hasPng && settings.has(name))
+  const auto warn = [&](std::string_view setting, const std::string& why) {
+    if (settings.has(setting))
       messages.push_back({Message::Kind::Warning,
-                          fmt::format("{} has no effect: it is for .png; {} holds radiance",
-                                      settings.location(name), job.outputs.front())});
+                          fmt::format("{} has no effect: {}", settings.location(setting), why)});
+  };
+  for (const char* name : {"tonemap", "exposure"})
+    if (!has(".png"))
+      warn(name, fmt::format("it is for .png; {} holds radiance", job.outputs.front()));
+  if (!has(".exr")) warn("output.aovs", "only an .exr holds layers");
   return messages;
 }
 

@@ -116,16 +116,6 @@ std::string rangeOf(const CountRange& counts) {
                                   : fmt::format("{} to {}", counts.min, counts.max);
 }
 
-void checkCount(std::string_view name, const Lights& lights, const LightRequest& request) {
-  if (!request.count) {
-    if (!lights.countIsOptional && !request.maxErrorPercent) throwInput("{}: needs a count", name);
-    return;
-  }
-  const CountRange& counts = lights.counts;
-  if (*request.count < counts.min || *request.count > counts.max)
-    throwInput("{}: a count of {} is out of range; give {}", name, *request.count, rangeOf(counts));
-}
-
 std::string helpLine(const std::string& name, std::string_view summary, const std::string& counts) {
   return fmt::format("  {:<26}{}{}\n", name, summary, counts);
 }
@@ -172,10 +162,22 @@ const LightingMethod& lightMethod(std::string_view name, std::string_view locati
   throwInput("{}: unknown method `{}`; {}", location, name, didYouMean(name, names));
 }
 
-MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request) {
+void checkLightCount(std::string_view method, const LightRequest& request) {
   const Lights& lights = lightMethod(method, "lights").lights;
-  checkCount(method, lights, request);
-  return lights.make(latLong, request);
+  if (!request.count) {
+    if (!lights.countIsOptional && !request.maxErrorPercent)
+      throwInput("{}: needs a count", method);
+    return;
+  }
+  const CountRange& counts = lights.counts;
+  if (*request.count < counts.min || *request.count > counts.max)
+    throwInput("{}: a count of {} is out of range; give {}", method, *request.count,
+               rangeOf(counts));
+}
+
+MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request) {
+  checkLightCount(method, request);
+  return lightMethod(method, "lights").lights.make(latLong, request);
 }
 
 std::string strategyHelp() {

@@ -73,6 +73,9 @@ const LightingMethod& lightMethod(std::string_view name, std::string_view locati
 // is negative or not finite.
 MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request);
 
+// Throws InputError for an unknown method, or a count that is missing or out of range.
+void checkLightCount(std::string_view method, const LightRequest& request);
+
 // For --help: one line for each strategy, or for each method that makes lights.
 std::string strategyHelp();
 std::string lightMethodHelp();

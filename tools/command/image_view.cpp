@@ -64,7 +64,7 @@ Image viewOf(const std::string& path, const std::string& layer) {
 }
 
 void run(const Arguments& arguments) {
-  checkWritable(arguments.out);
+  checkOutputFile(arguments.out, {".png"});
   checkDistinct({arguments.out}, {arguments.in});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   if (!std::isfinite(transform.exposure))

@@ -77,6 +77,8 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
 
 void run(const Arguments& arguments) {
   for (const std::string& method : arguments.methods) lightMethod(method, "--methods");
+  for (const std::string& method : arguments.methods)
+    for (const int count : arguments.counts) checkLightCount(method, {.count = count});
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
   checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
