@@ -11,9 +11,13 @@ set_property(SOURCE tests/paths.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
              CHROMEBALL_BUILD_DIR="${PROJECT_BINARY_DIR}"
              CHROMEBALL_COMMAND="$<TARGET_FILE:chromeball>")
+set(instrumented 0)
+if(CHROMEBALL_SANITIZE)
+  set(instrumented 1)
+endif()
 set_property(SOURCE tests/consumer_test.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_CMAKE="${CMAKE_COMMAND}" CHROMEBALL_COMPILER="${CMAKE_CXX_COMPILER}"
              CHROMEBALL_INSTALLS=$<BOOL:${CHROMEBALL_INSTALL}>
-             CHROMEBALL_INSTRUMENTED=$<NOT:$<STREQUAL:${CHROMEBALL_SANITIZE},>>)
+             CHROMEBALL_INSTRUMENTED=${instrumented})
 add_dependencies(tests chromeball)
 gtest_discover_tests(tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
