@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -117,6 +118,21 @@ TEST(SlowConsumer, InstalledHeadersCompile) {
       " -std=c++20 -fsyntax-only -Wall -Werror -DGLM_FORCE_SILENT_WARNINGS -DGLM_FORCE_XYZW_ONLY "
       "-I " +
       quoted(include) + " " + quoted(prefix / "all.cpp"));
+}
+
+TEST(SlowConsumer, EveryPresetConfigures) {
+  const std::string source = quoted(kSourceDir), cmake = quoted(CHROMEBALL_CMAKE);
+  const auto presets =
+      nlohmann::json::parse(fileContents(std::string(kSourceDir) + "/CMakePresets.json"));
+  EXPECT_EQ(presets["configurePresets"].size(), 6u);
+  const bool hasClang = std::system("command -v clang++ > /dev/null") == 0;
+  for (const auto& preset : presets["configurePresets"]) {
+    const std::string name = preset["name"];
+    if (preset["cacheVariables"].value("CMAKE_CXX_COMPILER", "") == "clang++" && !hasClang)
+      continue;
+    const TemporaryFolder folder;
+    run("cd " + source + " && " + cmake + " --preset " + name + " -B " + quoted(folder / "build"));
+  }
 }
 
 // Compiles only the consumer's own source: the library takes minutes and is tested above.
