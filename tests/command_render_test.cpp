@@ -497,6 +497,9 @@ TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
   const std::string file = scene.folder() + "/scene.toml";
   std::ofstream(file) << "model = 'model.gltf'\n[probe]\nfile = 'gradient.exr'\nscale = 3.3\n"
                          "rotation = 20\n[render]\nmax_depth = 2\nsamples = 3\nsize = [10, 8]\n";
+  const std::string adaptive = scene.folder() + "/adaptive.toml";
+  std::ofstream(adaptive) << "model = 'model.gltf'\n[probe]\nfile = 'gradient.exr'\n"
+                             "[render]\nadaptive = 'off'\nsize = [20, 15]\n";
   const std::vector<std::pair<std::string, Words>> jobs = {
       {scene.model, {"--probe", scene.gradient, "--size", "20x15", "--samples", "4"}},
       {scene.model,
@@ -528,6 +531,7 @@ TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
         "--aov",
         "depth,node"}},
       {file, {"--mis", "off", "--seed", "9", "--noise", "30"}},
+      {adaptive, {"--samples", "16"}},
       {file, {"--camera", "Left", "--probe-scale", "2"}}};
   for (const auto& [name, options] : jobs) {
     Words words = options;

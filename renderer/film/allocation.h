@@ -25,6 +25,8 @@ class SampleAllocation {
   uint32_t count(int x, int y, uint32_t mean) const;
 
  private:
+  size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
+
   int width_;
   uint32_t pilotSamples_;
   std::vector<float> rates_;  // samples of the pixel per mean sample, after the pilot

@@ -5,20 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "film/window.h"
+
 namespace chromeball {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kReach = 3;                   // windows are 7 x 7 pixels
 constexpr double kMaxRelativeError = 0.25;  // of a luminance that is used as a reference
-
-// Calls visit(j) for all pixels of the window around (x, y), the centre included.
-template <class Visit>
-void forWindow(int width, int height, int x, int y, const Visit& visit) {
-  for (int v = std::max(0, y - kReach); v <= std::min(height - 1, y + kReach); ++v)
-    for (int u = std::max(0, x - kReach); u <= std::min(width - 1, x + kReach); ++u)
-      visit(size_t(v) * size_t(width) + size_t(u));
-}
 
 double meanOf(const std::vector<double>& values) {
   double sum = 0;
@@ -34,8 +28,8 @@ double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) 
   double reference = errors.luminances[i];
   if (errors.halves[i].w > kMaxRelativeError * kMaxRelativeError * reference * reference) {
     double sum = 0, count = 0;
-    forWindow(errors.width, errors.height, x, y,
-              [&](size_t j) { sum += errors.luminances[j], ++count; });
+    forWindow(errors.width, errors.height, x, y, kReach,
+              [&](size_t j, int, int) { sum += errors.luminances[j], ++count; });
     reference = std::min(reference, sum / count);
   }
   return std::max(reference, 0.01 * mean);
@@ -61,7 +55,7 @@ glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>&
   const size_t i = size_t(y) * size_t(e.width) + size_t(x);
   glm::dvec4 ratio(0), weight(0), outlierHalves(0);
   double outlierScatter = 0, outlierSquares = 0, count = 0;
-  forWindow(e.width, e.height, x, y, [&](size_t j) {
+  forWindow(e.width, e.height, x, y, kReach, [&](size_t j, int, int) {
     if (std::isnan(e.halves[j].w)) return;
     ++count;
     if (hasOutliers(e, j)) {

@@ -80,8 +80,9 @@ class Renderer {
           Worker& worker = workers_.local();
           for (int tile = range.begin(); tile < range.end() && !stop; ++tile) {
             forPixels(tile % columns * kTile, tile / columns * kTile, [&](int x, int y) {
+              const uint32_t from = countOf(x, y, done), to = countOf(x, y, wanted);
               for (int half = 0; half < Film::kHalves; ++half)
-                renderHalf(worker, x, y, half, countOf(x, y, done), countOf(x, y, wanted), beam);
+                renderHalf(worker, x, y, half, from, to, beam);
             });
             const int count = ++finished;
             if (std::unique_lock lock(reporting, std::try_to_lock); lock)

@@ -72,7 +72,6 @@ void addRender(std::vector<Setting>& rows) {
            },
        .help = "Takes more samples in noisier pixels, if there are at least 16 per pixel; "
                "`samples` is then their mean.",
-       .effect = Effect::Limit,
        .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
