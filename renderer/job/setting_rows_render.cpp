@@ -63,7 +63,7 @@ void addRender(std::vector<Setting>& rows) {
        .renderOnly = true});
   add({.key = "adaptive",
        .option = "adaptive",
-       .argument = "on|off",
+       .argument = "NAME",
        .type = Choice,
        .fallback = usual.adaptive ? "on" : "off",
        .choices =
