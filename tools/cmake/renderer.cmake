@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library: chromeball_renderer here, chromeball::renderer for others.
 file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
-if(CHROMEBALL_FUZZ)  # the readers, and what they refer to
-  list(FILTER renderer_sources INCLUDE REGEX
-       "/renderer/(base|math|image|probe|scene|shading|lighting|film)/|renderer/job/(scene_file|setting|toml_section|arguments)")
-endif()
 add_library(chromeball_renderer ${renderer_sources})
 add_library(chromeball::renderer ALIAS chromeball_renderer)
 chromeball_compile(chromeball_renderer)
@@ -31,18 +27,16 @@ target_link_libraries(chromeball_renderer
           $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
 
 # The page of a comparison and its script become strings.
-if(NOT CHROMEBALL_FUZZ)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-               renderer/study/report/report.html renderer/study/report/report.js)
-  file(READ renderer/study/report/report.html report_html)
-  file(READ renderer/study/report/report.js report_script)
-  configure_file(renderer/study/report/embedded.cpp.in report_embedded.cpp @ONLY)
-  target_sources(chromeball_renderer PRIVATE ${PROJECT_BINARY_DIR}/report_embedded.cpp)
-  # What nearly every file includes, parsed once: saves a fifth of a build's time.
-  target_precompile_headers(chromeball_renderer PRIVATE
-    <algorithm> <functional> <memory> <string> <vector> <fmt/format.h>
-    ${PROJECT_SOURCE_DIR}/renderer/math/vec.h)
-endif()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+             renderer/study/report/report.html renderer/study/report/report.js)
+file(READ renderer/study/report/report.html report_html)
+file(READ renderer/study/report/report.js report_script)
+configure_file(renderer/study/report/embedded.cpp.in report_embedded.cpp @ONLY)
+target_sources(chromeball_renderer PRIVATE ${PROJECT_BINARY_DIR}/report_embedded.cpp)
+# What nearly every file includes, parsed once: saves a fifth of a build's time.
+target_precompile_headers(chromeball_renderer PRIVATE
+  <algorithm> <functional> <memory> <string> <vector> <fmt/format.h>
+  ${PROJECT_SOURCE_DIR}/renderer/math/vec.h)
 
 # Headers for consumers, who write #include <chromeball/film/film.h>. They are copies, in which
 # "math/vec.h" reads <chromeball/math/vec.h>, so that renderer/ itself is on nobody else's path.
