@@ -236,6 +236,12 @@ TEST_F(SlowCommandComposite, EstimatesReflectanceFromThePlate) {
   expectInputError(scene(std::string(kGood) + "\nreflectance = \"plat\""), "did you mean `plate`?");
   expectInputError(scene(std::string(kGood) + "\nspecular = 2"),
                    "`specular` must be a number from 0 to 1");
+  expectInputError(scene(std::string(kGood) + "\nreflectance = \"flat\"\niterations = 2"),
+                   "`iterations` is only for reflectance = \"plate\"");
+  expectInputError(scene("plate = \"plate.exr\"\nlocal_scene = []"),
+                   "`local_scene` must name at least one node");
+  expectError({"render", scene(kGood), "-o", path("x.exr"), "--transparent"},
+              "--transparent: the plate is the background of a composite");
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
               "layer `reflectance` needs reflectance =");
 }
@@ -251,6 +257,9 @@ TEST_F(SlowCommandComposite, SurroundingsMustContainTheModel) {
                    "`shape`: `cone` is not known");
   expectInputError(scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]"),
                    "has no `radius`");
+  expectInputError(
+      scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nmin = [0, 0, 0]"),
+      "surroundings of shape sphere have no `min`; they have center, radius, capture");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {

@@ -39,6 +39,8 @@ TEST(SlowCommand, UnknownWordsAreRejectedWithASuggestion) {
   expectError({"rendr"}, "`render`");
   expectError({"prob", "info"}, "`probe`");
   expectError({"probe", "inf", "x"}, "`info`");
+  expectError({"probe", "synth", "constant", "x.exr", "--sun-elevation", "30"},
+              "--sun-elevation: not an option of constant; only of sun-sky");
   expectError({"probe", "info", "x", "--jsn"}, "`--json`");
   expectError({"probe", "info"}, "FILE");
   expectError({"probe", "info", "a", "b"}, "`b`");

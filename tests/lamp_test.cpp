@@ -133,20 +133,20 @@ TEST(Lamps, ErrorsNameTheLineInTheFile) {
   const std::string disc = "type = 'disc'\nposition = [0, 2, 0]\nradius = 1\n";
   EXPECT_EQ(errorMessage(point + "intensity = 1"), "");
   EXPECT_EQ(errorMessage("position = [0, 2, 0]"),
-            "a.toml:2: [light] has no `type`: one of point, spot, disc");
+            "a.toml:2: [[light]] has no `type`: one of point, spot, disc");
   EXPECT_EQ(errorMessage("type = 'disk'"),
             "a.toml:3: `type`: `disk` is not known; did you mean `disc`?");
   EXPECT_EQ(errorMessage(point + "intensty = 1"),
-            "a.toml:5: unknown key `intensty` in [light]; did you mean `intensity`?");
+            "a.toml:5: unknown key `intensty` in [[light]]; did you mean `intensity`?");
   EXPECT_EQ(errorMessage(point + "intensity = 1\nradius = 1"),
             "a.toml:6: a point light has no `radius`; it has intensity, power, range");
-  EXPECT_EQ(errorMessage(point), "a.toml:2: [light] has neither `intensity` nor `power`");
+  EXPECT_EQ(errorMessage(point), "a.toml:2: [[light]] has neither `intensity` nor `power`");
   EXPECT_EQ(errorMessage(point + "intensity = 1\npower = 1"),
-            "a.toml:6: [light] has `intensity`; it cannot have `power` too");
+            "a.toml:6: [[light]] has `intensity`; it cannot have `power` too");
   EXPECT_EQ(errorMessage(point + "intensity = [1, -1, 0]"),
             "a.toml:5: `intensity` must be a finite number, 0 or more (W/sr), not -1");
-  EXPECT_EQ(errorMessage("type = 'point'\nintensity = 1"), "a.toml:2: [light] has no `position`");
-  EXPECT_EQ(errorMessage(disc + "radiance = 1"), "a.toml:2: [light] has no `direction`");
+  EXPECT_EQ(errorMessage("type = 'point'\nintensity = 1"), "a.toml:2: [[light]] has no `position`");
+  EXPECT_EQ(errorMessage(disc + "radiance = 1"), "a.toml:2: [[light]] has no `direction`");
   EXPECT_EQ(errorMessage(disc + "radiance = 1\ndirection = [0, 0, 0]"),
             "a.toml:7: `direction` must not be 0, 0, 0");
   EXPECT_EQ(

@@ -33,6 +33,9 @@ void planComposite(RenderJob& job) {
 
   composite.reflectance = reflectanceNamed(s.get<std::string>("composite.reflectance"));
   composite.iterations = int(s.get<uint64_t>("composite.iterations"));
+  if (s.has("composite.iterations") && composite.reflectance != CompositePlan::Reflectance::Plate)
+    throwInput("{}: `iterations` is only for reflectance = \"plate\"",
+               s.location("composite.iterations"));
   composite.layers = s.get<std::vector<std::string>>("output.aovs");
   if (std::ranges::count(composite.layers, "reflectance") > 0 &&
       composite.reflectance == CompositePlan::Reflectance::Model)

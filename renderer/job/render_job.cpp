@@ -100,6 +100,13 @@ void checkTwoPass(const SceneFile& file) {
     throwInput("{}: is biased; leave it out in a reference of two passes", s.location("clamp"));
 }
 
+void checkTransparent(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (file.composite && s.get<bool>("transparent"))
+    throwInput("{}: the plate is the background of a composite; its layer alpha shows the objects",
+               s.location("transparent"));
+}
+
 }  // namespace
 
 RenderJob planJob(SceneFile scene, const Settings& over) {
@@ -108,6 +115,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   merge(job.file, over);
   const Settings& s = job.file.settings;
   checkTwoPass(job.file);
+  checkTransparent(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));

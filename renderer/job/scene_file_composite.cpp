@@ -1,20 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_composite.h"
 
+#include <algorithm>
+#include <map>
+
+#include "job/setting_table.h"
+
 namespace chromeball {
+namespace {
+
+void checkKeysOf(std::string_view shape, const Section& section) {
+  static const std::map<std::string_view, std::vector<std::string_view>> kKeys = {
+      {"box", {"min", "max", "capture"}},
+      {"sphere", {"center", "radius", "capture"}},
+      {"model", {"file", "capture"}}};
+  const auto& keys = kKeys.at(shape);
+  for (const std::string_view key : keysOf("surroundings"))
+    if (const Entry e = section[key];
+        e && key != "shape" && std::find(keys.begin(), keys.end(), key) == keys.end())
+      failAt(e.location(), "surroundings of shape {} have no `{}`; they have {}", shape, key,
+             fmt::join(keys, ", "));
+}
+
+}  // namespace
+
 CompositeEntry readComposite(const Section& section, Settings& settings) {
   section.required("plate");
   section.read(settings);
   CompositeEntry composite;
   composite.location = section.location();
-  forEach(section.required("local_scene"),
-          [&](const Entry& e) { composite.localScene.push_back(e.name()); });
+  const Entry local = section.required("local_scene");
+  forEach(local, [&](const Entry& e) { composite.localScene.push_back(e.name()); });
+  if (composite.localScene.empty())
+    failAt(local.location(), "`local_scene` must name at least one node");
   return composite;
 }
 
 Surroundings readSurroundings(const Section& section) {
   const auto need = [&](const char* key) { return section.required(key); };
   const std::string shape = need("shape").choice();
+  checkKeysOf(shape, section);
   Surroundings s;
   if (shape == "box") {
     s.shape = Surroundings::Shape::Box;

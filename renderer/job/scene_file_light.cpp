@@ -36,8 +36,8 @@ vec3 readDirection(const Section& light) {
 // The value of `key`, or `ofOneWatt` times `power`.
 Rgb readStrength(const Section& light, std::string_view key, float ofOneWatt) {
   const Entry own = light[key], power = light["power"];
-  if (own && power) failAt(power.location(), "[light] has `{}`; it cannot have `power` too", key);
-  if (!own && !power) failAt(light.location(), "[light] has neither `{}` nor `power`", key);
+  if (own && power) failAt(power.location(), "[[light]] has `{}`; it cannot have `power` too", key);
+  if (!own && !power) failAt(light.location(), "[[light]] has neither `{}` nor `power`", key);
   return own ? readColor(own) : readColor(power) * ofOneWatt;
 }
 

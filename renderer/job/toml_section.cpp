@@ -4,6 +4,7 @@
 #include <cfloat>
 
 #include "base/file.h"
+#include "job/setting_table.h"
 
 namespace chromeball {
 namespace {
@@ -126,15 +127,22 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
-             key.str(), name_.empty() ? "" : " in [" + name_ + "]", didYouMean(key.str(), known));
+             key.str(), name_.empty() ? "" : " in " + heading(), didYouMean(key.str(), known));
 }
 
 Entry Section::required(std::string_view key) const {
   const Entry entry = (*this)[key];
   if (!entry)
-    failAt(location(), "[{}] has no `{}`{}", name_, key,
+    failAt(location(), "{} has no `{}`{}", heading(), key,
            entry.setting->choices ? ": " + expected(*entry.setting) : "");
   return entry;
+}
+
+std::string Section::heading() const {
+  for (const SettingSection& section : settingSections())
+    if (section.name == name_ && section.heading.starts_with('['))
+      return std::string(section.heading);
+  return "[[" + name_ + "]]";  // [[model]]
 }
 
 Section Section::section(std::string_view key) const {

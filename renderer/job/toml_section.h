@@ -71,6 +71,9 @@ class Section {
   Entry required(std::string_view key) const;
   std::string location() const { return fmt::format("{}:{}", file_, table_.source().begin.line); }
 
+  // As it is written in the file: [probe], [[light]].
+  std::string heading() const;
+
   // A table within this one; an empty one if it is missing.
   Section section(std::string_view key) const;
 

@@ -222,9 +222,13 @@ void addCompareCommand(CLI::App& app) {
   addSceneOptions(*command, a.scene, SceneCommand::Compare);
   command->footer(strategyHelp());
   command
-      ->add_option("--strategies", a.strategies, "NAME or NAME:COUNT, separated by commas; or all")
+      ->add_option("--strategies", a.strategies,
+                   "NAME or NAME:COUNT, separated by commas; all if not given")
       ->delimiter(',');
-  command->add_option("--samples", a.samples, "Samples per pixel: 1,4,16,64")->delimiter(',');
+  command
+      ->add_option("--samples", a.samples,
+                   "Samples per pixel; 1,4,16,64 if neither these nor --times are given")
+      ->delimiter(',');
   command->add_option("--times", a.times, "Seconds per render: 1,2,4")->delimiter(',');
   command
       ->add_option("--repeats", a.repeats,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe synth KIND OUT
+#include <algorithm>
 #include <functional>
 #include <map>
 
@@ -81,13 +82,32 @@ const std::map<std::string_view, Maker> kMakers = {
      }},
     {"studio", [](const Arguments&, const ImageSize& size) { return studioProbe(size); }}};
 
-void run(const Arguments& arguments) {
+// The kinds of probe that each option is for; --size is for all.
+const std::map<std::string, std::vector<std::string_view>> kKindsOf = {
+    {"--radiance", {"constant", "one-hot", "gradient", "overcast"}},
+    {"--texel", {"one-hot"}},
+    {"--direction", {"one-hot"}},
+    {"--slope", {"gradient"}},
+    {"--sun-elevation", {"sun-sky"}},
+    {"--sun-azimuth", {"sun-sky"}},
+    {"--turbidity", {"sun-sky"}},
+    {"--ground-albedo", {"sun-sky", "overcast"}},
+    {"--no-sun", {"sun-sky"}}};
+
+void checkOptions(const CLI::App& command, const std::string& kind) {
+  for (const auto& [option, kinds] : kKindsOf)
+    if (command.count(option) > 0 && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      throwInput("{}: not an option of {}; only of {}", option, kind, fmt::join(kinds, ", "));
+}
+
+void run(const Arguments& arguments, const CLI::App& command) {
   const auto maker = kMakers.find(arguments.kind);
   if (maker == kMakers.end()) {
     std::vector<std::string_view> kinds;
     for (const auto& [kind, unused] : kMakers) kinds.push_back(kind);
     throwInput("unknown kind of probe `{}`; {}", arguments.kind, didYouMean(arguments.kind, kinds));
   }
+  checkOptions(command, arguments.kind);
   checkWritable(arguments.out);
   checkRange("--ground-albedo", arguments.sky.groundAlbedo, 0, 1);
   checkRange("--sun-elevation", arguments.sky.sunElevation, 0, 90);
@@ -127,7 +147,7 @@ void addProbeSynthCommand(CLI::App& probe) {
   command->add_option("--ground-albedo", arguments->sky.groundAlbedo, "0 to 1: sun-sky, overcast")
       ->capture_default_str();
   command->add_flag("--no-sun", arguments->withoutSun, "sun-sky without its sun");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, command] { run(*arguments, *command); });
 }
 
 }  // namespace chromeball

@@ -54,6 +54,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
     return std::nullopt;
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ",
                                        100.0 * seen.black / seen.surfaces);
+  if (dark == 0)
+    return what + "the probe is black; a light probe or --probe-scale above 0 lights them";
   const bool lets = std::any_of(loaded.scene.materials.begin(), loaded.scene.materials.end(),
                                 [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * seen.blackSingleSided > seen.black)
