@@ -149,16 +149,18 @@ Aimed aimAtEdges(const Scene& scene, float radius, int rayCount) {
     aimed.entered +=
         !surfaceAt(scene, body, hit.triangle, hit.barycentric, -ray.direction).frontFace;
   };
-  std::array<Ray, Accel::kPacket> rays;
-  const std::array<uint32_t, Accel::kPacket> keys{};
-  for (int i = 0; i < rayCount; i += Accel::kPacket) {
+  constexpr int kPacket = 8;
+  std::array<Ray, kPacket> rays;
+  const std::array<uint32_t, kPacket> keys{};
+  std::array<std::optional<Hit>, kPacket> packet;
+  for (int i = 0; i < rayCount; i += kPacket) {
     for (Ray& ray : rays) {
       const Triangle t = mesh.triangles[size_t(random.next() * float(mesh.triangles.size()))];
       const vec3 a = body.point(mesh.positions[t.x]), b = body.point(mesh.positions[t.y]);
       ray.origin = centre + radius * squareToUniformSphere(random.next2());
       ray.direction = glm::normalize(glm::mix(a, b, random.next()) - ray.origin);
     }
-    const Accel::Packet packet = accel.intersect(rays, keys);
+    accel.intersect(rays, keys, Accel::Coherence::None, packet);
     for (size_t k = 0; k < rays.size(); ++k) {
       if (packet[k]) count(rays[k], *packet[k]);
       if (Hit hit; accel.intersect(rays[k], 0, hit)) count(rays[k], hit);
@@ -360,39 +362,47 @@ TEST(Accel, EmptyScenesAndInvalidRaysHaveNoHit) {
   }
 }
 
+// Also for numbers of rays that are no multiple of a packet.
 TEST(Accel, PacketsMatchSingleRays) {
+  constexpr size_t kMost = 20;
   const Scene spheres = sphereScene(1, vec3(0));
   const Scene veils = layerScene(std::vector(3, layer(AlphaMode::Blend, 0.4f)), true);
   Random random;
-  for (const Scene* scene : {&spheres, &veils}) {
-    const Accel accel(*scene);
-    int found = 0, differing = 0;
-    for (int packet = 0; packet < 2000; ++packet) {
-      std::array<Ray, Accel::kPacket> rays;
-      std::array<uint32_t, Accel::kPacket> keys;
-      const size_t count = 1 + size_t(packet) % Accel::kPacket;
-      for (size_t i = 0; i < count; ++i) {
-        const vec3 aim = 2.0f * vec3(random.next(), random.next(), 0.5f) - 1.0f;
-        rays[i] = {{0, 0, -3}, glm::normalize(aim + vec3(0, 0, 3))};
-        keys[i] = uint32_t(packet * 8 + int(i));
+  for (const Scene* scene : {&spheres, &veils})
+    for (const auto coherence : {Accel::Coherence::None, Accel::Coherence::High}) {
+      const Accel accel(*scene);
+      int found = 0, differing = 0, shadowsDiffering = 0;
+      for (uint32_t set = 0; set < 1000; ++set) {
+        const size_t count = 1 + set % kMost;
+        std::vector<Ray> rays(count);
+        std::vector<uint32_t> keys(count);
+        for (size_t i = 0; i < count; ++i) {
+          const vec3 aim = 2.0f * vec3(random.next(), random.next(), 0.5f) - 1.0f;
+          rays[i] = {{0, 0, -3}, glm::normalize(aim + vec3(0, 0, 3))};
+          keys[i] = set * kMost + uint32_t(i);
+        }
+        if (set % 5 == 0) rays[0].origin.x = NAN;
+        if (set % 7 == 0) rays.back().tMax = 1;
+        std::vector<std::optional<Hit>> hits(count);
+        std::vector<Rgb> transmittances(count);
+        accel.intersect(rays, keys, coherence, hits);
+        accel.transmittance(rays, transmittances);
+        for (size_t i = 0; i < count; ++i) {
+          Hit hit;
+          const bool meets = accel.intersect(rays[i], keys[i], hit);
+          found += meets;
+          // On an edge both triangles are valid hits; at a silhouette a hit and a miss are valid.
+          differing +=
+              meets != hits[i].has_value() ||
+              (meets && (hit.instance != hits[i]->instance || hit.triangle != hits[i]->triangle ||
+                         glm::distance(hit.barycentric, hits[i]->barycentric) > 1e-3f));
+          shadowsDiffering += accel.transmittance(rays[i]) != transmittances[i];
+        }
       }
-      if (packet % 5 == 0) rays[0].origin.x = NAN;
-      const Accel::Packet hits =
-          accel.intersect(std::span(rays).first(count), std::span(keys).first(count));
-      for (size_t i = 0; i < Accel::kPacket; ++i) {
-        Hit hit;
-        const bool meets = i < count && accel.intersect(rays[i], keys[i], hit);
-        found += meets;
-        // On an edge both triangles are valid hits; at a silhouette a hit and a miss are valid.
-        differing +=
-            meets != hits[i].has_value() ||
-            (meets && (hit.instance != hits[i]->instance || hit.triangle != hits[i]->triangle ||
-                       glm::distance(hit.barycentric, hits[i]->barycentric) > 1e-3f));
-      }
+      EXPECT_GT(found, 3000);
+      EXPECT_LT(differing, 5);
+      EXPECT_LT(shadowsDiffering, 5);
     }
-    EXPECT_GT(found, 3000);
-    EXPECT_LT(differing, 5);
-  }
 }
 
 // A ray ignores instances outside its mask; the indices of the others do not change.
@@ -410,11 +420,19 @@ TEST(Accel, MasksHideInstances) {
     Hit hit;
     ASSERT_TRUE(accel.intersect(down, 0, hit, mask));
     EXPECT_EQ(hit.instance, i);
-    const auto packet = accel.intersect({&down, 1}, std::array{0u}, mask);
-    ASSERT_TRUE(packet[0]);
-    EXPECT_EQ(packet[0]->instance, i);
+    const std::array both{down, down};
+    std::array<std::optional<Hit>, 2> packet;
+    accel.intersect(both, std::array{0u, 0u}, Accel::Coherence::High, packet, mask);
+    for (const auto& found : packet) {
+      ASSERT_TRUE(found);
+      EXPECT_EQ(found->instance, i);
+    }
     EXPECT_EQ(accel.transmittance(up, mask), Rgb(i == 0 ? 0 : 1));
     EXPECT_EQ(accel.transmittance(farther, mask), Rgb(i == 0 ? 1 : 0));
+    std::array<Rgb, 2> passed;
+    accel.transmittance(std::array{up, farther}, passed, mask);
+    EXPECT_EQ(passed[0], Rgb(i == 0 ? 0 : 1));
+    EXPECT_EQ(passed[1], Rgb(i == 0 ? 1 : 0));
   }
   Hit hit;
   EXPECT_FALSE(accel.intersect(down, 0, hit, 8));

@@ -29,7 +29,7 @@ class Clamp {
   // absolute value; the hue stays. Non-finite values pass unchanged, to be counted as invalid.
   Rgb operator()(const Rgb& radiance) {
     if (!limit_ || !isFinite(radiance)) return radiance;
-    const float largest = maxComponent(glm::abs(radiance));
+    const float largest = maxComponent(absolute(radiance));
     const float scale = largest > *limit_ ? *limit_ / largest : 1;
     const double light = std::fabs(double(luminance(radiance)));
     clamped_.kept += light * scale;

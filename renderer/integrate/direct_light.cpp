@@ -32,7 +32,7 @@ Rgb DirectLight::visibility(const Ray& ray, PathContext& context,
     // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
     const Rgb other = visibility(ray, settings_.compared, lamp);
-    context.shadowsDiffer |= maxComponent(glm::abs(other - passed)) > kRounding;
+    context.shadowsDiffer |= maxComponent(absolute(other - passed)) > kRounding;
   }
   return passed;
 }
@@ -60,6 +60,17 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     light += bsdf.fCos * s.irradiance * passed * weight;
   }
   return light;
+}
+
+void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light) const {
+  const DirectionSample& s = light.sample;
+  if (!(s.pdf > 0)) return;
+  const BsdfValue bsdf = vertex.bsdf.evaluate(s.wi);
+  if (isBlack(bsdf.fCos)) return;
+  light.hasShadowRay = true;
+  light.shadowRay = {vertex.surface.rayOrigin(s.wi), s.wi};
+  light.radiance =
+      throughput * bsdf.fCos * s.irradiance * lightSampleWeight(settings_.mis, s.pdf, bsdf.pdf);
 }
 
 Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {

@@ -23,6 +23,14 @@ struct Vertex {
   const Media& media;  // on the viewer's side
 };
 
+// Light from the probe at a vertex, for paths that are traced together (path_batch.h).
+struct DeferredLight {
+  DirectionSample sample{};  // input: the light sample; pdf 0: none
+  bool hasShadowRay = false;
+  Ray shadowRay{};  // output
+  Rgb radiance{0};  // at the camera if nothing blocks the shadow ray
+};
+
 // Radiance scattered towards the viewer, estimated by light samples with their MIS weights against
 // BSDF samples.
 class DirectLight {
@@ -33,6 +41,9 @@ class DirectLight {
 
   // From the probe, with the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
+  // The first half of the same: the shadow ray of a given sample, and `throughput` times what it
+  // adds if nothing blocks it.
+  void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light) const;
   // From one point on an emissive triangle. World::emitters must not be null.
   Rgb emitter(const Vertex& vertex, PathContext& context) const;
   // From point, spot and directional lights. World::punctual must not be null.

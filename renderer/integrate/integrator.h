@@ -2,12 +2,15 @@
 // Integrators estimate the radiance that arrives along camera rays.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "film/invalid.h"
 #include "film/layer_film.h"
 #include "integrate/path.h"
+#include "integrate/path_batch.h"
 
 namespace chromeball {
 
@@ -27,6 +30,7 @@ struct Sample {
   Rgb radiance{0};
   std::optional<Defect> defect;
 
+  Sample() = default;
   Sample(const Rgb& found) : radiance(found), defect(defectOf(found, false)) {}
   Sample(const Rgb& found, std::optional<Defect> cause) : radiance(found), defect(cause) {}
 };
@@ -38,6 +42,16 @@ class Integrator {
   // One sample of a pixel. Writes context.layers: one value per layer of layers(), initially 0.
   // Called concurrently, with one context per thread.
   virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
+
+  // The same for several samples of a pixel: cameras[i] is sample firstSample + i of the sampler's
+  // pixel. Only for integrators without layers.
+  virtual void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
+                          PathContext& context, std::span<Sample> samples) const {
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      context.sampler.startSample(firstSample + uint32_t(i));
+      samples[i] = sample(cameras[i], context);
+    }
+  }
 
   // How the film accumulates each layer (RenderResult::layers).
   virtual std::vector<Accumulation> layers() const { return {}; }
@@ -53,6 +67,15 @@ class PathIntegrator : public Integrator {
 
   Sample sample(const CameraSample& camera, PathContext& context) const override {
     return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
+  }
+
+  void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
+                  std::span<Sample> samples) const override {
+    thread_local PathBatch batch;
+    batch.clear();
+    for (const CameraSample& camera : cameras) batch.add(camera.path(), camera.hit);
+    batch.trace(tracer_, firstSample, context);
+    for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
   }
 
  private:

@@ -77,9 +77,16 @@ Rgb PathTracer::escapedRadiance(const PathState& state) const {
   if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
   if (state.lobes == Lobes::Narrow)
     return state.throughput * lighting_.background(origin, direction);
-  const auto escaped = lighting_.escaped(state.from, direction);
+  return weighted(state, lighting_.escaped(state.from, direction));
+}
+
+Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped& escaped) const {
   const float weight = state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, escaped.pdf);
   return state.throughput * escaped.radiance * weight;
+}
+
+void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& escaped) const {
+  state.radiance += weighted(state, escaped);
 }
 
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
@@ -106,7 +113,10 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   if (!atLimit) {
     const Vertex vertex{state.from, surface, bsdf, state.media};
     const bool broad = bsdf.has(Lobes::Broad);
-    if (broad) state.radiance += state.throughput * direct_.probe(vertex, context);
+    if (broad && state.deferred)
+      direct_.defer(vertex, state.throughput, *state.deferred);
+    else if (broad)
+      state.radiance += state.throughput * direct_.probe(vertex, context);
     if (broad || bsdf.has(Lobes::Narrow)) {
       if (world_.emitters) state.radiance += state.throughput * direct_.emitter(vertex, context);
       if (world_.punctual) state.radiance += state.throughput * direct_.punctual(vertex, context);
@@ -234,6 +244,7 @@ std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<H
   PathState rest = state;
   rest.radiance = Rgb(0);
   rest.first = nullptr;
+  rest.deferred = nullptr;
   const RayCounts counted = context.counts;
   const auto found = [&](const PathSettings& settings) {
     return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));

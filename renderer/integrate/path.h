@@ -30,7 +30,8 @@ struct PathState {
   Media media;                  // the medium of the ray
   float length = 0;             // of the path from the camera, metres
   Beam beam{};                  // footprint of the camera ray, for texture filtering
-  FirstHit* first = nullptr;    // output, written at the first visible surface; null: not wanted
+  DeferredLight* deferred = nullptr;  // null: trace shadow rays at once
+  FirstHit* first = nullptr;  // output, written at the first visible surface; null: not wanted
 
   // The number of bounces that maxDepth limits.
   int bounces() const { return depth - straight - transmissions; }
@@ -74,12 +75,17 @@ class PathTracer {
                                      PathContext& context) const;
   bool isHiddenBack(const PathState& state, const Hit& hit) const;
 
+  // Adds what a ray that hits nothing finds; not for narrow lobes and the camera.
+  void addEscaped(PathState& state, const LightingStrategy::Escaped& escaped) const;
+
   const World& world() const { return world_; }
+  const LightingStrategy& lighting() const { return lighting_; }
   const PathSettings& settings() const { return settings_; }
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
   Rgb escapedRadiance(const PathState& state) const;
+  Rgb weighted(const PathState& state, const LightingStrategy::Escaped& escaped) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
                       const MaterialPoint& material, PathContext& context) const;
   template <bool kLayered>

@@ -120,25 +120,32 @@ class Renderer {
       for (int x = left; x < std::min(left + kTile, settings_.width); ++x) visit(x, y);
   }
 
-  // Generates and traces the camera rays of samples [begin, end), up to one packet.
-  Accel::Packet cameraHits(PixelSampler& sampler, int x, int y, uint32_t begin, uint32_t end,
-                           std::array<Ray, Accel::kPacket>& rays) const {
-    std::array<uint32_t, Accel::kPacket> keys;
-    const uint32_t count = std::min(end - begin, uint32_t(Accel::kPacket));
-    for (uint32_t lane = 0; lane < count; ++lane) {
-      sampler.startSample(begin + lane);
+  // Generates and traces the camera rays of consecutive samples.
+  void traceCameraRays(PixelSampler& sampler, int x, int y, uint32_t firstSample,
+                       std::span<CameraSample> cameras) const {
+    std::array<Ray, PathBatch::kMaxPaths> rays;
+    std::array<uint32_t, PathBatch::kMaxPaths> keys;
+    std::array<std::optional<Hit>, PathBatch::kMaxPaths> hits;
+    const size_t count = cameras.size();
+    for (size_t i = 0; i < count; ++i) {
+      sampler.startSample(firstSample + uint32_t(i));
       const vec2 offset = sampler.get2(dimension::kPixel);
       const float u = (float(x) + offset.x) / float(settings_.width);
       const float v = (float(y) + offset.y) / float(settings_.height);
-      Ray& ray = rays[lane];
+      Ray& ray = rays[i];
       if (cameraRays_.hasLens())
         cameraRays_.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
       else
         cameraRays_.ray(u, v, ray.origin, ray.direction);
-      keys[lane] = sampler.sampleKey();
+      keys[i] = sampler.sampleKey();
     }
-    return world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
-                                  integrator_.visible());
+    world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
+                           Accel::Coherence::High, std::span(hits).first(count),
+                           integrator_.visible());
+    for (size_t i = 0; i < count; ++i) {
+      cameras[i].ray = rays[i];
+      cameras[i].hit = hits[i];
+    }
   }
 
   // Takes those of the pixel's samples [done, wanted) that belong to `half`. Beyond the table's
@@ -159,33 +166,57 @@ class Renderer {
   // Takes samples [begin, end) of the sampler's table.
   SampleSums renderSamples(Worker& worker, int x, int y, uint32_t begin, uint32_t end,
                            const Beam& beam) {
-    FirstHit first;
-    const bool wantsFirst = !result_.aovs.empty(), hasLayers = !result_.layers.empty();
     SampleSums sums;
-    PixelSampler& sampler = worker.context.sampler;
-    std::array<Ray, Accel::kPacket> rays;
-    Accel::Packet hits;
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t lane = (i - begin) % Accel::kPacket;
-      if (lane == 0) hits = cameraHits(sampler, x, y, i, end, rays);
-      sampler.startSample(i);
-      first = {};
-      if (hasLayers) std::fill(worker.context.layers.begin(), worker.context.layers.end(), Rgb(0));
-      const CameraSample camera{x, y, rays[lane], hits[lane], beam, wantsFirst ? &first : nullptr};
-      const Sample sample = integrator_.sample(camera, worker.context);
-      if (sample.defect) {
-        worker.invalid.add(*sample.defect, x, y);
-        result_.aovs.add(x, y, *sample.defect);
-      } else {
-        sums.add(sample.radiance);
-        if (hasLayers) result_.layers.add(x, y, worker.context.layers);
+    std::array<CameraSample, PathBatch::kMaxPaths> cameras;
+    std::array<FirstHit, PathBatch::kMaxPaths> firsts;
+    const bool wantsFirst = !result_.aovs.empty();
+    for (uint32_t i = begin; i < end; i += PathBatch::kMaxPaths) {
+      const size_t count = std::min<size_t>(end - i, PathBatch::kMaxPaths);
+      for (size_t k = 0; k < count; ++k) {
+        firsts[k] = {};
+        cameras[k] = {.x = x,
+                      .y = y,
+                      .ray = {},
+                      .hit = {},
+                      .beam = beam,
+                      .first = wantsFirst ? &firsts[k] : nullptr};
       }
-      if (wantsFirst) {
-        first.depth = cameraRays_.depth(camera.ray.direction, first.depth);
-        result_.aovs.add(x, y, first);
-      }
+      const auto taken = std::span(cameras).first(count);
+      traceCameraRays(worker.context.sampler, x, y, i, taken);
+      renderBatch(worker, taken, i, sums);
     }
     return sums;
+  }
+
+  void renderBatch(Worker& worker, std::span<const CameraSample> cameras, uint32_t firstSample,
+                   SampleSums& sums) {
+    std::array<Sample, PathBatch::kMaxPaths> samples;
+    std::vector<Rgb>& layers = worker.context.layers;
+    const bool hasLayers = !layers.empty();  // of one sample at a time
+    if (!hasLayers) integrator_.sampleMany(cameras, firstSample, worker.context, samples);
+    for (size_t k = 0; k < cameras.size(); ++k) {
+      if (hasLayers) {
+        std::fill(layers.begin(), layers.end(), Rgb(0));
+        worker.context.sampler.startSample(firstSample + uint32_t(k));
+        samples[k] = integrator_.sample(cameras[k], worker.context);
+      }
+      add(worker, cameras[k], samples[k], sums);
+    }
+  }
+
+  void add(Worker& worker, const CameraSample& camera, const Sample& sample, SampleSums& sums) {
+    const int x = camera.x, y = camera.y;
+    if (sample.defect) {
+      worker.invalid.add(*sample.defect, x, y);
+      result_.aovs.add(x, y, *sample.defect);
+    } else {
+      sums.add(sample.radiance);
+      if (!result_.layers.empty()) result_.layers.add(x, y, worker.context.layers);
+    }
+    if (camera.first) {
+      camera.first->depth = cameraRays_.depth(camera.ray.direction, camera.first->depth);
+      result_.aovs.add(x, y, *camera.first);
+    }
   }
 
   const Integrator& integrator_;

@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
+#include <cassert>
 #include <numeric>
 
 namespace chromeball {
@@ -60,6 +62,10 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   if (!(total_ > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
   const int row = rows_.sample(0, v);
   const int column = columns_.sample(row, u);
+  return sampleOf(column, row, u, v);
+}
+
+DirectionSample Importance::sampleOf(int column, int row, double u, double v) const {
   const LuminanceField::Point point = field_.sample(column, row, float(u), float(v));
   const float pdf = point.weight * scale_;
   return {point.direction, point.radiance / pdf, pdf};
@@ -73,8 +79,55 @@ void Importance::sample(const LightPoint&, const PixelSampler& sampler,
 }
 
 LightingStrategy::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
-  const LuminanceField::Point seen = field_.at(wi, probe_.locate(wi));
+  return escapedAt(wi, probe_.locate(wi));
+}
+
+LightingStrategy::Escaped Importance::escapedAt(const vec3& wi,
+                                                const Probe::Position& position) const {
+  const LuminanceField::Point seen = field_.at(wi, position);
   return {seen.radiance, seen.weight * scale_};
+}
+
+// Each loop prefetches what the next one reads.
+bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
+                            std::span<DirectionSample> out) const {
+  struct Place {
+    double u, v;
+    int column, row;
+  };
+  std::array<Place, kMaxMany> places;
+  assert(numbers.size() <= kMaxMany);
+  if (!(total_ > 0)) {
+    for (DirectionSample& sample : out) sample.pdf = 0;
+    return true;
+  }
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    Place& p = places[i];
+    p.u = numbers[i].x * 0x1p-32, p.v = numbers[i].y * 0x1p-32;
+    p.row = rows_.sample(0, p.v);
+    columns_.prefetchGuide(p.row, p.u);
+  }
+  for (size_t i = 0; i < numbers.size(); ++i) columns_.prefetchCdf(places[i].row, places[i].u);
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    Place& p = places[i];
+    p.column = columns_.sample(p.row, p.u);
+    probe_.prefetch(p.column, p.row);
+  }
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const Place& p = places[i];
+    out[i] = sampleOf(p.column, p.row, p.u, p.v);
+  }
+  return true;
+}
+
+void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
+  std::array<Probe::Position, kMaxMany> positions;
+  assert(rays.size() <= kMaxMany);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    positions[i] = probe_.locate(rays[i].wi);
+    probe_.prefetch(positions[i].column, positions[i].row);
+  }
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = escapedAt(rays[i].wi, positions[i]);
 }
 
 float Importance::pdf(const vec3& wi) const { return escaped({}, wi).pdf; }

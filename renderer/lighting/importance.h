@@ -25,6 +25,9 @@ class Importance : public LightingStrategy {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
+  bool sampleMany(std::span<const glm::uvec2> numbers,
+                  std::span<DirectionSample> out) const override;
+  void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override;
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }
 
@@ -34,6 +37,8 @@ class Importance : public LightingStrategy {
 
  private:
   double tabulate();
+  DirectionSample sampleOf(int column, int row, double u, double v) const;
+  Escaped escapedAt(const vec3& wi, const Probe::Position& position) const;
 
   const Probe& probe_;
   LuminanceField field_;

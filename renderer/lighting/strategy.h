@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,24 @@ class LightingStrategy {
     float pdf;
   };
   virtual Escaped escaped(const LightPoint& point, const vec3& wi) const = 0;
+
+  // escaped() for up to kMaxMany rays. Strategies override it where table reads of several rays can
+  // overlap.
+  static constexpr size_t kMaxMany = 16;
+  struct Escape {
+    const LightPoint* point;
+    vec3 wi;
+  };
+  virtual void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
+    for (size_t i = 0; i < rays.size(); ++i) out[i] = escaped(*rays[i].point, rays[i].wi);
+  }
+
+  // sample() for up to kMaxMany paths, from the bits of dimension::kLight and kLight + 1 of each; a
+  // pdf of 0 stands for no sample. Returns false for strategies that take several samples or whose
+  // samples depend on the point.
+  virtual bool sampleMany(std::span<const glm::uvec2>, std::span<DirectionSample>) const {
+    return false;
+  }
 
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;

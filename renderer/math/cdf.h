@@ -19,13 +19,19 @@ class CdfRows {
   // sampled. Different rows may be set concurrently.
   double setRow(int row, std::span<const double> weights);
 
+  // Fetch into the cache what sample() reads: first its range of columns, then the cdf there.
+  void prefetchGuide(int row, double u) const { __builtin_prefetch(guide(row, u)); }
+  void prefetchCdf(int row, double u) const {
+    __builtin_prefetch(&cdf_[size_t(row) * (columns_ + 1) + *guide(row, u)]);
+  }
+
   // The column whose interval contains u, which is in [0, 1); `u` becomes the position inside that
   // interval, in [0, 1). Never returns a column of zero weight.
   int sample(int row, double& u) const {
     const double* cdf = &cdf_[size_t(row) * (columns_ + 1)];
-    const int32_t* guide = &guide_[size_t(row) * (kGuide + 1) + int(u * kGuide)];
-    int i = guide[0];
-    for (int last = guide[1]; last - i > 8;) {
+    const int32_t* range = guide(row, u);
+    int i = range[0];
+    for (int last = range[1]; last - i > 8;) {
       const int middle = (i + last) / 2;
       (cdf[middle] <= u ? i : last) = middle;
     }
@@ -36,6 +42,9 @@ class CdfRows {
 
  private:
   static constexpr int kGuide = 256;
+  const int32_t* guide(int row, double u) const {
+    return &guide_[size_t(row) * (kGuide + 1) + int(u * kGuide)];
+  }
   int columns_;
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
   std::vector<int32_t> guide_;  // rows x (kGuide + 1): the column that contains k / kGuide

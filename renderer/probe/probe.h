@@ -50,6 +50,12 @@ class Probe {
     const Rgb* bottom = top + width_ + 1;
     return {top[0], top[1], bottom[0], bottom[1]};
   }
+  // Fetches into the cache what corners() reads.
+  void prefetch(int column, int row) const {
+    const Rgb* top = &grid_[size_t(row) * (width_ + 1) + column];
+    __builtin_prefetch(top);
+    __builtin_prefetch(top + width_ + 1);
+  }
   static Rgb interpolate(const Corners& c, float s, float t) {
     return (1 - t) * ((1 - s) * c.c00 + s * c.c10) + t * ((1 - s) * c.c01 + s * c.c11);
   }

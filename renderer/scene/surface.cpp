@@ -75,8 +75,8 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
 // 3.13, 2 roundings suffice; with 4.4, 16 were too few for one ray in 10^5.
 float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal) {
   constexpr float kRoundings = 32 * std::numeric_limits<float>::epsilon(), kAcross = 1.0f / 1024;
-  const vec3 extent = glm::max(glm::abs(p0), glm::max(glm::abs(p1), glm::abs(p2)));
-  return kRoundings * glm::dot(glm::abs(normal) + kAcross, extent);
+  const vec3 extent = glm::max(absolute(p0), glm::max(absolute(p1), absolute(p2)));
+  return kRoundings * glm::dot(absolute(normal) + kAcross, extent);
 }
 
 }  // namespace

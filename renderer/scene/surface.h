@@ -38,6 +38,19 @@ bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangl
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
                   const vec3& wo, float crossSection = 0);
 
+// Fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
+inline void prefetchTriangle(const Scene& scene, const Instance& instance, uint32_t triangle) {
+  __builtin_prefetch(&scene.meshes[size_t(instance.mesh)].triangles[triangle]);
+}
+inline void prefetchVertices(const Scene& scene, const Instance& instance, uint32_t triangle) {
+  const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+  const Triangle& t = mesh.triangles[triangle];
+  for (const uint32_t vertex : {t.x, t.y, t.z}) {
+    __builtin_prefetch(&mesh.positions[vertex]);
+    if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[vertex]);
+  }
+}
+
 // The orthonormal frame of normal maps: the interpolated normal (not mapped), tangent and
 // bitangent, on the front side. nullopt if the mesh has no tangents or the tangent is degenerate.
 struct TangentFrame {

@@ -78,8 +78,23 @@ RTCRay embreeRay(const Ray& ray, RayMask mask) {
 // beyond that, or with a NaN.
 bool isTraceable(const Ray& ray) {
   constexpr float kFarthest = 1e18f;
-  const vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
+  const vec3 sum = absolute(ray.origin) + absolute(ray.direction);
   return sum.x + sum.y + sum.z < kFarthest && ray.tMax >= 0;
+}
+
+constexpr size_t kPacket = 8;
+
+void fillPacket(std::span<const Ray> rays, RayMask mask, int* valid, RTCRay8& r) {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    valid[i] = isTraceable(ray) ? -1 : 0;
+    r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
+    r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
+    r.tnear[i] = r.time[i] = 0;
+    r.tfar[i] = ray.tMax;
+    r.mask[i] = mask;
+    r.id[i] = r.flags[i] = 0;
+  }
 }
 
 RTCScene newScene(RTCDevice device, bool hasFilter) {
@@ -231,34 +246,19 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask) cons
   return true;
 }
 
-Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
-                               RayMask mask) const {
-  assert(rays.size() <= kPacket && keys.size() == rays.size());
-  Packet hits;
-  if (hasAlpha_) {  // the filters process one ray at a time
-    for (size_t i = 0; i < rays.size(); ++i)
-      if (Hit hit; intersect(rays[i], keys[i], hit, mask)) hits[i] = hit;
-    return hits;
-  }
+void Accel::intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
+                            Coherence coherence, std::span<std::optional<Hit>> hits,
+                            RayMask mask) const {
   alignas(32) int valid[kPacket] = {};
   alignas(32) RTCRayHit8 r;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const Ray& ray = rays[i];
-    valid[i] = isTraceable(ray) ? -1 : 0;
-    r.ray.org_x[i] = ray.origin.x, r.ray.org_y[i] = ray.origin.y, r.ray.org_z[i] = ray.origin.z;
-    r.ray.dir_x[i] = ray.direction.x;
-    r.ray.dir_y[i] = ray.direction.y;
-    r.ray.dir_z[i] = ray.direction.z;
-    r.ray.tnear[i] = r.ray.time[i] = 0;
-    r.ray.tfar[i] = ray.tMax;
-    r.ray.mask[i] = mask;
-    r.ray.id[i] = r.ray.flags[i] = 0;
+  fillPacket(rays, mask, valid, r.ray);
+  for (size_t i = 0; i < rays.size(); ++i)
     r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
   Query query;
   initQueryContext(query.embree);
-  rtcIntersect(scene_, valid, r, query.embree);
+  rtcIntersect(scene_, valid, r, coherence == Coherence::High, query.embree);
   for (size_t i = 0; i < rays.size(); ++i) {
+    hits[i].reset();
     if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
                r.hit.primID[i],
@@ -266,7 +266,48 @@ Accel::Packet Accel::intersect(std::span<const Ray> rays, std::span<const uint32
                r.ray.tfar[i]};
     resolveEdge(rays[i], keys[i], mask, *hits[i]);
   }
-  return hits;
+}
+
+void Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
+                      Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const {
+  assert(keys.size() == rays.size() && hits.size() == rays.size());
+  for (size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const size_t count = std::min(rays.size() - begin, kPacket);
+    if (!hasAlpha_ && count > 1) {  // the filters process one ray at a time
+      intersectPacket(rays.subspan(begin, count), keys.subspan(begin, count), coherence,
+                      hits.subspan(begin, count), mask);
+      continue;
+    }
+    for (size_t i = begin; i < begin + count; ++i) {
+      Hit hit;
+      hits[i] = intersect(rays[i], keys[i], hit, mask) ? std::optional(hit) : std::nullopt;
+    }
+  }
+}
+
+void Accel::occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances,
+                           RayMask mask) const {
+  alignas(32) int valid[kPacket] = {};
+  alignas(32) RTCRay8 r;
+  fillPacket(rays, mask, valid, r);
+  Query query;
+  initQueryContext(query.embree);
+  rtcOccluded(scene_, valid, r, query.embree);
+  for (size_t i = 0; i < rays.size(); ++i)
+    transmittances[i] = Rgb(valid[i] && r.tfar[i] < 0 ? 0.0f : 1.0f);
+}
+
+void Accel::transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
+                          RayMask mask) const {
+  assert(transmittances.size() == rays.size());
+  for (size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const size_t count = std::min(rays.size() - begin, kPacket);
+    if (!hasFilter_ && count > 1)  // the filters process one ray at a time
+      occludedPacket(rays.subspan(begin, count), transmittances.subspan(begin, count), mask);
+    else
+      for (size_t i = begin; i < begin + count; ++i)
+        transmittances[i] = transmittance(rays[i], mask);
+  }
 }
 
 Rgb Accel::transmittance(const Ray& ray, RayMask mask) const {

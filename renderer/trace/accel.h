@@ -38,20 +38,26 @@ class Accel {
   // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask = kAllInstances) const;
 
-  // The closest hits of coherent rays, such as those through one pixel; faster than single rays.
-  // `keys`: one per ray, as above.
-  static constexpr int kPacket = 8;
-  using Packet = std::array<std::optional<Hit>, kPacket>;
-  Packet intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
-                   RayMask mask = kAllInstances) const;
+  // The closest hits of several rays, faster than one at a time. Coherent: rays that are close
+  // together, such as those through one pixel. `keys`: one per ray, as above.
+  enum class Coherence { None, High };
+  void intersect(std::span<const Ray> rays, std::span<const uint32_t> keys, Coherence coherence,
+                 std::span<std::optional<Hit>> hits, RayMask mask = kAllInstances) const;
 
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
   // (1 - alpha) and smooth thin walls (scene/thin_wall.h). The ray points towards the light; it
   // passes the front of a surface with Material::backLetsLightThrough().
   Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances) const;
 
+  // The same for several rays.
+  void transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
+                     RayMask mask = kAllInstances) const;
+
  private:
   void build(const Scene& scene);
+  void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
+                       Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
+  void occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances, RayMask mask) const;
   bool closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const;
   void resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
   void release();

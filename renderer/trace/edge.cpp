@@ -19,7 +19,7 @@ std::optional<Ray> turnedOffEdges(const Scene& scene, const Ray& ray, const Hit&
   const std::array weights{1 - b.x - b.y, b.x, b.y};
 
   // Bound on the rounding error of a hit point, origin + distance * direction.
-  const vec3 origin = glm::abs(ray.origin);
+  const vec3 origin = absolute(ray.origin);
   const float rounding =
       2 * std::numeric_limits<float>::epsilon() * (origin.x + origin.y + origin.z + hit.distance);
   const float move = 8 * rounding;

@@ -28,13 +28,19 @@ inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   arguments.context = &context;
   rtcOccluded1(scene, &ray, &arguments);
 }
-inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays,
+inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent,
                          QueryContext& context) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.context = &context;
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   rtcIntersect8(valid, scene, &rays, &arguments);
+}
+inline void rtcOccluded(RTCScene scene, const int* valid, RTCRay8& rays, QueryContext& context) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded8(valid, scene, &rays, &arguments);
 }
 #else
 using QueryContext = RTCIntersectContext;
@@ -46,10 +52,13 @@ inline void rtcIntersect(RTCScene scene, RTCRayHit& ray, QueryContext& context) 
 inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   rtcOccluded1(scene, &context, &ray);
 }
-inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays,
+inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent,
                          QueryContext& context) {
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(valid, scene, &context, &rays);
+}
+inline void rtcOccluded(RTCScene scene, const int* valid, RTCRay8& rays, QueryContext& context) {
+  rtcOccluded8(valid, scene, &context, &rays);
 }
 #endif
 

@@ -3,6 +3,10 @@
 // rays replayed by Embree alone. CHROMEBALL_PROBE replaces the default probe, a studio.
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <memory>
+
+#include "integrate/path_batch.h"
 #include "integrate/render.h"
 #include "scene.h"
 
@@ -11,13 +15,27 @@ BENCHMARK_MAIN();
 namespace chromeball {
 namespace {
 
-// Traces the paths of the whole image on this thread, `samples` per pixel; `log` may be null.
-Rgb traceImage(const BenchmarkScene& s, int samples, RayLog* log) {
+constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel
+
+// Traces the paths of the whole image on this thread, as a render does; `log` may be null.
+Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
   const PathTracer tracer = s.tracer();
-  return sumOverImage(
-      s.scene.cameras.front(), samples,
-      [&](const Ray& ray, PathContext& context) {
-        return tracer.radiance(PathState{ray}, tracer.closestHit(ray, context), context);
+  const auto batch = std::make_unique<PathBatch>();
+  std::array<std::optional<Hit>, kTraced> hits;
+  const std::array<uint32_t, kTraced> keys{};
+  return sumOverPixels(
+      s.scene.cameras.front(), kTraced,
+      [&](std::span<const Ray> rays, PathContext& context) {
+        s.world.accel.intersect(rays, keys, Accel::Coherence::High, hits);
+        batch->clear();
+        for (size_t i = 0; i < rays.size(); ++i) {
+          if (log) log->rays.push_back({rays[i], false});
+          batch->add(PathState{rays[i]}, hits[i]);
+        }
+        batch->trace(tracer, 0, context);
+        Rgb sum(0);
+        for (size_t i = 0; i < rays.size(); ++i) sum += batch->radiance(i);
+        return sum;
       },
       log);
 }
@@ -44,14 +62,13 @@ void render(benchmark::State& state, demo::Finish finish) {
 
 // Render time over the time of the same rays alone, alternating, both with one thread.
 void overhead(benchmark::State& state, demo::Finish finish) {
-  constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);
   RayLog log;
-  benchmark::DoNotOptimize(traceImage(s, kTraced, &log));
+  benchmark::DoNotOptimize(traceImage(s, &log));
   double whole = 0, alone = 0;
   for (auto _ : state) {
     const double start = cpuSeconds();
-    benchmark::DoNotOptimize(traceImage(s, kTraced, nullptr));
+    benchmark::DoNotOptimize(traceImage(s, nullptr));
     const double middle = cpuSeconds();
     for (const auto& [ray, isShadow] : log.rays) {
       Hit hit;

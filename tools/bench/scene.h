@@ -52,13 +52,15 @@ struct BenchmarkScene {
   }
 };
 
-// Calls radiance(ray, context) for every sample of every pixel, on this thread; `log` may be null.
+// Calls radiance(rays, context) for the camera rays of every pixel, on this thread; `log` may be
+// null.
 template <class Radiance>
-Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
+Rgb sumOverPixels(const Camera& camera, int samples, Radiance&& radiance, RayLog* log = nullptr) {
   const CameraRays rays(camera, float(kWidth) / kHeight);
   const SobolTable table(64, dimension::kVertex + dimension::kPerVertex * (kDepth + 1), 1);
   PathContext context{.sampler = PixelSampler(table, 1), .clamp = Clamp(), .log = log};
   PixelSampler& sampler = context.sampler;
+  std::vector<Ray> ofPixel(static_cast<size_t>(samples));
   Rgb sum(0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -66,13 +68,26 @@ Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance, RayLog*
       for (int i = 0; i < samples; ++i) {
         sampler.startSample(uint32_t(i));
         const vec2 offset = sampler.get2(dimension::kPixel);
-        Ray ray;
+        Ray& ray = ofPixel[size_t(i)];
         rays.ray((float(x) + offset.x) / kWidth, (float(y) + offset.y) / kHeight, ray.origin,
                  ray.direction);
-        sum += radiance(ray, context);
       }
+      sum += radiance(std::span<const Ray>(ofPixel), context);
     }
   return sum;
+}
+
+// The same with radiance(ray, context) for every sample.
+template <class Radiance>
+Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance) {
+  return sumOverPixels(camera, samples, [&](std::span<const Ray> rays, PathContext& context) {
+    Rgb sum(0);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      context.sampler.startSample(uint32_t(i));
+      sum += radiance(rays[i], context);
+    }
+    return sum;
+  });
 }
 
 // CPU time of this thread.

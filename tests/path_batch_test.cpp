@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paths that are traced together find what they find one at a time.
+#include "integrate/path_batch.h"
+
+#include <gtest/gtest.h>
+
+#include "paths.h"
+#include "scene/gltf/load_gltf.h"
+#include "small_scenes.h"
+
+namespace chromeball {
+namespace {
+
+// Hides PathIntegrator::sampleMany().
+class OneAtATime : public Integrator {
+ public:
+  explicit OneAtATime(const PathTracer& tracer) : single_(tracer) {}
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    return single_.sample(camera, context);
+  }
+
+ private:
+  PathIntegrator single_;
+};
+
+void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,
+                const RenderSettings& settings) {
+  const World world(named.scene, {}, allTables());
+  const Probe probe(named.probe);
+  const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
+  const PathTracer tracer(world, *lighting, settings.path());
+  const std::atomic<bool> stop = false;
+  const auto rendered = [&](const Integrator& integrator) {
+    return render(
+        integrator, world, camera, settings, [](double) {}, stop);
+  };
+  const RenderResult together = rendered(PathIntegrator(tracer));
+  const RenderResult single = rendered(OneAtATime(tracer));
+  SCOPED_TRACE(std::string(named.name) + ", " + strategy);
+
+  // Packets may find another triangle for a ray through an edge, or at a silhouette.
+  constexpr double kFraction = 1e-4;
+  const auto close = [](uint64_t a, uint64_t b) {
+    return std::fabs(double(a) - double(b)) <= kFraction * double(b);
+  };
+  EXPECT_EQ(together.rays.camera, single.rays.camera);
+  EXPECT_PRED2(close, together.rays.shadow, single.rays.shadow);
+  EXPECT_PRED2(close, together.rays.bounce, single.rays.bounce);
+  EXPECT_EQ(together.invalid.total(), single.invalid.total());
+  EXPECT_NEAR(together.depthCut.fraction(together.depthCut.byDepth),
+              single.depthCut.fraction(single.depthCut.byDepth), 1e-5);
+  const Image a = together.film.mean(), b = single.film.mean();
+  int differing = 0;
+  for (int y = 0; y < b.height; ++y)
+    for (int x = 0; x < b.width; ++x)
+      differing += maxComponent(absolute(a.rgb(x, y) - b.rgb(x, y))) >
+                   1e-5f * (1e-3f + maxComponent(b.rgb(x, y)));
+  EXPECT_LE(differing, b.width * b.height / 500);
+}
+
+Camera cameraAbove() {
+  return Camera::lookAt({0, 1.6f, 3}, {0, 0.5f, 0}, {0, 1, 0}, glm::radians(50.0f));
+}
+
+TEST(PathBatch, FindsWhatSinglePathsFind) {
+  // 37 samples in two halves: batches of 16, 3 and 2.
+  RenderSettings settings = smallRender(40, 30, 37, 5);
+  for (const NamedScene& named : threeScenes())
+    for (const char* strategy : {"importance", "suns", "median-cut:8", "bsdf"})
+      expectSame(named, cameraAbove(), strategy, settings);
+}
+
+TEST(PathBatch, AlsoAdaptivelyAndWithDeepPaths) {
+  RenderSettings settings = smallRender(40, 30, 64, 60);
+  settings.adaptive = true;
+  settings.aovs = {Aov::Albedo, Aov::Depth};
+  for (const NamedScene& named : threeScenes())
+    expectSame(named, cameraAbove(), "importance", settings);
+}
+
+TEST(SlowPathBatch, AlsoThroughGlass) {
+  NamedScene named{"still life", loadGltf(std::string(kSourceDir) + "/scenes/models/still-life.glb",
+                                          {}, [](const std::string&) {}),
+                   studioProbe({64, 32})};
+  ASSERT_FALSE(named.scene.cameras.empty());
+  const Camera camera = named.scene.cameras.front();
+  expectSame(named, camera, "importance", smallRender(60, 45, 32, 8));
+}
+
+// A black probe has no light samples.
+TEST(PathBatch, UnderABlackProbe) {
+  std::vector<NamedScene> scenes = threeScenes();
+  scenes[2].probe = constantProbe({8, 4}, Rgb(0));
+  expectSame(scenes[2], cameraAbove(), "importance", smallRender(40, 30, 16, 4));
+}
+
+}  // namespace
+}  // namespace chromeball
