@@ -79,8 +79,9 @@ TEST(PathBatch, AlsoAdaptivelyAndWithDeepPaths) {
 }
 
 TEST(SlowPathBatch, AlsoThroughGlass) {
-  NamedScene named{"still life", loadGltf(std::string(kSourceDir) + "/scenes/models/still-life.glb",
-                                          {}, [](const std::string&) {}),
+  NamedScene named{"still life",
+                   loadGltf(std::string(kSourceDir) + "/scenes/models/still-life.glb", {},
+                            [](const std::string&) {}),
                    studioProbe({64, 32})};
   ASSERT_FALSE(named.scene.cameras.empty());
   const Camera camera = named.scene.cameras.front();
