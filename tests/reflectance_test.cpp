@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reflectance of the local scene, estimated from a render with known reflectance.
 #include "composite/reflectance.h"
+#include "composite/local_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -2,11 +2,32 @@
 #include "composite/local_scene.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/error.h"
 #include "base/suggest.h"
 
 namespace chromeball {
+namespace {
+
+// Applies `change` to copies of the materials of the local scene, and assigns these to its
+// instances; objects keep the originals.
+template <class Change>
+void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change& change) {
+  std::map<int, int> copies;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    if (isObject[i]) continue;
+    int& material = scene.instances[i].material;
+    const auto [copy, isNew] = copies.try_emplace(material, int(scene.materials.size()));
+    if (isNew) {
+      scene.materials.push_back(scene.materials[size_t(material)]);
+      change(scene.materials.back());
+    }
+    material = copy->second;
+  }
+}
+
+}  // namespace
 
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
                        const std::string& location) {
@@ -32,6 +53,54 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
     throwInput("{}: every node is part of the local scene; no objects are left to be composited",
                location);
   return isObject;
+}
+
+void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection) {
+  changeLocalMaterials(scene, isObject, [&](Material& m) {
+    m.projection = &projection;
+    m.extended.reset();
+    m.metallic = 0;
+    m.specular = 0;
+  });
+}
+
+void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness) {
+  changeLocalMaterials(scene, isObject, [&](Material& m) {
+    m.extended.reset();
+    m.metallic = 0;
+    m.specular = strength;
+    m.specularColor = Rgb(1);
+    m.ior = 1.5f;
+    m.roughness = roughness;
+    m.metallicRoughnessTexture = m.specularTexture = m.specularColorTexture = {};
+  });
+}
+
+std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject) {
+  constexpr double kTolerance = 1e-4;  // relative to the scene's size, and of unit normals
+  std::optional<glm::dvec3> normal, point;
+  double size = 0, farthest = 0;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    if (isObject[i]) continue;
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (const Triangle& t : mesh.triangles) {
+      glm::dvec3 p[3];
+      for (int k = 0; k < 3; ++k) p[k] = glm::dvec3(instance.point(mesh.positions[t[k]]));
+      glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+      if (!(glm::length(n) > 0)) continue;
+      n = glm::normalize(n);
+      if (n.y < 0) n = -n;
+      if (!normal) normal = n, point = p[0];
+      if (glm::length(n - *normal) > kTolerance) return std::nullopt;
+      for (const glm::dvec3& corner : p) {
+        size = std::max(size, glm::length(corner - *point));
+        farthest = std::max(farthest, std::abs(glm::dot(corner - *point, *normal)));
+      }
+    }
+  }
+  if (!normal || farthest > kTolerance * size) return std::nullopt;
+  return vec3(*normal);
 }
 
 }  // namespace chromeball

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distinguishes the local scene (a model of real surfaces in the plate) from the synthetic objects.
+// The local scene (a model of real surfaces in the plate): which instances belong to it, its
+// materials and its shape. All other instances are synthetic objects.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/named_setting.h"
 #include "composite/objects.h"
+#include "scene/projection.h"
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -15,5 +18,17 @@ namespace chromeball {
 // objects (message beginning with `location`).
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
                        const std::string& location);
+
+// Makes the materials of the local scene matte, with the base colour of `projection` where the
+// camera sees them and the model's base colour elsewhere. The projection must outlive the scene;
+// solveReflectance() fills it.
+void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection);
+
+// Adds a dielectric specular lobe to the local scene (section 9.7.2): `strength` times that of
+// refractive index 1.5; `roughness` as in glTF.
+void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness);
+
+// The unit normal of a flat local scene, with y >= 0; nullopt if it is not flat.
+std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject);
 
 }  // namespace chromeball

@@ -17,18 +17,9 @@ struct ReflectanceSolution {
   double lastChange = 0;  // mean |change| of the reflectance in the last iteration
 };
 
-// Makes the materials of the local scene matte, with the base colour of `projection` where the
-// camera sees them and the model's base colour elsewhere. The projection must outlive the scene;
-// solveReflectance() fills it.
-void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection);
-
-// Adds a dielectric specular lobe to the local scene (section 9.7.2): `strength` times that of
-// refractive index 1.5; `roughness` as in glTF.
-void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness);
-
 // The plate, and the scene and light that it shows.
 struct ReflectanceProblem {
-  const World& world;  // after makeProjected(); masks as in composite/objects.h
+  const World& world;  // after makeProjected() (local_scene.h); masks as in composite/objects.h
   const Camera& camera;
   const LightingStrategy& lighting;
   const Image& plate;
@@ -49,8 +40,5 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
                                          const RenderSettings& settings, const Rgb& irradiance,
                                          Projection& projection, const std::atomic<bool>& stop);
-
-// The unit normal of a flat local scene, with y >= 0; nullopt if it is not flat.
-std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject);
 
 }  // namespace chromeball

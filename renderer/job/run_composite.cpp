@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "composite/layers.h"
+#include "composite/local_scene.h"
 #include "composite/reflectance.h"
 #include "probe/irradiance.h"
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/filter.h"
+
+#include "base/hash.h"
+#include "scene/surface.h"
+#include "scene/thin_wall.h"
+#include "trace/ray.h"
+
+namespace chromeball {
+namespace {
+
+Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
+  RTCHitN* hit = arguments->hit;
+  return {instanceOf(RTCHitN_instID(hit, 1, 0, 0), RTCHitN_geomID(hit, 1, 0)),
+          RTCHitN_primID(hit, 1, 0),
+          {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)},
+          RTCRayN_tfar(arguments->ray, 1, 0)};
+}
+
+float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
+  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  return surfaceAlpha(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric);
+}
+
+}  // namespace
+
+void filterClosest(const RTCFilterFunctionNArguments* arguments) {
+  const auto& query = *reinterpret_cast<const Query*>(arguments->context);
+  const Hit hit = hitOf(arguments);
+  const float alpha = alphaAt(arguments, hit);
+  const uint64_t surface = uint64_t(hit.instance) << 32 | hit.triangle;
+  if (alpha < 1 && toUnit(uint32_t(hash(query.key, surface))) >= alpha) arguments->valid[0] = 0;
+}
+
+void filterShadow(const RTCFilterFunctionNArguments* arguments) {
+  auto& query = *reinterpret_cast<Query*>(arguments->context);
+  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  const Hit hit = hitOf(arguments);
+  const Instance& instance = scene.instances[hit.instance];
+  if (scene.materials[instance.material].backLetsLightThrough() &&
+      !isFromBehind(scene, instance, hit.triangle, query.direction)) {
+    arguments->valid[0] = 0;
+    return;
+  }
+  const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
+  Rgb passed(1 - alpha);
+  if (alpha > 0 && passesStraight(scene.materials[instance.material])) {
+    const Surface surface =
+        surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction);
+    passed += alpha * straightTransmittance(scene, instance, surface, query.direction);
+  }
+  query.transmittance *= passed;
+  if (!isBlack(query.transmittance)) arguments->valid[0] = 0;
+}
+
+}  // namespace chromeball

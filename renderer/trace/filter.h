@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions that Embree calls for each hit of a surface that may let light pass.
+#pragma once
+
+#include "math/vec.h"
+#include "trace/embree.h"
+
+namespace chromeball {
+
+// The context of a ray, or of a packet of rays in scenes without filters.
+struct Query {
+  QueryContext embree;  // first, so that a filter can cast back
+  uint32_t key = 0;     // of Accel::intersect()
+  vec3 direction{0};    // of a shadow ray
+  Rgb transmittance{1};
+};
+
+// Index into Scene::instances, since geometry i of the top scene is instance i.
+inline uint32_t instanceOf(uint32_t topInstance, uint32_t geometry) {
+  return topInstance != RTC_INVALID_GEOMETRY_ID ? topInstance : geometry;
+}
+
+// Ignores the hit with probability 1 - alpha.
+void filterClosest(const RTCFilterFunctionNArguments* arguments);
+
+// Multiplies Query::transmittance by that of the surface; ignores the hit unless it is now 0.
+void filterShadow(const RTCFilterFunctionNArguments* arguments);
+
+}  // namespace chromeball
