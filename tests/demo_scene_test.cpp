@@ -5,17 +5,21 @@
 #include <algorithm>
 
 #include "demo/still_life.h"
+#include "math/icosphere.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
+#include "trace/accel.h"
 
 namespace chromeball {
 namespace {
 
-std::vector<Material> materialsOf(demo::Finish finish) {
+Scene sceneOf(demo::Finish finish) {
   const TemporaryFolder folder;
   demo::writeStillLife(folder / "model.glb", finish);
-  return loadGltf(folder / "model.glb", {}, nullptr).materials;
+  return loadGltf(folder / "model.glb", {}, nullptr);
 }
+
+std::vector<Material> materialsOf(demo::Finish finish) { return sceneOf(finish).materials; }
 
 TEST(DemoScene, LambertianHasOnlyDiffuseMaterials) {
   for (const Material& m : materialsOf(demo::Finish::Lambertian)) {
@@ -39,6 +43,35 @@ TEST(DemoScene, GlassHasTwoSmoothBodies) {
   EXPECT_EQ(std::ranges::count_if(materials,
                                   [](const Material& m) { return m.isBody() && m.roughness == 0; }),
             2);
+}
+
+TEST(DemoScene, PlasticsAreGlossyDielectrics) {
+  for (const Material& m : materialsOf(demo::Finish::Plastics)) {
+    EXPECT_EQ(m.metallic, 0) << m.name;
+    EXPECT_EQ(m.specular, 1) << m.name;
+    EXPECT_FLOAT_EQ(m.roughness, 0.3f) << m.name;
+  }
+}
+
+TEST(DemoScene, TheRoomIsClosedButForItsWindow) {
+  const Scene scene = sceneOf(demo::Finish::Room);
+  const Accel accel(scene);
+  const vec3 above(0, 2, 0);
+  int escaped = 0;
+  for (const vec3& direction : icosphereNormals(5)) {
+    Hit hit;
+    if (accel.intersect({above, direction}, 0, hit)) continue;
+    ++escaped;
+    const vec3 seen = above + direction * (3 / -direction.x);  // in the plane of the window
+    EXPECT_TRUE(seen.y > 0.5f && seen.y < 2.8f && seen.z > -1 && seen.z < 2) << seen.y << seen.z;
+  }
+  EXPECT_GT(escaped, 100);
+}
+
+TEST(SlowDemoScene, FineHasManyTriangles) {
+  size_t triangles = 0;
+  for (const Mesh& mesh : sceneOf(demo::Finish::Fine).meshes) triangles += mesh.triangles.size();
+  EXPECT_GT(triangles, 800'000u);
 }
 
 }  // namespace

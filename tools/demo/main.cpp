@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_demo still-life|lambertian|conductors|glass OUT.glb
+// make_demo still-life|lambertian|conductors|glass|plastics|room|fine OUT.glb
 // make_demo terrace|terrace-photograph|terrace-whole OUT.glb
 // make_demo dusk|noon OUT.exr
 #include <iostream>
+#include <map>
 
 #include "base/error.h"
 #include "dusk.h"
@@ -10,18 +11,26 @@
 #include "still_life.h"
 #include "terrace.h"
 
+namespace {
+
+using chromeball::demo::Finish;
+
+const std::map<std::string, Finish> kFinishes = {{"still-life", Finish::Demo},
+                                                 {"lambertian", Finish::Lambertian},
+                                                 {"conductors", Finish::Conductors},
+                                                 {"glass", Finish::Glass},
+                                                 {"plastics", Finish::Plastics},
+                                                 {"room", Finish::Room},
+                                                 {"fine", Finish::Fine}};
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace chromeball;
   const std::string what = argc == 3 ? argv[1] : "";
   try {
-    if (what == "still-life")
-      demo::writeStillLife(argv[2], demo::Finish::Demo);
-    else if (what == "lambertian")
-      demo::writeStillLife(argv[2], demo::Finish::Lambertian);
-    else if (what == "conductors")
-      demo::writeStillLife(argv[2], demo::Finish::Conductors);
-    else if (what == "glass")
-      demo::writeStillLife(argv[2], demo::Finish::Glass);
+    if (const auto finish = kFinishes.find(what); finish != kFinishes.end())
+      demo::writeStillLife(argv[2], finish->second);
     else if (what == "terrace")
       demo::writeTerrace(argv[2], demo::Terrace::Model);
     else if (what == "terrace-photograph")
@@ -35,8 +44,8 @@ int main(int argc, char** argv) {
     else
       throwInput(
           "make_demo: "
-          "still-life|lambertian|conductors|glass|terrace|terrace-photograph|terrace-whole "
-          "OUT.glb, or dusk|noon OUT.exr");
+          "still-life|lambertian|conductors|glass|plastics|room|fine|"
+          "terrace|terrace-photograph|terrace-whole OUT.glb, or dusk|noon OUT.exr");
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

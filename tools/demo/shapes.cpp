@@ -55,6 +55,10 @@ Surface tessellate(int columns, int rows, const Parametrisation& point) {
   return surface;
 }
 
+Parametrisation patch(dvec3 corner, dvec3 right, dvec3 up) {
+  return [=](double u, double v) { return corner + u * right + v * up; };
+}
+
 Parametrisation ball(dvec3 center, double radius) {
   return lathe(center, [=](double v) {
     const double angle = kPiD * (v - 0.5);

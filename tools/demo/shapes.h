@@ -27,6 +27,9 @@ using Parametrisation = std::function<dvec3(double u, double v)>;
 // 2 * columns * rows triangles, less those that a pole makes degenerate. At most 2^16 vertices.
 Surface tessellate(int columns, int rows, const Parametrisation& point);
 
+// The parallelogram at `corner` with the edges `right` and `up`; faces along right x up.
+Parametrisation patch(dvec3 corner, dvec3 right, dvec3 up);
+
 Parametrisation ball(dvec3 center, double radius);
 
 // A disc of radius kTableRadius with a rounded edge, its top at y = 0:

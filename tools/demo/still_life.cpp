@@ -7,7 +7,11 @@
 namespace chromeball::demo {
 namespace {
 
-std::vector<Object> stillLife() {
+// `fine`: with as many triangles as the 16-bit indices allow.
+std::vector<Object> stillLife(bool fine) {
+  const auto tessellate = [fine](int columns, int rows, const Parametrisation& point) {
+    return demo::tessellate(fine ? 255 : columns, fine ? 254 : rows, point);
+  };
   return {
       {"table", tessellate(128, 24, tableTop()), {1, 1, 1}, 0, 0.38f, 0},
       {"chrome ball",
@@ -49,15 +53,35 @@ std::vector<Object> stillLife() {
   };
 }
 
-// Makes all materials diffuse, except conductors (with a roughness that both renderers sample well)
-// or smooth glass, depending on `finish`.
+// Walls of 9.5 by 6 by 4.5 m around the table and the camera, seen from inside. The window on the
+// left is 3 by 2.3 m.
+void addRoom(std::vector<Object>& objects) {
+  const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto add = [&](const char* name, dvec3 corner, dvec3 right, dvec3 up) {
+    objects.push_back({name, tessellate(2, 2, patch(corner, right, up)), {0.7f, 0.68f, 0.64f}});
+  };
+  add("floor", {-3, -1, 6.5}, 6.0 * x, -9.5 * z);
+  add("ceiling", {-3, 3.5, -3}, 6.0 * x, 9.5 * z);
+  add("back", {-3, -1, -3}, 6.0 * x, 4.5 * y);
+  add("front", {3, -1, 6.5}, -6.0 * x, 4.5 * y);
+  add("right", {3, -1, -3}, 9.5 * z, 4.5 * y);
+  add("left, behind the window", {-3, -1, -1}, -2.0 * z, 4.5 * y);
+  add("left, before the window", {-3, -1, 6.5}, -4.5 * z, 4.5 * y);
+  add("left, below the window", {-3, -1, 2}, -3.0 * z, 1.5 * y);
+  add("left, above the window", {-3, 2.8, 2}, -3.0 * z, 0.7 * y);
+}
+
+// Makes all materials diffuse, except conductors (with a roughness that both renderers sample
+// well), smooth glass or plastics, depending on `finish`.
 void makePlain(std::vector<Object>& objects, Finish finish) {
   for (Object& object : objects) {
     const bool metal = object.metallic > 0, polished = metal && object.roughness < 0.3f;
     const bool conducts = metal && finish == Finish::Conductors;
     object.glow = 0;
     object.metallic = conducts;
-    object.roughness = conducts ? std::max(object.roughness, 0.2f) : 1;
+    object.roughness = conducts                     ? std::max(object.roughness, 0.2f)
+                       : finish == Finish::Plastics ? 0.3f
+                                                    : 1;
     object.glass = polished && finish == Finish::Glass;
   }
   objects[0].color = {0.5f, 0.38f, 0.26f};  // the table, which has no texture here
@@ -83,13 +107,15 @@ Image wood(int size) {
 }  // namespace
 
 void writeStillLife(const std::string& path, Finish finish) {
-  std::vector<Object> objects = stillLife();
+  std::vector<Object> objects = stillLife(finish == Finish::Fine);
   if (finish != Finish::Demo) makePlain(objects, finish);
+  if (finish == Finish::Room) addRoom(objects);
 
   GlbWriter glb;
   if (finish == Finish::Demo) objects[0].texture = addTexture(glb, wood(1024));
   for (Object& object : objects) {
-    object.lambertian = finish != Finish::Demo && object.metallic == 0;
+    object.lambertian =
+        finish != Finish::Demo && finish != Finish::Plastics && object.metallic == 0;
     addObject(glb, object);
   }
   Camera camera =

@@ -11,9 +11,12 @@ enum class Finish {
   Lambertian,  // all diffuse, so that the images of any two renderers should agree
   Conductors,  // diffuse, except for three metals of roughness 0.2 and more
   Glass,       // diffuse, except for a ball and a knot of smooth glass
+  Plastics,    // diffuse below a glossy dielectric layer
+  Room,        // Lambertian, in a room with one window
+  Fine,        // Lambertian, of 0.9 million triangles
 };
 
-// A .glb of some 66,000 triangles with a camera named Front. Throws RunError.
+// A .glb of some 66,000 triangles, except Fine, with a camera named Front. Throws RunError.
 void writeStillLife(const std::string& path, Finish finish);
 
 }  // namespace chromeball::demo

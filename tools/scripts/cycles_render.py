@@ -4,8 +4,8 @@ blender --background --factory-startup --python cycles_render.py -- MODEL.glb PR
         WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
 
 The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1
-for direct light. Materials become what the glTF file states: Lambertian, a conductor, or smooth
-glass of index 1.5.
+for direct light. Materials become what the glTF file states: Lambertian, a conductor, smooth glass
+of index 1.5, or a plastic, whose diffuse lobe is Disney's in Cycles.
 """
 import json
 import math
@@ -49,6 +49,8 @@ def replace_materials():
         principled = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
         if principled.inputs["Metallic"].default_value > 0:
             principled.distribution = "MULTI_GGX"
+            continue
+        if principled.inputs["Roughness"].default_value < 0.9:  # plastics
             continue
         surface = next(node for node in nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
         if principled.inputs["Transmission"].default_value > 0:
