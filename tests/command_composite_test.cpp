@@ -259,7 +259,7 @@ TEST_F(SlowCommandComposite, SurroundingsMustContainTheModel) {
                    "has no `radius`");
   expectInputError(
       scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nmin = [0, 0, 0]"),
-      "surroundings of shape sphere have no `min`; they have center, radius, capture");
+      "a sphere has no `min`; it has shape, center, radius, capture");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {

@@ -91,6 +91,13 @@ TEST_F(SlowCommandMessage, WarnsAboutSettingsWithoutEffect) {
   EXPECT_EQ(render({"--aov", "albedo"}, "a.exr").error.find("warning"), std::string::npos);
 }
 
+TEST_F(SlowCommandMessage, NamesTheProbesScaleAsTheCauseOfABlackImage) {
+  const CommandResult r = render({"--probe-scale", "0"});
+  EXPECT_EQ(r.status, 0);
+  EXPECT_NE(r.error.find("--probe-scale 0 turns the probe off"), std::string::npos) << r.error;
+  EXPECT_EQ(render({}).error.find("are black"), std::string::npos);
+}
+
 TEST_F(SlowCommandMessage, WarnsAboutASquareProbeReadAsLatLong) {
   const auto messages = [&](ImageSize size, const char* mapping) {
     writeImage(folder_ / "probe.exr", constantProbe(size, Rgb(1)));

@@ -139,7 +139,8 @@ TEST(Lamps, ErrorsNameTheLineInTheFile) {
   EXPECT_EQ(errorMessage(point + "intensty = 1"),
             "a.toml:5: unknown key `intensty` in [[light]]; did you mean `intensity`?");
   EXPECT_EQ(errorMessage(point + "intensity = 1\nradius = 1"),
-            "a.toml:6: a point light has no `radius`; it has intensity, power, range");
+            "a.toml:6: a point light has no `radius`; it has type, name, position, intensity, "
+            "power, range");
   EXPECT_EQ(errorMessage(point), "a.toml:2: [[light]] has neither `intensity` nor `power`");
   EXPECT_EQ(errorMessage(point + "intensity = 1\npower = 1"),
             "a.toml:6: [[light]] has `intensity`; it cannot have `power` too");

@@ -2,7 +2,6 @@
 // Integrators estimate the radiance that arrives along camera rays.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "film/invalid.h"
 #include "film/layer_film.h"
 #include "integrate/path.h"
-#include "integrate/path_batch.h"
 
 namespace chromeball {
 
@@ -70,13 +68,7 @@ class PathIntegrator : public Integrator {
   }
 
   void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
-                  std::span<Sample> samples) const override {
-    thread_local PathBatch batch;
-    batch.clear();
-    for (const CameraSample& camera : cameras) batch.add(camera.path(), camera.hit);
-    batch.trace(tracer_, firstSample, context);
-    for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
-  }
+                  std::span<Sample> samples) const override;
 
  private:
   PathTracer tracer_;

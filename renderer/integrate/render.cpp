@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "film/allocation.h"
+#include "integrate/path_batch.h"
 #include "integrate/schedule.h"
 
 namespace chromeball {

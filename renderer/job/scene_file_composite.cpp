@@ -1,29 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_composite.h"
 
-#include <algorithm>
-#include <map>
-
-#include "job/setting_table.h"
-
 namespace chromeball {
-namespace {
-
-void checkKeysOf(std::string_view shape, const Section& section) {
-  static const std::map<std::string_view, std::vector<std::string_view>> kKeys = {
-      {"box", {"min", "max", "capture"}},
-      {"sphere", {"center", "radius", "capture"}},
-      {"model", {"file", "capture"}}};
-  const auto& keys = kKeys.at(shape);
-  for (const std::string_view key : keysOf("surroundings"))
-    if (const Entry e = section[key];
-        e && key != "shape" && std::find(keys.begin(), keys.end(), key) == keys.end())
-      failAt(e.location(), "surroundings of shape {} have no `{}`; they have {}", shape, key,
-             fmt::join(keys, ", "));
-}
-
-}  // namespace
-
 CompositeEntry readComposite(const Section& section, Settings& settings) {
   section.required("plate");
   section.read(settings);
@@ -39,19 +17,21 @@ CompositeEntry readComposite(const Section& section, Settings& settings) {
 Surroundings readSurroundings(const Section& section) {
   const auto need = [&](const char* key) { return section.required(key); };
   const std::string shape = need("shape").choice();
-  checkKeysOf(shape, section);
   Surroundings s;
   if (shape == "box") {
+    section.allowOnly({"shape", "min", "max", "capture"}, "a box");
     s.shape = Surroundings::Shape::Box;
     s.min = need("min").vector(), s.max = need("max").vector();
     if (!glm::all(glm::lessThan(s.min, s.max)))
       failAt(section.location(), "[surroundings]: `max` must be above `min` along each axis");
     s.capture = 0.5f * (s.min + s.max);
   } else if (shape == "sphere") {
+    section.allowOnly({"shape", "center", "radius", "capture"}, "a sphere");
     s.shape = Surroundings::Shape::Sphere;
     s.capture = s.center = need("center").vector();
     s.radius = float(need("radius").number());
   } else {
+    section.allowOnly({"shape", "file", "capture"}, "a model");
     s.shape = Surroundings::Shape::Model;
     s.model = existingFile(need("file"));
     s.capture = need("capture").vector();

@@ -4,15 +4,16 @@
 namespace chromeball {
 namespace {
 
-// The keys besides `type`, `name` and `position`.
 struct LampType {
   std::string_view name;
   std::vector<std::string_view> keys;
 };
 const std::vector<LampType> kTypes = {
-    {"point", {"intensity", "power", "range"}},
-    {"spot", {"direction", "intensity", "power", "range", "inner_angle", "outer_angle"}},
-    {"disc", {"direction", "radiance", "power", "radius"}},
+    {"point", {"type", "name", "position", "intensity", "power", "range"}},
+    {"spot",
+     {"type", "name", "position", "direction", "intensity", "power", "range", "inner_angle",
+      "outer_angle"}},
+    {"disc", {"type", "name", "position", "direction", "radiance", "power", "radius"}},
 };
 
 const LampType& typeOf(const Section& light) {
@@ -72,13 +73,7 @@ Lamp readLamp(const Entry& entry) {
   if (!entry.node->is_table()) entry.mustBe("a table, [[light]]");
   const Section light(entry.file, "light", *entry.node->as_table());
   const LampType& type = typeOf(light);
-  for (const std::string_view key : keysOf("light")) {
-    const bool isCommon = key == "type" || key == "name" || key == "position";
-    if (const Entry e = light[key];
-        e && !isCommon && std::find(type.keys.begin(), type.keys.end(), key) == type.keys.end())
-      failAt(e.location(), "a {} light has no `{}`; it has {}", type.name, key,
-             fmt::join(type.keys, ", "));
-  }
+  light.allowOnly(type.keys, fmt::format("a {} light", type.name));
   const vec3 position = light.required("position").vector();
   Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}};
   if (type.name == "disc")

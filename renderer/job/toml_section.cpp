@@ -152,6 +152,13 @@ Section Section::section(std::string_view key) const {
   return Section(file_, std::string(key), entry ? *entry.node->as_table() : kEmpty);
 }
 
+void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_view owner) const {
+  for (const auto& [key, node] : table_)
+    if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
+      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
+             owner, key.str(), fmt::join(keys, ", "));
+}
+
 void Section::read(Settings& settings) const {
   for (const Setting& setting : settingTable())
     if (setting.section == name_ && setting.type != SettingType::Compound)

@@ -77,6 +77,9 @@ class Section {
   // A table within this one; an empty one if it is missing.
   Section section(std::string_view key) const;
 
+  // Throws InputError for a key that is not in `keys`; `owner` ("a spot light") has only these.
+  void allowOnly(const std::vector<std::string_view>& keys, std::string_view owner) const;
+
   // Puts the values of all keys but the Compounds into `settings`.
   void read(Settings& settings) const;
 

@@ -43,8 +43,8 @@ Seen lookAround(const LoadedScene& loaded, const Accel& accel, const Image& mean
 }
 
 // The likely cause if nearly every visible surface is black, or most are and single-sided.
-std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const RenderResult& result) {
+std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loaded,
+                                    const Accel& accel, const RenderResult& result) {
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
   const Image mean = result.film.mean(), probe = loaded.probe.latLong();
@@ -54,8 +54,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
     return std::nullopt;
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ",
                                        100.0 * seen.black / seen.surfaces);
-  if (dark == 0)
-    return what + "the probe is black; a light probe or --probe-scale above 0 lights them";
+  if (job.file.settings.get<double>("probe.scale") == 0)
+    return what + "--probe-scale 0 turns the probe off";
   const bool lets = std::any_of(loaded.scene.materials.begin(), loaded.scene.materials.end(),
                                 [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * seen.blackSingleSided > seen.black)
@@ -127,7 +127,7 @@ Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   if (job.composite) return messages;
   if (job.settings.maxDepth > 0)  // at 0, only emitters are not black
-    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
+    if (const auto why = whyBlack(job, loaded, prepared.world->accel, result.render))
       messages.push_back({Message::Kind::Warning, *why});
   if (const auto why = whyWhite(job, loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
