@@ -9,13 +9,26 @@ namespace chromeball {
 Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(size_t(width) * size_t(height)) {}
 
-glm::dvec3 Film::Pixel::mean() const { return (sums[0] + sums[1]) / double(std::max(count(), 1u)); }
+glm::dvec3 Film::Pixel::mean() const {
+  return count() > 0 ? (sums[0] + sums[1]) / weight() : glm::dvec3(0);
+}
 
 void Film::add(int x, int y, int half, const SampleSums& samples) {
   Pixel& p = pixels_[size_t(y) * size_t(width_) + size_t(x)];
   p.counts[size_t(half)] += samples.count;
+  p.weights[size_t(half)] += samples.count;
   p.sums[size_t(half)] += samples.sum;
   p.sumOfSquares += samples.sumOfSquares;
+}
+
+void Film::weigh(double factor) {
+  for (Pixel& p : pixels_) {
+    for (size_t half = 0; half < kHalves; ++half) {
+      p.weights[half] *= factor;
+      p.sums[half] *= factor;
+    }
+    p.sumOfSquares *= factor;
+  }
 }
 
 Image Film::mean() const {
@@ -42,14 +55,15 @@ PixelErrors Film::errors() const {
     const Pixel& p = pixels_[i];
     errors.luminances.push_back(luminance(p.mean()));
     if (p.counts[0] == 0 || p.counts[1] == 0) continue;
-    const double n0 = p.counts[0], n1 = p.counts[1], n = n0 + n1;
-    const glm::dvec3 sum = p.sums[0] + p.sums[1];
-    const glm::dvec3 difference = p.sums[0] / n0 - p.sums[1] / n1;
-    const glm::dvec4 mean(sum / n, luminance(sum / n));
+    const double w0 = p.weights[0], w1 = p.weights[1], w = w0 + w1;
+    const glm::dvec3 rgb = p.mean();
+    const glm::dvec3 difference = p.sums[0] / w0 - p.sums[1] / w1;
+    const glm::dvec4 mean(rgb, luminance(rgb));
     const glm::dvec4 differences(difference, luminance(difference));
-    // Var(mean of all n samples) = n0 n1 / n^2 Var(difference of the means of the halves).
-    errors.halves[i] = differences * differences * (n0 * n1 / (n * n));
-    errors.scatter[i] = glm::max(p.sumOfSquares / n - mean * mean, 0.0) / (n - 1);
+    // Weights are inverse variances. Then
+    //   Var(mean of all samples) = w0 w1 / w^2 Var(difference of the means of the halves).
+    errors.halves[i] = differences * differences * (w0 * w1 / (w * w));
+    errors.scatter[i] = glm::max(p.sumOfSquares / w - mean * mean, 0.0) / double(p.count() - 1);
   }
   return errors;
 }

@@ -45,6 +45,8 @@ class Film {
 
   // Thread-safe for different pixels.
   void add(int x, int y, int half, const SampleSums& samples);
+  // Multiplies the weight of all samples so far, which is 1 at first.
+  void weigh(double factor);
 
   Image mean() const;          // RGB radiance
   Image sampleCounts() const;  // one channel
@@ -56,10 +58,12 @@ class Film {
  private:
   struct Pixel {
     std::array<uint32_t, kHalves> counts{};
+    std::array<double, kHalves> weights{};  // sums over the samples, like those below
     std::array<glm::dvec3, kHalves> sums{};
     glm::dvec4 sumOfSquares{0};
 
     uint32_t count() const { return counts[0] + counts[1]; }
+    double weight() const { return weights[0] + weights[1]; }
     glm::dvec3 mean() const;
   };
 

@@ -7,6 +7,7 @@
 #include "film/aov.h"
 #include "integrate/clamp.h"
 #include "integrate/depth_cut.h"
+#include "integrate/guiding/light_guide.h"
 #include "lighting/strategy.h"
 #include "math/sampler.h"
 #include "trace/ray.h"
@@ -39,7 +40,15 @@ struct PathContext {
   std::vector<Rgb> layers;  // of the current sample (Integrator::layers)
   // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.
   bool shadowsDiffer = false;
+  std::vector<LightRecord>* lightRecords = nullptr;  // output, for the guide; null: not wanted
   RayLog* log = nullptr;  // null: no log
+
+  // `passed`: transmittance of the shadow ray.
+  void addRecord(LightRecord record, const Rgb& passed = Rgb(1)) const {
+    record.integrand *= luminance(passed);
+    if (record.integrand > 0 && std::isfinite(record.integrand / record.density))
+      lightRecords->push_back(record);
+  }
 };
 
 }  // namespace chromeball

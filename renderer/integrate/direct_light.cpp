@@ -45,32 +45,95 @@ Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext
   return passed;
 }
 
+bool DirectLight::guideChooses(const Vertex& vertex, const PathContext& context) {
+  return vertex.region &&
+         context.sampler.get1(dimension::kGuide) >= vertex.region->strategyFraction();
+}
+
+DirectLight::LightSample DirectLight::ofStrategy(const Vertex& vertex, const DirectionSample& own) {
+  if (!vertex.region) return {own, own.pdf};
+  const float pdf = vertex.region->pdf(own.pdf, own.wi);
+  return {{own.wi, own.irradiance * (own.pdf / pdf), pdf}, own.pdf};
+}
+
+DirectLight::LightSample DirectLight::ofGuide(const GuideRegion& region,
+                                              const DirectionTree::Sample& sample,
+                                              const LightingStrategy::Escaped& found) {
+  const float pdf = region.pdf(found.pdf, sample.pdf);
+  return {{sample.direction, found.radiance / pdf, pdf}, found.pdf};
+}
+
+// What a light sample adds to the radiance if nothing blocks it.
+Rgb DirectLight::contribution(const DirectionSample& light, const BsdfValue& bsdf) const {
+  const float weight = light.isDelta ? 1 : lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf);
+  return bsdf.fCos * light.irradiance * weight;
+}
+
+// The record of a light sample that nothing blocks.
+LightRecord DirectLight::record(const LightPoint& point, const LightSample& light,
+                                const BsdfValue& bsdf) {
+  const DirectionSample& s = light.direction;
+  return {.position = point.position,
+          .normal = point.normal,
+          .direction = s.wi,
+          .integrand = luminance(bsdf.fCos * s.irradiance) * s.pdf,
+          .density = s.pdf + bsdf.pdf,
+          .strategyPdf = light.strategyPdf,
+          .bsdfPdf = bsdf.pdf};
+}
+
 Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
   std::vector<DirectionSample>& samples = context.lightSamples;
   samples.clear();
   lighting_.sample(vertex.point, context.sampler, samples);
-  Rgb light(0);
-  for (const DirectionSample& s : samples) {
-    const BsdfValue bsdf = vertex.bsdf.evaluate(s.wi);
+  Rgb sum(0);
+  for (const DirectionSample& own : samples) {
+    LightSample light = ofStrategy(vertex, own);
+    if (guideChooses(vertex, context)) {
+      const auto guided = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
+      light = ofGuide(*vertex.region, guided, lighting_.escaped(vertex.point, guided.direction));
+    }
+    const vec3& wi = light.direction.wi;
+    const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
     if (isBlack(bsdf.fCos)) continue;
     // No Media::transmittance here: it is 1 over an infinite distance.
-    const Rgb passed = visibility({vertex.surface.rayOrigin(s.wi), s.wi}, context, {});
+    const Rgb passed = visibility({vertex.surface.rayOrigin(wi), wi}, context, {});
     if (isBlack(passed)) continue;
-    const float weight = s.isDelta ? 1 : lightSampleWeight(settings_.mis, s.pdf, bsdf.pdf);
-    light += bsdf.fCos * s.irradiance * passed * weight;
+    sum += contribution(light.direction, bsdf) * passed;
+    if (context.lightRecords) context.addRecord(record(vertex.point, light, bsdf), passed);
   }
-  return light;
+  return sum;
 }
 
-void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light) const {
-  const DirectionSample& s = light.sample;
-  if (!(s.pdf > 0)) return;
-  const BsdfValue bsdf = vertex.bsdf.evaluate(s.wi);
+void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+                        PathContext& context) const {
+  const bool guided = guideChooses(vertex, context);
+  DirectionTree::Sample chosen{light.sample.wi, light.sample.pdf};
+  if (guided) chosen = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
+  if (!(chosen.pdf > 0)) return;
+  const BsdfValue bsdf = vertex.bsdf.evaluate(chosen.direction);
   if (isBlack(bsdf.fCos)) return;
   light.hasShadowRay = true;
-  light.shadowRay = {vertex.surface.rayOrigin(s.wi), s.wi};
-  light.radiance =
-      throughput * bsdf.fCos * s.irradiance * lightSampleWeight(settings_.mis, s.pdf, bsdf.pdf);
+  light.shadowRay = {vertex.surface.rayOrigin(chosen.direction), chosen.direction};
+  if (guided) {
+    light.region = vertex.region;
+    light.treePdf = chosen.pdf;
+    light.point = vertex.point;
+    light.bsdf = bsdf;
+    light.throughput = throughput;
+    return;
+  }
+  const LightSample sample = ofStrategy(vertex, light.sample);
+  light.radiance = throughput * contribution(sample.direction, bsdf);
+  if (context.lightRecords) light.record = record(vertex.point, sample, bsdf);
+}
+
+void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight& light,
+                           const PathContext& context) const {
+  const LightSample sample =
+      ofGuide(*light.region, {light.shadowRay.direction, light.treePdf}, found);
+  light.radiance = light.throughput * contribution(sample.direction, light.bsdf);
+  if (context.lightRecords) light.record = record(light.point, sample, light.bsdf);
 }
 
 Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {

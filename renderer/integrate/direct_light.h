@@ -20,15 +20,24 @@ struct Vertex {
   const LightPoint& point;
   const Surface& surface;
   const Bsdf& bsdf;
-  const Media& media;  // on the viewer's side
+  const Media& media;         // on the viewer's side
+  const GuideRegion* region;  // of the guide; null: light samples are not guided here
 };
 
 // Light from the probe at a vertex, for paths that are traced together (path_batch.h).
 struct DeferredLight {
-  DirectionSample sample{};  // input: the light sample; pdf 0: none
+  DirectionSample sample{};  // input: the strategy's light sample; pdf 0: none
   bool hasShadowRay = false;
   Ray shadowRay{};  // output
-  Rgb radiance{0};  // at the camera if nothing blocks the shadow ray
+  Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
+  LightRecord record{};  // likewise; only if the context wants records
+
+  // Set if the guide chose the direction; complete() then calculates the radiance.
+  const GuideRegion* region = nullptr;
+  float treePdf = 0;
+  LightPoint point{};  // the vertex
+  BsdfValue bsdf{};
+  Rgb throughput{0};
 };
 
 // Radiance scattered towards the viewer, estimated by light samples with their MIS weights against
@@ -41,15 +50,34 @@ class DirectLight {
 
   // From the probe, with the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
-  // The first half of the same: the shadow ray of a given sample, and `throughput` times what it
-  // adds if nothing blocks it.
-  void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light) const;
+  // The same, up to the shadow ray, for a given sample of the strategy.
+  void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+             PathContext& context) const;
+  // The second part of defer() where light.region is set. `found`: what
+  // LightingStrategy::escaped() returns for light.point and the direction of the shadow ray.
+  void complete(const LightingStrategy::Escaped& found, DeferredLight& light,
+                const PathContext& context) const;
   // From one point on an emissive triangle. World::emitters must not be null.
   Rgb emitter(const Vertex& vertex, PathContext& context) const;
   // From point, spot and directional lights. World::punctual must not be null.
   Rgb punctual(const Vertex& vertex, PathContext& context) const;
 
  private:
+  // A light sample, and the strategy's pdf of its direction.
+  struct LightSample {
+    DirectionSample direction;
+    float strategyPdf;
+  };
+  // Whether the sample of the vertex comes from the guide instead of the strategy.
+  static bool guideChooses(const Vertex& vertex, const PathContext& context);
+  // With the pdf of the mixture.
+  static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
+  static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
+                             const LightingStrategy::Escaped& found);
+  Rgb contribution(const DirectionSample& light, const BsdfValue& bsdf) const;
+  static LightRecord record(const LightPoint& point, const LightSample& light,
+                            const BsdfValue& bsdf);
+
   // Transmittance of a shadow ray from the vertex: occluders, and absorption in the medium. `lamp`:
   // the instance at which the ray ends.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,

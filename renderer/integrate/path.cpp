@@ -71,21 +71,31 @@ std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) 
   return hit;
 }
 
-Rgb PathTracer::escapedRadiance(const PathState& state) const {
+Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) const {
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
   if (state.lobes == Lobes::Narrow)
     return state.throughput * lighting_.background(origin, direction);
-  return weighted(state, lighting_.escaped(state.from, direction));
+  return weighted(state, lighting_.escaped(state.from, direction), context);
 }
 
-Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped& escaped) const {
-  const float weight = state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, escaped.pdf);
-  return state.throughput * escaped.radiance * weight;
+Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
+                         PathContext& context) const {
+  const Rgb found = state.throughput * escaped.radiance;
+  if (state.isDelta) return found;
+  const vec3& direction = state.ray.direction;
+  const float lightPdf = state.region ? state.region->pdf(escaped.pdf, direction) : escaped.pdf;
+  if (context.lightRecords) {
+    const float integrand = luminance(found) / luminance(state.throughputBefore) * state.pdf;
+    context.addRecord({state.from.position, state.from.normal, direction, integrand,
+                       lightPdf + state.pdf, escaped.pdf, state.pdf});
+  }
+  return found * bsdfSampleWeight(settings_.mis, state.pdf, lightPdf);
 }
 
-void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& escaped) const {
-  state.radiance += weighted(state, escaped);
+void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
+                            PathContext& context) const {
+  state.radiance += weighted(state, escaped, context);
 }
 
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
@@ -108,12 +118,16 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   // At the limit only smooth solids transmit light; light samples could not find that.
   const bool atLimit = state.bounces() == settings_.maxDepth;
   const LightPoint before = state.from;
+  const GuideRegion* const regionBefore = state.region;
   state.from = {surface.position, bsdf.normal(), &bsdf, state.depth, bsdf.transmits()};
+  state.region = nullptr;
   if (!atLimit) {
-    const Vertex vertex{state.from, surface, bsdf, state.media};
     const bool broad = bsdf.has(Lobes::Broad);
+    if (settings_.guide && broad)
+      state.region = settings_.guide->find(surface.position, bsdf.normal());
+    const Vertex vertex{state.from, surface, bsdf, state.media, state.region};
     if (broad && state.deferred)
-      direct_.defer(vertex, state.throughput, *state.deferred);
+      direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
       state.radiance += state.throughput * direct_.probe(vertex, context);
     if (broad || bsdf.has(Lobes::Narrow)) {
@@ -134,6 +148,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     if (ends) return false;
     state.transmissions += transmission;
   }
+  const Rgb throughputBefore = state.throughput;
   state.throughput *= next.weight;
   if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
   ++state.depth;
@@ -141,11 +156,13 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   if constexpr (kLayered) {
     if (next.wi == state.ray.direction && passesStraight(*surface.material)) {
       state.from = before;
+      state.region = regionBefore;
       passStraight(state, surface);
       return true;
     }
     state.media.follow(surface, next.wi);
   }
+  state.throughputBefore = throughputBefore;
   state.pdf = next.pdf;
   state.isDelta = next.isDelta;
   state.lobes = next.lobes;
@@ -172,7 +189,7 @@ bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& b
 bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
                         PathContext& context) const {
   if (!hit) {
-    state.radiance += escapedRadiance(state);
+    state.radiance += escapedRadiance(state, context);
     return false;
   }
   const Scene& scene = world_.scene;

@@ -19,6 +19,8 @@ struct PathState {
   Rgb radiance{0};    // accumulated so far
   Rgb throughput{1};  // weight of the radiance found at the next vertex
   LightPoint from{};  // origin of the ray; unused for camera rays
+  const GuideRegion* region = nullptr;  // of the guide, at `from`; null: not guided there
+  Rgb throughputBefore{1};              // the bounce at `from`
   // The ray comes from the camera or a delta lobe: light sampling could not find its direction.
   bool isDelta = true;
   float pdf = 0;                // of the ray's direction at `from`, over solid angle; if !isDelta
@@ -76,16 +78,19 @@ class PathTracer {
   bool isHiddenBack(const PathState& state, const Hit& hit) const;
 
   // Adds what a ray that hits nothing finds; not for narrow lobes and the camera.
-  void addEscaped(PathState& state, const LightingStrategy::Escaped& escaped) const;
+  void addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
+                  PathContext& context) const;
 
   const World& world() const { return world_; }
   const LightingStrategy& lighting() const { return lighting_; }
+  const DirectLight& direct() const { return direct_; }
   const PathSettings& settings() const { return settings_; }
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
-  Rgb escapedRadiance(const PathState& state) const;
-  Rgb weighted(const PathState& state, const LightingStrategy::Escaped& escaped) const;
+  Rgb escapedRadiance(const PathState& state, PathContext& context) const;
+  Rgb weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
+               PathContext& context) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
                       const MaterialPoint& material, PathContext& context) const;
   template <bool kLayered>

@@ -32,6 +32,7 @@ void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContex
     endEscaped(task);
     drawLightSamples(task);
     shade(task);
+    completeGuided(task);
     traceShadowRays(task);
     traceNextRays(task);
   }
@@ -62,7 +63,7 @@ void PathBatch::endEscaped(Task& task) {
   active_.size = remaining;
   task.lighting().escapedMany(escapes_.all(), escaped_);
   for (size_t k = 0; k < escaped.size; ++k)
-    task.tracer.addEscaped(paths_[escaped.items[k]], escaped_[k]);
+    task.tracer.addEscaped(paths_[escaped.items[k]], escaped_[k], task.context);
 }
 
 void PathBatch::drawLightSamples(Task& task) {
@@ -81,6 +82,7 @@ void PathBatch::drawLightSamples(Task& task) {
     const Hit& hit = *hits_[i];
     prefetchVertices(task.scene(), task.scene().instances[hit.instance], hit.triangle);
     lights_[i].hasShadowRay = false;
+    lights_[i].region = nullptr;
     lights_[i].sample = samples_[k];
     paths_[i].deferred = drawn ? &lights_[i] : nullptr;
   }
@@ -96,6 +98,20 @@ void PathBatch::shade(Task& task) {
   }
 }
 
+void PathBatch::completeGuided(Task& task) {
+  if (!task.tracer.settings().guide) return;
+  Indices guided;
+  escapes_.size = 0;
+  for (const uint32_t i : shaded_.all())
+    if (lights_[i].region) {
+      guided.add(i);
+      escapes_.add({&lights_[i].point, lights_[i].shadowRay.direction});
+    }
+  task.lighting().escapedMany(escapes_.all(), escaped_);
+  for (size_t k = 0; k < guided.size; ++k)
+    task.tracer.direct().complete(escaped_[k], lights_[guided.items[k]], task.context);
+}
+
 void PathBatch::traceShadowRays(Task& task) {
   Indices lit;
   rays_.size = 0;
@@ -109,8 +125,11 @@ void PathBatch::traceShadowRays(Task& task) {
   task.accel().transmittance(rays_.all(), std::span(transmittances_).first(rays_.size),
                              task.visible());
   for (size_t k = 0; k < lit.size; ++k)
-    if (!isBlack(transmittances_[k]))
-      paths_[lit.items[k]].radiance += lights_[lit.items[k]].radiance * transmittances_[k];
+    if (!isBlack(transmittances_[k])) {
+      const DeferredLight& light = lights_[lit.items[k]];
+      paths_[lit.items[k]].radiance += light.radiance * transmittances_[k];
+      if (task.context.lightRecords) task.context.addRecord(light.record, transmittances_[k]);
+    }
 }
 
 void PathBatch::traceNextRays(Task& task) {

@@ -43,6 +43,7 @@ class PathBatch {
   void endEscaped(Task& task);
   void drawLightSamples(Task& task);
   void shade(Task& task);
+  void completeGuided(Task& task);
   void traceShadowRays(Task& task);
   void traceNextRays(Task& task);
 

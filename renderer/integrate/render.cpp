@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "film/allocation.h"
+#include "integrate/guiding/guide_training.h"
 #include "integrate/path_batch.h"
 #include "integrate/schedule.h"
 
@@ -19,6 +20,8 @@ namespace chromeball {
 namespace {
 
 constexpr int kTile = 16;
+int tilesAlong(int pixels) { return (pixels + kTile - 1) / kTile; }
+
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
 // Deeper vertices contribute too little to profit from stratification; they use independent random
 // numbers.
@@ -42,13 +45,15 @@ struct Worker {
 
 class Renderer {
  public:
+  // `training` may be null.
   Renderer(const Integrator& integrator, const World& world, const Camera& camera,
-           const RenderSettings& settings, RenderResult& result)
+           const RenderSettings& settings, GuideTraining* training, RenderResult& result)
       : integrator_(integrator),
         world_(world),
         camera_(camera),
         cameraRays_(camera, float(settings.width) / float(settings.height)),
         settings_(settings),
+        training_(training),
         result_(result),
         table_(tableSize(settings),
                dimension::kVertex + dimension::kPerVertex *
@@ -71,8 +76,9 @@ class Renderer {
   void pass(uint32_t done, uint32_t wanted, const Progress& progress,
             const std::atomic<bool>& stop) {
     const Beam beam = beamOfPass(wanted);
-    const int columns = (settings_.width + kTile - 1) / kTile;
-    const int tiles = columns * ((settings_.height + kTile - 1) / kTile);
+    const int columns = tilesAlong(settings_.width);
+    const int tiles = columns * tilesAlong(settings_.height);
+    const bool trains = training_ && training_->includes(done, wanted);
     std::atomic<int> finished = 0;
     std::mutex reporting;
     tbb::parallel_for(
@@ -82,6 +88,8 @@ class Renderer {
           for (int tile = range.begin(); tile < range.end() && !stop; ++tile) {
             forPixels(tile % columns * kTile, tile / columns * kTile, [&](int x, int y) {
               const uint32_t from = countOf(x, y, done), to = countOf(x, y, wanted);
+              worker.context.lightRecords =
+                  trains ? training_->recordsOf(size_t(tile), pixelIndex(x, y)) : nullptr;
               for (int half = 0; half < Film::kHalves; ++half)
                 renderHalf(worker, x, y, half, from, to, beam);
             });
@@ -91,6 +99,8 @@ class Renderer {
           }
         },
         tbb::simple_partitioner());
+    if (trains && !stop)
+      if (const auto weight = training_->endPass()) result_.film.weigh(*weight);
   }
 
   void gather() {
@@ -109,6 +119,10 @@ class Renderer {
     if (world_.scene.textures.empty()) return {};
     const bool open = settings_.timeLimit || settings_.noiseLimit;
     return beamOf(camera_, settings_.height, open ? wanted : settings_.samples);
+  }
+
+  uint64_t pixelIndex(int x, int y) const {
+    return uint64_t(y) * uint64_t(settings_.width) + uint64_t(x);
   }
 
   uint32_t countOf(int x, int y, uint32_t mean) const {
@@ -225,29 +239,21 @@ class Renderer {
   const Camera& camera_;
   CameraRays cameraRays_;
   const RenderSettings& settings_;
+  GuideTraining* training_;
   RenderResult& result_;
   SobolTable table_;
   std::optional<SampleAllocation> allocation_;  // none: the same number of samples everywhere
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 
-}  // namespace
-
-RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
-                    const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop) {
-  return render(PathIntegrator(PathTracer(world, lighting, settings.path())), world, camera,
-                settings, progress, stop);
-}
-
-RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
-                    const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop) {
+RenderResult renderAll(const Integrator& integrator, const World& world, const Camera& camera,
+                       const RenderSettings& settings, GuideTraining* training,
+                       const Progress& progress, const std::atomic<bool>& stop) {
   RenderResult result{.film = Film(settings.width, settings.height),
                       .aovs = AovFilm(settings.width, settings.height, settings.aovs),
                       .layers = LayerFilm(settings.width, settings.height, integrator.layers())};
   Schedule schedule(settings);
-  Renderer renderer(integrator, world, camera, settings, result);
+  Renderer renderer(integrator, world, camera, settings, training, result);
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {
@@ -262,7 +268,31 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
     }
   }
   renderer.gather();
+  if (training) result.guidedRegions = training->guide().guidedRegions();
   return result;
+}
+
+}  // namespace
+
+RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop) {
+  PathSettings path = settings.path();
+  if (settings.guiding == Guiding::Off || !lighting.takesOneSample())
+    return renderAll(PathIntegrator(PathTracer(world, lighting, path)), world, camera, settings,
+                     nullptr, progress, stop);
+  const size_t pixels = size_t(settings.width) * size_t(settings.height);
+  const size_t tiles = size_t(tilesAlong(settings.width)) * size_t(tilesAlong(settings.height));
+  GuideTraining training(settings.guiding, settings.samples, pixels, tiles);
+  path.guide = &training.guide();
+  return renderAll(PathIntegrator(PathTracer(world, lighting, path)), world, camera, settings,
+                   &training, progress, stop);
+}
+
+RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop) {
+  return renderAll(integrator, world, camera, settings, nullptr, progress, stop);
 }
 
 }  // namespace chromeball

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/aov.h"
+#include "integrate/guiding/guide_training.h"
 #include "integrate/path_settings.h"
 
 namespace chromeball {
@@ -18,6 +19,7 @@ struct RenderSettings {
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
   // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
   bool adaptive = true;
+  Guiding guiding = Guiding::Auto;  // of light samples; not in composites
   int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   Mis mis = Mis::Balance;

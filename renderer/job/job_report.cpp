@@ -35,6 +35,7 @@ json describe(const RenderResult& result) {
   return {
       {"samples_per_pixel", result.samples},
       {"adaptive", result.adaptive},
+      {"guided", result.guidedRegions > 0},
       {"width", result.film.width()},
       {"height", result.film.height()},
       {"rays",

@@ -14,6 +14,10 @@ Mis misNamed(const std::string& name) {
   return name == "off" ? Mis::Off : name == "power" ? Mis::Power : Mis::Balance;
 }
 
+Guiding guidingNamed(const std::string& name) {
+  return name == "off" ? Guiding::Off : name == "on" ? Guiding::On : Guiding::Auto;
+}
+
 SingleSided singleSidedNamed(const std::string& name) {
   return name == "off"     ? SingleSided::Off
          : name == "light" ? SingleSided::Light
@@ -79,6 +83,7 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.samples = uint32_t(s.get<uint64_t>("render.samples"));
   if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
   r.adaptive = s.get<std::string>("render.adaptive") == "on";
+  r.guiding = guidingNamed(s.get<std::string>("render.guide"));
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
   r.maxTransmissionDepth = int(s.get<uint64_t>("render.max_transmission_depth"));
   r.seed = s.get<uint64_t>("render.seed");

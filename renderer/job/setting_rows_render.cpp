@@ -73,6 +73,18 @@ void addRender(std::vector<Setting>& rows) {
        .help = "Takes more samples in noisier pixels, if there are at least 16 per pixel; "
                "`samples` is then their mean.",
        .renderOnly = true});
+  add({.key = "guide",
+       .option = "guide",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "auto",
+       .choices =
+           [] {
+             return Names{"auto", "on", "off"};
+           },
+       .help = "Learns from which directions the probe lights each region, for light samples of "
+               "`importance`: auto where that pays (rooms), on wherever it reduces the variance.",
+       .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
        .argument = "N",

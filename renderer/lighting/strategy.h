@@ -70,6 +70,9 @@ class LightingStrategy {
     return false;
   }
 
+  // Whether sample() takes one sample that does not depend on the point, and is not a delta.
+  bool takesOneSample() const { return sampleMany({}, {}); }
+
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;
 

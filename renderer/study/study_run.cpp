@@ -35,6 +35,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
   RenderSettings settings = settings_;
   settings.adaptive = false;  // strategies are compared at equal samples in every pixel
+  settings.guiding = Guiding::Off;
   settings.seed = seedOf(key, study_.seed);
   settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();

@@ -53,6 +53,24 @@ std::vector<Object> stillLife(bool fine) {
   };
 }
 
+// A mirror and a golden ball on a diffuse ground, which their reflections light.
+std::vector<Object> causticBalls() {
+  const dvec3 x(1, 0, 0), z(0, 0, 1);
+  return {{"ground", tessellate(2, 2, patch({-4, 0, 4}, 8.0 * x, -8.0 * z)), {0.5f, 0.5f, 0.5f}},
+          {"mirror",
+           tessellate(112, 56, ball({-0.7, 0.6, 0}, 0.6)),
+           {0.95f, 0.95f, 0.95f},
+           1,
+           0,
+           0},
+          {"gold",
+           tessellate(112, 56, ball({0.7, 0.6, 0.1}, 0.6)),
+           {1, 0.71f, 0.29f},
+           1,
+           0.1f,
+           0}};
+}
+
 // Walls of 9.5 by 6 by 4.5 m around the table and the camera, seen from inside. The window on the
 // left is 3 by 2.3 m.
 void addRoom(std::vector<Object>& objects) {
@@ -107,8 +125,9 @@ Image wood(int size) {
 }  // namespace
 
 void writeStillLife(const std::string& path, Finish finish) {
-  std::vector<Object> objects = stillLife(finish == Finish::Fine);
-  if (finish != Finish::Demo) makePlain(objects, finish);
+  const bool caustics = finish == Finish::Caustics;
+  std::vector<Object> objects = caustics ? causticBalls() : stillLife(finish == Finish::Fine);
+  if (finish != Finish::Demo && !caustics) makePlain(objects, finish);
   if (finish == Finish::Room) addRoom(objects);
 
   GlbWriter glb;

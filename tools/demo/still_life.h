@@ -13,10 +13,11 @@ enum class Finish {
   Glass,       // diffuse, except for a ball and a knot of smooth glass
   Plastics,    // diffuse below a glossy dielectric layer
   Room,        // Lambertian, in a room with one window
+  Caustics,    // a mirror and a golden ball on a diffuse ground, nothing else
   Fine,        // Lambertian, of 0.9 million triangles
 };
 
-// A .glb of some 66,000 triangles, except Fine, with a camera named Front. Throws RunError.
+// A .glb of some 66,000 triangles, except Fine and Caustics, with a camera named Front. Throws RunError.
 void writeStillLife(const std::string& path, Finish finish);
 
 }  // namespace chromeball::demo

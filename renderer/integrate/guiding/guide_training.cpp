@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/guiding/guide_training.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+
+namespace chromeball {
+namespace {
+
+constexpr uint32_t kMinSamples = 8;      // per pixel of a render that is guided
+constexpr uint32_t kTraining = 16;       // samples per pixel; at most a quarter of the render
+constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
+// Of second moments: below, the guide is used; above, there is nothing to learn.
+constexpr double kWorthwhile = 0.8;
+constexpr size_t kEnough = 20'000;  // records that prove it
+
+}  // namespace
+
+GuideTraining::GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, size_t tiles)
+    : guiding_(samples < kMinSamples ? Guiding::Off : guiding),
+      lastSample_(std::clamp(samples / 4, 4u, kTraining)),
+      maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles, 64)),
+      pixelFraction_(double(kMaxRecords) / (kRecordsPerSample * double(pixels) * lastSample_)),
+      records_(tiles) {}
+
+bool GuideTraining::includes(uint32_t done, uint32_t wanted) const {
+  return guiding_ != Guiding::Off && done < lastSample_ && wanted <= lastSample_;
+}
+
+std::vector<LightRecord>* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
+  const bool chosen = double(uint32_t(hash(pixel, 0x6775696465))) * 0x1p-32 < pixelFraction_;
+  return chosen && records_[tile].size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
+}
+
+std::optional<double> GuideTraining::endPass() {
+  const bool wasGuiding = guide_.guidedRegions() > 0;
+  std::vector<LightRecord> all;
+  for (const auto& some : records_) all.insert(all.end(), some.begin(), some.end());
+  const size_t count = all.size();
+  guide_.learn(std::move(all));
+  const GuideRegion::Moments moments = guide_.moments();
+  const double ratio = moments.without > 0 ? moments.with / moments.without : 1;
+  fprintf(stderr, "records %zu ratio %g regions %zu guided\n", count, ratio, guide_.guidedRegions());
+  if (guiding_ == Guiding::Auto && ratio > kWorthwhile) {
+    guide_.forget();
+    if (count >= kEnough) guiding_ = Guiding::Off;
+  }
+  if (wasGuiding || guide_.guidedRegions() == 0) return {};
+  return ratio;
+}
+
+}  // namespace chromeball

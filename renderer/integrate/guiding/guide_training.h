@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a light guide learns from the first passes of a render, and whether it is used at all.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "integrate/guiding/light_guide.h"
+
+namespace chromeball {
+
+// `Auto` guides if that is worth its time; `On` guides in every region where it reduces the
+// variance.
+enum class Guiding { Off, On, Auto };
+
+// The first passes of a render are its training. The image does not depend on the number of
+// threads, because the records of a pass are kept by tile. At most kMaxRecords are kept, from
+// pixels chosen at random if the image is large; with the regions they take less than 200 MB.
+class GuideTraining {
+ public:
+  static constexpr size_t kMaxRecords = 1 << 20;
+
+  // `samples`: per pixel, of the whole render.
+  GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, size_t tiles);
+
+  const LightGuide& guide() const { return guide_; }
+
+  // Whether the pass from `done` to `wanted` samples per pixel is part of the training.
+  bool includes(uint32_t done, uint32_t wanted) const;
+  // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
+  std::vector<LightRecord>* recordsOf(size_t tile, uint64_t pixel);
+
+  // Learns from all records so far. If the guide becomes part of the render: the weight of the
+  // samples so far relative to that of later ones, which have less variance.
+  std::optional<double> endPass();
+
+ private:
+  Guiding guiding_;
+  uint32_t lastSample_;
+  size_t maxRecordsOfTile_;
+  double pixelFraction_;
+  std::vector<std::vector<LightRecord>> records_;  // by tile
+  LightGuide guide_;
+};
+
+}  // namespace chromeball
