@@ -342,6 +342,22 @@ TEST(SlowCommandRender, AdaptiveRendersTakeTheRequestedMean) {
               "`off`");
 }
 
+TEST(CommandRender, GuidesOnlyTheLightSamplesOfImportance) {
+  const RenderScene scene;
+  const auto arguments = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"render",  scene.model, "--probe", scene.gradient, "--size",
+                                    "16x12",   "--samples", "8",       "-o",           scene.out / "a.exr",
+                                    "--stats", scene.out / "a.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expectError(arguments({"--guide", "on", "--strategy", "suns"}), "--guide: ");
+  expectError(arguments({"--guide", "always"}), "`always`");
+  scene.render({"--probe", scene.gradient, "--size", "16x12", "--samples", "8", "--strategy", "suns",
+                "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
+  EXPECT_FALSE(scene.stats("a.json")["guided"].get<bool>());
+}
+
 TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
   const RenderScene scene;
   scene.render({"--probe", scene.gradient, "--size", "32x24", "--time", "1", "-o",

@@ -24,11 +24,13 @@ class OneAtATime : public Integrator {
 };
 
 void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,
-                const RenderSettings& settings) {
+                const RenderSettings& settings, const LightGuide* guide = nullptr) {
   const World world(named.scene, {}, allTables());
   const Probe probe(named.probe);
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
-  const PathTracer tracer(world, *lighting, settings.path());
+  PathSettings path = settings.path();
+  path.guide = guide;
+  const PathTracer tracer(world, *lighting, path);
   const std::atomic<bool> stop = false;
   const auto rendered = [&](const Integrator& integrator) {
     return render(
@@ -86,6 +88,30 @@ TEST(SlowPathBatch, AlsoThroughGlass) {
   ASSERT_FALSE(named.scene.cameras.empty());
   const Camera camera = named.scene.cameras.front();
   expectSame(named, camera, "importance", smallRender(60, 45, 32, 8));
+}
+
+// Light from one side, which the strategy seldom samples.
+LightGuide someGuide() {
+  std::vector<LightRecord> records;
+  for (uint64_t i = 0; i < 20'000; ++i) {
+    const auto number = [&](uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); };
+    const vec3 normal = squareToUniformSphere({number(1), number(2)});
+    const vec3 direction = glm::normalize(vec3(1 + number(3), number(4), number(5)));
+    const vec3 position(4 * number(6) - 2, 2 * number(7), 4 * number(8) - 2);
+    records.push_back({position, normal, direction, 1, 1, 1e-3f, 0.1f});
+  }
+  LightGuide guide;
+  guide.learn(std::move(records));
+  return guide;
+}
+
+TEST(PathBatch, AlsoWithAGuide) {
+  const LightGuide guide = someGuide();
+  ASSERT_GT(guide.guidedRegions(), 6u);
+  for (const NamedScene& named : threeScenes()) {
+    const RenderSettings settings = smallRender(40, 30, 37, 5);
+    expectSame(named, cameraAbove(), "importance", settings, &guide);
+  }
 }
 
 // A black probe has no light samples.

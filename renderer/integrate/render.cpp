@@ -100,7 +100,7 @@ class Renderer {
         },
         tbb::simple_partitioner());
     if (trains && !stop)
-      if (const auto weight = training_->endPass()) result_.film.weigh(*weight);
+      if (const auto weight = training_->endPass(wanted)) result_.film.weigh(*weight);
   }
 
   void gather() {

@@ -105,6 +105,18 @@ void checkTwoPass(const SceneFile& file) {
     throwInput("{}: is biased; leave it out in a reference of two passes", s.location("clamp"));
 }
 
+void checkGuide(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (s.get<std::string>("render.guide") != "on") return;
+  const std::string location = s.location("render.guide");
+  const std::string strategy = resolveStrategy(s.get<std::string>("lighting.strategy"));
+  if (file.composite) throwInput("{}: composites are not guided", location);
+  if (file.surroundings) throwInput("{}: light from [surroundings] is not guided", location);
+  if (strategy != "importance")
+    throwInput("{}: guides the light samples of the strategy `importance`, not of `{}`", location,
+               strategy);
+}
+
 void checkTransparent(const SceneFile& file) {
   const Settings& s = file.settings;
   if (file.composite && s.get<bool>("transparent"))
@@ -121,6 +133,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   const Settings& s = job.file.settings;
   checkTwoPass(job.file);
   checkTransparent(job.file);
+  checkGuide(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));

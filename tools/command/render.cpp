@@ -45,7 +45,8 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
                                   fmt::join(job.outputs, ", ")));
   if (render.interrupted) throw Interrupted("interrupted; the image so far is saved");
   if (!quiet)
-    fmt::print("{} samples per pixel in {:.2f} s, noise {}: {}\n", render.samples, result.seconds,
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}: {}\n", render.samples,
+               render.guidedRegions > 0 ? ", light samples guided," : "", result.seconds,
                inWords(result.noise), fmt::join(job.outputs, ", "));
 }
 

@@ -26,6 +26,7 @@ complete -c chromeball -n '__fish_seen_subcommand_from render' -l samples -r -d 
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l time -r -d 'Stops after about this time. (default: no limit)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l noise -r -d 'Stops when the upper end of the noise'\''s 95% interval is below this. (default: no limit)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l adaptive -r -d 'Takes more samples in noisier pixels, if there are at least 16 per pixel; `samples` is then their mean. Names: on, off. (default: on)'
+complete -c chromeball -n '__fish_seen_subcommand_from render' -l guide -r -d 'Learns from which directions the probe lights each region, for light samples of `importance`: auto where that pays (rooms), on wherever it reduces the variance. Names: auto, on, off. (default: auto)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l max-depth -r -d 'Maximum number of bounces: 0 emission only, 1 direct light, ... (default: 8)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l max-transmission-depth -r -d 'Maximum number of bounces in and on bodies of glass, which are not counted as other bounces. (default: 64)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l single-sided -r -d 'Backs of single-sided surfaces are invisible to the camera and mirrors (camera), pass all light (light), or are like fronts (off). Names: camera, light, off. (default: camera)'

@@ -11,9 +11,10 @@ namespace {
 constexpr uint32_t kMinSamples = 8;      // per pixel of a render that is guided
 constexpr uint32_t kTraining = 16;       // samples per pixel; at most a quarter of the render
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
-// Of second moments: below, the guide is used; above, there is nothing to learn.
+// Ratio of second moments with and without the guide: below, `Auto` guides; above, there is nothing
+// to gain.
 constexpr double kWorthwhile = 0.8;
-constexpr size_t kEnough = 20'000;  // records that prove it
+constexpr size_t kEnough = 20'000;  // records that prove the latter
 
 }  // namespace
 
@@ -33,7 +34,7 @@ std::vector<LightRecord>* GuideTraining::recordsOf(size_t tile, uint64_t pixel) 
   return chosen && records_[tile].size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
 }
 
-std::optional<double> GuideTraining::endPass() {
+std::optional<double> GuideTraining::endPass(uint32_t done) {
   const bool wasGuiding = guide_.guidedRegions() > 0;
   std::vector<LightRecord> all;
   for (const auto& some : records_) all.insert(all.end(), some.begin(), some.end());
@@ -41,11 +42,11 @@ std::optional<double> GuideTraining::endPass() {
   guide_.learn(std::move(all));
   const GuideRegion::Moments moments = guide_.moments();
   const double ratio = moments.without > 0 ? moments.with / moments.without : 1;
-  fprintf(stderr, "records %zu ratio %g regions %zu guided\n", count, ratio, guide_.guidedRegions());
   if (guiding_ == Guiding::Auto && ratio > kWorthwhile) {
     guide_.forget();
     if (count >= kEnough) guiding_ = Guiding::Off;
   }
+  if (done >= lastSample_ || guiding_ == Guiding::Off) records_.clear();
   if (wasGuiding || guide_.guidedRegions() == 0) return {};
   return ratio;
 }

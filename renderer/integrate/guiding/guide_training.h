@@ -14,9 +14,9 @@ namespace chromeball {
 // variance.
 enum class Guiding { Off, On, Auto };
 
-// The first passes of a render are its training. The image does not depend on the number of
-// threads, because the records of a pass are kept by tile. At most kMaxRecords are kept, from
-// pixels chosen at random if the image is large; with the regions they take less than 200 MB.
+// The first passes of a render are its training. What is learned does not depend on the number of
+// threads, because the records are kept by tile. Some kMaxRecords, at most twice as many, are taken,
+// from pixels chosen at random if the image is large. They take 220 MB at most.
 class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20;
@@ -31,9 +31,9 @@ class GuideTraining {
   // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
   std::vector<LightRecord>* recordsOf(size_t tile, uint64_t pixel);
 
-  // Learns from all records so far. If the guide becomes part of the render: the weight of the
-  // samples so far relative to that of later ones, which have less variance.
-  std::optional<double> endPass();
+  // Learns from all records so far; the render has `done` samples per pixel. If guiding begins:
+  // the weight of the samples so far relative to that of later ones, which have less variance.
+  std::optional<double> endPass(uint32_t done);
 
  private:
   Guiding guiding_;
