@@ -345,16 +345,16 @@ TEST(SlowCommandRender, AdaptiveRendersTakeTheRequestedMean) {
 TEST(CommandRender, GuidesOnlyTheLightSamplesOfImportance) {
   const RenderScene scene;
   const auto arguments = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = {"render",  scene.model, "--probe", scene.gradient, "--size",
-                                    "16x12",   "--samples", "8",       "-o",           scene.out / "a.exr",
-                                    "--stats", scene.out / "a.json"};
+    std::vector<std::string> all = {
+        "render",    scene.model, "--probe", scene.gradient,      "--size",  "16x12",
+        "--samples", "8",         "-o",      scene.out / "a.exr", "--stats", scene.out / "a.json"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
   expectError(arguments({"--guide", "on", "--strategy", "suns"}), "--guide: ");
   expectError(arguments({"--guide", "always"}), "`always`");
-  scene.render({"--probe", scene.gradient, "--size", "16x12", "--samples", "8", "--strategy", "suns",
-                "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
+  scene.render({"--probe", scene.gradient, "--size", "16x12", "--samples", "8", "--strategy",
+                "suns", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
   EXPECT_FALSE(scene.stats("a.json")["guided"].get<bool>());
 }
 

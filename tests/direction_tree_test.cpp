@@ -30,7 +30,8 @@ SphereTest test(const DirectionTree& tree) {
   const auto draw = [&](int i) -> std::optional<vec3> {
     return tree.sample({random(uint64_t(i), 5), random(uint64_t(i), 6)}).direction;
   };
-  return testDirections(draw, [&](const vec3& w) { return double(tree.pdf(w)); }, 200'000, 5);
+  return testDirections(
+      draw, [&](const vec3& w) { return double(tree.pdf(w)); }, 200'000, 5);
 }
 
 TEST(SlowDirectionTree, SamplesFollowThePdf) {

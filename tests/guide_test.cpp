@@ -149,8 +149,7 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
     EXPECT_EQ(r.guidedRegions > 0, seed % 2 == 1);
     const Image mean = r.film.mean();
     for (int i = 0; i < kSize * kSize; ++i)
-      (seed % 2 ? guided : plain)[size_t(i)].push_back(
-          luminance(mean.rgb(i % kSize, i / kSize)));
+      (seed % 2 ? guided : plain)[size_t(i)].push_back(luminance(mean.rgb(i % kSize, i / kSize)));
   }
   double lowest = 1;
   std::vector<double> ratios;
@@ -163,7 +162,6 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
   // The mean over all pixels is much more precise than any pixel.
   const Moments all = Moments::of(ratios);
   EXPECT_GT(tTest(all, 1), 1e-3) << all.mean;
-
 }
 
 // At equal samples; guided light samples take up to 1.7 times the time.
@@ -209,8 +207,7 @@ TEST(Guide, IsNotUsedInTheOpen) {
   const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
   const Probe probe(named.probe);
   const auto rendered = [&](Guiding guiding) {
-    return renderScene(named.scene, camera, probe, "importance",
-                       guidedRender(60, 40, 32, guiding));
+    return renderScene(named.scene, camera, probe, "importance", guidedRender(60, 40, 32, guiding));
   };
   const RenderResult automatic = rendered(Guiding::Auto);
   EXPECT_EQ(automatic.guidedRegions, 0u);
@@ -233,8 +230,8 @@ TEST(Guide, TheNumberOfThreadsChangesNothing) {
 
 TEST(Guide, HasNoEffectUnderABlackProbe) {
   const Probe black(constantProbe({8, 4}, Rgb(0)));
-  const RenderResult r = renderScene(room(), inside(), black, "importance",
-                                     guidedRender(20, 15, 16, Guiding::On));
+  const RenderResult r =
+      renderScene(room(), inside(), black, "importance", guidedRender(20, 15, 16, Guiding::On));
   EXPECT_EQ(r.guidedRegions, 0u);
   EXPECT_EQ(meanColor(r.film.mean()), Rgb(0));
 }

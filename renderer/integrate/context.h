@@ -41,7 +41,7 @@ struct PathContext {
   // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.
   bool shadowsDiffer = false;
   std::vector<LightRecord>* lightRecords = nullptr;  // output, for the guide; null: not wanted
-  RayLog* log = nullptr;  // null: no log
+  RayLog* log = nullptr;                             // null: no log
 
   // `passed`: transmittance of the shadow ray.
   void addRecord(LightRecord record, const Rgb& passed = Rgb(1)) const {

@@ -28,7 +28,7 @@ struct Vertex {
 struct DeferredLight {
   DirectionSample sample{};  // input: the strategy's light sample; pdf 0: none
   bool hasShadowRay = false;
-  Ray shadowRay{};  // output
+  Ray shadowRay{};       // output
   Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
   LightRecord record{};  // likewise; only if the context wants records
 

@@ -16,9 +16,9 @@ namespace chromeball {
 // The state of a path before its next vertex.
 struct PathState {
   Ray ray;
-  Rgb radiance{0};    // accumulated so far
-  Rgb throughput{1};  // weight of the radiance found at the next vertex
-  LightPoint from{};  // origin of the ray; unused for camera rays
+  Rgb radiance{0};                      // accumulated so far
+  Rgb throughput{1};                    // weight of the radiance found at the next vertex
+  LightPoint from{};                    // origin of the ray; unused for camera rays
   const GuideRegion* region = nullptr;  // of the guide, at `from`; null: not guided there
   Rgb throughputBefore{1};              // the bounce at `from`
   // The ray comes from the camera or a delta lobe: light sampling could not find its direction.

@@ -15,9 +15,9 @@ struct PathSettings {
   Mis mis = Mis::Balance;
   int maxDepth = 8;  // 0: emission seen by the camera; 1: direct light; ...
   int maxTransmissionDepth =
-      kDefaultTransmissionDepth;    // bounces in solid glass; not counted in maxDepth
-  bool hideProbe = false;           // from the camera
-  bool estimateDepthCut = true;     // estimate the light beyond the depth limits
+      kDefaultTransmissionDepth;  // bounces in solid glass; not counted in maxDepth
+  bool hideProbe = false;         // from the camera
+  bool estimateDepthCut = true;   // estimate the light beyond the depth limits
   // For strategies that take one light sample (LightingStrategy::takesOneSample()); null: none.
   const LightGuide* guide = nullptr;
   RayMask visible = kAllInstances;  // all rays of the paths ignore other instances

@@ -22,8 +22,8 @@ struct RenderResult {
   DepthCut depthCut;
   InvalidSamples invalid;
   ClampedSamples clamped;
-  uint32_t samples = 0;   // mean per pixel; 0 where the first pass was interrupted
-  bool adaptive = false;  // whether pixels took different numbers of samples
+  uint32_t samples = 0;      // mean per pixel; 0 where the first pass was interrupted
+  bool adaptive = false;     // whether pixels took different numbers of samples
   size_t guidedRegions = 0;  // of the light guide; 0: light samples were not guided
   bool interrupted = false;
 };

@@ -20,7 +20,7 @@ struct RenderSettings {
   // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
   bool adaptive = true;
   Guiding guiding = Guiding::Auto;  // of light samples; not in composites
-  int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
+  int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;

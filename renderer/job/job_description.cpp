@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 // Rows that are excluded: paths (contents are compared instead), and settings that a comparison
 // varies.
-constexpr std::array kNotOfTheIdentity = {"scene",       "probe",      "files",   "strategy",
-                                          "noise-limit", "time-limit", "adaptive",   "guide"};
+constexpr std::array kNotOfTheIdentity = {"scene",       "probe",      "files",    "strategy",
+                                          "noise-limit", "time-limit", "adaptive", "guide"};
 
 Json toJson(const SettingValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;

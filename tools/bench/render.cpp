@@ -3,10 +3,6 @@
 // rays replayed by Embree alone. CHROMEBALL_PROBE replaces the default probe, a studio.
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <memory>
-
-#include "integrate/path_batch.h"
 #include "integrate/render.h"
 #include "scene.h"
 
@@ -14,31 +10,6 @@ BENCHMARK_MAIN();
 
 namespace chromeball {
 namespace {
-
-constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel
-
-// Traces the paths of the whole image on this thread, as a render does; `log` may be null.
-Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
-  const PathTracer tracer = s.tracer();
-  const auto batch = std::make_unique<PathBatch>();
-  std::array<std::optional<Hit>, kTraced> hits;
-  const std::array<uint32_t, kTraced> keys{};
-  return sumOverPixels(
-      s.scene.cameras.front(), kTraced,
-      [&](std::span<const Ray> rays, PathContext& context) {
-        s.world.accel.intersect(rays, keys, Accel::Coherence::High, hits);
-        batch->clear();
-        for (size_t i = 0; i < rays.size(); ++i) {
-          if (log) log->rays.push_back({rays[i], false});
-          batch->add(PathState{rays[i]}, hits[i]);
-        }
-        batch->trace(tracer, 0, context);
-        Rgb sum(0);
-        for (size_t i = 0; i < rays.size(); ++i) sum += batch->radiance(i);
-        return sum;
-      },
-      log);
-}
 
 void render(benchmark::State& state, demo::Finish finish) {
   const BenchmarkScene& s = BenchmarkScene::get(finish);
@@ -99,6 +70,7 @@ BENCHMARK_CAPTURE(overhead, lambertian, demo::Finish::Lambertian)
 BENCHMARK_CAPTURE(overhead, conductors, demo::Finish::Conductors)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK_CAPTURE(overhead, fine, demo::Finish::Fine)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace chromeball

@@ -3,12 +3,14 @@
 // replaces the default probe, a studio.
 #pragma once
 
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 
 #include "demo/still_life.h"
-#include "integrate/path.h"
+#include "integrate/path_batch.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
@@ -39,7 +41,10 @@ struct BenchmarkScene {
   static const BenchmarkScene& get(demo::Finish finish) {
     static const BenchmarkScene lambertian(load(demo::Finish::Lambertian));
     static const BenchmarkScene conductors(load(demo::Finish::Conductors));
-    return finish == demo::Finish::Lambertian ? lambertian : conductors;
+    static const BenchmarkScene fine(load(demo::Finish::Fine));
+    return finish == demo::Finish::Lambertian ? lambertian
+           : finish == demo::Finish::Fine     ? fine
+                                              : conductors;
   }
 
   static Scene load(demo::Finish finish) {
@@ -88,6 +93,31 @@ Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance) {
     }
     return sum;
   });
+}
+
+inline constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel of traceImage()
+
+// Traces the paths of the whole image on this thread, as a render does; `log` may be null.
+inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
+  const PathTracer tracer = s.tracer();
+  const auto batch = std::make_unique<PathBatch>();
+  std::array<std::optional<Hit>, kTraced> hits;
+  const std::array<uint32_t, kTraced> keys{};
+  return sumOverPixels(
+      s.scene.cameras.front(), kTraced,
+      [&](std::span<const Ray> rays, PathContext& context) {
+        s.world.accel.intersect(rays, keys, Accel::Coherence::High, hits);
+        batch->clear();
+        for (size_t i = 0; i < rays.size(); ++i) {
+          if (log) log->rays.push_back({rays[i], false});
+          batch->add(PathState{rays[i]}, hits[i]);
+        }
+        batch->trace(tracer, 0, context);
+        Rgb sum(0);
+        for (size_t i = 0; i < rays.size(); ++i) sum += batch->radiance(i);
+        return sum;
+      },
+      log);
 }
 
 // CPU time of this thread.

@@ -15,14 +15,11 @@ namespace {
 
 using chromeball::demo::Finish;
 
-const std::map<std::string, Finish> kFinishes = {{"still-life", Finish::Demo},
-                                                 {"lambertian", Finish::Lambertian},
-                                                 {"conductors", Finish::Conductors},
-                                                 {"glass", Finish::Glass},
-                                                 {"plastics", Finish::Plastics},
-                                                 {"room", Finish::Room},
-                                                 {"caustics", Finish::Caustics},
-                                                 {"fine", Finish::Fine}};
+const std::map<std::string, Finish> kFinishes = {
+    {"still-life", Finish::Demo},       {"lambertian", Finish::Lambertian},
+    {"conductors", Finish::Conductors}, {"glass", Finish::Glass},
+    {"plastics", Finish::Plastics},     {"room", Finish::Room},
+    {"caustics", Finish::Caustics},     {"fine", Finish::Fine}};
 
 }  // namespace
 

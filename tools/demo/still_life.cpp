@@ -56,19 +56,10 @@ std::vector<Object> stillLife(bool fine) {
 // A mirror and a golden ball on a diffuse ground, which their reflections light.
 std::vector<Object> causticBalls() {
   const dvec3 x(1, 0, 0), z(0, 0, 1);
-  return {{"ground", tessellate(2, 2, patch({-4, 0, 4}, 8.0 * x, -8.0 * z)), {0.5f, 0.5f, 0.5f}},
-          {"mirror",
-           tessellate(112, 56, ball({-0.7, 0.6, 0}, 0.6)),
-           {0.95f, 0.95f, 0.95f},
-           1,
-           0,
-           0},
-          {"gold",
-           tessellate(112, 56, ball({0.7, 0.6, 0.1}, 0.6)),
-           {1, 0.71f, 0.29f},
-           1,
-           0.1f,
-           0}};
+  return {
+      {"ground", tessellate(2, 2, patch({-4, 0, 4}, 8.0 * x, -8.0 * z)), {0.5f, 0.5f, 0.5f}},
+      {"mirror", tessellate(112, 56, ball({-0.7, 0.6, 0}, 0.6)), {0.95f, 0.95f, 0.95f}, 1, 0, 0},
+      {"gold", tessellate(112, 56, ball({0.7, 0.6, 0.1}, 0.6)), {1, 0.71f, 0.29f}, 1, 0.1f, 0}};
 }
 
 // Walls of 9.5 by 6 by 4.5 m around the table and the camera, seen from inside. The window on the

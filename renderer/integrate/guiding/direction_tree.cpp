@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxDepth = 10;              // 2^-20 of the sphere, less than the Sun's disc
 constexpr double kLargestFraction = 0.01;  // of the whole weight, in a square that is not divided
-constexpr size_t kMinPoints = 24;           // in a square that is divided
+constexpr size_t kMinPoints = 24;          // in a square that is divided
 // Of a square's weight, spread evenly over its quarters: few points do not prove that a direction
 // is dark.
 constexpr double kSpread = 0.03;
@@ -20,8 +20,9 @@ constexpr size_t kMaxNodes = 4096;  // keeps indices in 16 bits
 // the density by that of the interval relative to equal probabilities.
 int choose(float p, float& u, float& density) {
   const int side = u >= p;
-  const float probability = side ? 1 - p : p;
-  u = std::min((side ? u - p : u) / probability, 0x1.fffffep-1f);
+  const float s = float(side);  // without branches, which could not be predicted
+  const float probability = s + (1 - 2 * s) * p;
+  u = std::min((u - s * p) / probability, 0x1.fffffep-1f);
   density *= 2 * probability;
   return side;
 }
@@ -64,8 +65,7 @@ DirectionTree::DirectionTree(std::span<Point> points) {
 }
 
 // Sets the last node, and appends its descendants.
-void DirectionTree::divide(std::span<Point> points, const Square& square, int depth,
-                           double total) {
+void DirectionTree::divide(std::span<Point> points, const Square& square, int depth, double total) {
   const size_t index = nodes_.size() - 1;
   const float half = square.size / 2;
   const auto quarters = quarter(points, square.corner + half);
@@ -83,8 +83,8 @@ void DirectionTree::divide(std::span<Point> points, const Square& square, int de
       continue;
     nodes_[index].children[i] = uint16_t(nodes_.size());
     nodes_.emplace_back();
-    divide(quarters[i], {square.corner + half * vec2(float(i & 1), float(i >> 1)), half},
-           depth + 1, total);
+    divide(quarters[i], {square.corner + half * vec2(float(i & 1), float(i >> 1)), half}, depth + 1,
+           total);
   }
 }
 

@@ -39,9 +39,9 @@ class DirectionTree {
 
  private:
   struct Node {
-    float left = 0.5f;                        // probability of x < 1/2
-    std::array<float, 2> lower{0.5f, 0.5f};   // of y < 1/2, in the left and in the right half
-    std::array<uint16_t, 4> children{};       // of the quarters x + 2 y; 0: constant density
+    float left = 0.5f;                       // probability of x < 1/2
+    std::array<float, 2> lower{0.5f, 0.5f};  // of y < 1/2, in the left and in the right half
+    std::array<uint16_t, 4> children{};      // of the quarters x + 2 y; 0: constant density
   };
   struct Square {
     vec2 corner;

@@ -15,8 +15,8 @@ namespace chromeball {
 enum class Guiding { Off, On, Auto };
 
 // The first passes of a render are its training. What is learned does not depend on the number of
-// threads, because the records are kept by tile. Some kMaxRecords, at most twice as many, are taken,
-// from pixels chosen at random if the image is large. They take 220 MB at most.
+// threads, because the records are kept by tile. Some kMaxRecords, at most twice as many, are
+// taken, from pixels chosen at random if the image is large. They take 220 MB at most.
 class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20;

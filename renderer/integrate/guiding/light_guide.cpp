@@ -12,7 +12,7 @@ namespace chromeball {
 namespace {
 
 constexpr uint32_t kSides = 6, kLeaf = 3;
-constexpr size_t kMinRecords = 1000;  // of a region
+constexpr size_t kMinRecords = 1000;                                 // of a region
 constexpr std::array kFractions = {1.0f, 0.5f, 0.25f, 0.1f, 0.02f};  // of the strategy's samples
 // A guided light sample takes up to twice the time.
 constexpr double kMaxMomentRatio = 0.7;
@@ -31,8 +31,8 @@ DirectionTree treeOf(Records records, size_t step) {
   std::vector<DirectionTree::Point> points;
   points.reserve(records.size() / step + 1);
   for (size_t i = 0; i < records.size(); i += step)
-    points.push_back({uniformSphereToSquare(records[i].direction),
-                      records[i].integrand / records[i].density});
+    points.push_back(
+        {uniformSphereToSquare(records[i].direction), records[i].integrand / records[i].density});
   return DirectionTree(points);
 }
 
@@ -45,8 +45,8 @@ void addMoments(Records records, const DirectionTree& tree,
     const float treePdf = tree.pdf(r.direction);
     const double squared = double(r.integrand) * r.integrand / r.density;
     for (size_t i = 0; i < kFractions.size(); ++i)
-      moments[i] += squared / (kFractions[i] * r.strategyPdf + (1 - kFractions[i]) * treePdf +
-                               r.bsdfPdf);
+      moments[i] +=
+          squared / (kFractions[i] * r.strategyPdf + (1 - kFractions[i]) * treePdf + r.bsdfPdf);
   }
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "integrate/guiding/direction_tree.h"
-#include "lighting/strategy.h"
 
 namespace chromeball {
 
