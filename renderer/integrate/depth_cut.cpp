@@ -3,6 +3,7 @@
 
 #include <climits>
 #include <cmath>
+#include <utility>
 
 #include "integrate/path.h"
 
@@ -29,11 +30,13 @@ namespace chromeball {
   rest.first = nullptr;
   rest.deferred = nullptr;
   const RayCounts counted = context.counts;
+  const auto records = std::exchange(context.lightRecords, nullptr);
   const auto found = [&](const PathSettings& settings) {
     return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));
   };
   const float cut = found(farther) - found(limited);
   context.counts = counted;
+  context.lightRecords = records;
   context.sampler.startVertex(state.depth);
   if (std::isfinite(cut))
     context.depthCut.add(state.bounces() == settings_.maxDepth, kInterval * cut);

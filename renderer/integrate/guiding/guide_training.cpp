@@ -21,7 +21,7 @@ constexpr size_t kEnough = 20'000;  // records that prove the latter
 GuideTraining::GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, size_t tiles)
     : guiding_(samples < kMinSamples ? Guiding::Off : guiding),
       lastSample_(std::clamp(samples / 4, 4u, kTraining)),
-      maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles, 64)),
+      maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles, 8)),
       pixelFraction_(double(kMaxRecords) / (kRecordsPerSample * double(pixels) * lastSample_)),
       records_(tiles) {}
 
