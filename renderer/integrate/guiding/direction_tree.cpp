@@ -38,8 +38,8 @@ int halve(float& x) {
 template <class Points>
 std::array<Points, 4> quarter(const Points& points, const vec2& middle) {
   const auto divided = [](const Points& all, auto&& isFirst) {
-    const auto middle = std::partition(all.begin(), all.end(), isFirst);
-    return std::array{Points(all.begin(), middle), Points(middle, all.end())};
+    const auto second = std::partition(all.begin(), all.end(), isFirst);
+    return std::array{Points(all.begin(), second), Points(second, all.end())};
   };
   std::array<Points, 4> quarters;
   const auto rows = divided(points, [&](const auto& p) { return p.position.y < middle.y; });
