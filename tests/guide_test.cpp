@@ -137,10 +137,11 @@ RenderSettings guidedRender(int width, int height, uint32_t samples, Guiding gui
 }
 
 TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
-  constexpr int kSeeds = 24, kSize = 20;
+  constexpr int kSeeds = 12, kSize = 48;
   const Scene scene = room();
   const Probe probe = sunBehind();
   std::vector<std::vector<double>> plain(kSize * kSize), guided(kSize * kSize);
+  std::vector<double> means[2];
   for (uint64_t seed = 0; seed < 2 * kSeeds; ++seed) {
     RenderSettings settings =
         guidedRender(kSize, kSize, 64, seed % 2 ? Guiding::On : Guiding::Off, seed);
@@ -148,20 +149,18 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
     const RenderResult r = renderScene(scene, inside(), probe, "importance", settings);
     EXPECT_EQ(r.guidedRegions > 0, seed % 2 == 1);
     const Image mean = r.film.mean();
+    means[seed % 2].push_back(luminance(meanColor(mean)));
     for (int i = 0; i < kSize * kSize; ++i)
       (seed % 2 ? guided : plain)[size_t(i)].push_back(luminance(mean.rgb(i % kSize, i / kSize)));
   }
   double lowest = 1;
-  std::vector<double> ratios;
   for (size_t i = 0; i < kSize * kSize; ++i) {
     const Moments a = Moments::of(guided[i]), b = Moments::of(plain[i]);
     if (a.variance > 0 || b.variance > 0) lowest = std::min(lowest, welchTest(a, b));
-    ratios.push_back(a.mean / b.mean);
   }
   EXPECT_GT(lowest, sidak(1e-3, kSize * kSize));
-  // The mean over all pixels is much more precise than any pixel.
-  const Moments all = Moments::of(ratios);
-  EXPECT_GT(tTest(all, 1), 1e-3) << all.mean;
+  // The means of whole images are much more precise than any pixel.
+  EXPECT_GT(welchTest(Moments::of(means[0]), Moments::of(means[1])), 1e-3);
 }
 
 // At equal samples; guided light samples take up to 1.7 times the time.
@@ -175,18 +174,19 @@ TEST(SlowGuide, ReducesTheVarianceInARoom) {
       EXPECT_EQ(r.guidedRegions > 0, guiding == Guiding::Auto);
       squared[guiding == Guiding::Auto] += r.film.noise().noise * r.film.noise().noise;
     }
-  EXPECT_LT(squared[1], squared[0] / 3);
+  EXPECT_LT(squared[1], squared[0] / 2.5);
 }
 
 // Images of independent seeds scatter as much as `noise` says.
 TEST(SlowGuide, NoiseIsThatOfGuidedRenders) {
-  constexpr int kSeeds = 32, kSize = 24;
+  constexpr int kSeeds = 32, kSize = 48;
   const Scene scene = room();
   std::vector<std::vector<double>> values(kSize * kSize);
   std::vector<double> estimated(kSize * kSize);
   for (uint64_t seed = 0; seed < kSeeds; ++seed) {
     const RenderResult r = renderScene(scene, inside(), sunBehind(), "importance",
                                        guidedRender(kSize, kSize, 32, Guiding::On, seed));
+    EXPECT_GT(r.guidedRegions, 0u);
     const PixelErrors errors = r.film.errors();
     for (size_t i = 0; i < kSize * kSize; ++i) {
       values[i].push_back(errors.luminances[i]);

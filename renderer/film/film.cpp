@@ -2,9 +2,21 @@
 #include "film/film.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace chromeball {
+
+namespace {
+
+// Sum of (x - mean)^2 with Bessel's correction.
+glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& sum, double count) {
+  if (count < 2) return glm::dvec4(0);
+  const glm::dvec4 mean(sum / count, luminance(sum / count));
+  return glm::max(sumOfSquares - count * mean * mean, 0.0) * (count / (count - 1));
+}
+
+}  // namespace
 
 Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(size_t(width) * size_t(height)) {}
@@ -21,14 +33,30 @@ void Film::add(int x, int y, int half, const SampleSums& samples) {
   p.sumOfSquares += samples.sumOfSquares;
 }
 
-void Film::weigh(double factor) {
+void Film::weigh(double weight) {
+  assert(early_.empty());
+  early_.reserve(pixels_.size());
   for (Pixel& p : pixels_) {
+    const glm::dvec4 deviations =
+        squaredDeviations(p.sumOfSquares, p.sums[0] + p.sums[1], p.count());
     for (size_t half = 0; half < kHalves; ++half) {
-      p.weights[half] *= factor;
-      p.sums[half] *= factor;
+      p.weights[half] *= weight;
+      p.sums[half] *= weight;
     }
-    p.sumOfSquares *= factor;
+    early_.push_back({p.count(), p.sums[0] + p.sums[1], weight * weight * deviations});
+    p.sumOfSquares = glm::dvec4(0);
   }
+}
+
+// The squared standard error of the mean if the samples were independent: sum of
+// (weight (x - mean))^2 over the squared sum of weights. Early and later samples have their own
+// means here.
+glm::dvec4 Film::scatter(size_t pixel) const {
+  const Pixel& p = pixels_[pixel];
+  const Early early = early_.empty() ? Early{} : early_[pixel];
+  const glm::dvec4 later = squaredDeviations(p.sumOfSquares, p.sums[0] + p.sums[1] - early.sum,
+                                             double(p.count() - early.count));
+  return (early.squaredDeviations + later) / (p.weight() * p.weight());
 }
 
 Image Film::mean() const {
@@ -56,14 +84,12 @@ PixelErrors Film::errors() const {
     errors.luminances.push_back(luminance(p.mean()));
     if (p.counts[0] == 0 || p.counts[1] == 0) continue;
     const double w0 = p.weights[0], w1 = p.weights[1], w = w0 + w1;
-    const glm::dvec3 rgb = p.mean();
     const glm::dvec3 difference = p.sums[0] / w0 - p.sums[1] / w1;
-    const glm::dvec4 mean(rgb, luminance(rgb));
     const glm::dvec4 differences(difference, luminance(difference));
     // Weights are inverse variances. Then
     //   Var(mean of all samples) = w0 w1 / w^2 Var(difference of the means of the halves).
     errors.halves[i] = differences * differences * (w0 * w1 / (w * w));
-    errors.scatter[i] = glm::max(p.sumOfSquares / w - mean * mean, 0.0) / double(p.count() - 1);
+    errors.scatter[i] = scatter(i);
   }
   return errors;
 }

@@ -45,8 +45,8 @@ class Film {
 
   // Thread-safe for different pixels.
   void add(int x, int y, int half, const SampleSums& samples);
-  // Multiplies the weight of all samples so far, which is 1 at first.
-  void weigh(double factor);
+  // Sets the weight of all samples so far, which is 1 at first; at most once.
+  void weigh(double weight);
 
   Image mean() const;          // RGB radiance
   Image sampleCounts() const;  // one channel
@@ -58,17 +58,26 @@ class Film {
  private:
   struct Pixel {
     std::array<uint32_t, kHalves> counts{};
-    std::array<double, kHalves> weights{};  // sums over the samples, like those below
+    std::array<double, kHalves> weights{};  // sum over the samples
     std::array<glm::dvec3, kHalves> sums{};
-    glm::dvec4 sumOfSquares{0};
+    glm::dvec4 sumOfSquares{0};  // since weigh()
 
     uint32_t count() const { return counts[0] + counts[1]; }
     double weight() const { return weights[0] + weights[1]; }
     glm::dvec3 mean() const;
   };
 
+  // The samples of a pixel before weigh().
+  struct Early {
+    uint32_t count;
+    glm::dvec3 sum;                // weighted
+    glm::dvec4 squaredDeviations;  // sum over the samples of (weight (x - mean))^2
+  };
+  glm::dvec4 scatter(size_t pixel) const;
+
   int width_, height_;
   std::vector<Pixel> pixels_;
+  std::vector<Early> early_;  // empty before weigh()
 };
 
 }  // namespace chromeball

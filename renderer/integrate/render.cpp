@@ -78,7 +78,7 @@ class Renderer {
     const Beam beam = beamOfPass(wanted);
     const int columns = tilesAlong(settings_.width);
     const int tiles = columns * tilesAlong(settings_.height);
-    const bool trains = training_ && training_->includes(done, wanted);
+    const bool trains = training_ && training_->startPass(done, wanted);
     std::atomic<int> finished = 0;
     std::mutex reporting;
     tbb::parallel_for(
@@ -100,7 +100,7 @@ class Renderer {
         },
         tbb::simple_partitioner());
     if (trains && !stop)
-      if (const auto weight = training_->endPass(wanted)) result_.film.weigh(*weight);
+      if (const auto weight = training_->endPass()) result_.film.weigh(*weight);
   }
 
   void gather() {

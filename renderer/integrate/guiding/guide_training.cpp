@@ -9,7 +9,7 @@ namespace chromeball {
 namespace {
 
 constexpr uint32_t kMinSamples = 8;      // per pixel of a render that is guided
-constexpr uint32_t kTraining = 16;       // samples per pixel; at most a quarter of the render
+constexpr uint32_t kTraining = 16;       // samples per pixel; a quarter of the render, 4 to this
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
 // Ratio of second moments with and without the guide: below, `Auto` guides; above, there is nothing
 // to gain.
@@ -25,8 +25,10 @@ GuideTraining::GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, s
       pixelFraction_(double(kMaxRecords) / (kRecordsPerSample * double(pixels) * lastSample_)),
       records_(tiles) {}
 
-bool GuideTraining::includes(uint32_t done, uint32_t wanted) const {
-  return guiding_ != Guiding::Off && done < lastSample_ && wanted <= lastSample_;
+bool GuideTraining::startPass(uint32_t done, uint32_t wanted) {
+  if (guiding_ != Guiding::Off && done < lastSample_ && wanted <= lastSample_) return true;
+  records_ = {};
+  return false;
 }
 
 std::vector<LightRecord>* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
@@ -34,20 +36,21 @@ std::vector<LightRecord>* GuideTraining::recordsOf(size_t tile, uint64_t pixel) 
   return chosen && records_[tile].size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
 }
 
-std::optional<double> GuideTraining::endPass(uint32_t done) {
-  const bool wasGuiding = guide_.guidedRegions() > 0;
+std::optional<double> GuideTraining::endPass() {
+  size_t count = 0;
+  for (const auto& some : records_) count += some.size();
   std::vector<LightRecord> all;
+  all.reserve(count);
   for (const auto& some : records_) all.insert(all.end(), some.begin(), some.end());
-  const size_t count = all.size();
   guide_.learn(std::move(all));
   const GuideRegion::Moments moments = guide_.moments();
   const double ratio = moments.without > 0 ? moments.with / moments.without : 1;
-  if (guiding_ == Guiding::Auto && ratio > kWorthwhile) {
+  if (guiding_ == Guiding::Auto && !hasBegun_ && ratio > kWorthwhile) {
     guide_.forget();
     if (count >= kEnough) guiding_ = Guiding::Off;
   }
-  if (done >= lastSample_ || guiding_ == Guiding::Off) records_.clear();
-  if (wasGuiding || guide_.guidedRegions() == 0) return {};
+  if (hasBegun_ || guide_.guidedRegions() == 0) return {};
+  hasBegun_ = true;
   return ratio;
 }
 

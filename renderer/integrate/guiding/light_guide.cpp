@@ -12,7 +12,8 @@ namespace chromeball {
 namespace {
 
 constexpr uint32_t kSides = 6, kLeaf = 3;
-constexpr size_t kMinRecords = 1000;                                 // of a region
+constexpr size_t kMinRecords = 1000;  // of a region that is the half of another
+constexpr size_t kMinToGuide = 100;   // fewer leave light that none of them found to fireflies
 constexpr std::array kFractions = {1.0f, 0.5f, 0.25f, 0.1f, 0.02f};  // of the strategy's samples
 // A guided light sample takes up to twice the time.
 constexpr double kMaxMomentRatio = 0.7;
@@ -55,7 +56,7 @@ void addMoments(Records records, const DirectionTree& tree,
 // Each half of the records judges the tree of the other half: a tree seems better than it is on
 // the records that it was made of.
 GuideRegion::GuideRegion(std::span<const LightRecord> records) {
-  if (records.size() < 2) return;
+  if (records.size() < kMinToGuide) return;
   std::array<double, kFractions.size()> moments{};
   addMoments(records, treeOf(records.subspan(1), 2), moments);
   addMoments(records.subspan(1), treeOf(records, 2), moments);
