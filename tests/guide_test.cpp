@@ -265,7 +265,7 @@ TEST(Film, WeighsSamples) {
   EXPECT_NEAR(measured.mean, 10, 5 * std::sqrt(measured.variance / kPixels));
   EXPECT_NEAR(measured.variance * (kNoisy / 9.0 + kQuiet), 1, 0.1);
   EXPECT_NEAR(halves / measured.variance, 1, 0.1);
-  EXPECT_NEAR(scatter / measured.variance, 1, 0.3);  // calibrated by the halves (film/noise.h)
+  EXPECT_NEAR(scatter / measured.variance, 1, 0.1);
   EXPECT_EQ(film.sampleCounts().texels[0], float(kNoisy + kQuiet));
 }
 

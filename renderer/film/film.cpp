@@ -6,7 +6,6 @@
 #include <limits>
 
 namespace chromeball {
-
 namespace {
 
 // Sum of (x - mean)^2 with Bessel's correction.

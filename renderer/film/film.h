@@ -50,7 +50,7 @@ class Film {
 
   Image mean() const;          // RGB radiance
   Image sampleCounts() const;  // one channel
-  static size_t bytesPerPixel() { return sizeof(Pixel); }
+  static size_t bytesPerPixel() { return sizeof(Pixel) + sizeof(Early); }  // at most
 
   PixelErrors errors() const;
   Noise noise() const { return estimateNoise(errors()); }

@@ -2,6 +2,7 @@
 // The mutable state of one thread that traces paths.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "film/aov.h"

@@ -99,7 +99,8 @@ void PathBatch::shade(Task& task) {
 }
 
 void PathBatch::completeGuided(Task& task) {
-  if (!task.tracer.settings().guide) return;
+  const LightGuide* guide = task.tracer.settings().guide;
+  if (!guide || guide->empty()) return;
   Indices guided;
   escapes_.size = 0;
   for (const uint32_t i : shaded_.all())

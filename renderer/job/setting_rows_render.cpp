@@ -84,8 +84,7 @@ void addRender(std::vector<Setting>& rows) {
            },
        .help = "Learns from which directions the probe lights each region, for light samples of "
                "`importance`: auto where that pays (rooms), on wherever it reduces the variance; "
-               "from 8 "
-               "samples per pixel.",
+               "from 8 samples per pixel.",
        .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",

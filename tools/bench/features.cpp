@@ -60,8 +60,8 @@ class LeanBatch {
 
   Rgb trace(std::span<const Ray> rays, PixelSampler& sampler) {
     sum_ = Rgb(0);
-    count_ = 0;
-    for (const Ray& ray : rays) paths_[count_++] = {uint32_t(count_), ray, Rgb(1), 0};
+    count_ = rays.size();
+    for (size_t i = 0; i < count_; ++i) paths_[i] = {uint32_t(i), rays[i], Rgb(1), 0};
     for (depth_ = 0; count_ > 0; ++depth_) {
       findHits();
       endEscaped();

@@ -38,7 +38,7 @@ class GuideTraining {
 
  private:
   Guiding guiding_;
-  bool hasBegun_ = false;  // from then on the guide only improves
+  bool hasBegun_ = false;  // from then on `Auto` keeps the guide
   uint32_t lastSample_;
   size_t maxRecordsOfTile_;
   double pixelFraction_;

@@ -68,8 +68,7 @@ GuideRegion::GuideRegion(std::span<const LightRecord> records) {
   tree_ = treeOf(records, 1);
 }
 
-const GuideRegion* LightGuide::find(const vec3& position, const vec3& normal) const {
-  if (nodes_.empty()) return nullptr;
+const GuideRegion* LightGuide::regionAt(const vec3& position, const vec3& normal) const {
   const Node* node = &nodes_[sideOf(normal)];
   while (node->axis != kLeaf)
     node = &nodes_[node->index + (position[int(node->axis)] >= node->split)];

@@ -63,8 +63,12 @@ class LightGuide {
   void learn(std::vector<LightRecord> records);
   void forget() { nodes_.clear(), regions_.clear(); }
 
+  // Whether nothing is guided: find() returns null everywhere.
+  bool empty() const { return nodes_.empty(); }
   // Null where the strategy alone is better.
-  const GuideRegion* find(const vec3& position, const vec3& normal) const;
+  const GuideRegion* find(const vec3& position, const vec3& normal) const {
+    return empty() ? nullptr : regionAt(position, normal);
+  }
 
   size_t guidedRegions() const;
   GuideRegion::Moments moments() const;  // of all regions
@@ -75,6 +79,7 @@ class LightGuide {
     uint32_t axis;   // kLeaf for a region
     uint32_t index;  // of the first child, which the second follows; or of the region
   };
+  const GuideRegion* regionAt(const vec3& position, const vec3& normal) const;
   using Records = std::span<LightRecord>;
   void divide(size_t node, Records records, std::vector<Records>& leaves);
 
