@@ -20,7 +20,7 @@ const std::vector<AovInfo>& allAovs() {
       {Aov::Depth, "depth", "Z"},         {Aov::Alpha, "alpha", "A"},
       {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
       {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
-      {Aov::Invalid, "invalid", "RGB"}};
+      {Aov::Invalid, "invalid", "RGB"},   {Aov::Denoise, "denoise", ""}};
   return infos;
 }
 
@@ -39,7 +39,7 @@ AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
     : width_(width), height_(height) {
   const size_t pixels = size_t(width) * height;
   for (Aov aov : wanted) {
-    if (aov == Aov::Variance || aov == Aov::Samples) continue;
+    if (aov == Aov::Variance || aov == Aov::Samples || aov == Aov::Denoise) continue;
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
     sums_.push_back({aov, channels, std::vector<double>(pixels * channels)});
   }

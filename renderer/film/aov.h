@@ -2,6 +2,7 @@
 // Arbitrary output variables (AOVs): additional layers of a render.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct FirstHit {
   Rgb albedo{0};    // base colour
   vec3 normal{0};   // unit shading normal, world space
   int material = -1, node = -1;
+  // Radiance found before the path's second scattering by a broad lobe; none: all of the path's.
+  std::optional<Rgb> direct;
 };
 
 // The names are those of the command line and of the EXR layers. Values per pixel:
@@ -28,7 +31,19 @@ struct FirstHit {
 //   material, node  index + 1, of the first sample with a hit (indices cannot be averaged); 0 if
 //                   none
 //   invalid         number of excluded samples: R NaN, G infinite, B negative
-enum class Aov { Albedo, Normal, Depth, Alpha, Variance, Samples, Material, Node, Invalid };
+//   denoise         what a denoiser reads: several layers (film/feature_film.h)
+enum class Aov {
+  Albedo,
+  Normal,
+  Depth,
+  Alpha,
+  Variance,
+  Samples,
+  Material,
+  Node,
+  Invalid,
+  Denoise
+};
 
 struct AovInfo {
   Aov aov;

@@ -66,6 +66,17 @@ Image Film::mean() const {
   return image;
 }
 
+Image Film::halfDifference() const {
+  Image image(width_, height_, 3);
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const Pixel& p = pixels_[size_t(y) * size_t(width_) + size_t(x)];
+      if (p.counts[0] > 0 && p.counts[1] > 0)
+        image.setRgb(x, y, Rgb((p.sums[0] / p.weights[0] - p.sums[1] / p.weights[1]) / 2.0));
+    }
+  return image;
+}
+
 Image Film::sampleCounts() const {
   Image image(width_, height_, 1);
   for (size_t i = 0; i < pixels_.size(); ++i) image.texels[i] = float(pixels_[i].count());

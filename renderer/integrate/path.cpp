@@ -206,6 +206,8 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     return true;
   }
   if (surface.material->emits()) state.radiance += foundEmission(state, surface, instance);
+  if (state.first && state.lobes != Lobes::Narrow && !state.first->direct) [[unlikely]]
+    state.first->direct = state.radiance;
   const bool ends = surface.material->unlit ||
                     (state.bounces() == settings_.maxDepth && !surface.material->isBody());
   const bool isFirst = state.first && state.depth == 0;
@@ -214,7 +216,8 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   const MaterialPoint material = materialAt(scene, surface);
   if (isFirst)
     *state.first = {true,           state.length,      material.baseColor,
-                    surface.normal, instance.material, instance.node};
+                    surface.normal, instance.material, instance.node,
+                    std::nullopt};
   if (ends) return passAtLimit(scene, state, instance, surface);
   if (surface.material->extended) [[unlikely]]
     return scatterLayered(state, instance, surface, material, context);

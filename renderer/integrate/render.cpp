@@ -100,7 +100,10 @@ class Renderer {
         },
         tbb::simple_partitioner());
     if (trains && !stop)
-      if (const auto weight = training_->endPass()) result_.film.weigh(*weight);
+      if (const auto weight = training_->endPass()) {
+        result_.film.weigh(*weight);
+        result_.features.weigh(*weight);
+      }
   }
 
   void gather() {
@@ -173,18 +176,18 @@ class Renderer {
       const uint32_t count = std::min(end - begin, table_.size() - first);
       worker.context.sampler.startPixel(uint32_t(x), uint32_t(y),
                                         Film::kHalves * uint64_t(table) + uint64_t(half));
-      result_.film.add(x, y, half, renderSamples(worker, x, y, first, first + count, beam));
+      result_.film.add(x, y, half, renderSamples(worker, x, y, half, first, first + count, beam));
       begin += count;
     }
   }
 
   // Takes samples [begin, end) of the sampler's table.
-  SampleSums renderSamples(Worker& worker, int x, int y, uint32_t begin, uint32_t end,
+  SampleSums renderSamples(Worker& worker, int x, int y, int half, uint32_t begin, uint32_t end,
                            const Beam& beam) {
     SampleSums sums;
     std::array<CameraSample, PathBatch::kMaxPaths> cameras;
     std::array<FirstHit, PathBatch::kMaxPaths> firsts;
-    const bool wantsFirst = !result_.aovs.empty();
+    const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
     for (uint32_t i = begin; i < end; i += PathBatch::kMaxPaths) {
       const size_t count = std::min<size_t>(end - i, PathBatch::kMaxPaths);
       for (size_t k = 0; k < count; ++k) {
@@ -198,13 +201,13 @@ class Renderer {
       }
       const auto taken = std::span(cameras).first(count);
       traceCameraRays(worker.context.sampler, x, y, i, taken);
-      renderBatch(worker, taken, i, sums);
+      renderBatch(worker, taken, half, i, sums);
     }
     return sums;
   }
 
-  void renderBatch(Worker& worker, std::span<const CameraSample> cameras, uint32_t firstSample,
-                   SampleSums& sums) {
+  void renderBatch(Worker& worker, std::span<const CameraSample> cameras, int half,
+                   uint32_t firstSample, SampleSums& sums) {
     std::array<Sample, PathBatch::kMaxPaths> samples;
     std::vector<Rgb>& layers = worker.context.layers;
     const bool hasLayers = !layers.empty();  // of one sample at a time
@@ -215,11 +218,12 @@ class Renderer {
         worker.context.sampler.startSample(firstSample + uint32_t(k));
         samples[k] = integrator_.sample(cameras[k], worker.context);
       }
-      add(worker, cameras[k], samples[k], sums);
+      add(worker, cameras[k], half, samples[k], sums);
     }
   }
 
-  void add(Worker& worker, const CameraSample& camera, const Sample& sample, SampleSums& sums) {
+  void add(Worker& worker, const CameraSample& camera, int half, const Sample& sample,
+           SampleSums& sums) {
     const int x = camera.x, y = camera.y;
     if (sample.defect) {
       worker.invalid.add(*sample.defect, x, y);
@@ -230,7 +234,9 @@ class Renderer {
     }
     if (camera.first) {
       camera.first->depth = cameraRays_.depth(camera.ray.direction, camera.first->depth);
-      result_.aovs.add(x, y, *camera.first);
+      if (!result_.aovs.empty()) result_.aovs.add(x, y, *camera.first);
+      if (!result_.features.empty() && !sample.defect)
+        result_.features.add(x, y, half, *camera.first, sample.radiance);
     }
   }
 
@@ -251,7 +257,9 @@ RenderResult renderAll(const Integrator& integrator, const World& world, const C
                        const Progress& progress, const std::atomic<bool>& stop) {
   RenderResult result{.film = Film(settings.width, settings.height),
                       .aovs = AovFilm(settings.width, settings.height, settings.aovs),
-                      .layers = LayerFilm(settings.width, settings.height, integrator.layers())};
+                      .layers = LayerFilm(settings.width, settings.height, integrator.layers()),
+                      .features = FeatureFilm(settings.width, settings.height,
+                                              std::ranges::count(settings.aovs, Aov::Denoise) > 0)};
   Schedule schedule(settings);
   Renderer renderer(integrator, world, camera, settings, training, result);
 

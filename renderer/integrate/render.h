@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "film/aov.h"
+#include "film/feature_film.h"
 #include "film/film.h"
 #include "film/layer_film.h"
 #include "integrate/integrator.h"
@@ -18,6 +19,7 @@ struct RenderResult {
   Film film;
   AovFilm aovs;
   LayerFilm layers;  // of the integrator
+  FeatureFilm features;  // empty unless Aov::Denoise is wanted
   RayCounts rays;
   DepthCut depthCut;
   InvalidSamples invalid;

@@ -17,6 +17,19 @@ Image withAlpha(const Image& color, const Image& alpha) {
   return image;
 }
 
+// The layers that `chromeball image denoise` reads.
+void addFeatures(const RenderResult& result, OutputImage& output) {
+  const auto add = [&](const std::string& name, const char* channels, HalvedImage image) {
+    output.layers.push_back({"denoise." + name, channels, std::move(image.mean)});
+    output.layers.push_back({"denoise." + name + "_half", channels, std::move(image.half)});
+  };
+  output.layers.push_back({"denoise.half", "RGB", result.film.halfDifference()});
+  add("direct", "RGB", result.features.direct());
+  add("albedo", "RGB", result.features.albedo());
+  add("normal", "XYZ", result.features.normal());
+  add("disparity", "Y", result.features.disparity());
+}
+
 OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
                      const Image& variance) {
   OutputImage output;
@@ -26,6 +39,10 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   else
     output.layers.push_back({"", "RGB", result.film.mean()});
   for (Aov aov : settings.aovs) {
+    if (aov == Aov::Denoise) {
+      addFeatures(result, output);
+      continue;
+    }
     const AovInfo& info = aovInfo(aov);
     output.layers.push_back({info.name, info.channels,
                              aov == Aov::Variance  ? variance

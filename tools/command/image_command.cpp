@@ -7,6 +7,7 @@ namespace chromeball {
 void addImageCommand(CLI::App& app) {
   CLI::App* image = app.add_subcommand("image", "View and compare images.");
   image->require_subcommand(1);
+  addImageDenoiseCommand(*image);
   addImageErrorCommand(*image);
   addImageViewCommand(*image);
 }

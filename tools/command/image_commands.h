@@ -6,6 +6,7 @@
 
 namespace chromeball {
 
+void addImageDenoiseCommand(CLI::App& image);
 void addImageErrorCommand(CLI::App& image);
 void addImageViewCommand(CLI::App& image);
 

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/filter.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "denoise/vector8.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kWidth = TileWeights::kWidth, kHeight = TileWeights::kHeight;
+
+// Calls visit(left, top) for all tiles. Tiles that run at the same time write to different pixels
+// (addRegressions()), and each pixel is written in the same order, whatever the number of threads.
+template <class Visit>
+void forTiles(int width, int height, const Visit& visit) {
+  constexpr int kColumnPhases = 2, kRowPhases = 2;
+  static_assert((kColumnPhases - 1) * kWidth >= 2 * TileWeights::kReach + kLanes);
+  static_assert((kRowPhases - 1) * kHeight >= 2 * TileWeights::kReach);
+  const auto along = [](int pixels, int size, int phase, int phases) {
+    return ((pixels + size - 1) / size - phase + phases - 1) / phases;
+  };
+  for (int phase = 0; phase < kColumnPhases * kRowPhases; ++phase) {
+    const int px = phase % kColumnPhases, py = phase / kColumnPhases;
+    const int columns = along(width, kWidth, px, kColumnPhases);
+    const int rows = along(height, kHeight, py, kRowPhases);
+    tbb::parallel_for(0, columns * rows, [&](int i) {
+      visit((i % columns * kColumnPhases + px) * kWidth, (i / columns * kRowPhases + py) * kHeight);
+    });
+  }
+}
+
+RgbPlanes finished(const Predictions& predictions) {
+  const Plane& weights = predictions.weights;
+  RgbPlanes result;
+  for (size_t c = 0; c < 3; ++c)
+    result[c] = makePlane(weights.width(), weights.height(), [&](int x, int y) {
+      return predictions.weighted[c].at(x, y) / weights.at(x, y);  // a pixel's own weight is 1
+    });
+  return result;
+}
+
+// Eight pixels from (x, y); `index` is that of the first in its tile.
+void average(const TileWeights& weights, size_t index, const std::vector<Plane>& channels, int x,
+             int y, std::vector<Plane>& means) {
+  Float8 sums[3]{}, weightSum{};
+  forNeighbours([&](size_t neighbour, int dx, int dy) {
+    const Float8 weight = load8(&weights[neighbour][index]);
+    for (size_t c = 0; c < channels.size(); ++c)
+      sums[c] += weight * load8(channels[c].row(y + dy) + x + dx);
+    weightSum += weight;
+  });
+  for (size_t c = 0; c < channels.size(); ++c) store8(means[c].row(y) + x, sums[c] / weightSum);
+}
+
+}  // namespace
+
+HalfChannels averageHalves(const HalfGuides& halves) {
+  const int width = halves[0].values[0].width(), height = halves[0].values[0].height();
+  HalfChannels results;
+  tbb::enumerable_thread_specific<TileWeights> tileWeights;
+  for (size_t half = 0; half < 2; ++half) {
+    const std::vector<Plane>& channels = halves[half].values;
+    std::vector<Plane>& means = results[half];
+    means.assign(channels.size(), Plane(width, height));
+    forTiles(width, height, [&](int left, int top) {
+      TileWeights& weights = tileWeights.local();
+      weights.compute(halves[1 - half], left, top);
+      for (int y = top; y < std::min(top + kHeight, height); ++y)
+        for (int x = left; x < std::min(left + kWidth, width); x += kLanes)
+          average(weights, size_t((y - top) * kWidth + x - left), channels, x, y, means);
+    });
+    for (Plane& mean : means) mean.extend();
+  }
+  return results;
+}
+
+HalfGuides guidesOf(const Component& component) {
+  HalfGuides guides;
+  for (size_t half = 0; half < 2; ++half)
+    for (size_t c = 0; c < 3; ++c) {
+      const Plane& variance = component.variance[c];
+      guides[half].values.push_back(component.halves[half][c]);
+      guides[half].variances.push_back(makePlane(
+          variance.width(), variance.height(),
+          [&](int x, int y) { return 2 * variance.at(x, y); }));  // half of the samples
+    }
+  return guides;
+}
+
+std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
+                                                 const HalfGuides& guides,
+                                                 const FeaturePlanes& features,
+                                                 const std::array<int, kBandwidths>& powers) {
+  const int width = component.variance[0].width(), height = component.variance[0].height();
+  std::array<HalfPlanes, kBandwidths> results;
+  tbb::enumerable_thread_specific<TileWeights> tileWeights;
+  for (size_t half = 0; half < 2; ++half) {
+    std::array<Predictions, kBandwidths> predictions{Predictions(width, height),
+                                                     Predictions(width, height)};
+    forTiles(width, height, [&](int left, int top) {
+      TileWeights& weights = tileWeights.local();
+      weights.compute(guides[1 - half], left, top);
+      for (size_t i = 0; i < kBandwidths; ++i)
+        addRegressions(weights, powers[i], component.halves[half], features, left, top,
+                       predictions[i]);
+    });
+    for (size_t i = 0; i < kBandwidths; ++i) results[i][half] = finished(predictions[i]);
+  }
+  return results;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cross filter: each half of a pixel's samples is filtered with weights from the other half, so
+// that the weights are independent of the noise that they average (Rousselle et al. 2012).
+#pragma once
+
+#include "denoise/regression.h"
+
+namespace chromeball {
+
+using HalfPlanes = std::array<RgbPlanes, 2>;
+
+// Part of the light of an image.
+struct Component {
+  HalfPlanes halves;
+  RgbPlanes variance;  // of the mean of both halves
+};
+
+// What weights[h] are computed from: half h.
+using HalfGuides = std::array<NoisyPlanes, 2>;
+
+HalfGuides guidesOf(const Component& component);
+
+// The weighted means of the channels of each half, with weights from the other.
+using HalfChannels = std::array<std::vector<Plane>, 2>;
+HalfChannels averageHalves(const HalfGuides& halves);
+
+constexpr int kBandwidths = 2;
+
+// The filtered halves for each power of the weights (addRegressions()). The result does not depend
+// on the number of threads.
+std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
+                                                 const HalfGuides& guides,
+                                                 const FeaturePlanes& features,
+                                                 const std::array<int, kBandwidths>& powers);
+
+}  // namespace chromeball

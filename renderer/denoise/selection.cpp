@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/selection.h"
+
+#include <cmath>
+
+namespace chromeball {
+namespace {
+
+constexpr int kErrorReach = 3;   // of the window over which errors are averaged
+constexpr int kChoiceReach = 2;  // and choices
+constexpr float kWindow = (2 * kErrorReach + 1) * (2 * kErrorReach + 1);
+
+// Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both are
+// known equally badly, and the filtered image is better.
+constexpr float kFilteredMargin = 0.5f, kUnfilteredMargin = 1.5f;
+
+float square(float x) { return x * x; }
+
+template <class Value>
+Plane makePlaneLike(const Plane& like, const Value& value) {
+  return makePlane(like.width(), like.height(), value);
+}
+
+Plane meanOf(const Plane& a, const Plane& b) {
+  return makePlaneLike(a, [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
+}
+
+float total(const RgbPlanes& planes, int x, int y) {
+  return planes[0].at(x, y) + planes[1].at(x, y) + planes[2].at(x, y);
+}
+
+// The index of the chosen candidate.
+Plane choose(const std::vector<Candidate>& candidates) {
+  const auto errorOf = [&](size_t i) {
+    return makePlaneLike(candidates[i].error[0],
+                         [&, i](int x, int y) { return total(candidates[i].error, x, y); });
+  };
+  Plane chosen = makePlaneLike(candidates[0].error[0], [](int, int) { return 0.0f; });
+  Plane error = errorOf(0);
+  for (size_t i = 1; i < candidates.size(); ++i) {
+    const Plane next = errorOf(i);
+    const Plane gain =
+        makePlaneLike(error, [&](int x, int y) { return error.at(x, y) - next.at(x, y); });
+    const Plane squared = makePlaneLike(gain, [&](int x, int y) { return square(gain.at(x, y)); });
+    const Plane mean = boxMean(gain, kErrorReach), meanSquare = boxMean(squared, kErrorReach);
+    const float margin = candidates[i].margin / std::sqrt(kWindow);
+    const auto isBetter = [&](int x, int y) {
+      return mean.at(x, y) > margin * std::sqrt(meanSquare.at(x, y));
+    };
+    Plane better = makePlaneLike(chosen, [&](int x, int y) {
+      return isBetter(x, y) ? next.at(x, y) : error.at(x, y);
+    });
+    chosen = makePlaneLike(
+        chosen, [&](int x, int y) { return isBetter(x, y) ? float(i) : chosen.at(x, y); });
+    error = std::move(better);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Candidate unfiltered(const Component& component) {
+  Candidate candidate{.margin = kUnfilteredMargin};
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];
+    candidate.color[c] = meanOf(c0, c1);
+    candidate.error[c] =
+        makePlaneLike(c0, [&](int x, int y) { return square(c0.at(x, y) - c1.at(x, y)) / 4; });
+  }
+  return candidate;
+}
+
+Candidate filtered(const Component& component, const HalfPlanes& halves) {
+  Candidate candidate{.margin = kFilteredMargin};
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane &f0 = halves[0][c], &f1 = halves[1][c];
+    const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];
+    candidate.color[c] = meanOf(f0, f1);
+    candidate.error[c] = makePlaneLike(f0, [&](int x, int y) {
+      const float f = (square(f0.at(x, y) - c1.at(x, y)) + square(f1.at(x, y) - c0.at(x, y))) / 2;
+      const float noise = square(c0.at(x, y) - c1.at(x, y)) / 2;
+      return f - noise - square(f0.at(x, y) - f1.at(x, y)) / 4;
+    });
+  }
+  return candidate;
+}
+
+Candidate best(const std::vector<Candidate>& candidates) {
+  const Plane chosen = choose(candidates);
+  std::vector<Plane> shares;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    shares.push_back(boxMean(
+        makePlaneLike(chosen, [&](int x, int y) { return float(chosen.at(x, y) == float(i)); }),
+        kChoiceReach));
+  Candidate result;
+  for (size_t c = 0; c < 3; ++c) {
+    const auto blend = [&](RgbPlanes Candidate::* part) {
+      return makePlaneLike(chosen, [&](int x, int y) {
+        float sum = 0;
+        for (size_t i = 0; i < candidates.size(); ++i)
+          sum += shares[i].at(x, y) * (candidates[i].*part)[c].at(x, y);
+        return sum;
+      });
+    };
+    result.color[c] = blend(&Candidate::color);
+    result.error[c] = boxMean(blend(&Candidate::error), kErrorReach);
+  }
+  return result;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The best of several filtered images at each pixel, by estimates of their errors.
+#pragma once
+
+#include <vector>
+
+#include "denoise/filter.h"
+
+namespace chromeball {
+
+// An image, and unbiased but noisy estimates of the squared errors of its pixels.
+struct Candidate {
+  RgbPlanes color{}, error{};
+  float margin = 0;  // standard errors by which it must be better than those before it
+};
+
+// The noisy image itself.
+Candidate unfiltered(const Component& component);
+
+// The mean of the filtered halves f. With c the noisy halves, whose noise is independent of that of
+// the other half,
+//   E (f0 - c1)^2 = error of f0 + var c1,   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 / 2,
+// and the error of the mean is the mean error of f0 and f1 less half the variance of either
+// (Bitterli et al. 2016, section 5.3).
+Candidate filtered(const Component& component, const HalfPlanes& halves);
+
+// At each pixel the first candidate than which no later one is significantly better on average over
+// the window around the pixel; blended where the choice changes. The error is averaged over windows.
+Candidate best(const std::vector<Candidate>& candidates);
+
+}  // namespace chromeball

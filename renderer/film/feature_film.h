@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a denoiser reads besides the image: direct light and the first surface, as the means of the
+// two halves of each pixel's samples (Film).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "film/aov.h"
+#include "film/film.h"
+#include "image/image.h"
+
+namespace chromeball {
+
+// A quantity per pixel: the mean of all samples, and half the difference of the means of the two
+// halves. The square of the latter is an unbiased estimate of the squared error of `mean`.
+struct HalvedImage {
+  Image mean, half;
+};
+
+class FeatureFilm {
+ public:
+  // An unwanted film has no pixels and ignores weigh().
+  FeatureFilm(int width, int height, bool wanted);
+
+  bool empty() const { return pixels_.empty(); }
+
+  // A sample whose radiance is `radiance`. Thread-safe for different pixels.
+  void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
+  // As Film::weigh().
+  void weigh(double weight);
+
+  HalvedImage direct() const { return channels(0, 3); }
+  HalvedImage albedo() const { return channels(3, 3); }
+  HalvedImage normal() const { return channels(6, 3); }
+  // 1 / depth, 0 without a hit: affine in the pixel's position where the surface is a plane.
+  HalvedImage disparity() const { return channels(9, 1); }
+
+  static size_t bytesPerPixel() { return sizeof(Pixel); }
+
+ private:
+  static constexpr int kChannels = 10;
+  struct Half {
+    double weight = 0;
+    std::array<double, kChannels> sums{};
+  };
+  using Pixel = std::array<Half, Film::kHalves>;
+
+  HalvedImage channels(size_t first, int count) const;
+
+  int width_, height_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace chromeball
