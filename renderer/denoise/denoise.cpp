@@ -170,4 +170,19 @@ Denoised denoise(const DenoiseInput& input, const Progress& progress) {
   return result;
 }
 
+double remainingNoise(const Denoised& denoised) {
+  const Image &color = denoised.color, &error = denoised.error;
+  double mean = 0, sum = 0;
+  const double count = double(error.texels.size());
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) mean += double(luminance(color.rgb(x, y))) / count;
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) {
+      const double reference = std::max(double(luminance(color.rgb(x, y))), 0.01 * mean);
+      const double relative = double(*error.at(x, y)) / reference;
+      sum += relative * relative / count;
+    }
+  return std::sqrt(sum);
+}
+
 }  // namespace chromeball

@@ -22,4 +22,10 @@ struct Denoised {
 // noise, the image stays as it is. The result does not depend on the number of threads.
 Denoised denoise(const DenoiseInput& input, const Progress& progress);
 
+// The root mean square of the pixels' estimated relative errors, as Noise::noise.
+double remainingNoise(const Denoised& denoised);
+
+// Peak memory of denoise().
+inline constexpr size_t kDenoiseBytesPerPixel = 600;
+
 }  // namespace chromeball

@@ -258,8 +258,7 @@ RenderResult renderAll(const Integrator& integrator, const World& world, const C
   RenderResult result{.film = Film(settings.width, settings.height),
                       .aovs = AovFilm(settings.width, settings.height, settings.aovs),
                       .layers = LayerFilm(settings.width, settings.height, integrator.layers()),
-                      .features = FeatureFilm(settings.width, settings.height,
-                                              std::ranges::count(settings.aovs, Aov::Denoise) > 0)};
+                      .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
   Renderer renderer(integrator, world, camera, settings, training, result);
 

@@ -19,7 +19,7 @@ struct RenderResult {
   Film film;
   AovFilm aovs;
   LayerFilm layers;  // of the integrator
-  FeatureFilm features;  // empty unless Aov::Denoise is wanted
+  FeatureFilm features;  // empty unless settings.wantsFeatures()
   RayCounts rays;
   DepthCut depthCut;
   InvalidSamples invalid;

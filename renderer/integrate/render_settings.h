@@ -2,6 +2,7 @@
 // Image size, sampling limits and path settings of a render.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -27,7 +28,11 @@ struct RenderSettings {
   bool hideProbe = false;      // from the camera
   std::optional<float> clamp;  // largest value of a channel of a sample; nullopt: no limit
   std::vector<Aov> aovs;
+  bool denoise = false;  // the render keeps what denoise() needs (RenderResult::features)
 
+  bool wantsFeatures() const {
+    return denoise || std::find(aovs.begin(), aovs.end(), Aov::Denoise) != aovs.end();
+  }
   PathSettings path() const {
     return {.mis = mis,
             .maxDepth = maxDepth,

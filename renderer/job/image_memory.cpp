@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "denoise/denoise.h"
+
 namespace chromeball {
 
 double imageBytes(const RenderSettings& settings) {
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
+  if (settings.wantsFeatures()) sums += double(FeatureFilm::bytesPerPixel());
+  if (settings.denoise) sums += double(kDenoiseBytesPerPixel);
   for (Aov aov : settings.aovs) {
     const double channels = std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
     sums += channels * sizeof(double);

@@ -85,6 +85,8 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
       {"peak_memory_bytes", peakMemoryBytes()},
   };
   j.update(describe(result.render));
+  if (const auto& d = result.denoised)
+    j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
   if (result.composite) j.update(describe(*result.composite));
   return j;
 }
@@ -100,6 +102,7 @@ Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const Jo
   metadata["noise"] = float(result.noise.noise);
   metadata["noise_median"] = float(result.noise.median);
   metadata["noise_p95"] = float(result.noise.p95);
+  if (result.denoised) metadata["denoised_noise"] = float(result.denoised->noise);
   if (job.settings.clamp)
     metadata["clamp_light_removed"] = float(result.render.clamped.fractionRemoved());
   metadata.merge(idManifests(result.image, loaded.scene));

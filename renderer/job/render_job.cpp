@@ -91,6 +91,7 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.hideProbe = s.get<bool>("transparent");
   if (const auto clamp = s.getIfGiven<double>("clamp")) r.clamp = float(*clamp);
   r.aovs = layersOf(file);
+  r.denoise = s.get<bool>("render.denoise");
   if (r.hideProbe && std::count(r.aovs.begin(), r.aovs.end(), Aov::Alpha) == 0)
     r.aovs.push_back(Aov::Alpha);
   return r;
@@ -117,6 +118,18 @@ void checkGuide(const SceneFile& file) {
                strategy);
 }
 
+void checkDenoise(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  const bool wantsLayers = std::ranges::count(layers, "denoise") > 0;
+  const bool denoises = s.get<bool>("render.denoise");
+  if (!denoises && !wantsLayers) return;
+  const std::string location = s.location(denoises ? "render.denoise" : "output.aovs");
+  if (file.composite) throwInput("{}: composites are not denoised", location);
+  if (s.has("render.samples") && s.get<uint64_t>("render.samples") < 2)
+    throwInput("{}: needs at least 2 samples per pixel", location);
+}
+
 void checkTransparent(const SceneFile& file) {
   const Settings& s = file.settings;
   if (file.composite && s.get<bool>("transparent"))
@@ -134,6 +147,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   checkTwoPass(job.file);
   checkTransparent(job.file);
   checkGuide(job.file);
+  checkDenoise(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));

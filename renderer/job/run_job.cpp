@@ -52,14 +52,43 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   return output;
 }
 
+// Replaces the color, and adds the layers `noisy` and `denoise_error`.
+DenoiseReport denoiseImage(const RenderResult& result, const Progress& progress, OutputImage& image) {
+  Stopwatch watch;
+  const FeatureFilm& features = result.features;
+  Denoised denoised = denoise({.color = {result.film.mean(), result.film.halfDifference()},
+                               .direct = features.direct(),
+                               .albedo = features.albedo(),
+                               .normal = features.normal(),
+                               .disparity = features.disparity()},
+                              progress);
+  Image& color = image.layers.front().image;
+  Image noisy(color.width, color.height, 3);
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) {
+      noisy.setRgb(x, y, color.rgb(x, y));
+      color.setRgb(x, y, denoised.color.rgb(x, y));
+    }
+  const double noise = remainingNoise(denoised);
+  image.layers.push_back({"noisy", "RGB", std::move(noisy)});
+  image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
+  return {noise, watch.lap()};
+}
+
 JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
                       const PreparedScene& prepared, const Progress& progress,
                       const std::atomic<bool>& stop) {
-  RenderResult result =
-      render(*prepared.world, loaded.camera, *prepared.lighting, job.settings, progress, stop);
+  const double share = job.settings.denoise ? 0.9 : 1;  // of the progress
+  RenderResult result = render(
+      *prepared.world, loaded.camera, *prepared.lighting, job.settings,
+      [&](double fraction) { progress(share * fraction); }, stop);
   ImageNoise noise(result.film.errors());
   OutputImage image = assemble(result, job.settings, noise.variance);
-  return {std::move(image), std::move(result), std::move(noise), {}, {}};
+  std::optional<DenoiseReport> report;
+  if (job.settings.denoise && !result.interrupted)
+    report = denoiseImage(result, [&](double fraction) { progress(share + (1 - share) * fraction); },
+                     image);
+  return {std::move(image), std::move(result), std::move(noise), {}, report, {}};
 }
 
 }  // namespace

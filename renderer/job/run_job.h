@@ -7,6 +7,7 @@
 
 #include "base/message.h"
 #include "base/progress.h"
+#include "denoise/denoise.h"
 #include "image/io/write_image.h"
 #include "integrate/render.h"
 #include "integrate/world.h"
@@ -39,11 +40,18 @@ struct CompositeReport {
   std::optional<Reflectance> reflectance;
 };
 
+// What a denoised image has left.
+struct DenoiseReport {
+  double noise = 0;  // as Noise::noise, estimated
+  double seconds = 0;
+};
+
 struct JobResult {
   OutputImage image;  // the color first, then the job's layers; no metadata
   RenderResult render;
-  ImageNoise noise;  // of the color
+  ImageNoise noise;  // of the color, before denoising
   std::optional<CompositeReport> composite;
+  std::optional<DenoiseReport> denoised;
   Messages messages;
   double seconds = 0;  // of rendering
 

@@ -86,6 +86,12 @@ void addRender(std::vector<Setting>& rows) {
                "`importance`: auto where that pays (rooms), on wherever it reduces the variance; "
                "from 8 samples per pixel.",
        .renderOnly = true});
+  add({.key = "denoise",
+       .option = "denoise",
+       .type = Flag,
+       .help = "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the estimated "
+               "standard error of what is left, `denoise_error`.",
+       .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
        .argument = "N",

@@ -38,16 +38,23 @@ std::string inWords(const ImageNoise& n) {
                      100 * n.noise, 100 * n.median, 100 * n.p95);
 }
 
+std::string denoisedInWords(const JobResult& result) {
+  if (!result.denoised) return "";
+  return fmt::format("; denoised to about {:.2f}%", 100 * result.denoised->noise);
+}
+
 void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
                                   fmt::join(job.outputs, ", ")));
-  if (render.interrupted) throw Interrupted("interrupted; the image so far is saved");
+  if (render.interrupted)
+    throw Interrupted(fmt::format("interrupted; the image so far is saved{}",
+                                  job.settings.denoise ? ", not denoised" : ""));
   if (!quiet)
-    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}: {}\n", render.samples,
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                render.guidedRegions > 0 ? ", light samples guided," : "", result.seconds,
-               inWords(result.noise), fmt::join(job.outputs, ", "));
+               inWords(result.noise), denoisedInWords(result), fmt::join(job.outputs, ", "));
 }
 
 void render(const SceneOptions& options) {
