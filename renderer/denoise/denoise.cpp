@@ -9,7 +9,8 @@
 namespace chromeball {
 namespace {
 
-constexpr int kVarianceReach = 1;  // of the windows over which squared half differences are averaged
+constexpr int kVarianceReach =
+    1;  // of the windows over which squared half differences are averaged
 
 // A power of two that brings the mean of the image close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
@@ -61,6 +62,8 @@ Component indirectOf(const DenoiseInput& input, float scale) {
                      difference(input.color.half, input.direct.half));
 }
 
+constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
+
 // The halves of a feature as guides of each other.
 HalfGuides halvesOf(const HalvedImage& image) {
   HalfGuides halves;
@@ -69,11 +72,11 @@ HalfGuides halvesOf(const HalvedImage& image) {
     const Plane noise = boxMean(squares(half), kVarianceReach);
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
-      halves[size_t(i)].values.push_back(
-          makePlane(mean.width(), mean.height(),
-                    [&](int x, int y) { return mean.at(x, y) + sign * half.at(x, y); }));
-      halves[size_t(i)].variances.push_back(makePlane(
-          mean.width(), mean.height(), [&](int x, int y) { return 2 * noise.at(x, y); }));
+      halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {
+        return mean.at(x, y) + sign * half.at(x, y);
+      }));
+      halves[size_t(i)].variances.push_back(
+          makePlane(mean.width(), mean.height(), [&](int x, int y) { return 2 * noise.at(x, y); }));
     }
   }
   return halves;
@@ -82,21 +85,23 @@ HalfGuides halvesOf(const HalvedImage& image) {
 // Features without their own noise, which is correlated with that of the image where a pixel sees
 // several surfaces at random (edges, lenses, transparency): a regression would keep it.
 FeaturePlanes featuresOf(const DenoiseInput& input) {
-  constexpr float kInsignificant = 0.005f;  // a difference; of disparity: relative
   FeaturePlanes features;
   size_t at = 0;
   for (const HalvedImage* image : {&input.albedo, &input.normal, &input.disparity}) {
+    const bool isRelative = image == &input.disparity;
     const HalfChannels halves = averageHalves(halvesOf(*image));
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
-      const Plane values = makePlane(a.width(), a.height(), [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
-      const Plane noise = boxMean(makePlane(a.width(), a.height(), [&](int x, int y) {
-        const float half = (a.at(x, y) - b.at(x, y)) / 2;
-        return half * half;
-      }), kVarianceReach);
-      const bool relative = image == &input.disparity;
+      const Plane values = makePlane(a.width(), a.height(),
+                                     [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
+      const Plane noise = boxMean(makePlane(a.width(), a.height(),
+                                            [&](int x, int y) {
+                                              const float half = (a.at(x, y) - b.at(x, y)) / 2;
+                                              return half * half;
+                                            }),
+                                  kVarianceReach);
       features.ridges[at] = makePlane(a.width(), a.height(), [&](int x, int y) {
-        const float size = kInsignificant * (relative ? values.at(x, y) : 1);
+        const float size = kInsignificant * (isRelative ? values.at(x, y) : 1);
         return size * size + noise.at(x, y) + 1e-12f;
       });
       features.values[at] = values;
@@ -153,9 +158,8 @@ Denoised denoise(const DenoiseInput& input, const Progress& progress) {
   Image squaredError(width, height, 3);
   for (int part = 0; part < 2; ++part) {
     const Component component = part == 0 ? directOf(input, scale) : indirectOf(input, scale);
-    const Candidate found = denoise(component, features, [&](double fraction) {
-      progress((part + fraction) / 2);
-    });
+    const Candidate found =
+        denoise(component, features, [&](double fraction) { progress((part + fraction) / 2); });
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
         for (int c = 0; c < 3; ++c) {

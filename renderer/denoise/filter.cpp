@@ -30,12 +30,13 @@ void forTiles(int width, int height, const Visit& visit) {
   }
 }
 
-RgbPlanes finished(const Predictions& predictions) {
+RgbPlanes finished(const Predictions& predictions, const RgbPlanes& noisy) {
   const Plane& weights = predictions.weights;
   RgbPlanes result;
   for (size_t c = 0; c < 3; ++c)
     result[c] = makePlane(weights.width(), weights.height(), [&](int x, int y) {
-      return predictions.weighted[c].at(x, y) / weights.at(x, y);  // a pixel's own weight is 1
+      const float weight = weights.at(x, y);
+      return weight > 0 ? predictions.weighted[c].at(x, y) / weight : noisy[c].at(x, y);
     });
   return result;
 }
@@ -53,6 +54,28 @@ void average(const TileWeights& weights, size_t index, const std::vector<Plane>&
   for (size_t c = 0; c < channels.size(); ++c) store8(means[c].row(y) + x, sums[c] / weightSum);
 }
 
+// Whether the noise of all pixels of the tile is far below their size.
+bool isClean(const NoisyPlanes& planes, int left, int top, int right, int bottom) {
+  constexpr float kNegligible = 0.002f;  // relative
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; ++x) {
+      float size = 0, variance = 0;
+      for (size_t c = 0; c < planes.values.size(); ++c) {
+        size += planes.values[c].at(x, y) * planes.values[c].at(x, y);
+        variance += planes.variances[c].at(x, y);
+      }
+      if (variance > kNegligible * kNegligible * size) return false;
+    }
+  return true;
+}
+
+void copyTile(const std::vector<Plane>& from, int left, int top, int right, int bottom,
+              std::vector<Plane>& to) {
+  for (size_t c = 0; c < from.size(); ++c)
+    for (int y = top; y < bottom; ++y)
+      std::copy(from[c].row(y) + left, from[c].row(y) + right, to[c].row(y) + left);
+}
+
 }  // namespace
 
 HalfChannels averageHalves(const HalfGuides& halves) {
@@ -62,12 +85,17 @@ HalfChannels averageHalves(const HalfGuides& halves) {
   for (size_t half = 0; half < 2; ++half) {
     const std::vector<Plane>& channels = halves[half].values;
     std::vector<Plane>& means = results[half];
-    means.assign(channels.size(), Plane(width, height));
+    for (size_t c = 0; c < channels.size(); ++c) means.emplace_back(width, height);
     forTiles(width, height, [&](int left, int top) {
+      const int bottom = std::min(top + kHeight, height), right = std::min(left + kWidth, width);
+      if (isClean(halves[1 - half], left, top, right, bottom)) {
+        copyTile(channels, left, top, right, bottom, means);
+        return;
+      }
       TileWeights& weights = tileWeights.local();
       weights.compute(halves[1 - half], left, top);
-      for (int y = top; y < std::min(top + kHeight, height); ++y)
-        for (int x = left; x < std::min(left + kWidth, width); x += kLanes)
+      for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; x += kLanes)
           average(weights, size_t((y - top) * kWidth + x - left), channels, x, y, means);
     });
     for (Plane& mean : means) mean.extend();
@@ -81,9 +109,9 @@ HalfGuides guidesOf(const Component& component) {
     for (size_t c = 0; c < 3; ++c) {
       const Plane& variance = component.variance[c];
       guides[half].values.push_back(component.halves[half][c]);
-      guides[half].variances.push_back(makePlane(
-          variance.width(), variance.height(),
-          [&](int x, int y) { return 2 * variance.at(x, y); }));  // half of the samples
+      guides[half].variances.push_back(
+          makePlane(variance.width(), variance.height(),
+                    [&](int x, int y) { return 2 * variance.at(x, y); }));  // half of the samples
     }
   return guides;
 }
@@ -105,7 +133,8 @@ std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
         addRegressions(weights, powers[i], component.halves[half], features, left, top,
                        predictions[i]);
     });
-    for (size_t i = 0; i < kBandwidths; ++i) results[i][half] = finished(predictions[i]);
+    for (size_t i = 0; i < kBandwidths; ++i)
+      results[i][half] = finished(predictions[i], component.halves[half]);
   }
   return results;
 }

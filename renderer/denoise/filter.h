@@ -22,6 +22,7 @@ HalfGuides guidesOf(const Component& component);
 
 // The weighted means of the channels of each half, with weights from the other.
 using HalfChannels = std::array<std::vector<Plane>, 2>;
+// Tiles with negligible noise stay as they are.
 HalfChannels averageHalves(const HalfGuides& halves);
 
 constexpr int kBandwidths = 2;

@@ -18,7 +18,7 @@ struct NoisyPlanes {
 // For each pixel p of a tile: the weights of the pixels of the window around p.
 class TileWeights {
  public:
-  static constexpr int kWidth = 32, kHeight = 16;
+  static constexpr int kWidth = 32, kHeight = 32;
   static constexpr int kReach = 7;  // of windows: 15 x 15 pixels
   static constexpr int kPatch = 3;  // of patches: 7 x 7 pixels
   static constexpr int kOffsets = (2 * kReach + 1) * (2 * kReach + 1);

@@ -15,6 +15,11 @@ void Plane::extend() {
   for (int i = 1; i <= kMargin; ++i) copyRow(0, -i), copyRow(height_ - 1, height_ - 1 + i);
 }
 
+void Plane::clear() {
+  tbb::parallel_for(-kMargin, height_ + kMargin,
+                    [&](int y) { std::fill_n(row(y) - kMargin, stride_, 0.0f); });
+}
+
 Plane planeOf(const Image& image, int channel) {
   return makePlane(image.width, image.height,
                    [&](int x, int y) { return image.at(x, y)[channel]; });

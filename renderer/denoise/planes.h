@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "image/image.h"
 
 namespace chromeball {
 
-// One channel. Pixels outside the image, at most kMargin away, can be read.
+// One channel. Pixels outside the image, at most kMargin away, can be read. Copies share the pixels.
+// A new plane is not initialized.
 class Plane {
  public:
   static constexpr int kMargin = 56;
@@ -22,22 +25,24 @@ class Plane {
       : width_(width),
         height_(height),
         stride_(width + 2 * kMargin),
-        data_(size_t(stride_) * size_t(height + 2 * kMargin)) {}
+        data_(std::make_shared_for_overwrite<float[]>(size_t(stride_) *
+                                                      size_t(height + 2 * kMargin))) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
-  float* row(int y) { return &data_[size_t(y + kMargin) * size_t(stride_) + kMargin]; }
-  const float* row(int y) const {
-    return &data_[size_t(y + kMargin) * size_t(stride_) + kMargin];
-  }
+  float* row(int y) { return data_.get() + offset(y); }
+  const float* row(int y) const { return data_.get() + offset(y); }
   float at(int x, int y) const { return row(y)[x]; }
 
   // Copies the pixels at the image's edge outwards.
   void extend();
+  void clear();
 
  private:
+  ptrdiff_t offset(int y) const { return ptrdiff_t(y + kMargin) * stride_ + kMargin; }
+
   int width_ = 0, height_ = 0, stride_ = 0;
-  std::vector<float> data_;
+  std::shared_ptr<float[]> data_;
 };
 
 using RgbPlanes = std::array<Plane, 3>;

@@ -94,7 +94,8 @@ void addRegression(const TileWeights& weights, size_t index, const RgbPlanes& co
     }
   });
   for (int i = 1; i < kTerms; ++i)
-    equations.matrix[i][i] += equations.matrix[0][0] * load8(features.ridges[size_t(i - 1)].row(y) + x);
+    equations.matrix[i][i] +=
+        equations.matrix[0][0] * load8(features.ridges[size_t(i - 1)].row(y) + x);
   equations.solve();
 
   const auto& b = equations.right;
@@ -109,7 +110,9 @@ void addRegression(const TileWeights& weights, size_t index, const RgbPlanes& co
       const Float8 feature = load8(features.values[i].row(v) + u);
       for (int c = 0; c < 3; ++c) prediction[c] += b[i + 1][c] * feature;
     }
-    const auto add = [&](Plane& to, Float8 x8) { store8(to.row(v) + u, load8(to.row(v) + u) + x8); };
+    const auto add = [&](Plane& to, Float8 x8) {
+      store8(to.row(v) + u, load8(to.row(v) + u) + x8);
+    };
     for (size_t c = 0; c < 3; ++c) add(predictions.weighted[c], weight * prediction[c]);
     add(predictions.weights, weight);
   });

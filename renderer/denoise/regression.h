@@ -21,13 +21,16 @@ struct Predictions {
 
   Predictions(int width, int height)
       : weighted{Plane(width, height), Plane(width, height), Plane(width, height)},
-        weights(width, height) {}
+        weights(width, height) {
+    for (Plane& plane : weighted) plane.clear();
+    weights.clear();
+  }
 };
 
 // For each pixel p of the tile, fits b to
 //   color(q) ~ b0 + sum_i b_i (feature_i(q) - feature_i(p))
-// over the window of p, with the weights raised to a power (1, 4 or 8), and adds its predictions for
-// all q. Writes at most TileWeights::kReach pixels, and a vector, outside the tile.
+// over the window of p, with the weights raised to a power (1, 4 or 8), and adds its predictions
+// for all q. Writes at most TileWeights::kReach pixels, and a vector, outside the tile.
 void addRegressions(const TileWeights& weights, int power, const RgbPlanes& color,
                     const FeaturePlanes& features, int left, int top, Predictions& predictions);
 

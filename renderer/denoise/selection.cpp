@@ -7,11 +7,12 @@ namespace chromeball {
 namespace {
 
 constexpr int kErrorReach = 3;   // of the window over which errors are averaged
+constexpr float kDark = 0.01f;   // as in film/noise.h; the mean of the image is about 1
 constexpr int kChoiceReach = 2;  // and choices
 constexpr float kWindow = (2 * kErrorReach + 1) * (2 * kErrorReach + 1);
 
-// Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both are
-// known equally badly, and the filtered image is better.
+// Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both
+// are known equally badly, and the filtered image is better.
 constexpr float kFilteredMargin = 0.5f, kUnfilteredMargin = 1.5f;
 
 float square(float x) { return x * x; }
@@ -47,9 +48,8 @@ Plane choose(const std::vector<Candidate>& candidates) {
     const auto isBetter = [&](int x, int y) {
       return mean.at(x, y) > margin * std::sqrt(meanSquare.at(x, y));
     };
-    Plane better = makePlaneLike(chosen, [&](int x, int y) {
-      return isBetter(x, y) ? next.at(x, y) : error.at(x, y);
-    });
+    Plane better = makePlaneLike(
+        chosen, [&](int x, int y) { return isBetter(x, y) ? next.at(x, y) : error.at(x, y); });
     chosen = makePlaneLike(
         chosen, [&](int x, int y) { return isBetter(x, y) ? float(i) : chosen.at(x, y); });
     error = std::move(better);
@@ -94,7 +94,7 @@ Candidate best(const std::vector<Candidate>& candidates) {
         kChoiceReach));
   Candidate result;
   for (size_t c = 0; c < 3; ++c) {
-    const auto blend = [&](RgbPlanes Candidate::* part) {
+    const auto blend = [&](RgbPlanes Candidate::*part) {
       return makePlaneLike(chosen, [&](int x, int y) {
         float sum = 0;
         for (size_t i = 0; i < candidates.size(); ++i)
@@ -103,7 +103,16 @@ Candidate best(const std::vector<Candidate>& candidates) {
       });
     };
     result.color[c] = blend(&Candidate::color);
-    result.error[c] = boxMean(blend(&Candidate::error), kErrorReach);
+    // Relative errors are averaged: absolute ones would spread from bright pixels to dark ones.
+    const Plane error = blend(&Candidate::error);
+    const auto sizeOf = [&](int x, int y) {
+      return std::max(square(result.color[c].at(x, y)), square(kDark));
+    };
+    const Plane relative =
+        boxMean(makePlaneLike(error, [&](int x, int y) { return error.at(x, y) / sizeOf(x, y); }),
+                kErrorReach);
+    result.error[c] =
+        makePlaneLike(error, [&](int x, int y) { return relative.at(x, y) * sizeOf(x, y); });
   }
   return result;
 }
