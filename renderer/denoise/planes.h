@@ -14,8 +14,8 @@
 
 namespace chromeball {
 
-// One channel. Pixels outside the image, at most kMargin away, can be read. Copies share the pixels.
-// A new plane is not initialized.
+// One channel. Pixels outside the image, at most kMargin away, can be read. Copies share the
+// pixels. A new plane is not initialized.
 class Plane {
  public:
   static constexpr int kMargin = 56;

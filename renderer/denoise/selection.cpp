@@ -6,9 +6,11 @@
 namespace chromeball {
 namespace {
 
-constexpr int kErrorReach = 3;   // of the window over which errors are averaged
-constexpr float kDark = 0.01f;   // as in film/noise.h; the mean of the image is about 1
-constexpr int kChoiceReach = 2;  // and choices
+constexpr int kErrorReach = 3;     // of the window over which errors are averaged
+constexpr int kBiasReach = 6;      // squared biases in the final estimate
+constexpr int kVarianceReach = 1;  // variances in it
+constexpr float kDark = 0.01f;     // as in film/noise.h; the mean of the image is about 1
+constexpr int kChoiceReach = 2;    // and choices
 constexpr float kWindow = (2 * kErrorReach + 1) * (2 * kErrorReach + 1);
 
 // Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both
@@ -64,8 +66,9 @@ Candidate unfiltered(const Component& component) {
   for (size_t c = 0; c < 3; ++c) {
     const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];
     candidate.color[c] = meanOf(c0, c1);
-    candidate.error[c] =
+    candidate.variance[c] =
         makePlaneLike(c0, [&](int x, int y) { return square(c0.at(x, y) - c1.at(x, y)) / 4; });
+    candidate.error[c] = candidate.variance[c];
   }
   return candidate;
 }
@@ -76,11 +79,14 @@ Candidate filtered(const Component& component, const HalfPlanes& halves) {
     const Plane &f0 = halves[0][c], &f1 = halves[1][c];
     const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];
     candidate.color[c] = meanOf(f0, f1);
+    const Plane variance =
+        makePlaneLike(f0, [&](int x, int y) { return square(f0.at(x, y) - f1.at(x, y)) / 4; });
     candidate.error[c] = makePlaneLike(f0, [&](int x, int y) {
       const float f = (square(f0.at(x, y) - c1.at(x, y)) + square(f1.at(x, y) - c0.at(x, y))) / 2;
       const float noise = square(c0.at(x, y) - c1.at(x, y)) / 2;
-      return f - noise - square(f0.at(x, y) - f1.at(x, y)) / 4;
+      return f - noise - variance.at(x, y);
     });
+    candidate.variance[c] = variance;
   }
   return candidate;
 }
@@ -103,16 +109,26 @@ Candidate best(const std::vector<Candidate>& candidates) {
       });
     };
     result.color[c] = blend(&Candidate::color);
-    // Relative errors are averaged: absolute ones would spread from bright pixels to dark ones.
-    const Plane error = blend(&Candidate::error);
-    const auto sizeOf = [&](int x, int y) {
+    // Relative to the squared color: absolute errors would spread from bright pixels to dark ones.
+    const Plane size = makePlaneLike(chosen, [&](int x, int y) {
       return std::max(square(result.color[c].at(x, y)), square(kDark));
+    });
+    const auto averaged = [&](const Plane& squaredError, int reach) {
+      return boxMean(
+          makePlaneLike(size, [&](int x, int y) { return squaredError.at(x, y) / size.at(x, y); }),
+          reach);
     };
-    const Plane relative =
-        boxMean(makePlaneLike(error, [&](int x, int y) { return error.at(x, y) / sizeOf(x, y); }),
-                kErrorReach);
-    result.error[c] =
-        makePlaneLike(error, [&](int x, int y) { return relative.at(x, y) * sizeOf(x, y); });
+    const Plane variance = averaged(blend(&Candidate::variance), kVarianceReach);
+    const Plane error = averaged(blend(&Candidate::error), kBiasReach);
+    const Plane spread = averaged(blend(&Candidate::variance), kBiasReach);
+    const Plane noise = averaged(candidates.back().error[c], kErrorReach);
+    result.variance[c] =
+        makePlaneLike(size, [&](int x, int y) { return variance.at(x, y) * size.at(x, y); });
+    result.error[c] = makePlaneLike(size, [&](int x, int y) {
+      const float bias = std::max(error.at(x, y) - spread.at(x, y), 0.0f);
+      return std::min(variance.at(x, y) + bias, std::max(variance.at(x, y), noise.at(x, y))) *
+             size.at(x, y);
+    });
   }
   return result;
 }

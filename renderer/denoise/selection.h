@@ -8,9 +8,10 @@
 
 namespace chromeball {
 
-// An image, and unbiased but noisy estimates of the squared errors of its pixels.
+// An image, and unbiased but noisy estimates of the squared errors of its pixels: squared bias and
+// variance together, and the variance alone.
 struct Candidate {
-  RgbPlanes color{}, error{};
+  RgbPlanes color{}, error{}, variance{};
   float margin = 0;  // standard errors by which it must be better than those before it
 };
 
@@ -26,8 +27,9 @@ Candidate unfiltered(const Component& component);
 Candidate filtered(const Component& component, const HalfPlanes& halves);
 
 // At each pixel the first candidate than which no later one is significantly better on average over
-// the window around the pixel; blended where the choice changes. The error is averaged over
-// windows.
+// the window around the pixel; blended where the choice changes. The last candidate is the
+// unfiltered image. Error and variance are averaged over windows; the error is at least the
+// variance, and at most that of the unfiltered image.
 Candidate best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball
