@@ -168,9 +168,12 @@ Denoised denoise(const DenoiseInput& input, const Progress& progress) {
         }
   }
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
+    for (int x = 0; x < width; ++x) {
+      // A regression may predict less than nothing.
+      result.color.setRgb(x, y, glm::max(result.color.rgb(x, y), Rgb(0)));
       *result.error.at(x, y) =
           luminance(glm::sqrt(glm::max(squaredError.rgb(x, y), Rgb(0)))) / scale;
+    }
   return result;
 }
 

@@ -32,7 +32,8 @@ HalvedImage FeatureFilm::channels(size_t first, int count) const {
     for (size_t c = 0; c < size_t(count); ++c) {
       const double sumA = a.sums[first + c], sumB = b.sums[first + c];
       const size_t at = i * size_t(count) + c;
-      if (a.weight + b.weight > 0) result.mean.texels[at] = float((sumA + sumB) / (a.weight + b.weight));
+      if (a.weight + b.weight > 0)
+        result.mean.texels[at] = float((sumA + sumB) / (a.weight + b.weight));
       if (a.weight > 0 && b.weight > 0)
         result.half.texels[at] = float((sumA / a.weight - sumB / b.weight) / 2);
     }

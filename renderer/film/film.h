@@ -48,9 +48,9 @@ class Film {
   // Sets the weight of all samples so far, which is 1 at first; at most once.
   void weigh(double weight);
 
-  Image mean() const;          // RGB radiance
+  Image mean() const;            // RGB radiance
   Image halfDifference() const;  // half the difference of the means of the halves
-  Image sampleCounts() const;  // one channel
+  Image sampleCounts() const;    // one channel
   static size_t bytesPerPixel() { return sizeof(Pixel) + sizeof(Early); }  // at most
 
   PixelErrors errors() const;

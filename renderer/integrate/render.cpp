@@ -255,10 +255,11 @@ class Renderer {
 RenderResult renderAll(const Integrator& integrator, const World& world, const Camera& camera,
                        const RenderSettings& settings, GuideTraining* training,
                        const Progress& progress, const std::atomic<bool>& stop) {
-  RenderResult result{.film = Film(settings.width, settings.height),
-                      .aovs = AovFilm(settings.width, settings.height, settings.aovs),
-                      .layers = LayerFilm(settings.width, settings.height, integrator.layers()),
-                      .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
+  RenderResult result{
+      .film = Film(settings.width, settings.height),
+      .aovs = AovFilm(settings.width, settings.height, settings.aovs),
+      .layers = LayerFilm(settings.width, settings.height, integrator.layers()),
+      .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
   Renderer renderer(integrator, world, camera, settings, training, result);
 

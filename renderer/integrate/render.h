@@ -18,7 +18,7 @@ namespace chromeball {
 struct RenderResult {
   Film film;
   AovFilm aovs;
-  LayerFilm layers;  // of the integrator
+  LayerFilm layers;      // of the integrator
   FeatureFilm features;  // empty unless settings.wantsFeatures()
   RayCounts rays;
   DepthCut depthCut;

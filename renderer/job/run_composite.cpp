@@ -111,8 +111,8 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   for (const std::string& name : plan.layers)
     image.layers.push_back(layerOf(name, loaded, rendered, noise.variance));
   Messages messages = warningsOf(report, job.file.settings.get<double>("probe.scale"));
-  return {std::move(image), std::move(rendered.result), std::move(noise), report,
-          {}, std::move(messages)};
+  return {std::move(image),   std::move(rendered.result), std::move(noise), report, {},
+          std::move(messages)};
 }
 
 }  // namespace chromeball

@@ -53,7 +53,8 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
 }
 
 // Replaces the color, and adds the layers `noisy` and `denoise_error`.
-DenoiseReport denoiseImage(const RenderResult& result, const Progress& progress, OutputImage& image) {
+DenoiseReport denoiseImage(const RenderResult& result, const Progress& progress,
+                           OutputImage& image) {
   Stopwatch watch;
   const FeatureFilm& features = result.features;
   Denoised denoised = denoise({.color = {result.film.mean(), result.film.halfDifference()},
@@ -86,8 +87,8 @@ JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
   OutputImage image = assemble(result, job.settings, noise.variance);
   std::optional<DenoiseReport> report;
   if (job.settings.denoise && !result.interrupted)
-    report = denoiseImage(result, [&](double fraction) { progress(share + (1 - share) * fraction); },
-                     image);
+    report = denoiseImage(
+        result, [&](double fraction) { progress(share + (1 - share) * fraction); }, image);
   return {std::move(image), std::move(result), std::move(noise), {}, report, {}};
 }
 

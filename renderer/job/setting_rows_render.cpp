@@ -89,8 +89,9 @@ void addRender(std::vector<Setting>& rows) {
   add({.key = "denoise",
        .option = "denoise",
        .type = Flag,
-       .help = "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the estimated "
-               "standard error of what is left, `denoise_error`.",
+       .help =
+           "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the estimated "
+           "standard error of what is left, `denoise_error`.",
        .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",

@@ -12,7 +12,7 @@ _chromeball() {
       words='render compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --adaptive --guide --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --allow-external --output --aov --tonemap --exposure --memory --threads --stats --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --adaptive --guide --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --allow-external --output --aov --tonemap --exposure --memory --threads --stats --progress --quiet' ;;
     'compare')
       options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --threads --progress --quiet' ;;
     'probe')
@@ -27,8 +27,10 @@ _chromeball() {
     'probe irradiance')
       options='--help --size --method --mapping' ;;
     'image')
-      words='error view'
+      words='denoise error view'
       options='--help' ;;
+    'image denoise')
+      options='--help --quiet' ;;
     'image error')
       options='--help --json --flip --output --map' ;;
     'image view')

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball render --denoise and chromeball image denoise.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+class CommandDenoise : public testing::Test {
+ protected:
+  const TemporaryFolder folder_;
+
+  std::vector<std::string> render(const std::string& output,
+                                  std::vector<std::string> more = {}) const {
+    std::vector<std::string> words{"render",    scene("demo"), "--size", "48x32",
+                                   "--samples", "16",          "-o",     output};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  static std::string scene(const std::string& name) {
+    return std::string(kSourceDir) + "/scenes/" + name + ".toml";
+  }
+  static std::string run(const std::vector<std::string>& words) {
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.out;
+  }
+};
+
+std::vector<float> layer(const std::string& path, const std::string& name) {
+  const ImageFile file = readImageFile(path);
+  const std::optional<Image> found = name.empty() ? findColor(file) : findLayer(file, name);
+  EXPECT_TRUE(found) << path << " " << name;
+  return found ? found->texels : std::vector<float>{};
+}
+
+TEST_F(CommandDenoise, WritesBothImagesAndTheError) {
+  const std::string noisy = folder_ / "noisy.exr", out = folder_ / "out.exr",
+                    stats = folder_ / "stats.json";
+  run(render(noisy));
+  const std::string said = run(render(out, {"--denoise", "--stats", stats}));
+  EXPECT_NE(said.find("denoised to about"), std::string::npos) << said;
+  EXPECT_EQ(layer(out, "noisy"), layer(noisy, ""));
+  EXPECT_NE(layer(out, ""), layer(noisy, ""));
+  for (const float error : layer(out, "denoise_error")) EXPECT_GE(error, 0);
+  const auto json = nlohmann::json::parse(fileContents(stats));
+  EXPECT_GT(json["denoised"]["noise"], 0.0);
+  EXPECT_LT(json["denoised"]["noise"], json["noise"]);
+}
+
+TEST_F(CommandDenoise, OfAFileIsThatOfTheRender) {
+  const std::string kept = folder_ / "kept.exr", later = folder_ / "later.exr",
+                    again = folder_ / "again.exr", out = folder_ / "out.exr";
+  run(render(out, {"--denoise"}));
+  run(render(kept, {"--aov", "denoise"}));
+  run({"image", "denoise", kept, later});
+  run(render(again, {"--denoise", "--aov", "denoise"}));
+  run({"image", "denoise", again, again + ".exr"});
+  for (const char* name : {"", "noisy", "denoise_error"}) {
+    EXPECT_EQ(layer(later, name), layer(out, name)) << name;
+    EXPECT_EQ(layer(again, name), layer(out, name)) << name;
+    EXPECT_EQ(layer(again + ".exr", name), layer(out, name)) << name;
+  }
+}
+
+TEST_F(CommandDenoise, KeepsAlpha) {
+  const std::string kept = folder_ / "kept.exr", later = folder_ / "later.exr",
+                    out = folder_ / "out.exr";
+  run(render(kept, {"--transparent", "--aov", "denoise"}));
+  run(render(out, {"--transparent", "--denoise"}));
+  run({"image", "denoise", kept, later});
+  EXPECT_EQ(layer(out, "alpha"), layer(kept, "alpha"));
+  EXPECT_EQ(layer(later, "alpha"), layer(kept, "alpha"));
+}
+
+TEST_F(CommandDenoise, RefusesWhatItCannotDenoise) {
+  const std::string plain = folder_ / "plain.exr", out = folder_ / "out.exr";
+  run(render(plain, {"--aov", "albedo,normal"}));
+  expectError({"image", "denoise", plain, out}, "render with --aov denoise");
+  expectError({"image", "denoise", plain, plain}, "plain.exr");
+  expectError({"image", "denoise", plain, folder_ / "out.txt"}, "out.txt");
+  expectError({"render", scene("demo"), "--samples", "1", "--denoise", "-o", out},
+              "at least 2 samples");
+  expectError({"render", scene("terrace"), "--denoise", "-o", out}, "composites are not denoised");
+  expectError({"render", scene("terrace"), "--aov", "denoise", "-o", out},
+              "composites are not denoised");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(CommandDenoise, RefusesInfiniteTexels) {
+  const std::string kept = folder_ / "kept.exr", out = folder_ / "out.exr";
+  run(render(kept, {"--aov", "denoise"}));
+  const ImageFile file = readImageFile(kept);
+  OutputImage damaged;
+  damaged.layers.push_back({"", "RGB", *findColor(file)});
+  for (const char* name : {"half", "direct", "direct_half", "albedo", "albedo_half", "normal",
+                           "normal_half", "disparity", "disparity_half"}) {
+    Image image = *findLayer(file, std::string("denoise.") + name);
+    if (name == std::string("normal_half")) image.texels[7] = INFINITY;
+    const char* channels = image.channels == 1 ? "Y" : "RGB";
+    damaged.layers.push_back({std::string("denoise.") + name, channels, std::move(image)});
+  }
+  writeImage(folder_ / "damaged.exr", damaged);
+  expectError({"image", "denoise", folder_ / "damaged.exr", out}, "denoise.normal_half");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace chromeball

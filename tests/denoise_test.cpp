@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+// The denoiser: it removes noise, keeps what is exact or explained by features, and knows its
+// error.
+#include "denoise/denoise.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "denoise/regression.h"
+#include "denoise/vector8.h"
+#include "integrate/render.h"
+#include "math/sampler.h"
+#include "measure/image_error.h"
+#include "small_scenes.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kWidth = 75, kHeight = 50;  // neither is a multiple of a tile or a vector
+
+float random(uint64_t i, uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); }
+
+// About normal, variance 1.
+float gauss(uint64_t i, uint64_t purpose) {
+  float sum = -6;
+  for (uint64_t k = 0; k < 12; ++k) sum += random(i, 100 * purpose + k);
+  return sum;
+}
+
+HalvedImage exact(int channels, float value = 0) {
+  HalvedImage image{Image(kWidth, kHeight, channels), Image(kWidth, kHeight, channels)};
+  std::fill(image.mean.texels.begin(), image.mean.texels.end(), value);
+  return image;
+}
+
+// An image seen through independent noise of standard error `sigma` times the radiance; all light
+// is direct, and the features are constant.
+template <class Radiance>
+DenoiseInput noisy(float sigma, const Radiance& radiance) {
+  DenoiseInput input{exact(3), exact(3), exact(3, 0.5f), exact(3, 1), exact(1, 0.1f)};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const auto i = uint64_t((y * kWidth + x) * 3 + c);
+        const float value = radiance(x, y);
+        // The mean of two halves, each of variance 2 sigma^2.
+        const float a = value * sigma * 1.41421356f * gauss(i, 1);
+        const float b = value * sigma * 1.41421356f * gauss(i, 2);
+        input.color.mean.at(x, y)[c] = value + (a + b) / 2;
+        input.color.half.at(x, y)[c] = (a - b) / 2;
+      }
+  input.direct = input.color;
+  return input;
+}
+
+Denoised run(const DenoiseInput& input) {
+  return denoise(input, [](double) {});
+}
+
+template <class Radiance>
+double squaredError(const Image& image, const Radiance& radiance) {
+  double sum = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const double difference = double(image.at(x, y)[c]) - double(radiance(x, y));
+        sum += difference * difference;
+      }
+  return sum / (3 * kWidth * kHeight);
+}
+
+TEST(Denoise, AveragesAConstantImage) {
+  const auto one = [](int, int) { return 1.0f; };
+  const DenoiseInput input = noisy(0.3f, one);
+  const Denoised denoised = run(input);
+  EXPECT_LT(squaredError(denoised.color, one), squaredError(input.color.mean, one) / 50);
+  double mean = 0;
+  for (const float texel : denoised.color.texels) mean += texel;
+  mean /= double(denoised.color.texels.size());
+  EXPECT_NEAR(mean, 1, 4 * 0.3 / std::sqrt(3.0 * kWidth * kHeight));
+}
+
+TEST(Denoise, KeepsAnExactImage) {
+  const auto texture = [](int x, int y) { return 0.2f + random(uint64_t(y * kWidth + x), 7); };
+  const DenoiseInput input = noisy(0, texture);
+  const Denoised denoised = run(input);
+  for (size_t i = 0; i < denoised.color.texels.size(); ++i)
+    EXPECT_NEAR(denoised.color.texels[i], input.color.mean.texels[i], 1e-5f);
+  EXPECT_LT(remainingNoise(denoised), 1e-4);
+}
+
+// Details above the noise survive: the filter's error is known to exceed the noise there.
+TEST(Denoise, KeepsDetailsAboveTheNoise) {
+  const auto texture = [](int x, int y) { return 0.5f + random(uint64_t(y * kWidth + x), 7); };
+  const DenoiseInput input = noisy(0.02f, texture);
+  EXPECT_LT(squaredError(run(input).color, texture), 1.1 * squaredError(input.color.mean, texture));
+}
+
+// A texture that is noise to the eye, but a feature explains it.
+TEST(Denoise, KeepsWhatAFeatureExplains) {
+  const auto albedo = [](int x, int y) { return random(uint64_t(y * kWidth + x), 7); };
+  const auto radiance = [&](int x, int y) { return 0.2f + albedo(x, y); };
+  DenoiseInput input = noisy(0.2f, radiance);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) input.albedo.mean.setRgb(x, y, Rgb(albedo(x, y)));
+  EXPECT_LT(squaredError(run(input).color, radiance), squaredError(input.color.mean, radiance) / 8);
+}
+
+// An edge that no feature shows stays sharp where the noise lets it be seen.
+TEST(Denoise, KeepsAnEdge) {
+  const auto shadow = [](int x, int) { return x < kWidth / 2 ? 0.1f : 1.0f; };
+  const DenoiseInput input = noisy(0.2f, shadow);
+  const Denoised denoised = run(input);
+  EXPECT_LT(squaredError(denoised.color, shadow), squaredError(input.color.mean, shadow) / 20);
+  for (int y = 5; y < kHeight - 5; ++y) {
+    EXPECT_LT(denoised.color.at(kWidth / 2 - 1, y)[1], 0.2f);
+    EXPECT_GT(denoised.color.at(kWidth / 2, y)[1], 0.8f);
+  }
+}
+
+TEST(Denoise, KnowsItsError) {
+  const auto wave = [](int x, int y) {
+    return 2 + std::sin(0.3f * float(x)) * std::cos(0.2f * float(y));
+  };
+  for (const float sigma : {0.02f, 0.1f, 0.5f}) {
+    const Denoised denoised = run(noisy(sigma, wave));
+    double estimate = 0;
+    for (const float error : denoised.error.texels) estimate += double(error) * double(error);
+    estimate /= kWidth * kHeight;
+    const double truth = squaredError(denoised.color, wave);
+    EXPECT_GT(estimate, truth / 2) << sigma;  // channels' errors are independent here, and the
+    EXPECT_LT(estimate, truth * 3) << sigma;  // estimate assumes that they are not
+  }
+}
+
+TEST(Denoise, ScalesWithTheRadiance) {
+  const auto ramp = [](int x, int) { return 1 + 0.05f * float(x); };
+  const DenoiseInput input = noisy(0.2f, ramp);
+  const Denoised expected = run(input);
+  for (const float scale : {0x1p-30f, 0x1p-3f, 0x1p35f}) {
+    DenoiseInput scaled = input;
+    for (Image* image :
+         {&scaled.color.mean, &scaled.color.half, &scaled.direct.mean, &scaled.direct.half})
+      for (float& texel : image->texels) texel *= scale;
+    const Denoised found = run(scaled);
+    for (size_t i = 0; i < found.color.texels.size(); ++i)
+      ASSERT_EQ(found.color.texels[i], expected.color.texels[i] * scale);
+    for (size_t i = 0; i < found.error.texels.size(); ++i)
+      ASSERT_EQ(found.error.texels[i], expected.error.texels[i] * scale);
+  }
+}
+
+TEST(Denoise, BearsRadiancesFromTinyToHuge) {
+  const auto extreme = [](int x, int y) {
+    return std::pow(10.0f, 18 * random(uint64_t(y / 5 * kWidth + x / 5), 9) - 8);
+  };
+  DenoiseInput input = noisy(0.5f, extreme);
+  const auto i = size_t(20 * kWidth + 30);
+  input.color.mean.texels[3 * i] = input.direct.mean.texels[3 * i] = 0;
+  for (Image* feature : {&input.normal.mean, &input.disparity.mean})
+    for (size_t k = 0; k < feature->texels.size(); k += 7) feature->texels[k] = 1e10f;
+  const Denoised denoised = run(input);
+  for (const float texel : denoised.color.texels) {
+    ASSERT_TRUE(std::isfinite(texel));
+    ASSERT_GE(texel, 0);
+  }
+  for (const float error : denoised.error.texels) ASSERT_TRUE(std::isfinite(error) && error >= 0);
+}
+
+TEST(Denoise, AcceptsAnySize) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {3, 2}, {40, 1}, {33, 33}}) {
+    const auto image = [&](int channels) {
+      HalvedImage halved{Image(width, height, channels), Image(width, height, channels)};
+      for (size_t i = 0; i < halved.mean.texels.size(); ++i) {
+        halved.mean.texels[i] = 1 + random(i, 3);
+        halved.half.texels[i] = 0.1f * gauss(i, 4);
+      }
+      return halved;
+    };
+    const DenoiseInput input{image(3), image(3), image(3), image(3), image(1)};
+    const Denoised denoised = run(input);
+    EXPECT_EQ(denoised.color.texels.size(), input.color.mean.texels.size());
+    for (const float texel : denoised.color.texels) EXPECT_TRUE(std::isfinite(texel));
+  }
+}
+
+TEST(Denoise, DoesNotDependOnThreads) {
+  const DenoiseInput input = noisy(0.3f, [](int x, int) { return 1 + 0.05f * float(x); });
+  const auto with = [&](size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return run(input);
+  };
+  const Denoised one = with(1), three = with(3);
+  EXPECT_EQ(one.color.texels, three.color.texels);
+  EXPECT_EQ(one.error.texels, three.error.texels);
+}
+
+// The regression is exact for colors that are affine in the features.
+TEST(Denoise, RegressionIsExactForAffineColors) {
+  FeaturePlanes features;
+  for (size_t i = 0; i < kFeatures; ++i) {
+    features.values[i] = makePlane(kWidth, kHeight, [&](int x, int y) {
+      return random(uint64_t(y * kWidth + x), i) * std::pow(10.0f, float(i) - 3);
+    });
+    features.ridges[i] = makePlane(kWidth, kHeight, [](int, int) { return 1e-16f; });
+  }
+  RgbPlanes color;
+  for (size_t c = 0; c < 3; ++c)
+    color[c] = makePlane(kWidth, kHeight, [&](int x, int y) {
+      return float(c) + 2 * features.values[3].at(x, y) - 30 * features.values[2].at(x, y);
+    });
+  NoisyPlanes flat;
+  for (int c = 0; c < 3; ++c) {
+    flat.values.push_back(makePlane(kWidth, kHeight, [](int, int) { return 1.0f; }));
+    flat.variances.push_back(makePlane(kWidth, kHeight, [](int, int) { return 1.0f; }));
+  }
+  TileWeights weights;
+  weights.compute(flat, 32, 0);
+  Predictions predictions(kWidth, kHeight);
+  addRegressions(weights, 1, color, features, 32, 0, predictions);
+  for (int y = 0; y < TileWeights::kHeight; ++y)
+    for (int x = 32; x < 64; ++x)
+      for (size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(predictions.weighted[c].at(x, y) / predictions.weights.at(x, y),
+                    color[c].at(x, y), 2e-3f);
+}
+
+TEST(Denoise, WeightsAreThoseOfTheDefinition) {
+  NoisyPlanes guide;
+  for (int c = 0; c < 3; ++c) {
+    guide.values.push_back(makePlane(kWidth, kHeight, [&](int x, int y) {
+      return random(uint64_t(y * kWidth + x), uint64_t(c));
+    }));
+    guide.variances.push_back(
+        makePlane(kWidth, kHeight, [](int x, int y) { return 0.05f + 0.001f * float(x + y); }));
+  }
+  TileWeights weights;
+  const int left = 64, top = 32;  // a tile that the image's edge cuts
+  weights.compute(guide, left, top);
+  forNeighbours([&](size_t neighbour, int dx, int dy) {
+    for (const auto& [x, y] : {std::pair{64, 32}, {70, 40}, {74, 49}, {75, 40}, {70, 50}}) {
+      double sum = 0;
+      const bool inside = x < kWidth && y < kHeight && x + dx < kWidth && y + dy < kHeight;
+      for (int v = y - 3; v <= y + 3; ++v)
+        for (int u = x - 3; u <= x + 3; ++u)
+          for (size_t c = 0; c < 3; ++c) {
+            const double variance =
+                double(guide.variances[c].at(u, v)) + double(guide.variances[c].at(u + dx, v + dy));
+            const double difference =
+                double(guide.values[c].at(u, v)) - double(guide.values[c].at(u + dx, v + dy));
+            sum += (difference * difference - variance) / variance / (3 * 49);
+          }
+      const float found = weights[neighbour][size_t((y - top) * TileWeights::kWidth + (x - left))];
+      EXPECT_NEAR(found, inside ? std::exp(-std::max(sum, 0.0)) : 0, 1e-5);
+    }
+  });
+}
+
+TEST(Denoise, ExponentialIsAccurate) {
+  for (float x = 0; x < 39; x += 0.0137f)
+    EXPECT_NEAR(expOfMinus(splat8(x))[5] / std::exp(-x), 1, 1e-5f) << x;
+  EXPECT_EQ(expOfMinus(splat8(0))[0], 1);
+  EXPECT_EQ(expOfMinus(splat8(1e30f))[0], 0);
+}
+
+// What a render keeps for the denoiser.
+struct Rendered {
+  DenoiseInput input;
+  Image mean;
+};
+
+Rendered renderScene(const NamedScene& named, uint32_t samples, int maxDepth = 8,
+                     uint64_t seed = 0) {
+  const Probe probe(named.probe);
+  const World world(named.scene, {}, allTables());
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  RenderSettings settings;
+  settings.width = 96, settings.height = 72;
+  settings.samples = samples;
+  settings.maxDepth = maxDepth;
+  settings.seed = seed;
+  settings.denoise = true;
+  const std::atomic<bool> never = false;
+  const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
+  const RenderResult result = render(
+      world, camera, *lighting, settings, [](double) {}, never);
+  const FeatureFilm& f = result.features;
+  return {{{result.film.mean(), result.film.halfDifference()},
+           f.direct(),
+           f.albedo(),
+           f.normal(),
+           f.disparity()},
+          result.film.mean()};
+}
+
+TEST(SlowDenoise, ReducesTheErrorOfRenders) {
+  for (const NamedScene& named : threeScenes()) {
+    const Rendered noisy = renderScene(named, 32);
+    const Image reference = renderScene(named, 1024, 8, 1).mean;
+    const Denoised denoised = run(noisy.input);
+    const double before = imageError(noisy.mean, reference, nullptr, nullptr).relMse;
+    const double after = imageError(denoised.color, reference, nullptr, nullptr).relMse;
+    EXPECT_LT(after, before / 2.5) << named.name;
+    const double estimate = remainingNoise(denoised);
+    EXPECT_GT(estimate, 0.4 * std::sqrt(after)) << named.name;
+    EXPECT_LT(estimate, 3 * std::sqrt(after)) << named.name;
+  }
+}
+
+TEST(FeatureFilm, DirectLightIsThatOfOneBounce) {
+  const std::vector<NamedScene> scenes = threeScenes();
+  const NamedScene& scene = scenes[0];  // matte
+  const Rendered all = renderScene(scene, 64), direct = renderScene(scene, 64, 1);
+  double found = 0, expected = 0;
+  for (size_t i = 0; i < direct.mean.texels.size(); ++i) {
+    found += double(all.input.direct.mean.texels[i]);
+    expected += double(direct.mean.texels[i]);
+    EXPECT_LE(all.input.direct.mean.texels[i], all.mean.texels[i] * 1.0001f);
+  }
+  EXPECT_NEAR(found / expected, 1, 0.003);
+}
+
+TEST(FeatureFilm, HalvesEstimateTheVariance) {
+  FeatureFilm film(1, 1, true);
+  for (uint64_t i = 0; i < 4; ++i)
+    film.add(0, 0, int(i % 2), {.hit = true, .depth = 4, .albedo = Rgb(i < 2 ? 1.0f : 0.0f)},
+             Rgb(float(i)));
+  EXPECT_EQ(film.direct().mean.texels[0], 1.5f);
+  EXPECT_EQ(film.direct().half.texels[0], -0.5f);  // (0 + 2) / 2 - (1 + 3) / 2, halved
+  EXPECT_EQ(film.albedo().mean.texels[1], 0.5f);
+  EXPECT_EQ(film.disparity().mean.texels[0], 0.25f);
+  film.weigh(0.5);
+  film.add(0, 0, 0, {}, Rgb(3));
+  EXPECT_FLOAT_EQ(film.direct().mean.texels[0], (0.5f * 6 + 3) / 3);
+}
+
+}  // namespace
+}  // namespace chromeball
