@@ -187,10 +187,12 @@ std::string asToml(const Setting& s, const std::string& text) {
   switch (s.type) {
     case SettingType::Size:
       return text == "1x1" ? "[1, 1]" : text == "800x600" ? "[800, 600]" : "'" + text + "'";
+    case SettingType::Flag:
+      if (text == "true" || text == "false") return text;
+      [[fallthrough]];
     case SettingType::Integer:
     case SettingType::Number:
     case SettingType::Factor:
-    case SettingType::Flag:
       if (!text.empty() && text.find_first_not_of("0123456789.-+einfa") == std::string::npos &&
           text.find("ff") == std::string::npos)
         return text;
