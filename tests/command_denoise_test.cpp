@@ -2,6 +2,8 @@
 // chromeball render --denoise and chromeball image denoise.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "image/io/read_image.h"
@@ -92,22 +94,34 @@ TEST_F(CommandDenoise, RefusesWhatItCannotDenoise) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST_F(CommandDenoise, RefusesInfiniteTexels) {
+// Files that someone has edited.
+TEST_F(CommandDenoise, RefusesDamagedLayers) {
   const std::string kept = folder_ / "kept.exr", out = folder_ / "out.exr";
   run(render(kept, {"--aov", "denoise"}));
   const ImageFile file = readImageFile(kept);
-  OutputImage damaged;
-  damaged.layers.push_back({"", "RGB", *findColor(file)});
-  for (const char* name : {"half", "direct", "direct_half", "albedo", "albedo_half", "normal",
-                           "normal_half", "disparity", "disparity_half"}) {
-    Image image = *findLayer(file, std::string("denoise.") + name);
-    if (name == std::string("normal_half")) image.texels[7] = INFINITY;
-    const char* channels = image.channels == 1 ? "Y" : "RGB";
-    damaged.layers.push_back({std::string("denoise.") + name, channels, std::move(image)});
-  }
-  writeImage(folder_ / "damaged.exr", damaged);
-  expectError({"image", "denoise", folder_ / "damaged.exr", out}, "denoise.normal_half");
-  EXPECT_FALSE(std::filesystem::exists(out));
+  const auto expectRefused = [&](const std::string& reason, const auto& edit) {
+    OutputImage damaged;
+    damaged.layers.push_back({"", "RGB", *findColor(file)});
+    for (const char* name : {"half", "direct", "direct_half", "albedo", "albedo_half", "normal",
+                             "normal_half", "disparity", "disparity_half"}) {
+      Image image = *findLayer(file, std::string("denoise.") + name);
+      const char* channels = image.channels == 1 ? "Y" : "RGB";
+      damaged.layers.push_back({std::string("denoise.") + name, channels, std::move(image)});
+    }
+    edit(damaged.layers);
+    writeImage(folder_ / "damaged.exr", damaged);
+    expectError({"image", "denoise", folder_ / "damaged.exr", out}, reason);
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  using Layers = std::vector<Layer>;
+  expectRefused("denoise.normal_half", [](Layers& l) { l[7].image.texels[7] = INFINITY; });
+  expectRefused("denoise.albedo", [](Layers& l) { l[4].image.texels[7] = 1e30f; });
+  expectRefused("denoise.direct", [](Layers& l) { l[2].image.texels[7] = NAN; });
+  expectRefused("the color", [](Layers& l) { l[0].image.texels[0] = -3e38f; });
+  expectRefused("no channel R", [](Layers& l) { l[0].channels = "XYZ"; });
+  expectRefused("noisy of 3 channels", [](Layers& l) {
+    l.push_back({"noisy", "Y", Image(l[0].image.width, l[0].image.height, 1)});
+  });
 }
 
 }  // namespace

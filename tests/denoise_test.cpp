@@ -56,7 +56,9 @@ DenoiseInput noisy(float sigma, const Radiance& radiance) {
 }
 
 Denoised run(const DenoiseInput& input) {
-  return denoise(input, [](double) {});
+  const std::atomic<bool> never = false;
+  return *denoise(
+      input, [](double) {}, never);
 }
 
 template <class Radiance>
@@ -195,6 +197,43 @@ TEST(Denoise, DoesNotDependOnThreads) {
   const Denoised one = with(1), three = with(3);
   EXPECT_EQ(one.color.texels, three.color.texels);
   EXPECT_EQ(one.error.texels, three.error.texels);
+}
+
+TEST(Denoise, StopsAtOnce) {
+  const std::atomic<bool> stop = true;
+  const DenoiseInput input = noisy(0.3f, [](int, int) { return 1.0f; });
+  EXPECT_FALSE(denoise(
+      input, [](double) {}, stop));
+}
+
+// A pixel without a hit and without light stays black beside bright noise.
+TEST(Denoise, KeepsAnEmptyBackground) {
+  const auto half = [](int x, int) { return x < kWidth / 2 ? 0.0f : 1.0f; };
+  DenoiseInput input = noisy(0.5f, half);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth / 2; ++x) *input.disparity.mean.at(x, y) = 0;
+  const Denoised denoised = run(input);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth / 2; ++x) {
+      ASSERT_EQ(denoised.color.rgb(x, y), Rgb(0));
+      ASSERT_EQ(*denoised.error.at(x, y), 0);
+    }
+  EXPECT_TRUE(std::isnan(remainingNoise(run(noisy(0, [](int, int) { return 0.0f; })))));
+}
+
+// Errors of bright pixels do not spread to dark ones, nor relative errors of dark ones to bright
+// ones.
+TEST(Denoise, KnowsItsErrorBesideAnEdge) {
+  const auto edge = [](int x, int) { return x < kWidth / 2 ? 0.01f : 1.0f; };
+  DenoiseInput input = noisy(0.1f, edge);
+  for (const auto& [x, y] : {std::pair{5, 20}, {kWidth / 2 - 3, 20}})  // dark fireflies
+    for (Image* image :
+         {&input.color.mean, &input.color.half, &input.direct.mean, &input.direct.half})
+      image->setRgb(x, y, Rgb(0.5f));
+  const Denoised denoised = run(input);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = kWidth / 2 + 1; x < kWidth; ++x) EXPECT_LT(*denoised.error.at(x, y), 0.15f);
+  for (int x = 15; x < kWidth / 2 - 12; ++x) EXPECT_LT(*denoised.error.at(x, 20), 0.003f);
 }
 
 // The regression is exact for colors that are affine in the features.

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "denoise/selection.h"
 
@@ -12,13 +13,16 @@ namespace {
 constexpr int kVarianceReach =
     1;  // of the windows over which squared half differences are averaged
 
-// A power of two that brings the mean of the image close to 1, so that the squares of radiances
+// A power of two that brings the mean of the images close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
-float normalization(const Image& color) {
-  double sum = 0;
-  for (const float texel : color.texels) sum += std::fabs(double(texel));
-  const double mean = sum / double(std::max<size_t>(color.texels.size(), 1));
-  return mean > 0 ? float(std::exp2(-std::clamp(std::round(std::log2(mean)), -100.0, 100.0))) : 1;
+float normalization(std::initializer_list<const Image*> images) {
+  double sum = 0, count = 0;
+  for (const Image* image : images) {
+    for (const float texel : image->texels) sum += std::fabs(double(texel));
+    count += double(image->texels.size());
+  }
+  if (!(sum > 0)) return 1;
+  return float(std::exp2(-std::clamp(std::round(std::log2(sum / count)), -100.0, 100.0)));
 }
 
 Plane squares(const Plane& plane) {
@@ -65,7 +69,7 @@ Component indirectOf(const DenoiseInput& input, float scale) {
 constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
 
 // The halves of a feature as guides of each other.
-HalfGuides halvesOf(const HalvedImage& image) {
+HalfGuides halvesOf(const HalvedImage& image, float scale) {
   HalfGuides halves;
   for (int c = 0; c < image.mean.channels; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
@@ -76,7 +80,8 @@ HalfGuides halvesOf(const HalvedImage& image) {
         return mean.at(x, y) + sign * half.at(x, y);
       }));
       halves[size_t(i)].variances.push_back(
-          makePlane(mean.width(), mean.height(), [&](int x, int y) { return 2 * noise.at(x, y); }));
+          makePlane(mean.width(), mean.height(),
+                    [&](int x, int y) { return 2 * scale * scale * noise.at(x, y); }));
     }
   }
   return halves;
@@ -84,12 +89,13 @@ HalfGuides halvesOf(const HalvedImage& image) {
 
 // Features without their own noise, which is correlated with that of the image where a pixel sees
 // several surfaces at random (edges, lenses, transparency): a regression would keep it.
-FeaturePlanes featuresOf(const DenoiseInput& input) {
+FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& stop) {
   FeaturePlanes features;
   size_t at = 0;
   for (const HalvedImage* image : {&input.albedo, &input.normal, &input.disparity}) {
     const bool isRelative = image == &input.disparity;
-    const HalfChannels halves = averageHalves(halvesOf(*image));
+    const float scale = isRelative ? normalization({&image->mean, &image->half}) : 1;
+    const HalfChannels halves = averageHalves(halvesOf(*image, scale), stop);
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
       const Plane values = makePlane(a.width(), a.height(),
@@ -138,28 +144,38 @@ HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
 // Two passes with two bandwidths each: the second computes its weights from the narrower result of
 // the first. `progress` receives the fraction.
 Candidate denoise(const Component& component, const FeaturePlanes& features,
-                  const Progress& progress) {
-  const auto first = filterHalves(component, guidesOf(component), features, {1, 8});
+                  const Progress& progress, const std::atomic<bool>& stop) {
+  const auto first = filterHalves(component, guidesOf(component), features, {1, 8}, stop);
   progress(0.5);
-  const auto second = filterHalves(component, guidesOf(first[1], component), features, {1, 4});
+  const auto second =
+      filterHalves(component, guidesOf(first[1], component), features, {1, 4}, stop);
   progress(1);
   return best({filtered(component, second[0]), filtered(component, second[1]),
                filtered(component, first[0]), filtered(component, first[1]),
                unfiltered(component)});
 }
 
+// No sample hit a surface or found light: the background of a transparent image.
+bool isEmpty(const DenoiseInput& input, int x, int y) {
+  return *input.disparity.mean.at(x, y) == 0 && *input.disparity.half.at(x, y) == 0 &&
+         input.color.mean.rgb(x, y) == Rgb(0) && input.color.half.rgb(x, y) == Rgb(0);
+}
+
 }  // namespace
 
-Denoised denoise(const DenoiseInput& input, const Progress& progress) {
+std::optional<Denoised> denoise(const DenoiseInput& input, const Progress& progress,
+                                const std::atomic<bool>& stop) {
   const int width = input.color.mean.width, height = input.color.mean.height;
-  const float scale = normalization(input.color.mean);
-  const FeaturePlanes features = featuresOf(input);
+  const float scale =
+      normalization({&input.color.mean, &input.color.half, &input.direct.mean, &input.direct.half});
+  const FeaturePlanes features = featuresOf(input, stop);
   Denoised result{Image(width, height, 3), Image(width, height, 1)};
   Image squaredError(width, height, 3);
   for (int part = 0; part < 2; ++part) {
     const Component component = part == 0 ? directOf(input, scale) : indirectOf(input, scale);
-    const Candidate found =
-        denoise(component, features, [&](double fraction) { progress((part + fraction) / 2); });
+    const Candidate found = denoise(
+        component, features, [&](double fraction) { progress((part + fraction) / 2); }, stop);
+    if (stop) return std::nullopt;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
         for (int c = 0; c < 3; ++c) {
@@ -171,10 +187,19 @@ Denoised denoise(const DenoiseInput& input, const Progress& progress) {
     for (int x = 0; x < width; ++x) {
       // A regression may predict less than nothing.
       result.color.setRgb(x, y, glm::max(result.color.rgb(x, y), Rgb(0)));
+      if (isEmpty(input, x, y)) {
+        result.color.setRgb(x, y, Rgb(0));
+        squaredError.setRgb(x, y, Rgb(0));
+      }
       *result.error.at(x, y) =
           luminance(glm::sqrt(glm::max(squaredError.rgb(x, y), Rgb(0)))) / scale;
     }
   return result;
+}
+
+double denoiseBytes(int width, int height) {
+  constexpr double kPlanes = 150;  // that exist at the same time, at most
+  return kPlanes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 
 double remainingNoise(const Denoised& denoised) {
@@ -183,6 +208,7 @@ double remainingNoise(const Denoised& denoised) {
   const double count = double(error.texels.size());
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) mean += double(luminance(color.rgb(x, y))) / count;
+  if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
       const double reference = std::max(double(luminance(color.rgb(x, y))), 0.01 * mean);

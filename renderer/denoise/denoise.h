@@ -3,12 +3,16 @@
 // first-order regression (Bitterli et al. 2016), of direct and indirect light apart.
 #pragma once
 
+#include <atomic>
+#include <optional>
+
 #include "base/progress.h"
 #include "film/feature_film.h"
 
 namespace chromeball {
 
-// A render with Aov::Denoise; all images of one size, all numbers finite.
+// A render with Aov::Denoise; all images of one size, all numbers finite, albedo and normal
+// below 1e6.
 struct DenoiseInput {
   HalvedImage color, direct, albedo, normal, disparity;
 };
@@ -20,12 +24,15 @@ struct Denoised {
 
 // Biased: details that noise hides are lost. Where the estimated error of the filter exceeds the
 // noise, the image stays as it is. The result does not depend on the number of threads.
-Denoised denoise(const DenoiseInput& input, const Progress& progress);
+// nullopt if `stop` is set meanwhile.
+std::optional<Denoised> denoise(const DenoiseInput& input, const Progress& progress,
+                                const std::atomic<bool>& stop);
 
-// The root mean square of the pixels' estimated relative errors, as Noise::noise.
+// The root mean square of the pixels' estimated relative errors, as Noise::noise; NaN for a
+// black image.
 double remainingNoise(const Denoised& denoised);
 
 // Peak memory of denoise().
-inline constexpr size_t kDenoiseBytesPerPixel = 600;
+double denoiseBytes(int width, int height);
 
 }  // namespace chromeball

@@ -13,7 +13,7 @@ constexpr int kWidth = TileWeights::kWidth, kHeight = TileWeights::kHeight;
 // Calls visit(left, top) for all tiles. Tiles that run at the same time write to different pixels
 // (addRegressions()), and each pixel is written in the same order, whatever the number of threads.
 template <class Visit>
-void forTiles(int width, int height, const Visit& visit) {
+void forTiles(int width, int height, const std::atomic<bool>& stop, const Visit& visit) {
   constexpr int kColumnPhases = 2, kRowPhases = 2;
   static_assert((kColumnPhases - 1) * kWidth >= 2 * TileWeights::kReach + kLanes);
   static_assert((kRowPhases - 1) * kHeight >= 2 * TileWeights::kReach);
@@ -25,6 +25,7 @@ void forTiles(int width, int height, const Visit& visit) {
     const int columns = along(width, kWidth, px, kColumnPhases);
     const int rows = along(height, kHeight, py, kRowPhases);
     tbb::parallel_for(0, columns * rows, [&](int i) {
+      if (stop) return;
       visit((i % columns * kColumnPhases + px) * kWidth, (i / columns * kRowPhases + py) * kHeight);
     });
   }
@@ -78,7 +79,7 @@ void copyTile(const std::vector<Plane>& from, int left, int top, int right, int 
 
 }  // namespace
 
-HalfChannels averageHalves(const HalfGuides& halves) {
+HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop) {
   const int width = halves[0].values[0].width(), height = halves[0].values[0].height();
   HalfChannels results;
   tbb::enumerable_thread_specific<TileWeights> tileWeights;
@@ -86,7 +87,7 @@ HalfChannels averageHalves(const HalfGuides& halves) {
     const std::vector<Plane>& channels = halves[half].values;
     std::vector<Plane>& means = results[half];
     for (size_t c = 0; c < channels.size(); ++c) means.emplace_back(width, height);
-    forTiles(width, height, [&](int left, int top) {
+    forTiles(width, height, stop, [&](int left, int top) {
       const int bottom = std::min(top + kHeight, height), right = std::min(left + kWidth, width);
       if (isClean(halves[1 - half], left, top, right, bottom)) {
         copyTile(channels, left, top, right, bottom, means);
@@ -119,14 +120,15 @@ HalfGuides guidesOf(const Component& component) {
 std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
                                                  const HalfGuides& guides,
                                                  const FeaturePlanes& features,
-                                                 const std::array<int, kBandwidths>& powers) {
+                                                 const std::array<int, kBandwidths>& powers,
+                                                 const std::atomic<bool>& stop) {
   const int width = component.variance[0].width(), height = component.variance[0].height();
   std::array<HalfPlanes, kBandwidths> results;
   tbb::enumerable_thread_specific<TileWeights> tileWeights;
   for (size_t half = 0; half < 2; ++half) {
     std::array<Predictions, kBandwidths> predictions{Predictions(width, height),
                                                      Predictions(width, height)};
-    forTiles(width, height, [&](int left, int top) {
+    forTiles(width, height, stop, [&](int left, int top) {
       TileWeights& weights = tileWeights.local();
       weights.compute(guides[1 - half], left, top);
       for (size_t i = 0; i < kBandwidths; ++i)

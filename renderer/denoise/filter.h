@@ -3,6 +3,8 @@
 // that the weights are independent of the noise that they average (Rousselle et al. 2012).
 #pragma once
 
+#include <atomic>
+
 #include "denoise/regression.h"
 
 namespace chromeball {
@@ -23,7 +25,7 @@ HalfGuides guidesOf(const Component& component);
 // The weighted means of the channels of each half, with weights from the other.
 using HalfChannels = std::array<std::vector<Plane>, 2>;
 // Tiles with negligible noise stay as they are.
-HalfChannels averageHalves(const HalfGuides& halves);
+HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop);
 
 constexpr int kBandwidths = 2;
 
@@ -32,6 +34,7 @@ constexpr int kBandwidths = 2;
 std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
                                                  const HalfGuides& guides,
                                                  const FeaturePlanes& features,
-                                                 const std::array<int, kBandwidths>& powers);
+                                                 const std::array<int, kBandwidths>& powers,
+                                                 const std::atomic<bool>& stop);
 
 }  // namespace chromeball

@@ -109,26 +109,29 @@ Candidate best(const std::vector<Candidate>& candidates) {
       });
     };
     result.color[c] = blend(&Candidate::color);
-    // Relative to the squared color: absolute errors would spread from bright pixels to dark ones.
+    // The lesser of the absolute and the relative mean: absolute errors would spread from bright
+    // pixels to dark ones, and relative ones from dark pixels to bright ones.
     const Plane size = makePlaneLike(chosen, [&](int x, int y) {
       return std::max(square(result.color[c].at(x, y)), square(kDark));
     });
     const auto averaged = [&](const Plane& squaredError, int reach) {
-      return boxMean(
+      const Plane absolute = boxMean(squaredError, reach);
+      const Plane relative = boxMean(
           makePlaneLike(size, [&](int x, int y) { return squaredError.at(x, y) / size.at(x, y); }),
           reach);
+      return makePlaneLike(size, [&](int x, int y) {
+        return std::min(absolute.at(x, y), relative.at(x, y) * size.at(x, y));
+      });
     };
     const Plane variance = averaged(blend(&Candidate::variance), kVarianceReach);
     const Plane error = averaged(blend(&Candidate::error), kBiasReach);
     const Plane spread = averaged(blend(&Candidate::variance), kBiasReach);
     const Plane noise = averaged(candidates.back().error[c], kErrorReach);
-    result.variance[c] =
-        makePlaneLike(size, [&](int x, int y) { return variance.at(x, y) * size.at(x, y); });
     result.error[c] = makePlaneLike(size, [&](int x, int y) {
       const float bias = std::max(error.at(x, y) - spread.at(x, y), 0.0f);
-      return std::min(variance.at(x, y) + bias, std::max(variance.at(x, y), noise.at(x, y))) *
-             size.at(x, y);
+      return std::min(variance.at(x, y) + bias, std::max(variance.at(x, y), noise.at(x, y)));
     });
+    result.variance[c] = variance;
   }
   return result;
 }

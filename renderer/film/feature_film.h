@@ -13,7 +13,8 @@
 namespace chromeball {
 
 // A quantity per pixel: the mean of all samples, and half the difference of the means of the two
-// halves. The square of the latter is an unbiased estimate of the squared error of `mean`.
+// halves. The square of the latter is an unbiased estimate of the squared error of `mean`, if both
+// halves have as many samples.
 struct HalvedImage {
   Image mean, half;
 };

@@ -14,7 +14,6 @@ namespace chromeball {
 double imageBytes(const RenderSettings& settings) {
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
   if (settings.wantsFeatures()) sums += double(FeatureFilm::bytesPerPixel());
-  if (settings.denoise) sums += double(kDenoiseBytesPerPixel);
   for (Aov aov : settings.aovs) {
     const double channels = std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
     sums += channels * sizeof(double);
@@ -24,8 +23,10 @@ double imageBytes(const RenderSettings& settings) {
   // the layers and the texels of the file exist together.
   constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
   const double maximum = std::max(kNoise, 2 * texels);
+  const double denoising = settings.denoise ? denoiseBytes(settings.width, settings.height) : 0;
   return double(settings.width) * settings.height *
-         (double(Film::bytesPerPixel()) + sums + maximum);
+             (double(Film::bytesPerPixel()) + sums + maximum) +
+         denoising;
 }
 
 double memoryBudget() {

@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
+
 #include "job/id_manifest.h"
 #include "job/job_description.h"
 #include "job/machine.h"
@@ -102,7 +104,8 @@ Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const Jo
   metadata["noise"] = float(result.noise.noise);
   metadata["noise_median"] = float(result.noise.median);
   metadata["noise_p95"] = float(result.noise.p95);
-  if (result.denoised) metadata["denoised_noise"] = float(result.denoised->noise);
+  if (result.denoised && std::isfinite(result.denoised->noise))
+    metadata["denoised_noise"] = float(result.denoised->noise);
   if (job.settings.clamp)
     metadata["clamp_light_removed"] = float(result.render.clamped.fractionRemoved());
   metadata.merge(idManifests(result.image, loaded.scene));

@@ -53,16 +53,19 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
 }
 
 // Replaces the color, and adds the layers `noisy` and `denoise_error`.
-DenoiseReport denoiseImage(const RenderResult& result, const Progress& progress,
-                           OutputImage& image) {
+std::optional<DenoiseReport> denoiseImage(const RenderResult& result, const Progress& progress,
+                                          const std::atomic<bool>& stop, OutputImage& image) {
   Stopwatch watch;
   const FeatureFilm& features = result.features;
-  Denoised denoised = denoise({.color = {result.film.mean(), result.film.halfDifference()},
-                               .direct = features.direct(),
-                               .albedo = features.albedo(),
-                               .normal = features.normal(),
-                               .disparity = features.disparity()},
-                              progress);
+  std::optional<Denoised> found =
+      denoise({.color = {result.film.mean(), result.film.halfDifference()},
+               .direct = features.direct(),
+               .albedo = features.albedo(),
+               .normal = features.normal(),
+               .disparity = features.disparity()},
+              progress, stop);
+  if (!found) return std::nullopt;
+  Denoised& denoised = *found;
   Image& color = image.layers.front().image;
   Image noisy(color.width, color.height, 3);
   for (int y = 0; y < color.height; ++y)
@@ -73,7 +76,7 @@ DenoiseReport denoiseImage(const RenderResult& result, const Progress& progress,
   const double noise = remainingNoise(denoised);
   image.layers.push_back({"noisy", "RGB", std::move(noisy)});
   image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
-  return {noise, watch.lap()};
+  return DenoiseReport{noise, watch.lap()};
 }
 
 JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
@@ -88,7 +91,8 @@ JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
   std::optional<DenoiseReport> report;
   if (job.settings.denoise && !result.interrupted)
     report = denoiseImage(
-        result, [&](double fraction) { progress(share + (1 - share) * fraction); }, image);
+        result, [&](double fraction) { progress(share + (1 - share) * fraction); }, stop, image);
+  if (job.settings.denoise && !report) result.interrupted = true;
   return {std::move(image), std::move(result), std::move(noise), {}, report, {}};
 }
 

@@ -2,7 +2,7 @@
 # cmake -DSOURCE=renderer -DDESTINATION=include/chromeball -P public_headers.cmake
 # Copies the public headers, with #include "math/vec.h" turned into #include <chromeball/math/vec.h>.
 # A header is public unless it includes, itself or through another of ours, a library that only the
-# renderer's own sources use.
+# renderer's own sources use, or has vector types, which need the renderer's instruction set.
 cmake_minimum_required(VERSION 3.22)
 set(private_libraries "<(embree|OpenImageIO/|tiny_gltf|toml\\+\\+/|nlohmann/|webp/|draco/|meshoptimizer|Eigen/|boost/|tbb/)")
 
@@ -11,7 +11,7 @@ foreach(header ${headers})
   file(READ ${SOURCE}/${header} text)
   string(REGEX MATCHALL "#include \"[^\"\n]+\"" includes_${header} "${text}")
   list(TRANSFORM includes_${header} REPLACE "#include \"(.*)\"" "\\1")
-  if(text MATCHES "# *include ${private_libraries}")
+  if(text MATCHES "# *include ${private_libraries}" OR text MATCHES "vector_size\\(")
     set(private_${header} TRUE)
   endif()
 endforeach()

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball image denoise IN OUT
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/error.h"
@@ -7,6 +9,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "job/image_memory.h"
 #include "job/output_file.h"
 #include "progress_bar.h"
 
@@ -32,18 +35,30 @@ struct Reader {
   HalvedImage halved(const std::string& name, int channels) const {
     return {layer("denoise." + name, channels), layer("denoise." + name + "_half", channels)};
   }
+  // No number of a render is as large as the limit.
   Image finite(Image image, const std::string& name) const {
+    constexpr float kLimit = 1e15f, kFeatureLimit = 1e6f;
+    const bool isUnit = name.find("albedo") != name.npos || name.find("normal") != name.npos;
     for (const float texel : image.texels)
-      if (!std::isfinite(texel)) throwInput("{}: {} has infinite or NaN texels", path, name);
+      if (!(std::fabs(texel) < (isUnit ? kFeatureLimit : kLimit)))
+        throwInput("{}: {} has infinite, NaN or huge texels", path, name);
     return image;
+  }
+  // Of the noisy image; that of a denoised file is a layer.
+  Image color() const {
+    if (std::ranges::count(layerNames(file), "noisy") > 0) return layer("noisy", 3);
+    for (const char* channel : {"R", "G", "B"})
+      if (std::ranges::count(file.channels, channel) == 0)
+        throwInput("{}: has no channel {}", path, channel);
+    return finite(*findColor(file), "the color");
   }
 };
 
-Image colorOf(const Image& image) {
-  Image color(image.width, image.height, 3);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) color.setRgb(x, y, image.rgb(x, y));
-  return color;
+void checkMemory(const std::string& path, const Image& color) {
+  const double needed = denoiseBytes(color.width, color.height);
+  if (needed > memoryBudget())
+    throwInput("{}: denoising {}x{} pixels takes {:.3g} GB of memory", path, color.width,
+               color.height, needed * 1e-9);
 }
 
 void run(const Arguments& arguments) {
@@ -51,31 +66,33 @@ void run(const Arguments& arguments) {
   checkDistinct({arguments.output}, {arguments.input});
   ImageFile file = readImageFile(arguments.input);
   const Reader reader{arguments.input, file};
-  const std::optional<Image> found = findColorAndAlpha(file);
-  if (!found) throwInput("{}: has no color", arguments.input);
-  const std::optional<Image> noisy = findLayer(file, "noisy");  // of a denoised file
-  const DenoiseInput input{.color = {reader.finite(colorOf(noisy ? *noisy : *found), "the color"),
-                                     reader.layer("denoise.half", 3)},
+  const DenoiseInput input{.color = {reader.color(), reader.layer("denoise.half", 3)},
                            .direct = reader.halved("direct", 3),
                            .albedo = reader.halved("albedo", 3),
                            .normal = reader.halved("normal", 3),
                            .disparity = reader.halved("disparity", 1)};
+  checkMemory(arguments.input, input.color.mean);
+  const std::atomic<bool> never = false;
   Denoised denoised = [&] {
     ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
-    return denoise(input, [&](double fraction) { bar.update(fraction); });
+    return *denoise(
+        input, [&](double fraction) { bar.update(fraction); }, never);
   }();
-  Image color = *found;
+  const double noise = remainingNoise(denoised);
+  Image color = *findColorAndAlpha(file);
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) color.setRgb(x, y, denoised.color.rgb(x, y));
   OutputImage output;
   output.metadata = std::move(file.metadata);
-  output.metadata["denoised_noise"] = float(remainingNoise(denoised));
-  if (!arguments.quiet)
-    fmt::print("noise about {:.2f}%: {}\n", 100 * remainingNoise(denoised), arguments.output);
+  if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
   output.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
   output.layers.push_back({"noisy", "RGB", input.color.mean});
   output.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
   writeImage(arguments.output, output);
+  if (!arguments.quiet)
+    fmt::print("noise {}: {}\n",
+               std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
+               arguments.output);
 }
 
 }  // namespace

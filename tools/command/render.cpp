@@ -40,6 +40,7 @@ std::string inWords(const ImageNoise& n) {
 
 std::string denoisedInWords(const JobResult& result) {
   if (!result.denoised) return "";
+  if (!std::isfinite(result.denoised->noise)) return "; denoised";
   return fmt::format("; denoised to about {:.2f}%", 100 * result.denoised->noise);
 }
 
