@@ -154,6 +154,22 @@ TEST(Denoise, ScalesWithTheRadiance) {
   }
 }
 
+TEST(Denoise, DoesNotDependOnTheUnitOfLength) {
+  const auto disparity = [](int x, int y) {
+    return 0.2f + 0.1f * random(uint64_t(y * kWidth + x), 7);
+  };
+  DenoiseInput input = noisy(0.2f, disparity);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      *input.disparity.mean.at(x, y) = disparity(x, y);
+      *input.disparity.half.at(x, y) = 0.02f * gauss(uint64_t(y * kWidth + x), 8);
+    }
+  const Denoised expected = run(input);
+  for (Image* image : {&input.disparity.mean, &input.disparity.half})
+    for (float& texel : image->texels) texel *= 0x1p-30f;
+  EXPECT_EQ(run(input).color.texels, expected.color.texels);
+}
+
 TEST(Denoise, BearsRadiancesFromTinyToHuge) {
   const auto extreme = [](int x, int y) {
     return std::pow(10.0f, 18 * random(uint64_t(y / 5 * kWidth + x / 5), 9) - 8);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/denoise.h"
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -10,8 +9,7 @@
 namespace chromeball {
 namespace {
 
-constexpr int kVarianceReach =
-    1;  // of the windows over which squared half differences are averaged
+constexpr int kVarianceReach = 1;  // of the windows over which squared halves are averaged
 
 // A power of two that brings the mean of the images close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
@@ -68,7 +66,7 @@ Component indirectOf(const DenoiseInput& input, float scale) {
 
 constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
 
-// The halves of a feature as guides of each other.
+// The halves of a feature, scaled, as guides of each other.
 HalfGuides halvesOf(const HalvedImage& image, float scale) {
   HalfGuides halves;
   for (int c = 0; c < image.mean.channels; ++c) {
@@ -77,7 +75,7 @@ HalfGuides halvesOf(const HalvedImage& image, float scale) {
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
       halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {
-        return mean.at(x, y) + sign * half.at(x, y);
+        return scale * (mean.at(x, y) + sign * half.at(x, y));
       }));
       halves[size_t(i)].variances.push_back(
           makePlane(mean.width(), mean.height(),
@@ -143,7 +141,7 @@ HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
 
 // Two passes with two bandwidths each: the second computes its weights from the narrower result of
 // the first. `progress` receives the fraction.
-Candidate denoise(const Component& component, const FeaturePlanes& features,
+Selection denoise(const Component& component, const FeaturePlanes& features,
                   const Progress& progress, const std::atomic<bool>& stop) {
   const auto first = filterHalves(component, guidesOf(component), features, {1, 8}, stop);
   progress(0.5);
@@ -173,7 +171,7 @@ std::optional<Denoised> denoise(const DenoiseInput& input, const Progress& progr
   Image squaredError(width, height, 3);
   for (int part = 0; part < 2; ++part) {
     const Component component = part == 0 ? directOf(input, scale) : indirectOf(input, scale);
-    const Candidate found = denoise(
+    const Selection found = denoise(
         component, features, [&](double fraction) { progress((part + fraction) / 2); }, stop);
     if (stop) return std::nullopt;
     for (int y = 0; y < height; ++y)

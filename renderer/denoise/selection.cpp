@@ -91,14 +91,14 @@ Candidate filtered(const Component& component, const HalfPlanes& halves) {
   return candidate;
 }
 
-Candidate best(const std::vector<Candidate>& candidates) {
+Selection best(const std::vector<Candidate>& candidates) {
   const Plane chosen = choose(candidates);
   std::vector<Plane> shares;
   for (size_t i = 0; i < candidates.size(); ++i)
     shares.push_back(boxMean(
         makePlaneLike(chosen, [&](int x, int y) { return float(chosen.at(x, y) == float(i)); }),
         kChoiceReach));
-  Candidate result;
+  Selection result;
   for (size_t c = 0; c < 3; ++c) {
     const auto blend = [&](RgbPlanes Candidate::*part) {
       return makePlaneLike(chosen, [&](int x, int y) {
@@ -131,7 +131,6 @@ Candidate best(const std::vector<Candidate>& candidates) {
       const float bias = std::max(error.at(x, y) - spread.at(x, y), 0.0f);
       return std::min(variance.at(x, y) + bias, std::max(variance.at(x, y), noise.at(x, y)));
     });
-    result.variance[c] = variance;
   }
   return result;
 }

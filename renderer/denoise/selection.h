@@ -20,16 +20,18 @@ Candidate unfiltered(const Component& component);
 
 // The mean of the filtered halves f. With c the noisy halves, whose noise is independent of that of
 // the other half,
-//   E (f0 - c1)^2 = error of f0 + var c1,   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 /
-//   2,
+//   E (f0 - c1)^2 = error of f0 + var c1,
+//   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 / 2,
 // and the error of the mean is the mean error of f0 and f1 less half the variance of either
 // (Bitterli et al. 2016, section 5.3).
 Candidate filtered(const Component& component, const HalfPlanes& halves);
 
 // At each pixel the first candidate than which no later one is significantly better on average over
 // the window around the pixel; blended where the choice changes. The last candidate is the
-// unfiltered image. Error and variance are averaged over windows; the error is at least the
-// variance, and at most that of the unfiltered image.
-Candidate best(const std::vector<Candidate>& candidates);
+// unfiltered image. The errors are averaged over windows.
+struct Selection {
+  RgbPlanes color, error;
+};
+Selection best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball

@@ -38,6 +38,7 @@ class FeatureFilm {
   HalvedImage disparity() const { return channels(9, 1); }
 
   static size_t bytesPerPixel() { return sizeof(Pixel); }
+  static constexpr int kLayerChannels = 23;  // of Aov::Denoise: means and halves
 
  private:
   static constexpr int kChannels = 10;

@@ -15,7 +15,9 @@ double imageBytes(const RenderSettings& settings) {
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
   if (settings.wantsFeatures()) sums += double(FeatureFilm::bytesPerPixel());
   for (Aov aov : settings.aovs) {
-    const double channels = std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
+    const double channels = aov == Aov::Denoise
+                                ? FeatureFilm::kLayerChannels
+                                : std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
     sums += channels * sizeof(double);
     texels += channels * sizeof(float);
   }
