@@ -123,9 +123,10 @@ Selection best(const std::vector<Candidate>& candidates) {
         return std::min(absolute.at(x, y), relative.at(x, y) * size.at(x, y));
       });
     };
-    const Plane variance = averaged(blend(&Candidate::variance), kVarianceReach);
+    const Plane blended = blend(&Candidate::variance);
+    const Plane variance = averaged(blended, kVarianceReach);
     const Plane error = averaged(blend(&Candidate::error), kBiasReach);
-    const Plane spread = averaged(blend(&Candidate::variance), kBiasReach);
+    const Plane spread = averaged(blended, kBiasReach);
     const Plane noise = averaged(candidates.back().error[c], kErrorReach);
     result.error[c] = makePlaneLike(size, [&](int x, int y) {
       const float bias = std::max(error.at(x, y) - spread.at(x, y), 0.0f);

@@ -26,12 +26,14 @@ Candidate unfiltered(const Component& component);
 // (Bitterli et al. 2016, section 5.3).
 Candidate filtered(const Component& component, const HalfPlanes& halves);
 
-// At each pixel the first candidate than which no later one is significantly better on average over
-// the window around the pixel; blended where the choice changes. The last candidate is the
-// unfiltered image. The errors are averaged over windows.
+// An image, and its squared errors, averaged over windows.
 struct Selection {
   RgbPlanes color, error;
 };
+
+// At each pixel the first candidate than which no later one is significantly better on average over
+// the window around the pixel; blended where the choice changes. The last candidate is the
+// unfiltered image.
 Selection best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball

@@ -2,6 +2,7 @@
 #include "job/run_job.h"
 
 #include "base/stopwatch.h"
+#include "job/denoised_image.h"
 #include "job/run_composite.h"
 
 namespace chromeball {
@@ -52,7 +53,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   return output;
 }
 
-// Replaces the color, and adds the layers `noisy` and `denoise_error`.
+// nullopt if `stop` is set.
 std::optional<DenoiseReport> denoiseImage(const RenderResult& result, const Progress& progress,
                                           const std::atomic<bool>& stop, OutputImage& image) {
   Stopwatch watch;
@@ -65,17 +66,8 @@ std::optional<DenoiseReport> denoiseImage(const RenderResult& result, const Prog
                .disparity = features.disparity()},
               progress, stop);
   if (!found) return std::nullopt;
-  Denoised& denoised = *found;
-  Image& color = image.layers.front().image;
-  Image noisy(color.width, color.height, 3);
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) {
-      noisy.setRgb(x, y, color.rgb(x, y));
-      color.setRgb(x, y, denoised.color.rgb(x, y));
-    }
-  const double noise = remainingNoise(denoised);
-  image.layers.push_back({"noisy", "RGB", std::move(noisy)});
-  image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
+  const double noise = remainingNoise(*found);
+  addDenoised(*std::move(found), result.film.mean(), image);
   return DenoiseReport{noise, watch.lap()};
 }
 

@@ -9,6 +9,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "job/denoised_image.h"
 #include "job/image_memory.h"
 #include "job/output_file.h"
 #include "progress_bar.h"
@@ -21,26 +22,27 @@ struct Arguments {
   bool quiet = false;
 };
 
+// No number of a render is as large.
+constexpr float kMaxRadiance = 1e15f, kMaxUnit = 1e6f;
+
 struct Reader {
   const std::string& path;
   const ImageFile& file;
 
-  Image layer(const std::string& name, int channels) const {
+  Image layer(const std::string& name, int channels, float limit = kMaxRadiance) const {
     std::optional<Image> found = findLayer(file, name);
     if (!found || found->channels != channels)
       throwInput("{}: has no layer {} of {} channels; render with --aov denoise", path, name,
                  channels);
-    return finite(*std::move(found), name);
+    return checked(*std::move(found), name, limit);
   }
-  HalvedImage halved(const std::string& name, int channels) const {
-    return {layer("denoise." + name, channels), layer("denoise." + name + "_half", channels)};
+  HalvedImage halved(const std::string& name, int channels, float limit = kMaxRadiance) const {
+    return {layer("denoise." + name, channels, limit),
+            layer("denoise." + name + "_half", channels, limit)};
   }
-  // No number of a render is as large as the limit.
-  Image finite(Image image, const std::string& name) const {
-    constexpr float kLimit = 1e15f, kFeatureLimit = 1e6f;
-    const bool isUnit = name.find("albedo") != name.npos || name.find("normal") != name.npos;
+  Image checked(Image image, const std::string& name, float limit) const {
     for (const float texel : image.texels)
-      if (!(std::fabs(texel) < (isUnit ? kFeatureLimit : kLimit)))
+      if (!(std::fabs(texel) < limit))
         throwInput("{}: {} has infinite, NaN or huge texels", path, name);
     return image;
   }
@@ -50,7 +52,7 @@ struct Reader {
     for (const char* channel : {"R", "G", "B"})
       if (std::ranges::count(file.channels, channel) == 0)
         throwInput("{}: has no channel {}", path, channel);
-    return finite(*findColor(file), "the color");
+    return checked(*findColor(file), "the color", kMaxRadiance);
   }
 };
 
@@ -68,8 +70,8 @@ void run(const Arguments& arguments) {
   const Reader reader{arguments.input, file};
   const DenoiseInput input{.color = {reader.color(), reader.layer("denoise.half", 3)},
                            .direct = reader.halved("direct", 3),
-                           .albedo = reader.halved("albedo", 3),
-                           .normal = reader.halved("normal", 3),
+                           .albedo = reader.halved("albedo", 3, kMaxUnit),
+                           .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
   checkMemory(arguments.input, input.color.mean);
   const std::atomic<bool> never = false;
@@ -80,14 +82,11 @@ void run(const Arguments& arguments) {
   }();
   const double noise = remainingNoise(denoised);
   Image color = *findColorAndAlpha(file);
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) color.setRgb(x, y, denoised.color.rgb(x, y));
   OutputImage output;
   output.metadata = std::move(file.metadata);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
   output.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
-  output.layers.push_back({"noisy", "RGB", input.color.mean});
-  output.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
+  addDenoised(std::move(denoised), input.color.mean, output);
   writeImage(arguments.output, output);
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
