@@ -136,6 +136,9 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError({"--repeats", "2"}, "--repeats");
   expectInputError({"--baseline", "uniform", "--strategies", "bsdf"}, "--baseline");
   expectInputError({"--reference-strategy", "median-cut"}, "biased");
+  expectInputError({"--reference-strategy", "importance+regularize"}, "biased");
+  expectInputError({"--strategies", "importance+blur"}, "is not a mode");
+  expectInputError({"--strategies", "importance+"}, "is not a mode");
   expectInputError({"--reference-samples", "3"}, "--reference-samples");
   Image sunny = constantProbe({32, 16}, Rgb(0.1f));
   sunny.setRgb(9, 4, Rgb(1e4f));
@@ -232,6 +235,26 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
   // A file that the model refers to changes the comparison too.
   w.write("data.bin", std::vector<uint8_t>(36));
   expectError(words("", {}), "contents of data.bin");
+}
+
+// A mode is a row of its own, biased or not.
+TEST_F(SlowCommandCompare, comparesModes) {
+  const std::string all[] = {"importance", "importance+adaptive+guide", "importance+regularize",
+                             "importance+glass-shadows", "importance+denoise"};
+  const CommandResult result =
+      runCommand(command({"--strategies",
+                          "importance,importance+guide+adaptive,importance+regularize,"
+                          "importance+glass-shadows,importance+denoise",
+                          "--samples", "8", "--repeats", "3", "--reference-samples", "64"}));
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json found = results();
+  std::set<std::string> names, biased;
+  for (const json& row : found["strategies"]) {
+    names.insert(row["name"]);
+    if (!row["unbiased"]) biased.insert(row["name"]);
+  }
+  EXPECT_EQ(names, std::set<std::string>(std::begin(all), std::end(all)));
+  EXPECT_EQ(biased, std::set<std::string>(std::begin(all) + 2, std::end(all)));
 }
 
 TEST_F(SlowCommandCompare, storedResultsStayInTheReport) {

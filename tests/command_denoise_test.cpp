@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -88,10 +89,23 @@ TEST_F(CommandDenoise, RefusesWhatItCannotDenoise) {
   expectError({"image", "denoise", plain, folder_ / "out.txt"}, "out.txt");
   expectError({"render", scene("demo"), "--samples", "1", "--denoise", "-o", out},
               "at least 2 samples");
-  expectError({"render", scene("terrace"), "--denoise", "-o", out}, "composites are not denoised");
-  expectError({"render", scene("terrace"), "--aov", "denoise", "-o", out},
-              "composites are not denoised");
+  expectError({"render", scene("terrace"), "--aov", "denoise", "-o", out}, "give --denoise");
+  expectError({"render", scene("terrace"), "--two-pass", "--denoise", "-o", out}, "is biased");
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(CommandDenoise, OfACompositeKeepsBothImages) {
+  const std::string out = folder_ / "out.exr", stats = folder_ / "stats.json";
+  const std::string said = run({"render", scene("terrace"), "--size", "72x48", "--samples", "16",
+                                "--denoise", "--stats", stats, "-o", out});
+  EXPECT_NE(said.find("denoised to about"), std::string::npos) << said;
+  const std::vector<float> color = layer(out, ""), noisy = layer(out, "noisy");
+  EXPECT_NE(color, noisy);
+  EXPECT_EQ(layer(out, "denoise_error").size(), 72u * 48);
+  int same = 0;  // pixels of the sky
+  for (size_t i = 0; i < 72 * 10 * 3; ++i) same += color[i] == noisy[i];
+  EXPECT_GT(same, 1000);
+  EXPECT_GT(nlohmann::json::parse(std::ifstream(stats))["denoised"]["noise"], 0.0);
 }
 
 // Files that someone has edited.

@@ -397,10 +397,10 @@ DifferentialFilm onePixel(const DifferentialPixel& pixel) {
   LayerFilm film(2, 1, DifferentialFilm::layers());
   const auto add = [&](int x, const DifferentialPixel& p) {
     const std::vector<Rgb> none(DifferentialFilm::kLayers, Rgb(0));
-    film.add(x, 0,
+    film.add(x, 0, 0,
              std::vector<Rgb>{Rgb(float(p.covered)), Rgb(p.objects), Rgb(p.behind), Rgb(p.local),
                               Rgb(p.difference)});
-    for (int i = 1; i < int(p.count); ++i) film.add(x, 0, none);
+    for (int i = 1; i < int(p.count); ++i) film.add(x, 0, 0, none);
   };
   add(0, pixel);
   add(1, {1, 0, {}, {}, glm::dvec3(1), {}});  // and one of L_noobj = 1

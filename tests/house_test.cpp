@@ -43,7 +43,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
       "integrate/guiding"}},
     {"composite",
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "shading", "lighting", "film",
-      "integrate"}},
+      "integrate", "denoise"}},
     {"measure", {"base", "math", "image"}},
     {"job",
      {"base", "math", "image", "image/io", "probe", "scene", "scene/gltf", "trace", "lighting",

@@ -91,6 +91,8 @@ TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
   std::vector<NamedMaterial> all = roughMaterials(0.1f);
   all.push_back({"smooth sheet", transmissive(0, true)});
   all.push_back({"smooth body", transmissive(0, false)});
+  all.push_back({"smooth body with straight shadows", transmissive(0, false)});
+  all.back().material.straightShadows = true;
   struct Choice {
     std::string_view name;
     Mis mis;

@@ -25,6 +25,12 @@ class DifferentialFilm {
 
   explicit DifferentialFilm(LayerFilm film) : film_(std::move(film)) {}
 
+  HalvedImage mean(Layer layer) const { return film_.mean(layer); }  // film in halves
+  // With other means of some layers.
+  DifferentialFilm with(const std::map<int, Image>& means) const {
+    return DifferentialFilm(film_.with(means));
+  }
+
   int width() const { return film_.width(); }
   int height() const { return film_.height(); }
 

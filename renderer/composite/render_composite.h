@@ -27,9 +27,10 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const Progress& progress, const std::atomic<bool>& stop);
 
 // Memory of a composite in addition to that of a plain render.
-inline size_t compositeBytesPerPixel() {
+inline size_t compositeBytesPerPixel(bool denoises) {
   constexpr size_t kImages = 60;  // plate, mean, variance, ...
-  return LayerFilm::bytesPerPixel(DifferentialFilm::kLayers) + kImages;
+  const size_t film = LayerFilm::bytesPerPixel(DifferentialFilm::kLayers, denoises);
+  return (denoises ? 2 * film : film) + kImages;
 }
 
 }  // namespace chromeball

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "denoise/fireflies.h"
 #include "denoise/selection.h"
 
 namespace chromeball {
@@ -13,11 +15,12 @@ constexpr int kVarianceReach = 1;  // of the windows over which squared halves a
 
 // A power of two that brings the mean of the images close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
-float normalization(std::initializer_list<const Image*> images) {
+float normalization(std::span<const HalvedImage> images) {
   double sum = 0, count = 0;
-  for (const Image* image : images) {
-    for (const float texel : image->texels) sum += std::fabs(double(texel));
-    count += double(image->texels.size());
+  for (const auto& [mean, half] : images) {
+    for (const float texel : mean.texels) sum += std::fabs(double(texel));
+    for (const float texel : half.texels) sum += std::fabs(double(texel));
+    count += double(mean.texels.size() + half.texels.size());
   }
   if (!(sum > 0)) return 1;
   return float(std::exp2(-std::clamp(std::round(std::log2(sum / count)), -100.0, 100.0)));
@@ -28,46 +31,36 @@ Plane squares(const Plane& plane) {
                    [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
 }
 
-// `mean` and `half` are functions of (x, y, channel).
-template <class Mean, class Half>
-Component componentOf(int width, int height, const Mean& mean, const Half& half) {
-  Component component;
-  for (int c = 0; c < 3; ++c) {
-    const auto plane = [&](const auto& value) {
-      return makePlane(width, height, [&](int x, int y) { return value(x, y, c); });
-    };
-    component.halves[0][size_t(c)] =
-        plane([&](int x, int y, int i) { return mean(x, y, i) + half(x, y, i); });
-    component.halves[1][size_t(c)] =
-        plane([&](int x, int y, int i) { return mean(x, y, i) - half(x, y, i); });
-    component.variance[size_t(c)] = boxMean(squares(plane(half)), kVarianceReach);
+HalfPlanes halvesOf(const HalvedImage& image, float scale) {
+  HalfPlanes halves;
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < 2; ++i) {
+      const float sign = i == 0 ? 1 : -1;
+      halves[size_t(i)][size_t(c)] =
+          makePlane(image.mean.width, image.mean.height, [&](int x, int y) {
+            return scale * (image.mean.at(x, y)[c] + sign * image.half.at(x, y)[c]);
+          });
+    }
+  return halves;
+}
+
+Component componentOf(HalfPlanes halves) {
+  Component component{std::move(halves), {}};
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane &a = component.halves[0][c], &b = component.halves[1][c];
+    const Plane squared = makePlane(a.width(), a.height(), [&](int x, int y) {
+      const float half = (a.at(x, y) - b.at(x, y)) / 2;
+      return half * half;
+    });
+    component.variance[c] = boxMean(squared, kVarianceReach);
   }
   return component;
-}
-
-Component directOf(const DenoiseInput& input, float scale) {
-  const auto texel = [&](const Image& image) {
-    return [&image, scale](int x, int y, int c) { return image.at(x, y)[c] * scale; };
-  };
-  return componentOf(input.color.mean.width, input.color.mean.height, texel(input.direct.mean),
-                     texel(input.direct.half));
-}
-
-Component indirectOf(const DenoiseInput& input, float scale) {
-  const auto difference = [&](const Image& all, const Image& direct) {
-    return [&all, &direct, scale](int x, int y, int c) {
-      return (all.at(x, y)[c] - direct.at(x, y)[c]) * scale;
-    };
-  };
-  return componentOf(input.color.mean.width, input.color.mean.height,
-                     difference(input.color.mean, input.direct.mean),
-                     difference(input.color.half, input.direct.half));
 }
 
 constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
 
 // The halves of a feature, scaled, as guides of each other.
-HalfGuides halvesOf(const HalvedImage& image, float scale) {
+HalfGuides guidesOf(const HalvedImage& image, float scale) {
   HalfGuides halves;
   for (int c = 0; c < image.mean.channels; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
@@ -92,8 +85,8 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
   size_t at = 0;
   for (const HalvedImage* image : {&input.albedo, &input.normal, &input.disparity}) {
     const bool isRelative = image == &input.disparity;
-    const float scale = isRelative ? normalization({&image->mean, &image->half}) : 1;
-    const HalfChannels halves = averageHalves(halvesOf(*image, scale), stop);
+    const float scale = isRelative ? normalization({image, 1}) : 1;
+    const HalfChannels halves = averageHalves(guidesOf(*image, scale), stop);
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
       const Plane values = makePlane(a.width(), a.height(),
@@ -154,50 +147,63 @@ Selection denoise(const Component& component, const FeaturePlanes& features,
 }
 
 // No sample hit a surface or found light: the background of a transparent image.
-bool isEmpty(const DenoiseInput& input, int x, int y) {
+bool isEmpty(const DenoiseInput& input, const HalvedImage& part, int x, int y) {
   return *input.disparity.mean.at(x, y) == 0 && *input.disparity.half.at(x, y) == 0 &&
-         input.color.mean.rgb(x, y) == Rgb(0) && input.color.half.rgb(x, y) == Rgb(0);
+         part.mean.rgb(x, y) == Rgb(0) && part.half.rgb(x, y) == Rgb(0);
 }
 
 }  // namespace
 
-std::optional<Denoised> denoise(const DenoiseInput& input, const Progress& progress,
-                                const std::atomic<bool>& stop) {
-  const int width = input.color.mean.width, height = input.color.mean.height;
-  const float scale =
-      normalization({&input.color.mean, &input.color.half, &input.direct.mean, &input.direct.half});
+std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
+                                                 const Progress& progress,
+                                                 const std::atomic<bool>& stop) {
+  const float scale = normalization(input.parts);
   const FeaturePlanes features = featuresOf(input, stop);
-  Denoised result{Image(width, height, 3), Image(width, height, 1)};
-  Image squaredError(width, height, 3);
-  for (int part = 0; part < 2; ++part) {
-    const Component component = part == 0 ? directOf(input, scale) : indirectOf(input, scale);
+  std::vector<DenoisedPart> results;
+  for (const HalvedImage& part : input.parts) {
+    const double before = double(results.size()), count = double(input.parts.size());
+    HalfPlanes halves = halvesOf(part, scale);
+    const RgbPlanes squaredBias = limitFireflies(halves);
     const Selection found = denoise(
-        component, features, [&](double fraction) { progress((part + fraction) / 2); }, stop);
+        componentOf(std::move(halves)), features,
+        [&](double fraction) { progress((before + fraction) / count); }, stop);
     if (stop) return std::nullopt;
+    const int width = part.mean.width, height = part.mean.height;
+    DenoisedPart& result = results.emplace_back(Image(width, height, 3), Image(width, height, 3));
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
+      for (int x = 0; x < width; ++x) {
+        if (isEmpty(input, part, x, y)) continue;
         for (int c = 0; c < 3; ++c) {
-          result.color.at(x, y)[c] += found.color[size_t(c)].at(x, y) / scale;
-          squaredError.at(x, y)[c] += found.error[size_t(c)].at(x, y);
+          const float error =
+              std::max(found.error[size_t(c)].at(x, y), 0.0f) + squaredBias[size_t(c)].at(x, y);
+          result.color.at(x, y)[c] = found.color[size_t(c)].at(x, y) / scale;
+          result.squaredError.at(x, y)[c] = error / scale / scale;
         }
-  }
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      // A regression may predict less than nothing.
-      result.color.setRgb(x, y, glm::max(result.color.rgb(x, y), Rgb(0)));
-      if (isEmpty(input, x, y)) {
-        result.color.setRgb(x, y, Rgb(0));
-        squaredError.setRgb(x, y, Rgb(0));
       }
-      *result.error.at(x, y) =
-          luminance(glm::sqrt(glm::max(squaredError.rgb(x, y), Rgb(0)))) / scale;
-    }
-  return result;
+  }
+  return results;
 }
 
-double denoiseBytes(int width, int height) {
-  constexpr double kPlanes = 150;  // that exist at the same time, at most
-  return kPlanes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
+Denoised sumOf(const std::vector<DenoisedPart>& parts) {
+  const int width = parts.front().color.width, height = parts.front().color.height;
+  Denoised sum{Image(width, height, 3), Image(width, height, 1)};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      Rgb color(0), squaredError(0);
+      for (const DenoisedPart& part : parts) {
+        color += part.color.rgb(x, y);
+        squaredError += part.squaredError.rgb(x, y);
+      }
+      // A regression may predict less than nothing.
+      sum.color.setRgb(x, y, glm::max(color, Rgb(0)));
+      *sum.error.at(x, y) = luminance(glm::sqrt(squaredError));
+    }
+  return sum;
+}
+
+double denoiseBytes(int width, int height, int parts) {
+  const double planes = 140 + 6 * parts;  // that exist at the same time, at most
+  return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 
 double remainingNoise(const Denoised& denoised) {

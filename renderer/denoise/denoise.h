@@ -1,38 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 // Removes noise from a render, and estimates the error that remains: nonlinearly weighted
-// first-order regression (Bitterli et al. 2016), of direct and indirect light apart.
+// first-order regression (Bitterli et al. 2016).
 #pragma once
 
 #include <atomic>
 #include <optional>
+#include <vector>
 
 #include "base/progress.h"
 #include "film/feature_film.h"
 
 namespace chromeball {
 
-// A render with Aov::Denoise; all images of one size, all numbers finite, albedo and normal
-// below 1e6.
+// All images are of one size, all numbers finite, albedo and normal below 1e6.
 struct DenoiseInput {
-  HalvedImage color, direct, albedo, normal, disparity;
+  // RGB: light that is filtered apart, as direct and indirect light. Values may be negative.
+  std::vector<HalvedImage> parts;
+  HalvedImage albedo, normal, disparity;  // of FeatureFilm
 };
 
-struct Denoised {
-  Image color;  // RGB radiance
-  Image error;  // one channel: estimated standard error of luminance, noise and blur together
+// Both RGB; the errors are estimates, of noise and blur together.
+struct DenoisedPart {
+  Image color, squaredError;
 };
 
 // Biased: details that noise hides are lost. Where the estimated error of the filter exceeds the
-// noise, the image stays as it is. The result does not depend on the number of threads.
-// nullopt if `stop` is set meanwhile.
-std::optional<Denoised> denoise(const DenoiseInput& input, const Progress& progress,
-                                const std::atomic<bool>& stop);
+// noise, the part stays as it is; so do pixels that are black and whose neighbours are. The result
+// does not depend on the number of threads. nullopt if `stop` is set meanwhile.
+std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
+                                                 const Progress& progress,
+                                                 const std::atomic<bool>& stop);
+
+struct Denoised {
+  Image color;  // RGB radiance
+  Image error;  // one channel: estimated standard error of luminance
+};
+
+// The sum of the parts; negative radiance is set to 0.
+Denoised sumOf(const std::vector<DenoisedPart>& parts);
 
 // The root mean square of the pixels' estimated relative errors, as Noise::noise; NaN for a
 // black image.
 double remainingNoise(const Denoised& denoised);
 
 // Peak memory of denoise().
-double denoiseBytes(int width, int height);
+double denoiseBytes(int width, int height, int parts);
 
 }  // namespace chromeball

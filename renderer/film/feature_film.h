@@ -8,16 +8,9 @@
 
 #include "film/aov.h"
 #include "film/film.h"
-#include "image/image.h"
+#include "film/halved_image.h"
 
 namespace chromeball {
-
-// A quantity per pixel: the mean of all samples, and half the difference of the means of the two
-// halves. The square of the latter is an unbiased estimate of the squared error of `mean`, if both
-// halves have as many samples.
-struct HalvedImage {
-  Image mean, half;
-};
 
 class FeatureFilm {
  public:

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/layer_film.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace chromeball {
 
-LayerFilm::LayerFilm(int width, int height, std::vector<Accumulation> layers)
-    : width_(width), height_(height), layers_(std::move(layers)) {
+LayerFilm::LayerFilm(int width, int height, std::vector<Accumulation> layers, bool inHalves)
+    : width_(width),
+      height_(height),
+      halves_(inHalves ? Film::kHalves : 1),
+      layers_(std::move(layers)) {
   if (layers_.empty()) return;
-  const size_t pixels = size_t(width) * size_t(height);
-  counts_.resize(pixels);
-  values_.resize(pixels * layers_.size());
+  counts_.resize(size_t(width) * size_t(height) * size_t(halves_));
+  values_.resize(counts_.size() * layers_.size());
 }
 
-void LayerFilm::add(int x, int y, std::span<const Rgb> sample) {
+void LayerFilm::add(int x, int y, int half, std::span<const Rgb> sample) {
   assert(sample.size() == layers_.size());
-  const size_t at = pixel(x, y);
-  ++counts_[at];
+  const size_t to = at(x, y, std::min(half, halves_ - 1));
+  ++counts_[to];
   for (size_t i = 0; i < layers_.size(); ++i) {
-    glm::dvec3& value = values_[at * layers_.size() + i];
+    glm::dvec3& value = values_[to * layers_.size() + i];
     const glm::dvec3 found(sample[i]);
     value = layers_[i] == Accumulation::Sum ? value + found : glm::max(value, found);
   }
@@ -27,6 +30,46 @@ void LayerFilm::add(int x, int y, std::span<const Rgb> sample) {
 void LayerFilm::addValues(const LayerFilm& other) {
   assert(values_.size() == other.values_.size());
   for (size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+}
+
+uint32_t LayerFilm::count(int x, int y) const {
+  return counts_[at(x, y, 0)] + (halves_ > 1 ? counts_[at(x, y, 1)] : 0);
+}
+
+glm::dvec3 LayerFilm::value(int x, int y, int layer) const {
+  const glm::dvec3& first = sum(x, y, 0, layer);
+  if (halves_ == 1) return first;
+  const glm::dvec3& second = sum(x, y, 1, layer);
+  return layers_[size_t(layer)] == Accumulation::Sum ? first + second : glm::max(first, second);
+}
+
+HalvedImage LayerFilm::mean(int layer) const {
+  assert(halves_ == Film::kHalves && layers_[size_t(layer)] == Accumulation::Sum);
+  HalvedImage result{Image(width_, height_, 3), Image(width_, height_, 3)};
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const double a = counts_[at(x, y, 0)], b = counts_[at(x, y, 1)];
+      if (a + b > 0) result.mean.setRgb(x, y, Rgb(value(x, y, layer) / (a + b)));
+      if (a > 0 && b > 0)
+        result.half.setRgb(x, y, Rgb(sum(x, y, 0, layer) / a - sum(x, y, 1, layer) / b) / 2.0f);
+    }
+  return result;
+}
+
+LayerFilm LayerFilm::with(const std::map<int, Image>& means) const {
+  LayerFilm result(width_, height_, layers_);
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const size_t to = result.at(x, y, 0);
+      result.counts_[to] = count(x, y);
+      for (int layer = 0; layer < int(layers_.size()); ++layer) {
+        const auto replaced = means.find(layer);
+        result.values_[to * layers_.size() + size_t(layer)] =
+            replaced == means.end() ? value(x, y, layer)
+                                    : glm::dvec3(replaced->second.rgb(x, y)) * double(count(x, y));
+      }
+    }
+  return result;
 }
 
 }  // namespace chromeball

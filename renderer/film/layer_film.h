@@ -3,46 +3,56 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
+#include "film/film.h"
+#include "film/halved_image.h"
 #include "math/vec.h"
 
 namespace chromeball {
 
 enum class Accumulation { Sum, Maximum };
 
-// One RGB value per pixel and layer. In double: a float sum stops growing after some million
-// samples.
+// One RGB value per pixel and layer, of all samples or of each half of them (Film). In double: a
+// float sum stops growing after some million samples.
 class LayerFilm {
  public:
-  LayerFilm(int width, int height, std::vector<Accumulation> layers);
+  LayerFilm(int width, int height, std::vector<Accumulation> layers, bool inHalves = false);
 
   int width() const { return width_; }
   int height() const { return height_; }
   bool empty() const { return layers_.empty(); }
 
   // Adds one sample: one value per layer. Thread-safe for different pixels.
-  void add(int x, int y, std::span<const Rgb> sample);
+  void add(int x, int y, int half, std::span<const Rgb> sample);
   // Adds the values of another film of the same size and layers, all of them sums; leaves the
   // counts unchanged.
   void addValues(const LayerFilm& other);
 
-  uint32_t count(int x, int y) const { return counts_[pixel(x, y)]; }  // samples
-  const glm::dvec3& value(int x, int y, int layer) const {
-    return values_[pixel(x, y) * layers_.size() + size_t(layer)];
-  }
-  static size_t bytesPerPixel(size_t layers) {
-    return layers * sizeof(glm::dvec3) + sizeof(uint32_t);
+  uint32_t count(int x, int y) const;  // samples
+  glm::dvec3 value(int x, int y, int layer) const;
+  HalvedImage mean(int layer) const;  // of a layer of sums; the film must be in halves
+  // The film without halves; layers in `means` are replaced by these means.
+  LayerFilm with(const std::map<int, Image>& means) const;
+
+  static size_t bytesPerPixel(size_t layers, bool inHalves) {
+    return (inHalves ? Film::kHalves : 1) * (layers * sizeof(glm::dvec3) + sizeof(uint32_t));
   }
 
  private:
-  size_t pixel(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
+  size_t at(int x, int y, int half) const {
+    return (size_t(y) * size_t(width_) + size_t(x)) * size_t(halves_) + size_t(half);
+  }
+  const glm::dvec3& sum(int x, int y, int half, int layer) const {
+    return values_[at(x, y, half) * layers_.size() + size_t(layer)];
+  }
 
-  int width_, height_;
+  int width_, height_, halves_;
   std::vector<Accumulation> layers_;
-  std::vector<uint32_t> counts_;
-  std::vector<glm::dvec3> values_;  // [pixel][layer]
+  std::vector<uint32_t> counts_;    // [pixel][half]
+  std::vector<glm::dvec3> values_;  // [pixel][half][layer]
 };
 
 }  // namespace chromeball

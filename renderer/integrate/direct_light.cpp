@@ -15,23 +15,24 @@ BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
 
 }  // namespace
 
-Rgb DirectLight::visibility(const Ray& ray, RayMask mask, std::optional<uint32_t> lamp) const {
+Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, RayMask mask,
+                            std::optional<uint32_t> lamp) const {
   if (lamp && !(world_.accel.mask(*lamp) & mask)) return Rgb(0);  // the lamp does not exist there
-  return world_.accel.transmittance(ray, mask);
+  return world_.accel.transmittance(ray, mask, attenuation);
 }
 
-Rgb DirectLight::visibility(const Ray& ray, PathContext& context,
+Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,
                             std::optional<uint32_t> lamp) const {
   ++context.counts.shadow;
   if (context.log) context.log->rays.push_back({ray, true});
-  const Rgb passed = visibility(ray, settings_.visible, lamp);
+  const Rgb passed = visibility(ray, attenuation, settings_.visible, lamp);
   const bool differs = settings_.compared != settings_.visible;
   const bool lampIsHidden = lamp && !(world_.accel.mask(*lamp) & settings_.compared);
   // `compared` is a subset of `visible`: a ray unoccluded in `visible` is unoccluded there too.
   if (differs && (passed != Rgb(1) || lampIsHidden)) [[unlikely]] {
     // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
-    const Rgb other = visibility(ray, settings_.compared, lamp);
+    const Rgb other = visibility(ray, attenuation, settings_.compared, lamp);
     context.shadowsDiffer |= maxComponent(absolute(other - passed)) > kRounding;
   }
   return passed;
@@ -39,10 +40,10 @@ Rgb DirectLight::visibility(const Ray& ray, PathContext& context,
 
 Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                                std::optional<uint32_t> lamp) const {
-  Rgb passed = visibility(ray, context, lamp);
+  Rgb attenuation(0);
   if (vertex.media.inside() || vertex.surface.material->extended)
-    passed *= Media(vertex.media).follow(vertex.surface, ray.direction).transmittance(ray.tMax);
-  return passed;
+    attenuation = Media(vertex.media).follow(vertex.surface, ray.direction).attenuation();
+  return visibility(ray, attenuation, context, lamp);
 }
 
 bool DirectLight::guideChooses(const Vertex& vertex, const PathContext& context) {
@@ -96,8 +97,8 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const vec3& wi = light.direction.wi;
     const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
     if (isBlack(bsdf.fCos)) continue;
-    // No Media::transmittance here: it is 1 over an infinite distance.
-    const Rgb passed = visibility({vertex.surface.rayOrigin(wi), wi}, context, {});
+    // A medium absorbs nothing over an infinite distance (Media::transmittance()).
+    const Rgb passed = visibility({vertex.surface.rayOrigin(wi), wi}, Rgb(0), context, {});
     if (isBlack(passed)) continue;
     sum += contribution(light.direction, bsdf) * passed;
     if (context.lightRecords) context.addRecord(record(vertex.point, light, bsdf), passed);

@@ -82,8 +82,10 @@ class DirectLight {
   // the instance at which the ray ends.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                     std::optional<uint32_t> lamp = {}) const;
-  Rgb visibility(const Ray& ray, PathContext& context, std::optional<uint32_t> lamp) const;
-  Rgb visibility(const Ray& ray, RayMask mask, std::optional<uint32_t> lamp) const;
+  Rgb visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,
+                 std::optional<uint32_t> lamp) const;
+  Rgb visibility(const Ray& ray, const Rgb& attenuation, RayMask mask,
+                 std::optional<uint32_t> lamp) const;
 
   const World& world_;
   const LightingStrategy& lighting_;

@@ -12,15 +12,18 @@
 
 namespace chromeball {
 
-// A camera ray through pixel (x, y) and its closest hit.
+// A camera ray through pixel (x, y) and its closest hit. `half`: of the pixel's samples (Film).
 struct CameraSample {
-  int x, y;
+  int x, y, half;
   Ray ray;
   std::optional<Hit> hit;
   Beam beam{};                // the ray's footprint, for texture filtering
+  float widening = 0;         // as in PathState
   FirstHit* first = nullptr;  // output; null: not wanted
 
-  PathState path() const { return {.ray = ray, .beam = beam, .first = first}; }
+  PathState path() const {
+    return {.ray = ray, .widening = widening, .beam = beam, .first = first};
+  }
 };
 
 // A sample of a pixel. A defect excludes it from the mean.

@@ -15,11 +15,15 @@ class Media {
  public:
   bool inside() const { return count_ > 0; }
 
+  // Of the current medium, 1/m.
+  Rgb attenuation() const {
+    return count_ == 0 ? Rgb(0) : bodies_[size_t(count_ - 1)]->extended->attenuation;
+  }
   // Transmittance exp(-attenuation * distance) of the current medium; `distance` in metres. 1 for
   // an infinite distance: a ray that leaves an open mesh must not lose the probe's light.
   Rgb transmittance(float distance) const {
     if (count_ == 0 || !std::isfinite(distance)) return Rgb(1);
-    return glm::exp(-distance * bodies_[size_t(count_ - 1)]->extended->attenuation);
+    return glm::exp(-distance * attenuation());
   }
 
   // The relative refractive index at a body's boundary. Per channel for a dispersive medium

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrate/mis.h"
+#include "integrate/regularization.h"
 #include "scene/thin_wall.h"
 
 namespace chromeball {
@@ -34,11 +35,17 @@ bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
   return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
 }
 
-// Continues the path straight through a smooth thin wall. `state.from` and its pdf stay, because
-// shadow rays from there pass the wall too.
+// Whether shadow rays from the path's last vertex pass the surface, so that the path passes it
+// without refraction too.
+bool goesStraight(const PathState& state, const Material& material) {
+  return passesStraight(material) || (state.scattered && material.straightShadows);
+}
+
+// Continues the path straight through the surface. `state.from` and its pdf stay, because shadow
+// rays from there pass the surface too.
 void passStraight(PathState& state, const Surface& surface) {
   state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
-  ++state.straight;
+  if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
 }
 
 // For a path without bounces left: continues straight through the surface, since light from behind
@@ -154,13 +161,17 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   ++state.depth;
   ++context.counts.bounce;
   if constexpr (kLayered) {
-    if (next.wi == state.ray.direction && passesStraight(*surface.material)) {
+    state.media.follow(surface, next.wi);
+    if (next.wi == state.ray.direction && goesStraight(state, *surface.material)) {
       state.from = before;
       state.region = regionBefore;
       passStraight(state, surface);
       return true;
     }
-    state.media.follow(surface, next.wi);
+  }
+  if (!next.isDelta) {
+    state.scattered |= next.lobes == Lobes::Broad;
+    state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.pdf));
   }
   state.throughputBefore = throughputBefore;
   state.pdf = next.pdf;
@@ -175,12 +186,19 @@ bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& b
   return scatterAs<false>(state, surface, bsdf, context);
 }
 
+ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance& instance,
+                                          const Surface& surface) const {
+  ExtendedPoint point = extendedMaterialAt(world_.scene, instance, surface);
+  if (goesStraight(state, *surface.material)) point.thinWalled = point.straight = true;
+  return point;
+}
+
 // Not inlined, so that layered materials do not slow down plain ones.
 [[gnu::noinline]] bool PathTracer::scatterLayered(PathState& state, const Instance& instance,
                                                   const Surface& surface,
                                                   const MaterialPoint& material,
                                                   PathContext& context) const {
-  const Bsdf bsdf(material, extendedMaterialAt(world_.scene, instance, surface),
+  const Bsdf bsdf(material, extendedPointAt(state, instance, surface),
                   state.media.refractiveIndex(surface, state.throughput), surface,
                   -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
   return scatterAs<true>(state, surface, bsdf, context);
@@ -213,12 +231,14 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   const bool isFirst = state.first && state.depth == 0;
   if (ends && !isFirst) return passAtLimit(scene, state, instance, surface);
 
-  const MaterialPoint material = materialAt(scene, surface);
+  MaterialPoint material = materialAt(scene, surface);
   if (isFirst)
     *state.first = {true,           state.length,      material.baseColor,
                     surface.normal, instance.material, instance.node,
                     std::nullopt};
   if (ends) return passAtLimit(scene, state, instance, surface);
+  if (state.minAlpha > 0) [[unlikely]]
+    widen(material, state.minAlpha);
   if (surface.material->extended) [[unlikely]]
     return scatterLayered(state, instance, surface, material, context);
   const Bsdf bsdf(material, surface, -state.ray.direction, world_.bsdfTables, mirrorAlpha_);

@@ -29,6 +29,9 @@ struct PathState {
   int straight = 0;             // vertices passed without a change of direction; not bounces
   int transmissions = 0;        // bounces in and on solid glass, limited by maxTransmissionDepth
   bool cutIsEstimated = false;  // estimateDepthCut() has processed this path
+  bool scattered = false;       // by a broad lobe; from there on, shadow rays are possible
+  float widening = 0;           // regularizationWidth() of the sample; 0: no regularisation
+  float minAlpha = 0;           // of the next vertices (regularization.h)
   Media media;                  // the medium of the ray
   float length = 0;             // of the path from the camera, metres
   Beam beam{};                  // footprint of the camera ray, for texture filtering
@@ -93,6 +96,8 @@ class PathTracer {
                PathContext& context) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
                       const MaterialPoint& material, PathContext& context) const;
+  ExtendedPoint extendedPointAt(const PathState& state, const Instance& instance,
+                                const Surface& surface) const;
   template <bool kLayered>
   bool scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                  PathContext& context) const;

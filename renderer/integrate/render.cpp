@@ -14,6 +14,7 @@
 #include "film/allocation.h"
 #include "integrate/guiding/guide_training.h"
 #include "integrate/path_batch.h"
+#include "integrate/regularization.h"
 #include "integrate/schedule.h"
 
 namespace chromeball {
@@ -139,7 +140,7 @@ class Renderer {
   }
 
   // Generates and traces the camera rays of consecutive samples.
-  void traceCameraRays(PixelSampler& sampler, int x, int y, uint32_t firstSample,
+  void traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
                        std::span<CameraSample> cameras) const {
     std::array<Ray, PathBatch::kMaxPaths> rays;
     std::array<uint32_t, PathBatch::kMaxPaths> keys;
@@ -148,8 +149,8 @@ class Renderer {
     for (size_t i = 0; i < count; ++i) {
       sampler.startSample(firstSample + uint32_t(i));
       const vec2 offset = sampler.get2(dimension::kPixel);
-      const float u = (float(x) + offset.x) / float(settings_.width);
-      const float v = (float(y) + offset.y) / float(settings_.height);
+      const float u = (float(cameras[i].x) + offset.x) / float(settings_.width);
+      const float v = (float(cameras[i].y) + offset.y) / float(settings_.height);
       Ray& ray = rays[i];
       if (cameraRays_.hasLens())
         cameraRays_.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
@@ -176,13 +177,20 @@ class Renderer {
       const uint32_t count = std::min(end - begin, table_.size() - first);
       worker.context.sampler.startPixel(uint32_t(x), uint32_t(y),
                                         Film::kHalves * uint64_t(table) + uint64_t(half));
-      result_.film.add(x, y, half, renderSamples(worker, x, y, half, first, first + count, beam));
+      result_.film.add(x, y, half,
+                       renderSamples(worker, {x, y, half, table}, first, first + count, beam));
       begin += count;
     }
   }
 
+  // Samples of a half of a pixel that share a randomisation of the table.
+  struct Block {
+    int x, y, half;
+    uint32_t table;
+  };
+
   // Takes samples [begin, end) of the sampler's table.
-  SampleSums renderSamples(Worker& worker, int x, int y, int half, uint32_t begin, uint32_t end,
+  SampleSums renderSamples(Worker& worker, const Block& block, uint32_t begin, uint32_t end,
                            const Beam& beam) {
     SampleSums sums;
     std::array<CameraSample, PathBatch::kMaxPaths> cameras;
@@ -192,22 +200,30 @@ class Renderer {
       const size_t count = std::min<size_t>(end - i, PathBatch::kMaxPaths);
       for (size_t k = 0; k < count; ++k) {
         firsts[k] = {};
-        cameras[k] = {.x = x,
-                      .y = y,
+        cameras[k] = {.x = block.x,
+                      .y = block.y,
+                      .half = block.half,
                       .ray = {},
                       .hit = {},
                       .beam = beam,
+                      .widening = wideningOf(block, i + uint32_t(k)),
                       .first = wantsFirst ? &firsts[k] : nullptr};
       }
       const auto taken = std::span(cameras).first(count);
-      traceCameraRays(worker.context.sampler, x, y, i, taken);
-      renderBatch(worker, taken, half, i, sums);
+      traceCameraRays(worker.context.sampler, i, taken);
+      renderBatch(worker, taken, i, sums);
     }
     return sums;
   }
 
-  void renderBatch(Worker& worker, std::span<const CameraSample> cameras, int half,
-                   uint32_t firstSample, SampleSums& sums) {
+  float wideningOf(const Block& block, uint32_t i) const {
+    if (!settings_.regularize) return 0;
+    return regularizationWidth(Film::kHalves * (block.table * table_.size() + i) +
+                               uint32_t(block.half));
+  }
+
+  void renderBatch(Worker& worker, std::span<const CameraSample> cameras, uint32_t firstSample,
+                   SampleSums& sums) {
     std::array<Sample, PathBatch::kMaxPaths> samples;
     std::vector<Rgb>& layers = worker.context.layers;
     const bool hasLayers = !layers.empty();  // of one sample at a time
@@ -218,19 +234,18 @@ class Renderer {
         worker.context.sampler.startSample(firstSample + uint32_t(k));
         samples[k] = integrator_.sample(cameras[k], worker.context);
       }
-      add(worker, cameras[k], half, samples[k], sums);
+      add(worker, cameras[k], samples[k], sums);
     }
   }
 
-  void add(Worker& worker, const CameraSample& camera, int half, const Sample& sample,
-           SampleSums& sums) {
-    const int x = camera.x, y = camera.y;
+  void add(Worker& worker, const CameraSample& camera, const Sample& sample, SampleSums& sums) {
+    const int x = camera.x, y = camera.y, half = camera.half;
     if (sample.defect) {
       worker.invalid.add(*sample.defect, x, y);
       result_.aovs.add(x, y, *sample.defect);
     } else {
       sums.add(sample.radiance);
-      if (!result_.layers.empty()) result_.layers.add(x, y, worker.context.layers);
+      if (!result_.layers.empty()) result_.layers.add(x, y, half, worker.context.layers);
     }
     if (camera.first) {
       camera.first->depth = cameraRays_.depth(camera.ray.direction, camera.first->depth);
@@ -258,7 +273,8 @@ RenderResult renderAll(const Integrator& integrator, const World& world, const C
   RenderResult result{
       .film = Film(settings.width, settings.height),
       .aovs = AovFilm(settings.width, settings.height, settings.aovs),
-      .layers = LayerFilm(settings.width, settings.height, integrator.layers()),
+      .layers =
+          LayerFilm(settings.width, settings.height, integrator.layers(), settings.wantsFeatures()),
       .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
   Renderer renderer(integrator, world, camera, settings, training, result);

@@ -28,7 +28,8 @@ struct RenderSettings {
   bool hideProbe = false;      // from the camera
   std::optional<float> clamp;  // largest value of a channel of a sample; nullopt: no limit
   std::vector<Aov> aovs;
-  bool denoise = false;  // the render keeps what denoise() needs (RenderResult::features)
+  bool regularize = false;  // biased: see regularization.h; the World needs tables for it
+  bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
 
   bool wantsFeatures() const {
     return denoise || std::find(aovs.begin(), aovs.end(), Aov::Denoise) != aovs.end();

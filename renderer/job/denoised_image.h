@@ -2,12 +2,39 @@
 // The layers of a denoised image.
 #pragma once
 
+#include <functional>
+
+#include "base/progress.h"
 #include "denoise/denoise.h"
 #include "image/io/write_image.h"
+#include "integrate/render.h"
 
 namespace chromeball {
 
-// Replaces the color of `image` (not its alpha), and adds the layers `noisy` and `denoise_error`.
-void addDenoised(Denoised denoised, Image noisy, OutputImage& image);
+// What a denoised image has left.
+struct DenoiseReport {
+  double noise = 0;  // as Noise::noise, estimated
+  double seconds = 0;
+};
+
+// The parts of an image that are filtered apart.
+std::vector<HalvedImage> directAndIndirect(const HalvedImage& color, const HalvedImage& direct);
+
+// `result` must be of settings with `denoise`. nullopt if `stop` is set meanwhile.
+std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress& progress,
+                                      const std::atomic<bool>& stop);
+
+// The share of rendering in the progress of a job that denoises.
+inline constexpr double kRenderShare = 0.9;
+
+// Replaces the color of `image` (not its alpha) by the denoised one, and adds the layers `noisy`
+// and `denoise_error`. `progress` receives fractions from kRenderShare to 1. nullopt if `denoise`
+// returns nullopt.
+using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
+std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const Progress& progress,
+                                         OutputImage& image);
+
+// The same with an image that is already denoised. Returns the remaining noise.
+double addDenoised(Denoised denoised, OutputImage& image);
 
 }  // namespace chromeball

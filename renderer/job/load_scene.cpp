@@ -11,6 +11,7 @@
 #include "lighting/finite_surroundings.h"
 #include "scene/framing.h"
 #include "scene/gltf/load_gltf.h"
+#include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {
@@ -116,7 +117,7 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
-  const double composite = job.composite ? double(compositeBytesPerPixel()) : 0;
+  const double composite = job.composite ? double(compositeBytesPerPixel(settings.denoise)) : 0;
   const double needed = imageBytes(settings) + composite * settings.width * settings.height;
   const Settings& given = job.file.settings;
   const auto memory = given.getIfGiven<double>("memory");
@@ -169,6 +170,7 @@ LoadedScene loadScene(RenderJob& job) {
   const Camera camera = withLens(job, chooseCamera(job, scene));
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, origin);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
+  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);

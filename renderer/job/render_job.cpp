@@ -91,6 +91,7 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.hideProbe = s.get<bool>("transparent");
   if (const auto clamp = s.getIfGiven<double>("clamp")) r.clamp = float(*clamp);
   r.aovs = layersOf(file);
+  r.regularize = s.get<bool>("render.regularize");
   r.denoise = s.get<bool>("render.denoise");
   if (r.hideProbe && std::count(r.aovs.begin(), r.aovs.end(), Aov::Alpha) == 0)
     r.aovs.push_back(Aov::Alpha);
@@ -102,8 +103,9 @@ void checkTwoPass(const SceneFile& file) {
   if (!s.get<bool>("two-pass")) return;
   if (!file.composite)
     throwInput("{}: is for composites; the scene file has no [composite]", s.location("two-pass"));
-  if (s.has("clamp"))
-    throwInput("{}: is biased; leave it out in a reference of two passes", s.location("clamp"));
+  for (const char* biased : {"clamp", "render.regularize", "render.denoise"})
+    if (s.has(biased))
+      throwInput("{}: is biased; leave it out in a reference of two passes", s.location(biased));
 }
 
 void checkGuide(const SceneFile& file) {
@@ -125,7 +127,9 @@ void checkDenoise(const SceneFile& file) {
   const bool denoises = s.get<bool>("render.denoise");
   if (!denoises && !wantsLayers) return;
   const std::string location = s.location(denoises ? "render.denoise" : "output.aovs");
-  if (file.composite) throwInput("{}: composites are not denoised", location);
+  if (file.composite && wantsLayers)
+    throwInput("{}: composites have no layers to denoise later; give --denoise",
+               s.location("output.aovs"));
   if (s.has("render.samples") && s.get<uint64_t>("render.samples") < 2)
     throwInput("{}: needs at least 2 samples per pixel", location);
 }
@@ -151,6 +155,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
+  job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
   job.strategy = named(s, "lighting.strategy");
   job.outputs = s.get<std::vector<std::string>>("output.file");
   job.makesOutputFolders = !over.has("output.file");

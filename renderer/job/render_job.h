@@ -19,6 +19,7 @@ struct RenderJob {
   RenderSettings settings;        // of the integrator; the size is final after loadScene()
   std::optional<ImageSize> size;  // nullopt: determined by the model's camera
   SingleSided singleSided = SingleSided::Camera;
+  bool straightGlassShadows = false;  // passShadowsStraight()
   NamedSetting strategy;
   std::optional<CompositePlan> composite;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "composite/denoise_composite.h"
 #include "composite/layers.h"
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
@@ -26,11 +27,13 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
                                               const std::atomic<bool>& stop) {
   const ReflectanceProblem problem{*prepared.world, loaded.camera, *prepared.lighting,
                                    job.composite->plate};
+  RenderSettings settings = job.settings;
+  settings.denoise = false;  // only the composite is denoised
   const ReflectanceSolution solution =
       job.composite->reflectance == CompositePlan::Reflectance::Flat
-          ? solveFlatReflectance(problem, job.settings, flatIrradiance(loaded), *loaded.projection,
+          ? solveFlatReflectance(problem, settings, flatIrradiance(loaded), *loaded.projection,
                                  stop)
-          : solveReflectance(problem, job.settings, job.composite->iterations, *loaded.projection,
+          : solveReflectance(problem, settings, job.composite->iterations, *loaded.projection,
                              progress, stop);
   const double clamped = double(solution.clamped) / double(std::max<size_t>(solution.pixels, 1));
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
@@ -91,16 +94,17 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
                           const PreparedScene& prepared, const Progress& progress,
                           const std::atomic<bool>& stop) {
   const CompositePlan& plan = *job.composite;
-  const bool solves = loaded.projection != nullptr;
+  const bool solves = loaded.projection != nullptr, denoises = job.settings.denoise;
+  const double share = denoises ? kRenderShare : 1;
   CompositeReport report;
   if (solves)
     report.reflectance = solveReflectance(
-        job, loaded, prepared, [&](double fraction) { progress(fraction / 2); }, stop);
+        job, loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
       *prepared.world, loaded.camera, *prepared.lighting, plan.plate, job.settings, plan.passes,
-      needsBehind, [&](double fraction) { progress(solves ? (1 + fraction) / 2 : fraction); },
-      stop);
+      needsBehind,
+      [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop);
   const Composite composite = compose(rendered.film, rendered.mean, plan.plate, plan.mode);
   report.coverage = meanAlpha(rendered.film);
   report.darkerThanBlack = composite.darkerThanBlack;
@@ -110,9 +114,17 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   image.layers.push_back({"", "RGB", composite.color});
   for (const std::string& name : plan.layers)
     image.layers.push_back(layerOf(name, loaded, rendered, noise.variance));
+  std::optional<DenoiseReport> denoised;
+  if (denoises && !rendered.result.interrupted)
+    denoised = addDenoised(
+        [&](const Progress& part) {
+          return denoiseComposite(rendered, plan.plate, plan.mode, part, stop);
+        },
+        progress, image);
+  rendered.result.interrupted |= denoises && !denoised;
   Messages messages = warningsOf(report, job.file.settings.get<double>("probe.scale"));
-  return {std::move(image),   std::move(rendered.result), std::move(noise), report, {},
-          std::move(messages)};
+  return {std::move(image), std::move(rendered.result), std::move(noise), report,
+          denoised,         std::move(messages)};
 }
 
 }  // namespace chromeball

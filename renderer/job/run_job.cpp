@@ -53,38 +53,21 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   return output;
 }
 
-// nullopt if `stop` is set.
-std::optional<DenoiseReport> denoiseImage(const RenderResult& result, const Progress& progress,
-                                          const std::atomic<bool>& stop, OutputImage& image) {
-  Stopwatch watch;
-  const FeatureFilm& features = result.features;
-  std::optional<Denoised> found =
-      denoise({.color = {result.film.mean(), result.film.halfDifference()},
-               .direct = features.direct(),
-               .albedo = features.albedo(),
-               .normal = features.normal(),
-               .disparity = features.disparity()},
-              progress, stop);
-  if (!found) return std::nullopt;
-  const double noise = remainingNoise(*found);
-  addDenoised(*std::move(found), result.film.mean(), image);
-  return DenoiseReport{noise, watch.lap()};
-}
-
 JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
                       const PreparedScene& prepared, const Progress& progress,
                       const std::atomic<bool>& stop) {
-  const double share = job.settings.denoise ? 0.9 : 1;  // of the progress
+  const bool denoises = job.settings.denoise;
+  const double share = denoises ? kRenderShare : 1;
   RenderResult result = render(
       *prepared.world, loaded.camera, *prepared.lighting, job.settings,
       [&](double fraction) { progress(share * fraction); }, stop);
   ImageNoise noise(result.film.errors());
   OutputImage image = assemble(result, job.settings, noise.variance);
   std::optional<DenoiseReport> report;
-  if (job.settings.denoise && !result.interrupted)
-    report = denoiseImage(
-        result, [&](double fraction) { progress(share + (1 - share) * fraction); }, stop, image);
-  if (job.settings.denoise && !report) result.interrupted = true;
+  if (denoises && !result.interrupted)
+    report = addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
+                         progress, image);
+  result.interrupted |= denoises && !report;
   return {std::move(image), std::move(result), std::move(noise), {}, report, {}};
 }
 
@@ -94,7 +77,8 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
   Stopwatch watch;
   PreparedScene prepared;
   prepared.world = std::make_unique<const World>(
-      loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>());
+      loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>(),
+      BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(job.strategy, job.settings.mis, loaded);
   prepared.prepareSeconds = watch.lap();

@@ -7,10 +7,10 @@
 
 #include "base/message.h"
 #include "base/progress.h"
-#include "denoise/denoise.h"
 #include "image/io/write_image.h"
 #include "integrate/render.h"
 #include "integrate/world.h"
+#include "job/denoised_image.h"
 #include "job/image_noise.h"
 #include "job/load_scene.h"
 #include "job/render_job.h"
@@ -38,12 +38,6 @@ struct CompositeReport {
     double lastChange = 0;       // mean |change| of the reflectance in the last iteration
   };
   std::optional<Reflectance> reflectance;
-};
-
-// What a denoised image has left.
-struct DenoiseReport {
-  double noise = 0;  // as Noise::noise, estimated
-  double seconds = 0;
 };
 
 struct JobResult {

@@ -86,6 +86,25 @@ void addRender(std::vector<Setting>& rows) {
                "`importance`: auto where that pays (rooms), on wherever it reduces the variance; "
                "from 8 samples per pixel.",
        .renderOnly = true});
+  add({.key = "regularize",
+       .option = "regularize",
+       .type = Flag,
+       .help = "Widens glossy reflection and glass that light reaches after a diffuse bounce "
+               "(biased): no fireflies from caustics. The bias falls with the samples.",
+       .renderOnly = true});
+  add({.key = "glass_shadows",
+       .option = "glass-shadows",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "refract",
+       .choices =
+           [] {
+             return Names{"refract", "straight"};
+           },
+       .help = "Light that reaches surfaces through smooth bodies of glass is refracted (refract), "
+               "or passes straight, tinted by the glass (straight, biased): no caustics, less "
+               "noise.",
+       .renderOnly = true});
   add({.key = "denoise",
        .option = "denoise",
        .type = Flag,

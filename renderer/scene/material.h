@@ -32,6 +32,8 @@ struct Material {
   bool doubleSided = false;
   SingleSided singleSided = SingleSided::Camera;  // ignored if doubleSided
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
+  // Shadow rays pass the smooth body without refraction (thin_wall.h).
+  bool straightShadows = false;
 
   // Whether the back is invisible to the camera and mirrors.
   bool hidesBack() const {

@@ -53,7 +53,8 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Material> materials;  // not empty if there is a mesh
   std::vector<Texture> textures;
-  std::vector<std::unique_ptr<TexelGrid>> grids;  // own the texels that textures point to
+  // Own the texels that textures point to. Copies of the scene share them.
+  std::vector<std::shared_ptr<TexelGrid>> grids;
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired

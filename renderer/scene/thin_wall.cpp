@@ -3,11 +3,22 @@
 
 namespace chromeball {
 
-bool passesStraight(const Material& m) {
+namespace {
+
+// A smooth boundary that transmits light, without other layers.
+bool isClear(const Material& m) {
   if (!m.extended || m.unlit || m.roughness != 0) return false;
   const ExtendedMaterial& e = *m.extended;
-  return e.transmission > 0 && e.thinWalled && e.clearcoat == 0 && isBlack(e.sheenColor) &&
-         e.anisotropy == 0 && e.iridescence == 0;
+  return e.transmission > 0 && e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 &&
+         e.iridescence == 0;
+}
+
+}  // namespace
+
+bool passesStraight(const Material& m) { return isClear(m) && m.extended->thinWalled; }
+
+void passShadowsStraight(std::span<Material> materials) {
+  for (Material& m : materials) m.straightShadows = isClear(m) && !m.extended->thinWalled;
 }
 
 Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine) {
@@ -19,7 +30,7 @@ Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine)
 
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction) {
-  if (!passesStraight(*surface.material)) return Rgb(0);
+  if (!passesShadows(*surface.material)) return Rgb(0);
   return sheetTransmittance(materialAt(scene, surface),
                             extendedMaterialAt(scene, instance, surface).transmission,
                             std::fabs(glm::dot(surface.normal, direction)));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth thin sheets (KHR_materials_transmission). They do not refract, so shadow rays can pass
-// them.
+// Surfaces that shadow rays pass: smooth thin sheets (KHR_materials_transmission), which do not
+// refract, and, as an approximation, smooth bodies of glass as if they did not.
 #pragma once
+
+#include <span>
 
 #include "scene/extended_surface.h"
 
@@ -11,12 +13,19 @@ namespace chromeball {
 // its whole transmission.
 bool passesStraight(const Material& material);
 
+// Sets Material::straightShadows of smooth bodies without coats, sheen or films.
+void passShadowsStraight(std::span<Material> materials);
+
+inline bool passesShadows(const Material& material) {
+  return material.straightShadows || passesStraight(material);
+}
+
 // Transmittance of a smooth sheet for the given cosine of the angle of incidence: base colour x
 // transmission x (1 - metallic) x (1 - Schlick's Fresnel term).
 Rgb sheetTransmittance(const MaterialPoint& material, float transmission, float cosine);
 
 // The same at a surface point, along `direction` (unit, either sign); black unless
-// passesStraight().
+// passesShadows().
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction);
 

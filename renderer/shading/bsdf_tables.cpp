@@ -11,15 +11,17 @@ bool needsEnergy(const Material& m) { return m.metallic > 0 || m.specular > 0 ||
 bool needsAnisotropic(const Material& m) { return m.extended && m.extended->anisotropy > 0; }
 bool needsSheen(const Material& m) { return m.extended && !isBlack(m.extended->sheenColor); }
 bool needsGlass(const Material& m) { return m.isBody() && m.roughness > 0; }
+bool isBody(const Material& m) { return m.isBody(); }
 
 }  // namespace
 
-BsdfTables::BsdfTables(std::span<const Material> materials) {
+BsdfTables::BsdfTables(std::span<const Material> materials, bool widened) {
   if (std::ranges::any_of(materials, needsEnergy)) energy = std::make_shared<EnergyTable>();
   if (std::ranges::any_of(materials, needsAnisotropic))
     anisotropic = std::make_shared<AnisotropicTable>();
   if (std::ranges::any_of(materials, needsSheen)) sheen = std::make_shared<SheenTable>();
-  if (std::ranges::any_of(materials, needsGlass)) glass = std::make_shared<GlassTable>();
+  if (std::ranges::any_of(materials, widened ? isBody : needsGlass))
+    glass = std::make_shared<GlassTable>();
 }
 
 }  // namespace chromeball

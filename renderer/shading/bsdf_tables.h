@@ -16,7 +16,8 @@ namespace chromeball {
 // Those tables that the materials need, and no others: none for Lambertian materials. Copies share
 // the tables, each of which takes up to 0.3 s of one core. Must outlive the BSDFs.
 struct BsdfTables {
-  explicit BsdfTables(std::span<const Material> materials);
+  // `widened`: smooth materials may become rough (integrate/regularization.h).
+  explicit BsdfTables(std::span<const Material> materials, bool widened = false);
 
   std::shared_ptr<const EnergyTable> energy;
   std::shared_ptr<const AnisotropicTable> anisotropic;

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/stopwatch.h"
+#include "job/denoised_image.h"
+#include "scene/thin_wall.h"
 
 namespace chromeball {
 
@@ -13,35 +15,46 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
       store_(store),
       loaded_(loaded),
       settings_(settings),
-      world_(loaded.scene),
       renders_(study.renders()) {
-  const auto build = [&](const std::string& name, const std::string& strategy,
-                         const char* location) {
+  const auto build = [&](const std::string& name, const std::string& row, const char* location) {
     const Stopwatch watch;
     Built& built = built_[name];
-    built.strategy = makeLighting({strategy, location}, settings.mis, loaded);
+    built.row = rowNamed(row, location);
+    built.strategy = makeLighting({built.row.strategy, location}, settings.mis, loaded);
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
   if (study.referenceFile.empty())
     build(kReference, study.referenceStrategy, "--reference-strategy");
+  makeWorlds();
   for (const RenderKey& key : renders_) {
     present_.push_back(store.find(key).has_value());
     stored_ += present_.back();
   }
 }
 
+void StudyRun::makeWorlds() {
+  const auto anyHas = [&](Mode mode) {
+    return std::ranges::any_of(built_, [&](const auto& one) { return one.second.row.has(mode); });
+  };
+  const BsdfTables tables(loaded_.scene.materials, anyHas(Mode::Regularize));
+  const std::vector<RayMask> all;
+  world_ = std::make_unique<const World>(loaded_.scene, all, tables);
+  if (!anyHas(Mode::GlassShadows)) return;
+  passShadowsStraight(straightScene_.emplace(loaded_.scene).materials);
+  straightWorld_ = std::make_unique<const World>(*straightScene_, all, tables);
+}
+
 RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
                               const std::atomic<bool>& stop) const {
-  RenderSettings settings = settings_;
-  settings.adaptive = false;  // strategies are compared at equal samples in every pixel
-  settings.guiding = Guiding::Off;
+  const Row& row = built_.at(key.strategy).row;
+  RenderSettings settings = row.applied(settings_);
   settings.seed = seedOf(key, study_.seed);
   settings.samples = key.budget.timed ? kMaxSamples : uint32_t(key.budget.amount);
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
-  return chromeball::render(world_, loaded_.camera, strategy(key.strategy), settings, progress,
-                            stop);
+  return chromeball::render(worldOf(row), loaded_.camera, strategy(key.strategy), settings,
+                            progress, stop);
 }
 
 double StudyRun::estimatedSeconds(const RenderKey& key) const {
@@ -67,15 +80,23 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
                          const std::atomic<bool>& stop) {
   const Stopwatch watch;
   const RenderResult result = render(key, progress, stop);
-  const double seconds = watch.seconds();
   if (result.interrupted) return;
   Built& built = built_.at(key.strategy);
+  Image image = result.film.mean();
+  double noise = result.film.noise().noise;
+  if (built.row.has(Mode::Denoise)) {
+    std::optional<Denoised> denoised = denoiseRender(
+        result, [](double) {}, stop);
+    if (!denoised) return;
+    noise = remainingNoise(*denoised);
+    image = std::move(denoised->color);
+  }
+  const double seconds = watch.seconds();
   built.secondsPerSample = seconds / std::max(1u, result.samples);
   const RayCounts& rays = result.rays;
-  store_.save(key,
-              {built.strategy->unbiased(), result.film.mean(), double(result.samples), seconds,
-               built.prepareSeconds, result.film.noise().noise,
-               double(rays.camera + rays.shadow + rays.bounce), double(result.invalid.total())});
+  store_.save(key, {unbiased(key.strategy), std::move(image), double(result.samples), seconds,
+                    built.prepareSeconds, noise, double(rays.camera + rays.shadow + rays.bounce),
+                    double(result.invalid.total())});
   ++stored_;
 }
 

@@ -10,12 +10,13 @@
 #include "integrate/render.h"
 #include "job/load_scene.h"
 #include "study/render_store.h"
+#include "study/row.h"
 
 namespace chromeball {
 
 class StudyRun {
  public:
-  // Builds all strategies, including that of the reference. Throws InputError for unknown names.
+  // Builds all rows (row.h), including that of the reference. Throws InputError for unknown names.
   // All arguments must outlive the run.
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
@@ -28,12 +29,16 @@ class StudyRun {
 
   int stored() const { return stored_; }
   int total() const { return int(renders_.size()); }
-  const LightingStrategy& strategy(const std::string& name) const {
-    return *built_.at(name).strategy;
+  const LightingStrategy& strategy(const std::string& row) const {
+    return *built_.at(row).strategy;
+  }
+  bool unbiased(const std::string& row) const {
+    return strategy(row).unbiased() && !built_.at(row).row.isBiased();
   }
 
  private:
   struct Built {
+    Row row;
     std::unique_ptr<LightingStrategy> strategy;
     double prepareSeconds = 0;
     double secondsPerSample = 0;  // of the last render; 0 if there was none
@@ -48,13 +53,18 @@ class StudyRun {
   void warmUp(const std::atomic<bool>& stop);
   RenderResult render(const RenderKey& key, const Progress& progress,
                       const std::atomic<bool>& stop) const;
+  void makeWorlds();
+  const World& worldOf(const Row& row) const {
+    return row.has(Mode::GlassShadows) ? *straightWorld_ : *world_;
+  }
 
   const Study& study_;
   const RenderStore& store_;
   const LoadedScene& loaded_;
   const RenderSettings& settings_;
-  World world_;
-  std::map<std::string, Built> built_;
+  std::map<std::string, Built> built_;  // by row
+  std::optional<Scene> straightScene_;  // with passShadowsStraight(), if a row needs it
+  std::unique_ptr<const World> world_, straightWorld_;
   std::vector<RenderKey> renders_;
   std::vector<bool> present_;
   int stored_ = 0;

@@ -142,14 +142,19 @@ void Accel::transmittance(std::span<const Ray> rays, std::span<Rgb> transmittanc
   }
 }
 
-Rgb Accel::transmittance(const Ray& ray, RayMask mask) const {
+Rgb Accel::transmittance(const Ray& ray, RayMask mask, const Rgb& attenuation) const {
   if (!isTraceable(ray)) return Rgb(1);
   Query query;
   initQueryContext(query.embree);
   query.direction = ray.direction;
+  query.length = ray.tMax;
+  if (std::isfinite(ray.tMax)) query.opticalDepth = ray.tMax * attenuation;
   RTCRay r = embreeRay(ray, mask);
   rtcOccluded(scene_, r, query.embree);
-  return r.tfar < 0 ? Rgb(0) : query.transmittance;
+  if (r.tfar < 0) return Rgb(0);
+  if (isBlack(query.opticalDepth)) return query.transmittance;
+  // A ray may miss one side of an open mesh.
+  return query.transmittance * glm::exp(-glm::max(query.opticalDepth, Rgb(0)));
 }
 
 }  // namespace chromeball

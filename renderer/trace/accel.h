@@ -45,11 +45,13 @@ class Accel {
                  std::span<std::optional<Hit>> hits, RayMask mask = kAllInstances) const;
 
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
-  // (1 - alpha) and smooth thin walls (scene/thin_wall.h). The ray points towards the light; it
-  // passes the front of a surface with Material::backLetsLightThrough().
-  Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances) const;
+  // (1 - alpha), surfaces that pass shadow rays (scene/thin_wall.h) and absorption. The ray points
+  // towards the light; it passes the front of a surface with Material::backLetsLightThrough().
+  // `attenuation`: in the medium at the ray's origin, 1/m; ignored for infinite rays.
+  Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances,
+                    const Rgb& attenuation = Rgb(0)) const;
 
-  // The same for several rays.
+  // The same for several rays that start in air.
   void transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
                      RayMask mask = kAllInstances) const;
 

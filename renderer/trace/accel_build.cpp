@@ -95,7 +95,7 @@ void Accel::build(const Scene& scene) {
     ++uses[instance.mesh];
     const Material& material = scene.materials[instance.material];
     const bool alpha = material.alphaMode != AlphaMode::Opaque;
-    if (!alpha && !passesStraight(material) && !material.backLetsLightThrough()) continue;
+    if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
     needsFilter_[instance.mesh] = hasFilter_ = true;
     hasAlpha_ = hasAlpha_ || alpha;
   }

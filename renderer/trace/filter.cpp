@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/filter.h"
 
+#include <cmath>
+
 #include "base/hash.h"
 #include "scene/surface.h"
 #include "scene/thin_wall.h"
@@ -15,6 +17,13 @@ Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
           RTCHitN_primID(hit, 1, 0),
           {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)},
           RTCRayN_tfar(arguments->ray, 1, 0)};
+}
+
+// The optical depth of the body from its boundary to the end of the ray, or to the origin if the
+// ray is infinite; negative where the ray leaves the body.
+Rgb opticalDepth(const Query& query, const Material& body, bool enters, float distance) {
+  const float toEnd = std::isfinite(query.length) ? query.length - distance : -distance;
+  return (enters ? toEnd : -toEnd) * body.extended->attenuation;
 }
 
 float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
@@ -44,10 +53,13 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   }
   const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
   Rgb passed(1 - alpha);
-  if (alpha > 0 && passesStraight(scene.materials[instance.material])) {
+  const Material& material = scene.materials[instance.material];
+  if (alpha > 0 && passesShadows(material)) {
     const Surface surface =
         surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction);
     passed += alpha * straightTransmittance(scene, instance, surface, query.direction);
+    if (material.straightShadows)
+      query.opticalDepth += opticalDepth(query, material, surface.frontFace, hit.distance);
   }
   query.transmittance *= passed;
   if (!isBlack(query.transmittance)) arguments->valid[0] = 0;

@@ -11,8 +11,11 @@ namespace chromeball {
 struct Query {
   QueryContext embree;  // first, so that a filter can cast back
   uint32_t key = 0;     // of Accel::intersect()
-  vec3 direction{0};    // of a shadow ray
-  Rgb transmittance{1};
+  // Of a shadow ray:
+  vec3 direction{0};
+  float length = 0;      // may be infinite
+  Rgb transmittance{1};  // of surfaces
+  Rgb opticalDepth{0};   // of bodies
 };
 
 // Index into Scene::instances, since geometry i of the top scene is instance i.

@@ -18,6 +18,7 @@
 #include "study/report/report.h"
 #include "study/report/sampled_directions.h"
 #include "study/result_tables.h"
+#include "study/row.h"
 #include "study/study_run.h"
 #include "study/verdict.h"
 #include "thread_limit.h"
@@ -42,12 +43,12 @@ struct Arguments {
 std::vector<std::string> resolveStrategies(const std::vector<std::string>& given) {
   std::vector<std::string> names;
   for (const std::string& name : given) {
-    std::vector<std::string> these{resolveStrategy(name)};
-    if (name == "all") {
-      these.clear();
+    std::vector<std::string> these;
+    if (name == "all")
       for (const std::string_view known : strategyNames())
         these.push_back(resolveStrategy(std::string(known)));
-    }
+    else
+      these.push_back(rowNamed(name, "--strategies").name());
     for (const std::string& one : these)
       if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
   }
@@ -97,13 +98,14 @@ Study planStudy(const Arguments& a) {
   if (a.repeats < Study::kMinRepeats)
     throwInput("--repeats: {} is not {} or more", a.repeats, Study::kMinRepeats);
   study.repeats = a.repeats;
-  study.baseline = a.baseline.empty() ? study.strategies.front() : resolveStrategy(a.baseline);
+  study.baseline =
+      a.baseline.empty() ? study.strategies.front() : rowNamed(a.baseline, "--baseline").name();
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
     throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
   if (!a.reference.empty() && a.referenceSamples)
     throwInput("--reference-samples: the reference is a file; give one or the other");
-  study.referenceStrategy = resolveStrategy(a.referenceStrategy);
+  study.referenceStrategy = rowNamed(a.referenceStrategy, "--reference-strategy").name();
   planReferenceSamples(a, study.budgets);  // throws for an invalid number
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
   if (fs::exists(a.folder) && !fs::is_directory(a.folder))
@@ -124,7 +126,7 @@ void showStored(Study& study, const RenderStore& store) {
 }
 
 void checkReference(const StudyRun& run, const Study& study) {
-  if (study.referenceFile.empty() && !run.strategy(kReference).unbiased())
+  if (study.referenceFile.empty() && !run.unbiased(kReference))
     throwInput("--reference-strategy: `{}` is biased; a reference must be unbiased",
                study.referenceStrategy);
 }
@@ -151,7 +153,8 @@ void compare(const Arguments& a) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
-  scene.settings.erase("output.aovs");
+  for (const char* name : {"output.aovs", "render.regularize", "render.glass_shadows"})
+    scene.settings.erase(name);
   RenderJob job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
   const ThreadLimit threads(a.scene.settings);
@@ -223,7 +226,8 @@ void addCompareCommand(CLI::App& app) {
   command->footer(strategyHelp());
   command
       ->add_option("--strategies", a.strategies,
-                   "NAME or NAME:COUNT, separated by commas; all if not given")
+                   "NAME or NAME:COUNT, separated by commas; all if not given. With +adaptive, "
+                   "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise")
       ->delimiter(',');
   command
       ->add_option("--samples", a.samples,

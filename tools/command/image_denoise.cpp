@@ -56,8 +56,14 @@ struct Reader {
   }
 };
 
+Image withColor(Image image, const Image& color) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) image.setRgb(x, y, color.rgb(x, y));
+  return image;
+}
+
 void checkMemory(const std::string& path, const Image& color) {
-  const double needed = denoiseBytes(color.width, color.height);
+  const double needed = denoiseBytes(color.width, color.height, 2);
   if (needed > memoryBudget())
     throwInput("{}: denoising {}x{} pixels takes {:.3g} GB of memory", path, color.width,
                color.height, needed * 1e-9);
@@ -68,25 +74,24 @@ void run(const Arguments& arguments) {
   checkDistinct({arguments.output}, {arguments.input});
   ImageFile file = readImageFile(arguments.input);
   const Reader reader{arguments.input, file};
-  const DenoiseInput input{.color = {reader.color(), reader.layer("denoise.half", 3)},
-                           .direct = reader.halved("direct", 3),
+  const HalvedImage color{reader.color(), reader.layer("denoise.half", 3)};
+  const DenoiseInput input{.parts = directAndIndirect(color, reader.halved("direct", 3)),
                            .albedo = reader.halved("albedo", 3, kMaxUnit),
                            .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
-  checkMemory(arguments.input, input.color.mean);
+  checkMemory(arguments.input, color.mean);
   const std::atomic<bool> never = false;
   Denoised denoised = [&] {
     ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
-    return *denoise(
-        input, [&](double fraction) { bar.update(fraction); }, never);
+    return sumOf(*denoise(
+        input, [&](double fraction) { bar.update(fraction); }, never));
   }();
-  const double noise = remainingNoise(denoised);
-  Image color = *findColorAndAlpha(file);
   OutputImage output;
   output.metadata = std::move(file.metadata);
+  Image noisy = withColor(*findColorAndAlpha(file), color.mean);
+  output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
+  const double noise = addDenoised(std::move(denoised), output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
-  output.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
-  addDenoised(std::move(denoised), input.color.mean, output);
   writeImage(arguments.output, output);
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",

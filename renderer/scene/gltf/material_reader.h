@@ -57,7 +57,7 @@ class MaterialReader {
   std::map<TextureKey, int> textureOf_;
   std::vector<Texture> textures_;
   std::map<int, int> gridOf_;  // image to grid
-  std::vector<std::unique_ptr<TexelGrid>> grids_;
+  std::vector<std::shared_ptr<TexelGrid>> grids_;
   std::vector<int> imageOf_;  // grid to image
 };
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/denoise_composite.h"
+
+namespace chromeball {
+namespace {
+
+using Layer = DifferentialFilm::Layer;
+
+// The composite by the difference formula.
+Image differenceOf(const DifferentialFilm& film, const Image& plate) {
+  Image image(film.width(), film.height(), 3);
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel p = film.at(x, y);
+      const double count = std::max(p.count, 1.0);
+      image.setRgb(x, y,
+                   Rgb((p.objects + p.difference) / count +
+                       (1 - p.covered / count) * glm::dvec3(plate.rgb(x, y))));
+    }
+  return image;
+}
+
+// The standard error of luminance. Alpha, which is not filtered, adds the error of the plate's
+// share. A negative estimate that is set to 0 is nearer to the truth by as much.
+Image errorOf(const std::vector<DenoisedPart>& parts, const Composite& composite,
+              const Image& unclamped, const HalvedImage& alpha, const Image& plate) {
+  Image error(plate.width, plate.height, 1);
+  for (int y = 0; y < plate.height; ++y)
+    for (int x = 0; x < plate.width; ++x) {
+      const Rgb share = alpha.half.rgb(x, y) * plate.rgb(x, y);
+      const Rgb gain = composite.gain.rgb(x, y);
+      const Rgb standardError = glm::sqrt(parts[0].squaredError.rgb(x, y) + share * share +
+                                          gain * gain * parts[1].squaredError.rgb(x, y));
+      const Rgb raised = composite.color.rgb(x, y) - unclamped.rgb(x, y);
+      *error.at(x, y) = luminance(glm::max(standardError - glm::max(raised, 0.0f), 0.0f));
+    }
+  return error;
+}
+
+}  // namespace
+
+std::optional<Denoised> denoiseComposite(const CompositeRender& render, const Image& plate,
+                                         CompositeMode mode, const Progress& progress,
+                                         const std::atomic<bool>& stop) {
+  const FeatureFilm& features = render.result.features;
+  std::vector<Layer> layers{DifferentialFilm::kObjects, DifferentialFilm::kDifference};
+  if (mode == CompositeMode::Ratio) layers.push_back(DifferentialFilm::kLocal);
+  DenoiseInput input{{}, features.albedo(), features.normal(), features.disparity()};
+  for (const Layer layer : layers) input.parts.push_back(render.film.mean(layer));
+  const auto parts = denoise(input, progress, stop);
+  if (!parts) return std::nullopt;
+
+  std::map<int, Image> means;
+  for (size_t i = 0; i < layers.size(); ++i) {
+    Image& mean = means[layers[i]] = (*parts)[i].color;
+    if (layers[i] != DifferentialFilm::kDifference)  // a regression may predict less than nothing
+      for (float& texel : mean.texels) texel = std::max(texel, 0.0f);
+  }
+  const DifferentialFilm film = render.film.with(means);
+  const Image difference = differenceOf(film, plate);
+  Composite composite = compose(film, difference, plate, mode);
+  const Image& unclamped = mode == CompositeMode::Difference ? difference : composite.color;
+  Image error =
+      errorOf(*parts, composite, unclamped, render.film.mean(DifferentialFilm::kCoverage), plate);
+  return Denoised{std::move(composite.color), std::move(error)};
+}
+
+}  // namespace chromeball

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a study compares: a lighting strategy, with ways of rendering that it is combined with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "integrate/render_settings.h"
+
+namespace chromeball {
+
+// A way of rendering besides the lighting strategy.
+enum class Mode { Adaptive, Guide, Regularize, GlassShadows, Denoise };
+
+// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise".
+struct Row {
+  std::string strategy;     // complete name ("median-cut:64")
+  std::vector<Mode> modes;  // without repetition, in the order of Mode
+
+  bool has(Mode mode) const;
+  bool isBiased() const;  // by a mode
+  std::string name() const;
+  // `settings` with these modes, and no others.
+  RenderSettings applied(RenderSettings settings) const;
+};
+
+// `location` (an option) begins the InputError thrown for an unknown mode. The strategy is resolved
+// but not checked.
+Row rowNamed(const std::string& name, const std::string& location);
+
+}  // namespace chromeball

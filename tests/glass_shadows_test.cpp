@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that passes bodies of glass without refraction: closed forms of its transmittance.
+#include <gtest/gtest.h>
+
+#include "probe/synth.h"
+#include "scene/thin_wall.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+constexpr float kAlbedo = 0.5f;
+const Rgb kAttenuation(0.3f, 1, 3);
+
+Material glass() {
+  Material m;
+  m.metallic = 0;
+  m.roughness = 0;
+  m.doubleSided = true;
+  m.extended.emplace();
+  m.extended->transmission = 1;
+  m.extended->thinWalled = false;
+  m.extended->attenuation = kAttenuation;
+  return m;
+}
+
+// A floor at y = 0 and a large slab of glass from y = `bottom` to y = `top`. No edge of a triangle
+// is near the axis.
+Scene floorAndSlab(float bottom, float top, const Material& material = glass()) {
+  Scene scene;
+  const int slab = addMaterial(scene, material);
+  addQuad(scene, addMaterial(scene, lambert(Rgb(kAlbedo))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+  addQuad(scene, slab, {-99, top, 50}, {198, 0, 0}, {0, 0, -198});
+  addQuad(scene, slab, {-99, bottom, -50}, {198, 0, 0}, {0, 0, 198});
+  passShadowsStraight(scene.materials);
+  return scene;
+}
+
+PunctualLight sun(vec3 direction, Rgb irradiance) {
+  PunctualLight light;
+  light.kind = PunctualLight::Kind::Directional;
+  light.direction = glm::normalize(direction);
+  light.intensity = irradiance;
+  return light;
+}
+
+Rgb radianceOf(const Scene& scene, const Camera& camera, uint32_t samples = 1) {
+  const Probe black(constantProbe({4, 2}, Rgb(0)));
+  return meanColor(
+      renderScene(scene, camera, black, "importance", smallRender(8, 8, samples, 1)).film.mean());
+}
+
+// From between the floor and a slab above y = 0.5, at the floor.
+Camera underTheSlab() { return Camera::lookAt({0.5f, 0.4f, 0}, {0, 0, 0}, {0, 1, 0}, 0.001f); }
+
+double schlick(double cosine) { return 0.04 + 0.96 * std::pow(1 - cosine, 5); }
+
+TEST(GlassShadows, ASlabTransmitsByFresnelAndBeersLaw) {
+  for (const double angle : {0.0, 0.9}) {
+    Scene scene = floorAndSlab(0.5f, 1.25f);
+    const double c = std::cos(angle);
+    scene.lights.push_back(sun({std::sin(angle), -c, 0}, Rgb(2)));
+    const Rgb found = radianceOf(scene, underTheSlab());
+    for (int i = 0; i < 3; ++i) {
+      const double passed = std::pow(1 - schlick(c), 2) * std::exp(-kAttenuation[i] * 0.75 / c);
+      EXPECT_NEAR(found[i] / (kAlbedo / kPiD * 2 * c * passed), 1, 2e-3) << angle << " " << i;
+    }
+  }
+}
+
+TEST(GlassShadows, ALampInTheGlassIsAbsorbedUpToTheBoundary) {
+  Scene scene = floorAndSlab(0.5f, 1.25f);
+  PunctualLight lamp;
+  lamp.position = {0, 1, 0};
+  lamp.intensity = Rgb(2);
+  scene.lights.push_back(lamp);
+  const Rgb found = radianceOf(scene, underTheSlab());
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(found[i] / (kAlbedo / kPiD * 2 * 0.96 * std::exp(-kAttenuation[i] * 0.5)), 1, 2e-3);
+}
+
+// The camera and the light see a floor inside the glass through the same boundary.
+TEST(GlassShadows, AFloorInTheGlassIsAbsorbedUpToTheBoundary) {
+  for (const bool isNear : {false, true}) {
+    Scene scene = floorAndSlab(-1, 0.5f);
+    PunctualLight light = sun({0, -1, 0}, Rgb(2));
+    if (isNear) {
+      light.kind = PunctualLight::Kind::Point;
+      light.position = {0, 4, 0};
+      light.intensity = Rgb(32);
+    }
+    scene.lights.push_back(light);
+    const Rgb found = radianceOf(scene, topCamera(2, 0.1f), 4096);
+    for (int i = 0; i < 3; ++i) {
+      const double passed = 0.96 * std::exp(-kAttenuation[i] * 0.5);
+      EXPECT_NEAR(found[i] / (kAlbedo / kPiD * 2 * passed * passed), 1, 0.02) << i;
+    }
+  }
+}
+
+// A ray that enters an open mesh, or leaves one that it has not entered, gains nothing.
+TEST(GlassShadows, OpenMeshesDoNotAmplify) {
+  for (const bool up : {false, true}) {
+    Scene scene;
+    Material dense = glass();
+    dense.extended->attenuation = Rgb(1e10f);
+    const int sheet = addMaterial(scene, dense);
+    addQuad(scene, addMaterial(scene, lambert(Rgb(kAlbedo))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+    addQuad(scene, sheet, {-99, 0.5f, up ? 50.0f : -50.0f}, {198, 0, 0},
+            {0, 0, up ? -198.0f : 198.0f});
+    passShadowsStraight(scene.materials);
+    scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
+    const Rgb found = radianceOf(scene, underTheSlab());
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_TRUE(std::isfinite(found[i]));
+      EXPECT_LE(found[i], kAlbedo / kPi * 2 * 0.9601f);
+    }
+  }
+}
+
+// Rough, coated and metallic surfaces still block light.
+TEST(GlassShadows, OnlySmoothGlassLetsLightPass) {
+  Material rough = glass(), coated = glass();
+  rough.roughness = 0.2f;
+  coated.extended->clearcoat = 1;
+  for (const Material& material : {rough, coated}) {
+    Scene scene = floorAndSlab(0.5f, 1.25f, material);
+    scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
+    EXPECT_EQ(radianceOf(scene, underTheSlab()), Rgb(0));
+  }
+  Scene scene = floorAndSlab(0.5f, 1.25f);
+  for (Material& material : scene.materials) material.straightShadows = false;
+  scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
+  EXPECT_EQ(radianceOf(scene, underTheSlab()), Rgb(0));
+}
+
+// What the camera sees through glass is refracted all the same.
+TEST(GlassShadows, TheCameraSeesRefraction) {
+  const Probe probe(studioProbe({64, 32}));
+  Scene scene;
+  addSphere(scene, addMaterial(scene, glass()), vec3(0), 1, 32);
+  const auto render = [&] {
+    return renderScene(scene, topCamera(4, 40), probe, "importance", smallRender(16, 16, 16, 8))
+        .film.mean()
+        .texels;
+  };
+  const auto refracted = render();
+  passShadowsStraight(scene.materials);
+  EXPECT_EQ(render(), refracted);
+}
+
+}  // namespace
+}  // namespace chromeball
