@@ -2,11 +2,8 @@
 #include "study/row.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "base/error.h"
-#include "base/named_setting.h"
-#include "base/suggest.h"
 #include "lighting/methods.h"
 
 namespace chromeball {
@@ -55,12 +52,14 @@ RenderSettings Row::applied(RenderSettings settings) const {
 }
 
 Row rowNamed(const std::string& name, const std::string& location) {
-  std::istringstream parts(name);
-  std::string part;
-  std::getline(parts, part, '+');
-  Row row{resolveStrategy(part), {}};
-  while (std::getline(parts, part, '+'))
-    if (const Mode mode = modeNamed(part, location); !row.has(mode)) row.modes.push_back(mode);
+  size_t end = name.find('+');
+  Row row{resolveStrategy(name.substr(0, end)), {}};
+  while (end != std::string::npos) {
+    const size_t begin = end + 1;
+    end = name.find('+', begin);
+    const Mode mode = modeNamed(name.substr(begin, end - begin), location);
+    if (!row.has(mode)) row.modes.push_back(mode);
+  }
   std::ranges::sort(row.modes);
   return row;
 }
