@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders one image with Cycles. Runs inside Blender 3.4:
 blender --background --factory-startup --python cycles_render.py -- MODEL.glb PROBE.exr OUT.exr
-        WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH
+        WIDTHxHEIGHT SAMPLES SEED THREADS DEPTH unbiased|defaults
 
 The probe is a lat-long map whose centre looks along glTF's -Z. DEPTH counts scattering events, 1
 for direct light. Materials become what the glTF file states: Lambertian, a conductor, smooth glass
@@ -20,7 +20,8 @@ for alias, kind in {"bool": bool, "int": int, "float": float, "object": object}.
     if alias not in numpy.__dict__:
         setattr(numpy, alias, kind)
 
-model, probe, output, size, samples, seed, threads, depth = sys.argv[sys.argv.index("--") + 1:]
+model, probe, output, size, samples, seed, threads, depth, bias = sys.argv[
+    sys.argv.index("--") + 1:]
 width, height = (int(number) for number in size.split("x"))
 
 
@@ -97,9 +98,10 @@ def configure():
     bounces = int(depth) - 1  # Cycles counts bounces after the first event
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
     cycles.transmission_bounces = bounces
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    cycles.sample_clamp_direct = 0
+    cycles.sample_clamp_indirect = 10 if bias == "defaults" else 0
     cycles.caustics_reflective = cycles.caustics_refractive = True
-    cycles.blur_glossy = 0
+    cycles.blur_glossy = 1 if bias == "defaults" else 0
     cycles.use_auto_tile = False
     render.image_settings.file_format = "OPEN_EXR"
     render.image_settings.color_depth = "32"

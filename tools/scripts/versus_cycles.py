@@ -7,7 +7,8 @@ references. The noise of a reference increases each relMSE by the factor 1 + sam
 samples, the same for both renderers, so their ratio is unaffected. Only rendering is timed: no
 loading, no building of the BVH or of the probe's tables. relMSE is proportional to 1/samples, so
 relMSE x seconds does not depend on the number of samples; the ratio of the two products is the
-ratio of the times that the renderers need for the same error.
+ratio of the times that the renderers need for the same error. That is not so for the biased images of
+--approximate and --cycles-defaults: their products compare only this number of samples.
 """
 import argparse
 import hashlib
@@ -35,6 +36,11 @@ def arguments():
     parser.add_argument("--seeds", type=int, default=5, help="images by each renderer")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--strategy", default="auto", help="chromeball's")
+    parser.add_argument("--approximate", default="", metavar="OPTIONS",
+                        help="for chromeball's images, not its reference: '--regularize --denoise'")
+    parser.add_argument("--cycles-defaults", action="store_true",
+                        help="Cycles' images, not its reference, with its default clamp of indirect "
+                             "light to 10 and Filter Glossy of 1")
     return parser.parse_args()
 
 
@@ -49,13 +55,14 @@ class Chromeball:
     name = "chromeball"
 
     @staticmethod
-    def render(options, model, output, samples, seed):
+    def render(options, model, output, samples, seed, approximate=False):
         """Returns the seconds of rendering."""
         stats = output.with_suffix(".json")
         run(CHROMEBALL, "render", model, "--probe", options.probe, "--probe-mapping", "lat-long",
             "--size", options.size, "--samples", samples, "--max-depth", options.depth,
             "--strategy", options.strategy, "--seed", seed, "--threads", options.threads,
-            "--stats", stats, "--quiet", "-o", output)
+            "--stats", stats, "--quiet", "-o", output,
+            *(options.approximate.split() if approximate else []))
         return json.loads(stats.read_text())["seconds"]["render"]
 
 
@@ -63,11 +70,12 @@ class Cycles:
     name = "Cycles"
 
     @staticmethod
-    def render(options, model, output, samples, seed):
+    def render(options, model, output, samples, seed, approximate=False):
         """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
         log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1,
                   "--python", ROOT / "tools" / "scripts" / "cycles_render.py", "--", model,
-                  options.probe, output, options.size, samples, seed, options.threads, options.depth)
+                  options.probe, output, options.size, samples, seed, options.threads, options.depth,
+                  "defaults" if approximate and options.cycles_defaults else "unbiased")
         clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
         times = {}
         for hours, minutes, seconds, event in clock.findall(log):
@@ -101,7 +109,7 @@ def compare(options, scene):
     for seed in range(1, options.seeds + 1):
         for r in renderers:  # in turns: a change of the machine's speed affects both
             image = WORK / f"{r.name}-{scene}.exr"
-            seconds[r].append(r.render(options, model, image, options.samples, seed))
+            seconds[r].append(r.render(options, model, image, options.samples, seed, True))
             errors[r].append(error(image, references[r])["relmse"])
 
     width, height = map(int, options.size.split("x"))
