@@ -139,6 +139,7 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError({"--reference-strategy", "importance+regularize"}, "biased");
   expectInputError({"--strategies", "importance+blur"}, "is not a mode");
   expectInputError({"--strategies", "importance+"}, "is not a mode");
+  expectInputError({"--strategies", "median-cut+guide"}, "are guided");
   expectInputError({"--reference-samples", "3"}, "--reference-samples");
   Image sunny = constantProbe({32, 16}, Rgb(0.1f));
   sunny.setRgb(9, 4, Rgb(1e4f));

@@ -118,12 +118,53 @@ TEST(GlassShadows, OpenMeshesDoNotAmplify) {
   }
 }
 
-// Rough, coated and metallic surfaces still block light.
+// A pane without another side: shadow rays and paths agree that it absorbs nothing.
+TEST(GlassShadows, OpenMeshesAbsorbNothing) {
+  for (const bool up : {false, true}) {
+    Scene scene;
+    const int pane = addMaterial(scene, glass());
+    addQuad(scene, addMaterial(scene, lambert(Rgb(kAlbedo))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+    addQuad(scene, pane, {-99, 0.5f, up ? 50.0f : -50.0f}, {198, 0, 0},
+            {0, 0, up ? -198.0f : 198.0f});
+    passShadowsStraight(scene.materials);
+    const Probe probe(gradientProbe({32, 16}, Rgb(1), {0.2, 0.5, 0.1}));
+    const auto mean = [&](const char* strategy) {
+      return meanColor(
+          renderScene(scene, underTheSlab(), probe, strategy, smallRender(8, 8, 4096, 1))
+              .film.mean());
+    };
+    const Rgb expected = mean("bsdf");
+    for (const char* strategy : {"uniform", "importance", "suns"})
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(mean(strategy)[i] / expected[i], 1, 0.01) << strategy;
+  }
+}
+
+// Lamps and narrow lobes: paths and shadow rays do not both find the light.
+TEST(GlassShadows, NarrowLobesAgreeWithBroadOnes) {
+  Scene scene = floorAndSlab(0.5f, 1.25f);
+  scene.materials[1].metallic = 1;
+  scene.materials[1].roughness = 0.1f;
+  scene.materials[1].specular = 1;
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = Rgb(5);
+  addQuad(scene, addMaterial(scene, lamp), {-20, 3, -20}, {40, 0, 0}, {0, 0, 40});
+  const Probe dark(constantProbe({4, 2}, Rgb(1e-6f)));
+  const auto mean = [&](const char* strategy) {
+    return meanColor(
+        renderScene(scene, underTheSlab(), dark, strategy, smallRender(8, 8, 4096, 2)).film.mean());
+  };
+  const Rgb expected = mean("importance");
+  EXPECT_GT(expected.x, 0.01f);
+  EXPECT_NEAR(mean("median-cut:8").x / expected.x, 1, 0.01);
+}
+
+// Rough, coated and blended glass blocks light.
 TEST(GlassShadows, OnlySmoothGlassLetsLightPass) {
-  Material rough = glass(), coated = glass();
+  Material rough = glass(), coated = glass(), blended = glass();
   rough.roughness = 0.2f;
   coated.extended->clearcoat = 1;
-  for (const Material& material : {rough, coated}) {
+  blended.alphaMode = AlphaMode::Blend;
+  for (const Material& material : {rough, coated, blended}) {
     Scene scene = floorAndSlab(0.5f, 1.25f, material);
     scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
     EXPECT_EQ(radianceOf(scene, underTheSlab()), Rgb(0));

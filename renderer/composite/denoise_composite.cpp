@@ -6,6 +6,12 @@ namespace {
 
 using Layer = DifferentialFilm::Layer;
 
+// L_obj - L_noobj is not below -L_noobj: the ratio is not negative.
+void limitDifference(const Image& local, Image& difference) {
+  for (size_t i = 0; i < local.texels.size(); ++i)
+    difference.texels[i] = std::max(difference.texels[i], -local.texels[i]);
+}
+
 // The composite by the difference formula.
 Image differenceOf(const DifferentialFilm& film, const Image& plate) {
   Image image(film.width(), film.height(), 3);
@@ -21,16 +27,21 @@ Image differenceOf(const DifferentialFilm& film, const Image& plate) {
 }
 
 // The standard error of luminance. Alpha, which is not filtered, adds the error of the plate's
-// share. A negative estimate that is set to 0 is nearer to the truth by as much.
-Image errorOf(const std::vector<DenoisedPart>& parts, const Composite& composite,
-              const Image& unclamped, const HalvedImage& alpha, const Image& plate) {
+// share. A negative estimate that is set to 0 is nearer to the truth by as much. The change of the
+// plate has at most the error of the plate or of itself, whichever is larger.
+Image errorOf(const std::vector<DenoisedPart>& parts, const Image& differences,
+              const Composite& composite, const Image& unclamped, const HalvedImage& alpha,
+              const Image& plate) {
   Image error(plate.width, plate.height, 1);
   for (int y = 0; y < plate.height; ++y)
     for (int x = 0; x < plate.width; ++x) {
       const Rgb share = alpha.half.rgb(x, y) * plate.rgb(x, y);
       const Rgb gain = composite.gain.rgb(x, y);
-      const Rgb standardError = glm::sqrt(parts[0].squaredError.rgb(x, y) + share * share +
-                                          gain * gain * parts[1].squaredError.rgb(x, y));
+      const Rgb largest =
+          glm::max(gain * absolute(differences.rgb(x, y)), absolute(plate.rgb(x, y)));
+      const Rgb change = glm::min(gain * glm::sqrt(parts[1].squaredError.rgb(x, y)), largest);
+      const Rgb standardError =
+          glm::sqrt(parts[0].squaredError.rgb(x, y) + share * share + change * change);
       const Rgb raised = composite.color.rgb(x, y) - unclamped.rgb(x, y);
       *error.at(x, y) = luminance(glm::max(standardError - glm::max(raised, 0.0f), 0.0f));
     }
@@ -56,12 +67,14 @@ std::optional<Denoised> denoiseComposite(const CompositeRender& render, const Im
     if (layers[i] != DifferentialFilm::kDifference)  // a regression may predict less than nothing
       for (float& texel : mean.texels) texel = std::max(texel, 0.0f);
   }
+  if (mode == CompositeMode::Ratio)
+    limitDifference(means.at(DifferentialFilm::kLocal), means.at(DifferentialFilm::kDifference));
   const DifferentialFilm film = render.film.with(means);
   const Image difference = differenceOf(film, plate);
   Composite composite = compose(film, difference, plate, mode);
   const Image& unclamped = mode == CompositeMode::Difference ? difference : composite.color;
-  Image error =
-      errorOf(*parts, composite, unclamped, render.film.mean(DifferentialFilm::kCoverage), plate);
+  Image error = errorOf(*parts, means.at(DifferentialFilm::kDifference), composite, unclamped,
+                        render.film.mean(DifferentialFilm::kCoverage), plate);
   return Denoised{std::move(composite.color), std::move(error)};
 }
 

@@ -29,8 +29,10 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
 // Memory of a composite in addition to that of a plain render.
 inline size_t compositeBytesPerPixel(bool denoises) {
   constexpr size_t kImages = 60;  // plate, mean, variance, ...
-  const size_t film = LayerFilm::bytesPerPixel(DifferentialFilm::kLayers, denoises);
-  return (denoises ? 2 * film : film) + kImages;
+  const auto film = [](bool inHalves) {
+    return LayerFilm::bytesPerPixel(DifferentialFilm::kLayers, inHalves);
+  };
+  return film(false) + (denoises ? film(true) : 0) + kImages;
 }
 
 }  // namespace chromeball

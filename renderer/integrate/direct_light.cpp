@@ -97,8 +97,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const vec3& wi = light.direction.wi;
     const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
     if (isBlack(bsdf.fCos)) continue;
-    // A medium absorbs nothing over an infinite distance (Media::transmittance()).
-    const Rgb passed = visibility({vertex.surface.rayOrigin(wi), wi}, Rgb(0), context, {});
+    const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
     if (isBlack(passed)) continue;
     sum += contribution(light.direction, bsdf) * passed;
     if (context.lightRecords) context.addRecord(record(vertex.point, light, bsdf), passed);

@@ -78,8 +78,8 @@ class DirectLight {
   static LightRecord record(const LightPoint& point, const LightSample& light,
                             const BsdfValue& bsdf);
 
-  // Transmittance of a shadow ray from the vertex: occluders, and absorption in the medium. `lamp`:
-  // the instance at which the ray ends.
+  // Transmittance of a shadow ray from the vertex: occluders, and absorption in media. `lamp`: the
+  // instance at which the ray ends.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                     std::optional<uint32_t> lamp = {}) const;
   Rgb visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,

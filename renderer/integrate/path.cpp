@@ -10,6 +10,12 @@
 namespace chromeball {
 namespace {
 
+// Whether the medium at the start of a shadow ray to the probe matters, so that it cannot wait for
+// those of other paths.
+bool needsMedium(const Accel& accel, const PathState& state, const Surface& surface) {
+  return accel.hasStraightBodies() && (state.media.inside() || surface.material->isBody());
+}
+
 // Whether maxTransmissionDepth limits the bounce: all bounces at a solid body, except reflection
 // from the outside of a rough surface.
 bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
@@ -133,7 +139,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     if (settings_.guide && broad)
       state.region = settings_.guide->find(surface.position, bsdf.normal());
     const Vertex vertex{state.from, surface, bsdf, state.media, state.region};
-    if (broad && state.deferred)
+    if (broad && state.deferred && !needsMedium(world_.accel, state, surface))
       direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
       state.radiance += state.throughput * direct_.probe(vertex, context);
@@ -169,10 +175,9 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
       return true;
     }
   }
-  if (!next.isDelta) {
-    state.scattered |= next.lobes == Lobes::Broad;
+  state.scattered |= !next.isDelta;
+  if (state.widening > 0 && !next.isDelta)
     state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.pdf));
-  }
   state.throughputBefore = throughputBefore;
   state.pdf = next.pdf;
   state.isDelta = next.isDelta;
@@ -189,7 +194,7 @@ bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& b
 ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance& instance,
                                           const Surface& surface) const {
   ExtendedPoint point = extendedMaterialAt(world_.scene, instance, surface);
-  if (goesStraight(state, *surface.material)) point.thinWalled = point.straight = true;
+  if (goesStraight(state, *surface.material)) point.thinWalled = true;
   return point;
 }
 
@@ -237,7 +242,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
                     surface.normal, instance.material, instance.node,
                     std::nullopt};
   if (ends) return passAtLimit(scene, state, instance, surface);
-  if (state.minAlpha > 0) [[unlikely]]
+  if (state.minAlpha > 0 && !goesStraight(state, *surface.material)) [[unlikely]]
     widen(material, state.minAlpha);
   if (surface.material->extended) [[unlikely]]
     return scatterLayered(state, instance, surface, material, context);

@@ -29,7 +29,7 @@ struct PathState {
   int straight = 0;             // vertices passed without a change of direction; not bounces
   int transmissions = 0;        // bounces in and on solid glass, limited by maxTransmissionDepth
   bool cutIsEstimated = false;  // estimateDepthCut() has processed this path
-  bool scattered = false;       // by a broad lobe; from there on, shadow rays are possible
+  bool scattered = false;       // by a lobe that is not delta: shadow rays are possible
   float widening = 0;           // regularizationWidth() of the sample; 0: no regularisation
   float minAlpha = 0;           // of the next vertices (regularization.h)
   Media media;                  // the medium of the ray

@@ -11,8 +11,6 @@
 
 namespace chromeball {
 
-constexpr int kMaxParts = 3;  // of denoise(): of composites
-
 double imageBytes(const RenderSettings& settings) {
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
   if (settings.wantsFeatures()) sums += double(FeatureFilm::bytesPerPixel());
@@ -27,6 +25,7 @@ double imageBytes(const RenderSettings& settings) {
   // the layers and the texels of the file exist together.
   constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
   const double maximum = std::max(kNoise, 2 * texels);
+  constexpr int kMaxParts = 3;  // of denoise(): of composites
   const double denoising =
       settings.denoise ? denoiseBytes(settings.width, settings.height, kMaxParts) : 0;
   return double(settings.width) * settings.height *

@@ -103,9 +103,13 @@ void checkTwoPass(const SceneFile& file) {
   if (!s.get<bool>("two-pass")) return;
   if (!file.composite)
     throwInput("{}: is for composites; the scene file has no [composite]", s.location("two-pass"));
-  for (const char* biased : {"clamp", "render.regularize", "render.denoise"})
-    if (s.has(biased))
-      throwInput("{}: is biased; leave it out in a reference of two passes", s.location(biased));
+  const auto refuse = [&](const char* name) {
+    throwInput("{}: is biased; leave it out in a reference of two passes", s.location(name));
+  };
+  if (s.has("clamp")) refuse("clamp");
+  for (const char* name : {"render.regularize", "render.denoise"})
+    if (s.get<bool>(name)) refuse(name);
+  if (s.get<std::string>("render.glass_shadows") == "straight") refuse("render.glass_shadows");
 }
 
 void checkGuide(const SceneFile& file) {

@@ -11,7 +11,6 @@ inline constexpr float kCoatF0 = 0.04f;  // of a clear coat with refractive inde
 struct ExtendedPoint {
   float transmission = 0;
   bool thinWalled = true;
-  bool straight = false;  // a thin wall that transmits light straight, whatever its roughness
   float clearcoat = 0, clearcoatRoughness = 0;
   Rgb sheenColor{0};
   float sheenRoughness = 0;

@@ -18,7 +18,8 @@ bool isClear(const Material& m) {
 bool passesStraight(const Material& m) { return isClear(m) && m.extended->thinWalled; }
 
 void passShadowsStraight(std::span<Material> materials) {
-  for (Material& m : materials) m.straightShadows = isClear(m) && !m.extended->thinWalled;
+  for (Material& m : materials)
+    m.straightShadows = isClear(m) && !m.extended->thinWalled && m.alphaMode == AlphaMode::Opaque;
 }
 
 Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine) {

@@ -13,7 +13,8 @@ namespace chromeball {
 // its whole transmission.
 bool passesStraight(const Material& material);
 
-// Sets Material::straightShadows of smooth bodies without coats, sheen or films.
+// Sets Material::straightShadows of smooth bodies that are opaque (not masked or blended) and have
+// no coat, sheen or film.
 void passShadowsStraight(std::span<Material> materials);
 
 inline bool passesShadows(const Material& material) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/stopwatch.h"
 #include "job/denoised_image.h"
 #include "scene/thin_wall.h"
@@ -21,6 +22,9 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     Built& built = built_[name];
     built.row = rowNamed(row, location);
     built.strategy = makeLighting({built.row.strategy, location}, settings.mis, loaded);
+    if (built.row.has(Mode::Guide) && !built.strategy->takesOneSample())
+      throwInput("{}: {}: only light samples of `importance` from a distant probe are guided",
+                 location, row);
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
@@ -84,7 +88,7 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
   Built& built = built_.at(key.strategy);
   Image image = result.film.mean();
   double noise = result.film.noise().noise;
-  if (built.row.has(Mode::Denoise)) {
+  if (built.row.has(Mode::Denoise) && result.samples > 1) {
     std::optional<Denoised> denoised = denoiseRender(
         result, [](double) {}, stop);
     if (!denoised) return;

@@ -148,12 +148,16 @@ Rgb Accel::transmittance(const Ray& ray, RayMask mask, const Rgb& attenuation) c
   initQueryContext(query.embree);
   query.direction = ray.direction;
   query.length = ray.tMax;
+  query.attenuation = query.largestAttenuation = attenuation;
   if (std::isfinite(ray.tMax)) query.opticalDepth = ray.tMax * attenuation;
   RTCRay r = embreeRay(ray, mask);
   rtcOccluded(scene_, r, query.embree);
   if (r.tfar < 0) return Rgb(0);
   if (isBlack(query.opticalDepth)) return query.transmittance;
-  // A ray may miss one side of an open mesh.
+  constexpr float kRounding = 1e-4f;
+  const bool leavesAll = maxComponent(absolute(query.attenuation)) <=
+                         kRounding * maxComponent(query.largestAttenuation);
+  if (!std::isfinite(ray.tMax) && !leavesAll) return query.transmittance;
   return query.transmittance * glm::exp(-glm::max(query.opticalDepth, Rgb(0)));
 }
 

@@ -34,6 +34,9 @@ class Accel {
     return masks_.empty() ? kAllInstances : masks_[instance];
   }
 
+  // Whether shadow rays pass any body (Material::straightShadows).
+  bool hasStraightBodies() const { return hasStraightBodies_; }
+
   // The closest hit; none for a ray with a NaN or coordinates beyond 1e18. `key` seeds the random
   // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask = kAllInstances) const;
@@ -47,7 +50,8 @@ class Accel {
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
   // (1 - alpha), surfaces that pass shadow rays (scene/thin_wall.h) and absorption. The ray points
   // towards the light; it passes the front of a surface with Material::backLetsLightThrough().
-  // `attenuation`: in the medium at the ray's origin, 1/m; ignored for infinite rays.
+  // `attenuation`: in the medium at the ray's origin, 1/m. An infinite ray must leave all bodies
+  // that it is in or enters; else a mesh is open, and nothing is absorbed.
   Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances,
                     const Rgb& attenuation = Rgb(0)) const;
 
@@ -72,7 +76,7 @@ class Accel {
   std::vector<RayMask> masks_;           // by instance; empty: all
   std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null for a mesh of one instance
   std::vector<bool> needsFilter_;        // by mesh: whether any instance lets light pass
-  bool hasFilter_ = false, hasAlpha_ = false;
+  bool hasFilter_ = false, hasAlpha_ = false, hasStraightBodies_ = false;
 };
 
 }  // namespace chromeball

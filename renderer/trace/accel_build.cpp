@@ -98,6 +98,7 @@ void Accel::build(const Scene& scene) {
     if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
     needsFilter_[instance.mesh] = hasFilter_ = true;
     hasAlpha_ = hasAlpha_ || alpha;
+    hasStraightBodies_ = hasStraightBodies_ || material.straightShadows;
   }
 
   meshScenes_.resize(scene.meshes.size());

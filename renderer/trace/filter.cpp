@@ -19,11 +19,14 @@ Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
           RTCRayN_tfar(arguments->ray, 1, 0)};
 }
 
-// The optical depth of the body from its boundary to the end of the ray, or to the origin if the
-// ray is infinite; negative where the ray leaves the body.
-Rgb opticalDepth(const Query& query, const Material& body, bool enters, float distance) {
-  const float toEnd = std::isfinite(query.length) ? query.length - distance : -distance;
-  return (enters ? toEnd : -toEnd) * body.extended->attenuation;
+// Adds the optical depth of the body from its boundary to the end of the ray, or to the origin if
+// the ray is infinite; subtracts it where the ray leaves the body.
+void absorb(Query& query, const Material& body, bool enters, float distance) {
+  const Rgb change = (enters ? 1.0f : -1.0f) * body.extended->attenuation;
+  query.opticalDepth +=
+      (std::isfinite(query.length) ? query.length - distance : -distance) * change;
+  query.attenuation += change;
+  query.largestAttenuation = glm::max(query.largestAttenuation, body.extended->attenuation);
 }
 
 float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
@@ -58,8 +61,7 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
     const Surface surface =
         surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction);
     passed += alpha * straightTransmittance(scene, instance, surface, query.direction);
-    if (material.straightShadows)
-      query.opticalDepth += opticalDepth(query, material, surface.frontFace, hit.distance);
+    if (material.straightShadows) absorb(query, material, surface.frontFace, hit.distance);
   }
   query.transmittance *= passed;
   if (!isBlack(query.transmittance)) arguments->valid[0] = 0;

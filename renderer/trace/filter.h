@@ -13,9 +13,11 @@ struct Query {
   uint32_t key = 0;     // of Accel::intersect()
   // Of a shadow ray:
   vec3 direction{0};
-  float length = 0;      // may be infinite
-  Rgb transmittance{1};  // of surfaces
-  Rgb opticalDepth{0};   // of bodies
+  float length = 0;           // may be infinite
+  Rgb transmittance{1};       // of surfaces
+  Rgb opticalDepth{0};        // of bodies
+  Rgb attenuation{0};         // behind the hits so far, 1/m
+  Rgb largestAttenuation{0};  // of the bodies so far, to judge rounding errors
 };
 
 // Index into Scene::instances, since geometry i of the top scene is instance i.

@@ -153,7 +153,8 @@ void compare(const Arguments& a) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
-  for (const char* name : {"output.aovs", "render.regularize", "render.glass_shadows"})
+  for (const char* name : {"output.aovs", "render.adaptive", "render.guide", "render.regularize",
+                           "render.glass_shadows", "render.denoise"})
     scene.settings.erase(name);
   RenderJob job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
