@@ -169,7 +169,8 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
         [&](double fraction) { progress((before + fraction) / count); }, stop);
     if (stop) return std::nullopt;
     const int width = part.mean.width, height = part.mean.height;
-    DenoisedPart& result = results.emplace_back(Image(width, height, 3), Image(width, height, 3));
+    results.push_back({Image(width, height, 3), Image(width, height, 3)});
+    DenoisedPart& result = results.back();
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         if (isEmpty(input, part, x, y)) continue;

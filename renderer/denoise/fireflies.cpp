@@ -11,9 +11,10 @@ constexpr int kBiasReach = 3 * kReach;
 constexpr float kWindow = (2 * kReach + 1) * (2 * kReach + 1);
 
 Plane energyOf(const RgbPlanes& image) {
-  const auto& [r, g, b] = image;
-  return makePlane(r.width(), r.height(), [&](int x, int y) {
-    return r.at(x, y) * r.at(x, y) + g.at(x, y) * g.at(x, y) + b.at(x, y) * b.at(x, y);
+  return makePlane(image[0].width(), image[0].height(), [&](int x, int y) {
+    float sum = 0;
+    for (const Plane& channel : image) sum += channel.at(x, y) * channel.at(x, y);
+    return sum;
   });
 }
 

@@ -21,7 +21,7 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "versus"
 CHROMEBALL = ROOT / "build" / "chromeball"
-SCENES = ("lambertian", "conductors", "glass", "plastics", "room", "fine")
+SCENES = ("lambertian", "conductors", "glass", "plastics", "room", "caustics", "fine")
 
 
 def arguments():
