@@ -4,7 +4,6 @@
 #include "integrate/regularization.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "measure/image_error.h"
 #include "probe/synth.h"
@@ -74,16 +73,6 @@ TEST(Regularization, LeavesOtherPathsAlone) {
   for (const Scene* scene : {&matte, &polished})
     EXPECT_EQ(renderBall(*scene, studio, 16, true).film.mean().texels,
               renderBall(*scene, studio, 16, false).film.mean().texels);
-}
-
-TEST(Regularization, DoesNotDependOnThreads) {
-  const Probe studio(studioProbe({64, 32}));
-  const Scene scene = ballOnFloor(glass(), Rgb(0.6f));
-  const auto with = [&](size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return renderBall(scene, studio, 16, true).film.mean().texels;
-  };
-  EXPECT_EQ(with(1), with(3));
 }
 
 // The mean of `repeats` renders.

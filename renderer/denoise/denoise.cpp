@@ -31,6 +31,15 @@ Plane squares(const Plane& plane) {
                    [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
 }
 
+// The variance of the mean of two halves.
+Plane varianceOf(const Plane& a, const Plane& b) {
+  const Plane squared = makePlane(a.width(), a.height(), [&](int x, int y) {
+    const float half = (a.at(x, y) - b.at(x, y)) / 2;
+    return half * half;
+  });
+  return boxMean(squared, kVarianceReach);
+}
+
 HalfPlanes halvesOf(const HalvedImage& image, float scale) {
   HalfPlanes halves;
   for (int c = 0; c < 3; ++c)
@@ -47,12 +56,7 @@ HalfPlanes halvesOf(const HalvedImage& image, float scale) {
 Component componentOf(HalfPlanes halves) {
   Component component{std::move(halves), {}};
   for (size_t c = 0; c < 3; ++c) {
-    const Plane &a = component.halves[0][c], &b = component.halves[1][c];
-    const Plane squared = makePlane(a.width(), a.height(), [&](int x, int y) {
-      const float half = (a.at(x, y) - b.at(x, y)) / 2;
-      return half * half;
-    });
-    component.variance[c] = boxMean(squared, kVarianceReach);
+    component.variance[c] = varianceOf(component.halves[0][c], component.halves[1][c]);
   }
   return component;
 }
@@ -91,12 +95,7 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
       const Plane &a = halves[0][c], &b = halves[1][c];
       const Plane values = makePlane(a.width(), a.height(),
                                      [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
-      const Plane noise = boxMean(makePlane(a.width(), a.height(),
-                                            [&](int x, int y) {
-                                              const float half = (a.at(x, y) - b.at(x, y)) / 2;
-                                              return half * half;
-                                            }),
-                                  kVarianceReach);
+      const Plane noise = varianceOf(a, b);
       features.ridges[at] = makePlane(a.width(), a.height(), [&](int x, int y) {
         const float size = kInsignificant * (isRelative ? values.at(x, y) : 1);
         return size * size + noise.at(x, y) + 1e-12f;
@@ -163,7 +162,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
   for (const HalvedImage& part : input.parts) {
     const double before = double(results.size()), count = double(input.parts.size());
     HalfPlanes halves = halvesOf(part, scale);
-    const RgbPlanes squaredBias = limitFireflies(halves);
+    const Plane squaredBias = limitFireflies(halves);
     const Selection found = denoise(
         componentOf(std::move(halves)), features,
         [&](double fraction) { progress((before + fraction) / count); }, stop);
@@ -176,7 +175,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
         if (isEmpty(input, part, x, y)) continue;
         for (int c = 0; c < 3; ++c) {
           const float error =
-              std::max(found.error[size_t(c)].at(x, y), 0.0f) + squaredBias[size_t(c)].at(x, y);
+              std::max(found.error[size_t(c)].at(x, y), 0.0f) + squaredBias.at(x, y);
           result.color.at(x, y)[c] = found.color[size_t(c)].at(x, y) / scale;
           result.squaredError.at(x, y)[c] = error / scale / scale;
         }

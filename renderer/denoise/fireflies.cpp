@@ -27,30 +27,28 @@ Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
   });
 }
 
+// Scales the pixels of a half. Returns the mean light over the channels that is removed around each
+// pixel.
+Plane limit(RgbPlanes& half, const Plane& factors) {
+  const int width = factors.width(), height = factors.height();
+  const Plane removed = makePlane(width, height, [&](int x, int y) {
+    const float sum = half[0].at(x, y) + half[1].at(x, y) + half[2].at(x, y);
+    return (1 - factors.at(x, y)) * sum / 3;
+  });
+  for (Plane& channel : half)
+    channel =
+        makePlane(width, height, [&](int x, int y) { return factors.at(x, y) * channel.at(x, y); });
+  return boxMean(removed, kBiasReach);
+}
+
 }  // namespace
 
-RgbPlanes limitFireflies(HalfPlanes& halves) {
+Plane limitFireflies(HalfPlanes& halves) {
   const std::array<Plane, 2> energies{energyOf(halves[0]), energyOf(halves[1])};
-  const std::array<Plane, 2> factors{factorsOf(energies[0], energies[1]),
-                                     factorsOf(energies[1], energies[0])};
-  const int width = factors[0].width(), height = factors[0].height();
-  RgbPlanes squaredBias;
-  for (size_t c = 0; c < 3; ++c) {
-    std::array<Plane, 2> losses;
-    for (size_t h = 0; h < 2; ++h) {
-      Plane& half = halves[h][c];
-      const Plane limited = makePlane(
-          width, height, [&](int x, int y) { return factors[h].at(x, y) * half.at(x, y); });
-      losses[h] = boxMean(
-          makePlane(width, height, [&](int x, int y) { return half.at(x, y) - limited.at(x, y); }),
-          kBiasReach);
-      half = limited;
-    }
-    squaredBias[c] = makePlane(width, height, [&](int x, int y) {
-      return std::fabs(losses[0].at(x, y) * losses[1].at(x, y));
-    });
-  }
-  return squaredBias;
+  const Plane a = limit(halves[0], factorsOf(energies[0], energies[1]));
+  const Plane b = limit(halves[1], factorsOf(energies[1], energies[0]));
+  return makePlane(a.width(), a.height(),
+                   [&](int x, int y) { return std::fabs(a.at(x, y) * b.at(x, y)); });
 }
 
 }  // namespace chromeball
