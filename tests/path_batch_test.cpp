@@ -24,12 +24,14 @@ class OneAtATime : public Integrator {
 };
 
 void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,
-                const RenderSettings& settings, const LightGuide* guide = nullptr) {
+                const RenderSettings& settings, const LightGuide* guide = nullptr,
+                const CausticGuide* caustics = nullptr) {
   const World world(named.scene, {}, allTables());
   const Probe probe(named.probe);
   const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   PathSettings path = settings.path();
   path.guide = guide;
+  path.caustics = caustics;
   const PathTracer tracer(world, *lighting, path);
   const std::atomic<bool> stop = false;
   const auto rendered = [&](const Integrator& integrator) {
@@ -111,6 +113,17 @@ TEST(PathBatch, AlsoWithAGuide) {
   for (const NamedScene& named : threeScenes()) {
     const RenderSettings settings = smallRender(40, 30, 37, 5);
     expectSame(named, cameraAbove(), "importance", settings, &guide);
+  }
+}
+
+TEST(PathBatch, AlsoWithGuidedBounces) {
+  for (const NamedScene& named : {threeScenes()[1], threeScenes()[2]}) {
+    const World world(named.scene, {}, allTables());
+    const Probe probe(named.probe);
+    const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+    const CausticGuide caustics(tracePhotons(world, *lighting, 20'000, 1));
+    ASSERT_FALSE(caustics.empty());
+    expectSame(named, cameraAbove(), "importance", smallRender(40, 30, 37, 5), nullptr, &caustics);
   }
 }
 

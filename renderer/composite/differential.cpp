@@ -21,7 +21,9 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
       state.first = nullptr;
       context.sampler.startVertex(state.depth);
       hit = local.closestHit(state.ray, context);
+      const auto records = std::exchange(context.records, nullptr);  // those of `whole` suffice
       sample.without += local.follow(state, hit, context);
+      context.records = records;
       return sample;
     }
     whole.estimateDepthCut(state, hit, context);
@@ -40,6 +42,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
     }
     if (!continues) return sample;
     context.sampler.startVertex(state.depth);
+    state.guided.startRest(state.radiance);
     hit = whole.closestHit(state.ray, context);
   }
 }

@@ -59,15 +59,17 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightingStrategy& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
                                 const Progress& progress, const std::atomic<bool>& stop) {
-  const CompositeWorlds worlds(world, lighting, settings.path());
   if (passes == Passes::One) {
+    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
+    const CompositeWorlds worlds(world, lighting, training.guided(settings.path()));
     RenderResult result = render(DifferentialIntegrator(worlds, plate, behindObjects), world,
-                                 camera, settings, progress, stop);
+                                 camera, settings, progress, stop, &training);
     Image mean = result.film.mean();
     PixelErrors errors = result.film.errors();
     return finished(std::move(result), std::move(mean), std::move(errors));
   }
 
+  const CompositeWorlds worlds(world, lighting, settings.path());
   RenderResult result = render(
       OneWorld(worlds, true, plate, behindObjects), world, camera, settings,
       [&](double fraction) { progress(fraction / 2); }, stop);

@@ -8,6 +8,7 @@
 #include "film/aov.h"
 #include "integrate/clamp.h"
 #include "integrate/depth_cut.h"
+#include "integrate/guiding/caustic_guide.h"
 #include "integrate/guiding/light_guide.h"
 #include "lighting/strategy.h"
 #include "math/sampler.h"
@@ -32,6 +33,25 @@ struct RayLog {
   std::vector<Entry> rays;
 };
 
+// The first guided bounce of a path, for its record.
+struct GuidedBounce {
+  BounceRecord record{};  // lobesPdf 0: none
+  Rgb before{0};          // radiance that the path had found up to the bounce
+  bool isNew = false;
+
+  // The bounce's vertex is complete; what the path finds from now on is found behind it.
+  void startRest(const Rgb& radiance) {
+    if (isNew) before = radiance;
+    isNew = false;
+  }
+};
+
+// What guides learn from paths.
+struct GuideRecords {
+  std::vector<LightRecord> lights;
+  std::vector<BounceRecord> bounces;
+};
+
 struct PathContext {
   PixelSampler sampler;                       // at the current sample
   std::vector<DirectionSample> lightSamples;  // scratch; keeps its capacity
@@ -41,14 +61,22 @@ struct PathContext {
   std::vector<Rgb> layers;  // of the current sample (Integrator::layers)
   // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.
   bool shadowsDiffer = false;
-  std::vector<LightRecord>* lightRecords = nullptr;  // output, for the guide; null: not wanted
-  RayLog* log = nullptr;                             // null: no log
+  GuideRecords* records = nullptr;  // output; null: not wanted
+  RayLog* log = nullptr;            // null: no log
 
   // `passed`: transmittance of the shadow ray.
   void addRecord(LightRecord record, const Rgb& passed = Rgb(1)) const {
     record.integrand *= luminance(passed);
     if (record.integrand > 0 && std::isfinite(record.integrand / record.density))
-      lightRecords->push_back(record);
+      records->lights.push_back(record);
+  }
+  // At the end of a path.
+  void addRecord(const GuidedBounce& bounce, const Rgb& radiance) const {
+    if (!records || bounce.record.lobesPdf == 0) return;
+    BounceRecord record = bounce.record;
+    const float found = luminance(radiance - bounce.before);
+    record.squared = found * found;
+    if (record.squared > 0 && std::isfinite(record.squared)) records->bounces.push_back(record);
   }
 };
 

@@ -30,13 +30,13 @@ namespace chromeball {
   rest.first = nullptr;
   rest.deferred = nullptr;
   const RayCounts counted = context.counts;
-  const auto records = std::exchange(context.lightRecords, nullptr);
+  const auto records = std::exchange(context.records, nullptr);
   const auto found = [&](const PathSettings& settings) {
     return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));
   };
   const float cut = found(farther) - found(limited);
   context.counts = counted;
-  context.lightRecords = records;
+  context.records = records;
   context.sampler.startVertex(state.depth);
   if (std::isfinite(cut))
     context.depthCut.add(state.bounces() == settings_.maxDepth, kInterval * cut);

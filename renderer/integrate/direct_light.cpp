@@ -100,7 +100,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
     if (isBlack(passed)) continue;
     sum += contribution(light.direction, bsdf) * passed;
-    if (context.lightRecords) context.addRecord(record(vertex.point, light, bsdf), passed);
+    if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
   }
   return sum;
 }
@@ -125,7 +125,7 @@ void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLig
   }
   const LightSample sample = ofStrategy(vertex, light.sample);
   light.radiance = throughput * contribution(sample.direction, bsdf);
-  if (context.lightRecords) light.record = record(vertex.point, sample, bsdf);
+  if (context.records) light.record = record(vertex.point, sample, bsdf);
 }
 
 void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight& light,
@@ -133,7 +133,7 @@ void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight
   const LightSample sample =
       ofGuide(*light.region, {light.shadowRay.direction, light.treePdf}, found);
   light.radiance = light.throughput * contribution(sample.direction, light.bsdf);
-  if (context.lightRecords) light.record = record(light.point, sample, light.bsdf);
+  if (context.records) light.record = record(light.point, sample, light.bsdf);
 }
 
 Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
@@ -145,7 +145,7 @@ Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
   if (!(distance > surface.rayOffset)) return Rgb(0);
   const vec3 wi = to / distance;
   const BsdfValue broad = vertex.bsdf.evaluate(wi);
-  const BsdfValue narrow = narrowLobes(vertex.bsdf, wi);
+  const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), wi);
   if (isBlack(broad.fCos) && isBlack(narrow.fCos)) return Rgb(0);
 
   const Instance& instance = world_.scene.instances[emitter.instance];
@@ -171,7 +171,8 @@ Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
 Rgb DirectLight::punctual(const Vertex& vertex, PathContext& context) const {
   Rgb light(0);
   world_.punctual->sample(vertex.point, context.sampler, [&](const PunctualSample& s) {
-    const Rgb fCos = vertex.bsdf.evaluate(s.wi).fCos + narrowLobes(vertex.bsdf, s.wi).fCos;
+    const Rgb fCos =
+        vertex.bsdf.bsdf().evaluate(s.wi).fCos + narrowLobes(vertex.bsdf.bsdf(), s.wi).fCos;
     if (isBlack(fCos)) return;
     const Rgb passed =
         transmittance(vertex, {vertex.surface.rayOrigin(s.wi), s.wi, s.distance}, context);

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "integrate/context.h"
+#include "integrate/guided_bsdf.h"
 #include "integrate/media.h"
 #include "integrate/path_settings.h"
 #include "integrate/world.h"
 #include "lighting/strategy.h"
 #include "scene/surface.h"
-#include "shading/bsdf.h"
 
 namespace chromeball {
 
@@ -19,7 +19,7 @@ namespace chromeball {
 struct Vertex {
   const LightPoint& point;
   const Surface& surface;
-  const Bsdf& bsdf;
+  const GuidedBsdf& bsdf;
   const Media& media;         // on the viewer's side
   const GuideRegion* region;  // of the guide; null: light samples are not guided here
 };

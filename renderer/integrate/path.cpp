@@ -98,7 +98,7 @@ Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped
   if (state.isDelta) return found;
   const vec3& direction = state.ray.direction;
   const float lightPdf = state.region ? state.region->pdf(escaped.pdf, direction) : escaped.pdf;
-  if (context.lightRecords) {
+  if (context.records) {
     const float integrand = luminance(found) / luminance(state.throughputBefore) * state.pdf;
     context.addRecord({state.from.position, state.from.normal, direction, integrand,
                        lightPdf + state.pdf, escaped.pdf, state.pdf});
@@ -124,6 +124,14 @@ Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
          weight;
 }
 
+// A bounce that the guide might have chosen. The rest of the first one is recorded.
+void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
+                            const PathContext& context) {
+  if (bounce.bsdfPdf > 0) state.guideRatio *= bounce.pdf / bounce.bsdfPdf;
+  if (context.records && state.guided.record.lobesPdf == 0)
+    state.guided = {{0, bounce.lobesPdf, bounce.bsdfPdf, bounce.fraction}, {}, true};
+}
+
 template <bool kLayered>
 bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                            PathContext& context) const {
@@ -134,11 +142,12 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   const GuideRegion* const regionBefore = state.region;
   state.from = {surface.position, bsdf.normal(), &bsdf, state.depth, bsdf.transmits()};
   state.region = nullptr;
+  const GuidedBsdf guided(bsdf, surface.position, -state.ray.direction, settings_.caustics);
   if (!atLimit) {
     const bool broad = bsdf.has(Lobes::Broad);
     if (settings_.guide && broad)
       state.region = settings_.guide->find(surface.position, bsdf.normal());
-    const Vertex vertex{state.from, surface, bsdf, state.media, state.region};
+    const Vertex vertex{state.from, surface, guided, state.media, state.region};
     if (broad && state.deferred && !needsMedium(world_.accel, state, surface))
       direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
@@ -150,9 +159,8 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   }
   state.from.bsdf = nullptr;  // its lifetime ends with the vertex
 
-  BsdfSample next;
-  if (!bsdf.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), next))
-    return false;
+  GuidedBsdf::Bounce next;
+  if (!guided.sample(sampler, next)) return false;
   if constexpr (kLayered) {
     const bool transmission = isTransmission(surface, next);
     const bool ends = transmission ? state.transmissions == settings_.maxTransmissionDepth ||
@@ -163,7 +171,8 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   }
   const Rgb throughputBefore = state.throughput;
   state.throughput *= next.weight;
-  if (!survivesRoulette(state.throughput, state.depth, sampler)) return false;
+  if (next.lobesPdf > 0) noteGuided(state, next, context);
+  if (!survivesRoulette(state.throughput, state.guideRatio, state.depth, sampler)) return false;
   ++state.depth;
   ++context.counts.bounce;
   if constexpr (kLayered) {
@@ -177,7 +186,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   }
   state.scattered |= !next.isDelta;
   if (state.widening > 0 && !next.isDelta)
-    state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.pdf));
+    state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.bsdfPdf));
   state.throughputBefore = throughputBefore;
   state.pdf = next.pdf;
   state.isDelta = next.isDelta;
@@ -273,10 +282,13 @@ Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& con
   context.sampler.startVertex(state.depth);
   for (;;) {
     estimateDepthCut(state, hit, context);
-    if (!vertex(state, hit, context)) return state.radiance;
+    if (!vertex(state, hit, context)) break;
     context.sampler.startVertex(state.depth);
+    state.guided.startRest(state.radiance);
     hit = closestHit(state.ray, context);
   }
+  context.addRecord(state.guided, state.radiance);
+  return state.radiance;
 }
 
 Rgb PathTracer::radiance(const PathState& start, const std::optional<Hit>& hit,

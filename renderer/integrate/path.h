@@ -29,12 +29,16 @@ struct PathState {
   int straight = 0;             // vertices passed without a change of direction; not bounces
   int transmissions = 0;        // bounces in and on solid glass, limited by maxTransmissionDepth
   bool cutIsEstimated = false;  // estimateDepthCut() has processed this path
-  bool scattered = false;       // by a lobe that is not delta: shadow rays are possible
-  float widening = 0;           // regularizationWidth() of the sample; 0: no regularisation
-  float minAlpha = 0;           // of the next vertices (regularization.h)
-  Media media;                  // the medium of the ray
-  float length = 0;             // of the path from the camera, metres
-  Beam beam{};                  // footprint of the camera ray, for texture filtering
+  // pdf / BSDF pdf of the guided bounces so far. A path towards a caustic has little throughput in
+  // proportion to its light; roulette treats it as if the BSDF had found it.
+  float guideRatio = 1;
+  GuidedBounce guided;                // the first one
+  bool scattered = false;             // by a lobe that is not delta: shadow rays are possible
+  float widening = 0;                 // regularizationWidth() of the sample; 0: no regularisation
+  float minAlpha = 0;                 // of the next vertices (regularization.h)
+  Media media;                        // the medium of the ray
+  float length = 0;                   // of the path from the camera, metres
+  Beam beam{};                        // footprint of the camera ray, for texture filtering
   DeferredLight* deferred = nullptr;  // null: trace shadow rays at once
   FirstHit* first = nullptr;  // output, written at the first visible surface; null: not wanted
 
@@ -101,6 +105,8 @@ class PathTracer {
   template <bool kLayered>
   bool scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                  PathContext& context) const;
+  static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
+                         const PathContext& context);
   void followTwice(PathState& state, const Hit& hit, PathContext& context) const;
 
   const World& world_;
@@ -110,11 +116,13 @@ class PathTracer {
   DirectLight direct_;
 };
 
-// Russian roulette with survival probability min(largest throughput channel, 1); survivors are
-// divided by it, so that the estimate stays unbiased. The first two bounces always survive.
-inline bool survivesRoulette(Rgb& throughput, int depth, const PixelSampler& sampler) {
+// Russian roulette with survival probability min(largest throughput channel x guideRatio, 1);
+// survivors are divided by it, so that the estimate stays unbiased. The first two bounces always
+// survive.
+inline bool survivesRoulette(Rgb& throughput, float guideRatio, int depth,
+                             const PixelSampler& sampler) {
   if (depth < 2) return true;
-  const float survival = std::min(maxComponent(throughput), 1.0f);
+  const float survival = std::min(maxComponent(throughput) * guideRatio, 1.0f);
   if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN survives, to be counted
   throughput /= survival;
   return true;

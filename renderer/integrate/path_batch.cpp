@@ -36,7 +36,10 @@ void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContex
     traceShadowRays(task);
     traceNextRays(task);
   }
-  for (size_t i = 0; i < count_; ++i) context.depthCut.addFound(paths_[i].radiance);
+  for (size_t i = 0; i < count_; ++i) {
+    context.depthCut.addFound(paths_[i].radiance);
+    context.addRecord(paths_[i].guided, paths_[i].radiance);
+  }
 }
 
 // The sampler's next numbers are those of the path's next vertex.
@@ -129,7 +132,7 @@ void PathBatch::traceShadowRays(Task& task) {
     if (!isBlack(transmittances_[k])) {
       const DeferredLight& light = lights_[lit.items[k]];
       paths_[lit.items[k]].radiance += light.radiance * transmittances_[k];
-      if (task.context.lightRecords) task.context.addRecord(light.record, transmittances_[k]);
+      if (task.context.records) task.context.addRecord(light.record, transmittances_[k]);
     }
 }
 
@@ -137,6 +140,7 @@ void PathBatch::traceNextRays(Task& task) {
   rays_.size = keys_.size = 0;
   for (const uint32_t i : active_.all()) {
     select(i, task);
+    paths_[i].guided.startRest(paths_[i].radiance);
     rays_.add(paths_[i].ray);
     keys_.add(task.context.sampler.sampleKey());
     if (task.context.log) task.context.log->rays.push_back({paths_[i].ray, false});

@@ -2,6 +2,7 @@
 // Depth limits, MIS and visibility settings of paths.
 #pragma once
 
+#include "integrate/guiding/caustic_guide.h"
 #include "integrate/guiding/light_guide.h"
 #include "lighting/strategy.h"
 #include "trace/ray.h"
@@ -20,7 +21,8 @@ struct PathSettings {
   bool estimateDepthCut = true;   // estimate the light beyond the depth limits
   // For strategies that take one light sample (LightingStrategy::takesOneSample()); null: none.
   const LightGuide* guide = nullptr;
-  RayMask visible = kAllInstances;  // all rays of the paths ignore other instances
+  const CausticGuide* caustics = nullptr;  // likewise, for bounces
+  RayMask visible = kAllInstances;         // all rays of the paths ignore other instances
   // If it differs from `visible`, shadow rays are traced with both masks, and
   // PathContext::shadowsDiffer is set if their transmittances differ.
   RayMask compared = visible;

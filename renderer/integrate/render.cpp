@@ -16,12 +16,10 @@
 #include "integrate/path_batch.h"
 #include "integrate/regularization.h"
 #include "integrate/schedule.h"
+#include "integrate/tile_grid.h"
 
 namespace chromeball {
 namespace {
-
-constexpr int kTile = 16;
-int tilesAlong(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one randomisation
 // Deeper vertices contribute too little to profit from stratification; they use independent random
@@ -77,31 +75,31 @@ class Renderer {
   void pass(uint32_t done, uint32_t wanted, const Progress& progress,
             const std::atomic<bool>& stop) {
     const Beam beam = beamOfPass(wanted);
-    const int columns = tilesAlong(settings_.width);
-    const int tiles = columns * tilesAlong(settings_.height);
+    const TileGrid tiles{settings_.width, settings_.height};
     const bool trains = training_ && training_->startPass(done, wanted);
-    std::atomic<int> finished = 0;
+    if (training_ && !trains && done > 0) training_->end(result_.film.errors(), done);
+    std::atomic<size_t> finished = 0;
     std::mutex reporting;
     tbb::parallel_for(
-        tbb::blocked_range<int>(0, tiles, 1),
-        [&](const tbb::blocked_range<int>& range) {
+        tbb::blocked_range<size_t>(0, tiles.count(), 1),
+        [&](const tbb::blocked_range<size_t>& range) {
           Worker& worker = workers_.local();
-          for (int tile = range.begin(); tile < range.end() && !stop; ++tile) {
-            forPixels(tile % columns * kTile, tile / columns * kTile, [&](int x, int y) {
+          for (size_t tile = range.begin(); tile < range.end() && !stop; ++tile) {
+            tiles.forPixels(tile, [&](int x, int y) {
               const uint32_t from = countOf(x, y, done), to = countOf(x, y, wanted);
-              worker.context.lightRecords =
-                  trains ? training_->recordsOf(size_t(tile), pixelIndex(x, y)) : nullptr;
+              worker.context.records =
+                  trains ? training_->recordsOf(tile, pixelIndex(x, y)) : nullptr;
               for (int half = 0; half < Film::kHalves; ++half)
                 renderHalf(worker, x, y, half, from, to, beam);
             });
-            const int count = ++finished;
+            const size_t count = ++finished;
             if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-              progress(double(count) / tiles);
+              progress(double(count) / double(tiles.count()));
           }
         },
         tbb::simple_partitioner());
     if (trains && !stop)
-      if (const auto weight = training_->endPass()) {
+      if (const auto weight = training_->learnLights()) {
         result_.film.weigh(*weight);
         result_.features.weigh(*weight);
       }
@@ -131,12 +129,6 @@ class Renderer {
 
   uint32_t countOf(int x, int y, uint32_t mean) const {
     return allocation_ ? allocation_->count(x, y, mean) : mean;
-  }
-
-  template <class Visit>
-  void forPixels(int left, int top, const Visit& visit) const {
-    for (int y = top; y < std::min(top + kTile, settings_.height); ++y)
-      for (int x = left; x < std::min(left + kTile, settings_.width); ++x) visit(x, y);
   }
 
   // Generates and traces the camera rays of consecutive samples.
@@ -267,9 +259,11 @@ class Renderer {
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 
-RenderResult renderAll(const Integrator& integrator, const World& world, const Camera& camera,
-                       const RenderSettings& settings, GuideTraining* training,
-                       const Progress& progress, const std::atomic<bool>& stop) {
+}  // namespace
+
+RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop, GuideTraining* training) {
   RenderResult result{
       .film = Film(settings.width, settings.height),
       .aovs = AovFilm(settings.width, settings.height, settings.aovs),
@@ -277,6 +271,7 @@ RenderResult renderAll(const Integrator& integrator, const World& world, const C
           LayerFilm(settings.width, settings.height, integrator.layers(), settings.wantsFeatures()),
       .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
+  if (training) training->tracePhotons();
   Renderer renderer(integrator, world, camera, settings, training, result);
 
   uint32_t& done = result.samples;
@@ -292,31 +287,19 @@ RenderResult renderAll(const Integrator& integrator, const World& world, const C
     }
   }
   renderer.gather();
-  if (training) result.guidedRegions = training->guide().guidedRegions();
+  if (training) {
+    result.guidedRegions = training->lights().guidedRegions();
+    result.causticFraction = training->caustics().empty() ? 0 : training->caustics().fraction();
+  }
   return result;
 }
-
-}  // namespace
 
 RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop) {
-  PathSettings path = settings.path();
-  if (settings.guiding == Guiding::Off || !lighting.takesOneSample())
-    return renderAll(PathIntegrator(PathTracer(world, lighting, path)), world, camera, settings,
-                     nullptr, progress, stop);
-  const size_t pixels = size_t(settings.width) * size_t(settings.height);
-  const size_t tiles = size_t(tilesAlong(settings.width)) * size_t(tilesAlong(settings.height));
-  GuideTraining training(settings.guiding, settings.samples, pixels, tiles);
-  path.guide = &training.guide();
-  return renderAll(PathIntegrator(PathTracer(world, lighting, path)), world, camera, settings,
-                   &training, progress, stop);
-}
-
-RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
-                    const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop) {
-  return renderAll(integrator, world, camera, settings, nullptr, progress, stop);
+  GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
+  return render(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
+                world, camera, settings, progress, stop, &training);
 }
 
 }  // namespace chromeball

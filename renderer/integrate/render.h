@@ -9,6 +9,7 @@
 #include "film/feature_film.h"
 #include "film/film.h"
 #include "film/layer_film.h"
+#include "integrate/guiding/guide_training.h"
 #include "integrate/integrator.h"
 #include "integrate/render_settings.h"
 #include "scene/camera.h"
@@ -24,9 +25,10 @@ struct RenderResult {
   DepthCut depthCut;
   InvalidSamples invalid;
   ClampedSamples clamped;
-  uint32_t samples = 0;      // mean per pixel; 0 where the first pass was interrupted
-  bool adaptive = false;     // whether pixels took different numbers of samples
-  size_t guidedRegions = 0;  // of the light guide; 0: light samples were not guided
+  uint32_t samples = 0;       // mean per pixel; 0 where the first pass was interrupted
+  bool adaptive = false;      // whether pixels took different numbers of samples
+  size_t guidedRegions = 0;   // of the light guide; 0: light samples were not guided
+  float causticFraction = 0;  // of bounces in caustics: guided (CausticGuide::fraction())
   bool interrupted = false;
 };
 
@@ -37,9 +39,9 @@ RenderResult render(const World& world, const Camera& camera, const LightingStra
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop);
 
-// The same for any integrator.
+// The same for any integrator. `training`: of the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
                     const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop);
+                    const std::atomic<bool>& stop, GuideTraining* training = nullptr);
 
 }  // namespace chromeball

@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "film/aov.h"
-#include "integrate/guiding/guide_training.h"
 #include "integrate/path_settings.h"
 
 namespace chromeball {
+
+// Of light samples and bounces (guiding/guide_training.h). `Auto` guides if that is worth its time;
+// `On` guides wherever it reduces the variance.
+enum class Guiding { Off, On, Auto };
 
 struct RenderSettings {
   int width = 800, height = 600;
@@ -20,8 +23,8 @@ struct RenderSettings {
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
   // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
   bool adaptive = true;
-  Guiding guiding = Guiding::Auto;  // of light samples; not in composites
-  int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
+  Guiding guiding = Guiding::Auto;
+  int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;

@@ -38,6 +38,7 @@ json describe(const RenderResult& result) {
       {"samples_per_pixel", result.samples},
       {"adaptive", result.adaptive},
       {"guided", result.guidedRegions > 0},
+      {"caustics_guided", result.causticFraction > 0},
       {"width", result.film.width()},
       {"height", result.film.height()},
       {"rays",

@@ -117,10 +117,11 @@ void checkGuide(const SceneFile& file) {
   if (s.get<std::string>("render.guide") != "on") return;
   const std::string location = s.location("render.guide");
   const std::string strategy = resolveStrategy(s.get<std::string>("lighting.strategy"));
-  if (file.composite) throwInput("{}: composites are not guided", location);
+  if (s.get<bool>("two-pass"))
+    throwInput("{}: a reference of two passes is not guided; leave one of the two out", location);
   if (file.surroundings) throwInput("{}: light from [surroundings] is not guided", location);
   if (strategy != "importance")
-    throwInput("{}: guides the light samples of the strategy `importance`, not of `{}`", location,
+    throwInput("{}: guides renders with the strategy `importance`, not with `{}`", location,
                strategy);
 }
 

@@ -22,9 +22,9 @@ inline constexpr int kBsdf = 2;      // 2: direction of the next ray
 inline constexpr int kLobe = 4;      // 1: which lobe
 inline constexpr int kRoulette = 5;  // 1
 inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
-// 1: strategy or guide. Shared with kEmitter: the estimates of probe and emitters are added, so
-// they need not be independent.
-inline constexpr int kGuide = 6;
+// 1 each: strategy or guide; BSDF or guide. Shared with kEmitter: the estimates of probe, emitters
+// and the rest of the path are added, so they need not be independent.
+inline constexpr int kGuide = 6, kBounce = 7;
 inline constexpr int kPerVertex = 8;
 }  // namespace dimension
 

@@ -145,7 +145,7 @@ class LeanBatch {
     if (!(path.pdf > 0) || !(glm::dot(s.geometricNormal, wi) > 0)) return false;
     path.throughput *= albedo;
     path.ray = {s.origin(wi), wi};
-    return survivesRoulette(path.throughput, depth_, sampler);
+    return survivesRoulette(path.throughput, 1, depth_, sampler);
   }
 
   void traceShadowRays() {

@@ -44,6 +44,14 @@ std::string denoisedInWords(const JobResult& result) {
   return fmt::format("; denoised to about {:.2f}%", 100 * result.denoised->noise);
 }
 
+std::string guidedInWords(const RenderResult& render) {
+  const bool lights = render.guidedRegions > 0, bounces = render.causticFraction > 0;
+  if (!lights && !bounces) return "";
+  return fmt::format(", {} guided,", !bounces  ? "light samples"
+                                     : !lights ? "bounces"
+                                               : "light samples and bounces");
+}
+
 void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
@@ -54,8 +62,8 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
                                   job.settings.denoise ? ", not denoised" : ""));
   if (!quiet)
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
-               render.guidedRegions > 0 ? ", light samples guided," : "", result.seconds,
-               inWords(result.noise), denoisedInWords(result), fmt::join(job.outputs, ", "));
+               guidedInWords(render), result.seconds, inWords(result.noise),
+               denoisedInWords(result), fmt::join(job.outputs, ", "));
 }
 
 void render(const SceneOptions& options) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "integrate/guiding/guide_gain.h"
+#include "integrate/guiding/photon.h"
 
 namespace chromeball {
 namespace {
@@ -11,47 +13,87 @@ namespace {
 constexpr uint32_t kMinSamples = 8;      // per pixel of a render that is guided
 constexpr uint32_t kTraining = 16;       // samples per pixel; a quarter of the render, 4 to this
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
-// Ratio of second moments with and without the guide: below, `Auto` guides; above, there is nothing
-// to gain.
+// Ratio of second moments with and without the guide: below, `Auto` guides light samples; above,
+// there is nothing to gain.
 constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
+// Photons take at most about 10% of the time of a render on two cores.
+constexpr double kPhotonsPerSample = 0.2, kPhotonsPerSecond = 150'000;
+
 }  // namespace
 
-GuideTraining::GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, size_t tiles)
-    : guiding_(samples < kMinSamples ? Guiding::Off : guiding),
-      lastSample_(std::clamp(samples / 4, 4u, kTraining)),
-      maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles, 8)),
-      pixelFraction_(double(kMaxRecords) / (kRecordsPerSample * double(pixels) * lastSample_)),
-      records_(tiles) {}
+GuideTraining::GuideTraining(const World& world, const LightingStrategy& lighting,
+                             const RenderSettings& settings, Guides guides)
+    : world_(world),
+      lighting_(lighting),
+      settings_(settings),
+      guiding_(settings.samples < kMinSamples || !lighting.takesOneSample() ? Guiding::Off
+                                                                            : settings.guiding),
+      lightGuiding_(guides == Guides::Both ? guiding_ : Guiding::Off),
+      lastSample_(std::clamp(settings.samples / 4, 4u, kTraining)),
+      tiles_{settings.width, settings.height},
+      maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles_.count(), 8)),
+      pixelFraction_(double(kMaxRecords) /
+                     (kRecordsPerSample * settings.width * settings.height * lastSample_)),
+      records_(guiding_ == Guiding::Off ? 0 : tiles_.count()) {}
 
-bool GuideTraining::startPass(uint32_t done, uint32_t wanted) {
-  if (guiding_ != Guiding::Off && done < lastSample_ && wanted <= lastSample_) return true;
-  records_ = {};
-  return false;
+PathSettings GuideTraining::guided(PathSettings path) const {
+  path.guide = lightGuiding_ == Guiding::Off ? nullptr : &lights_;
+  path.caustics = guiding_ == Guiding::Off ? nullptr : &caustics_;
+  return path;
 }
 
-std::vector<LightRecord>* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
+void GuideTraining::tracePhotons() {
+  if (guiding_ == Guiding::Off) return;
+  double count = kPhotonsPerSample * settings_.width * settings_.height * settings_.samples;
+  if (settings_.timeLimit) count = std::min(count, kPhotonsPerSecond * *settings_.timeLimit);
+  count = std::min(count, double(kMaxPhotons));
+  caustics_ =
+      CausticGuide(chromeball::tracePhotons(world_, lighting_, size_t(count), settings_.seed));
+}
+
+bool GuideTraining::startPass(uint32_t done, uint32_t wanted) const {
+  const bool learns = lightGuiding_ != Guiding::Off || !caustics_.empty();
+  return learns && done < lastSample_ && wanted <= lastSample_;
+}
+
+GuideRecords* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
   const bool chosen = double(uint32_t(hash(pixel, 0x6775696465))) * 0x1p-32 < pixelFraction_;
-  return chosen && records_[tile].size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
+  return chosen && records_[tile].lights.size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
 }
 
-std::optional<double> GuideTraining::endPass() {
+std::optional<double> GuideTraining::learnLights() {
+  if (lightGuiding_ == Guiding::Off) return {};
   size_t count = 0;
-  for (const auto& some : records_) count += some.size();
+  for (const GuideRecords& some : records_) count += some.lights.size();
   std::vector<LightRecord> all;
   all.reserve(count);
-  for (const auto& some : records_) all.insert(all.end(), some.begin(), some.end());
-  guide_.learn(std::move(all));
-  const GuideRegion::Moments moments = guide_.moments();
+  for (const GuideRecords& some : records_)
+    all.insert(all.end(), some.lights.begin(), some.lights.end());
+  lights_.learn(std::move(all));
+  const GuideRegion::Moments moments = lights_.moments();
   const double ratio = moments.without > 0 ? moments.with / moments.without : 1;
-  if (guiding_ == Guiding::Auto && !hasBegun_ && ratio > kWorthwhile) {
-    guide_.forget();
-    if (count >= kEnough) guiding_ = Guiding::Off;
+  if (lightGuiding_ == Guiding::Auto && !hasBegun_ && ratio > kWorthwhile) {
+    lights_.forget();
+    if (count >= kEnough) lightGuiding_ = Guiding::Off;
   }
-  if (hasBegun_ || guide_.guidedRegions() == 0) return {};
+  if (hasBegun_ || lights_.guidedRegions() == 0) return {};
   hasBegun_ = true;
   return ratio;
+}
+
+void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
+  if (records_.empty()) return;
+  if (!caustics_.empty()) {
+    const float fraction = bestFraction(records_, std::min(pixelFraction_, 1.0), tiles_, errors,
+                                        samples, guiding_ == Guiding::On);
+    if (fraction > 0)
+      caustics_.setFraction(fraction);
+    else
+      caustics_ = CausticGuide();
+  }
+  records_ = {};
 }
 
 }  // namespace chromeball

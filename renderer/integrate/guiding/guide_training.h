@@ -1,49 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a light guide learns from the first passes of a render, and whether it is used at all.
+// What the guides learn from photons and from the first passes of a render, and whether they are
+// used at all.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "integrate/guiding/light_guide.h"
+#include "film/noise.h"
+#include "integrate/context.h"
+#include "integrate/render_settings.h"
+#include "integrate/tile_grid.h"
+#include "integrate/world.h"
 
 namespace chromeball {
 
-// `Auto` guides if that is worth its time; `On` guides in every region where it reduces the
-// variance.
-enum class Guiding { Off, On, Auto };
-
 // The first passes of a render are its training. What is learned does not depend on the number of
-// threads, because the records are kept by tile. Some kMaxRecords, at most twice as many, are
-// taken, from pixels chosen at random if the image is large. They take 330 MB at most.
+// threads, because the records are kept by tile. Some kMaxRecords of either kind, at most twice as
+// many, are taken, from pixels chosen at random if the image is large. They take 370 MB at most,
+// and photons 60 MB.
 class GuideTraining {
  public:
-  static constexpr size_t kMaxRecords = 1 << 20;
+  static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
 
-  // `samples`: per pixel, of the whole render.
-  GuideTraining(Guiding guiding, uint32_t samples, size_t pixels, size_t tiles);
+  // Both guides; of bounces only for integrators with layers, whose film has no weights.
+  enum class Guides { Both, Bounces };
+  // `world` and `lighting` must outlive this. Guides nothing if the strategy does not take one
+  // sample (LightingStrategy::takesOneSample()).
+  GuideTraining(const World& world, const LightingStrategy& lighting,
+                const RenderSettings& settings, Guides guides);
 
-  const LightGuide& guide() const { return guide_; }
+  // With the guides, which are empty at first.
+  PathSettings guided(PathSettings path) const;
 
-  // Whether the pass from `done` to `wanted` samples per pixel is part of the training. Frees the
-  // records after the last one.
-  bool startPass(uint32_t done, uint32_t wanted);
+  // Before the first pass.
+  void tracePhotons();
+
+  const LightGuide& lights() const { return lights_; }
+  const CausticGuide& caustics() const { return caustics_; }
+
+  // Whether the pass from `done` to `wanted` samples per pixel is part of the training.
+  bool startPass(uint32_t done, uint32_t wanted) const;
   // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
-  std::vector<LightRecord>* recordsOf(size_t tile, uint64_t pixel);
+  GuideRecords* recordsOf(size_t tile, uint64_t pixel);
 
-  // Learns from all records so far. If guiding begins: the weight of the samples so far relative to
-  // that of later ones, which have less variance.
-  std::optional<double> endPass();
+  // Light samples: learns from all records so far. If guiding begins: the weight of the samples so
+  // far relative to that of later ones, which have less variance.
+  std::optional<double> learnLights();
+  // Bounces: decides with which fraction they are guided, if at all. Frees the records. `errors`:
+  // of the image so far, with `samples` per pixel. Does nothing if the training has ended before.
+  void end(const PixelErrors& errors, uint32_t samples);
 
  private:
-  Guiding guiding_;
-  bool hasBegun_ = false;  // from then on `Auto` keeps the guide
+  const World& world_;
+  const LightingStrategy& lighting_;
+  const RenderSettings& settings_;
+  Guiding guiding_, lightGuiding_;  // the latter is off when nothing is to be gained
+  bool hasBegun_ = false;           // from then on `Auto` keeps the guide of light samples
   uint32_t lastSample_;
+  TileGrid tiles_;
   size_t maxRecordsOfTile_;
   double pixelFraction_;
-  std::vector<std::vector<LightRecord>> records_;  // by tile
-  LightGuide guide_;
+  std::vector<GuideRecords> records_;  // by tile; empty after the training
+  LightGuide lights_;
+  CausticGuide caustics_;
 };
 
 }  // namespace chromeball

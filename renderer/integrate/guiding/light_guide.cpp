@@ -11,19 +11,11 @@
 namespace chromeball {
 namespace {
 
-constexpr uint32_t kSides = 6, kLeaf = 3;
 constexpr size_t kMinRecords = 1000;  // of a region that is the half of another
 constexpr size_t kMinToGuide = 100;   // fewer leave light that none of them found to fireflies
 constexpr std::array kFractions = {1.0f, 0.5f, 0.25f, 0.1f, 0.02f};  // of the strategy's samples
 // A guided light sample takes up to twice the time.
 constexpr double kMaxMomentRatio = 0.7;
-
-// Which of six axes is nearest to the normal.
-uint32_t sideOf(const vec3& n) {
-  const vec3 a = absolute(n);
-  const uint32_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-  return 2 * axis + (n[int(axis)] < 0);
-}
 
 using Records = std::span<const LightRecord>;
 
@@ -68,59 +60,12 @@ GuideRegion::GuideRegion(std::span<const LightRecord> records) {
   tree_ = treeOf(records, 1);
 }
 
-const GuideRegion* LightGuide::regionAt(const vec3& position, const vec3& normal) const {
-  const Node* node = &nodes_[sideOf(normal)];
-  while (node->axis != kLeaf)
-    node = &nodes_[node->index + (position[int(node->axis)] >= node->split)];
-  const GuideRegion& region = regions_[node->index];
-  return region.isGuided() ? &region : nullptr;
-}
-
-// Divides at the median along the longest axis.
-void LightGuide::divide(size_t node, Records records, std::vector<Records>& leaves) {
-  vec3 low(INFINITY), high(-INFINITY);
-  for (const LightRecord& r : records) {
-    low = glm::min(low, r.position);
-    high = glm::max(high, r.position);
-  }
-  const vec3 size = high - low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  auto right = records.begin();
-  float split = 0;
-  if (records.size() >= 2 * kMinRecords) {
-    const auto middle = records.begin() + std::ptrdiff_t(records.size() / 2);
-    std::nth_element(records.begin(), middle, records.end(), [&](const auto& a, const auto& b) {
-      return a.position[axis] < b.position[axis];
-    });
-    split = middle->position[axis];
-    right = std::partition(records.begin(), records.end(),
-                           [&](const auto& r) { return r.position[axis] < split; });
-  }
-  if (right == records.begin()) {  // too few, or half of them have the smallest coordinate
-    nodes_[node] = {0, kLeaf, uint32_t(leaves.size())};
-    leaves.push_back(records);
-    return;
-  }
-  const size_t child = nodes_.size();
-  nodes_[node] = {split, uint32_t(axis), uint32_t(child)};
-  nodes_.resize(child + 2);
-  divide(child, {records.begin(), right}, leaves);
-  divide(child + 1, {right, records.end()}, leaves);
-}
-
 void LightGuide::learn(std::vector<LightRecord> records) {
-  nodes_.assign(kSides, {});
-  std::vector<std::span<LightRecord>> leaves;
-  auto begin = records.begin();
-  for (uint32_t side = 0; side < kSides; ++side) {
-    const auto end = std::partition(begin, records.end(),
-                                    [&](const auto& r) { return sideOf(r.normal) == side; });
-    divide(side, {begin, end}, leaves);
-    begin = end;
-  }
-  regions_.assign(leaves.size(), {});
-  tbb::parallel_for(size_t(0), leaves.size(),
-                    [&](size_t i) { regions_[i] = GuideRegion(leaves[i]); });
+  std::vector<std::span<LightRecord>> regions;
+  tree_ = RegionTree(std::span(records), kMinRecords, regions);
+  regions_.assign(regions.size(), {});
+  tbb::parallel_for(size_t(0), regions.size(),
+                    [&](size_t i) { regions_[i] = GuideRegion(regions[i]); });
 }
 
 size_t LightGuide::guidedRegions() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "integrate/guiding/direction_tree.h"
+#include "integrate/guiding/region_tree.h"
 
 namespace chromeball {
 
@@ -55,35 +56,26 @@ class GuideRegion {
   Moments moments_;
 };
 
-// Regions are the leaves of k-d trees, one for each of the six axes that a normal can be nearest
-// to.
 class LightGuide {
  public:
   // Replaces what has been learned before.
   void learn(std::vector<LightRecord> records);
-  void forget() { nodes_.clear(), regions_.clear(); }
+  void forget() { *this = LightGuide(); }
 
   // Whether nothing is guided: find() returns null everywhere.
-  bool empty() const { return nodes_.empty(); }
+  bool empty() const { return tree_.empty(); }
   // Null where the strategy alone is better.
   const GuideRegion* find(const vec3& position, const vec3& normal) const {
-    return empty() ? nullptr : regionAt(position, normal);
+    if (empty()) return nullptr;
+    const GuideRegion& region = regions_[tree_.find(position, normal)];
+    return region.isGuided() ? &region : nullptr;
   }
 
   size_t guidedRegions() const;
   GuideRegion::Moments moments() const;  // of all regions
 
  private:
-  struct Node {
-    float split;     // positions below it are in the first child
-    uint32_t axis;   // kLeaf for a region
-    uint32_t index;  // of the first child, which the second follows; or of the region
-  };
-  const GuideRegion* regionAt(const vec3& position, const vec3& normal) const;
-  using Records = std::span<LightRecord>;
-  void divide(size_t node, Records records, std::vector<Records>& leaves);
-
-  std::vector<Node> nodes_;  // the first six are roots
+  RegionTree tree_;
   std::vector<GuideRegion> regions_;
 };
 

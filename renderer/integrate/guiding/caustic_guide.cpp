@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/guiding/caustic_guide.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace chromeball {
+namespace {
+
+constexpr size_t kMinPhotons = 500;  // of a region that is the half of another
+constexpr size_t kMinToGuide = 20;   // of a region with lobes
+
+}  // namespace
+
+CausticGuide::CausticGuide(std::vector<Photon> photons) {
+  std::vector<std::span<Photon>> regions;
+  tree_ = RegionTree(std::span(photons), kMinPhotons, regions);
+  regions_.assign(regions.size(), {});
+  tbb::parallel_for(size_t(0), regions.size(), [&](size_t i) {
+    if (regions[i].size() >= kMinToGuide) regions_[i] = CausticLobes(regions[i]);
+  });
+  if (std::all_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.empty(); }))
+    *this = CausticGuide();
+}
+
+size_t CausticGuide::byteCount() const {
+  size_t sum = 0;
+  for (const CausticLobes& r : regions_) sum += sizeof(r) + r.byteCount();
+  return sum;
+}
+
+}  // namespace chromeball

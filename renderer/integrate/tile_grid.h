@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tiles in which an image is rendered.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace chromeball {
+
+struct TileGrid {
+  static constexpr int kSize = 16;  // pixels
+
+  int width, height;  // of the image
+
+  int columns() const { return (width + kSize - 1) / kSize; }
+  int rows() const { return (height + kSize - 1) / kSize; }
+  size_t count() const { return size_t(columns()) * size_t(rows()); }
+
+  // In scanline order.
+  template <class Visit>
+  void forPixels(size_t tile, const Visit& visit) const {
+    const int left = int(tile % size_t(columns())) * kSize;
+    const int top = int(tile / size_t(columns())) * kSize;
+    for (int y = top; y < std::min(top + kSize, height); ++y)
+      for (int x = left; x < std::min(left + kSize, width); ++x) visit(x, y);
+  }
+};
+
+}  // namespace chromeball
