@@ -342,7 +342,7 @@ TEST(SlowCommandRender, AdaptiveRendersTakeTheRequestedMean) {
               "`off`");
 }
 
-TEST(CommandRender, GuidesOnlyTheLightSamplesOfImportance) {
+TEST(CommandRender, GuidesOnlyRendersWithImportance) {
   const RenderScene scene;
   const auto arguments = [&](std::vector<std::string> more) {
     std::vector<std::string> all = {

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "integrate/guiding/light_guide.h"
+#include "lighting/finite_surroundings.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
 #include "small_scenes.h"
@@ -161,6 +162,42 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
   EXPECT_GT(lowest, sidak(1e-3, kSize * kSize));
   // The means of whole images are much more precise than any pixel.
   EXPECT_GT(welchTest(Moments::of(means[0]), Moments::of(means[1])), 1e-3);
+}
+
+// Light from the walls of a box around the room, which has other directions for each point.
+TEST(SlowGuide, AgreesInSurroundings) {
+  constexpr int kSeeds = 16, kSize = 32, kTiles = 16;
+  const Scene scene = room();
+  const World world(scene, {}, allTables());
+  const Probe probe = sunBehind();
+  Surroundings box;
+  box.shape = Surroundings::Shape::Box;
+  box.min = {-5, -1, -4}, box.max = {4, 6, 5};
+  box.capture = {-4, 1, 0};
+  const FiniteSurroundings lighting(makeStrategy("importance", probe, Mis::Balance, "test"), probe,
+                                    box);
+  const std::atomic<bool> stop = false;
+  std::vector<std::vector<double>> tiles[2];
+  for (auto& some : tiles) some.resize(kTiles);
+  double squared[2] = {0, 0};
+  for (uint64_t seed = 0; seed < 2 * kSeeds; ++seed) {
+    const bool on = seed % 2;
+    const RenderResult r = render(
+        world, inside(), lighting,
+        guidedRender(kSize, kSize, 64, on ? Guiding::On : Guiding::Off, seed), [](double) {}, stop);
+    EXPECT_EQ(r.guidedRegions > 0, on);
+    EXPECT_EQ(r.causticFraction, 0);  // photons do not start from walls
+    squared[on] += r.film.noise().noise * r.film.noise().noise;
+    const Image mean = r.film.mean();
+    for (int t = 0; t < kTiles; ++t) {
+      double sum = 0;
+      for (int i = 0; i < 64; ++i) sum += luminance(mean.rgb(t % 4 * 8 + i % 8, t / 4 * 8 + i / 8));
+      tiles[on][size_t(t)].push_back(sum);
+    }
+  }
+  for (size_t t = 0; t < kTiles; ++t)
+    EXPECT_GT(welchTest(Moments::of(tiles[0][t]), Moments::of(tiles[1][t])), sidak(1e-3, kTiles));
+  EXPECT_LT(squared[1], squared[0]);
 }
 
 // At equal samples; guided light samples take up to 1.7 times the time.

@@ -84,24 +84,25 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
 }
 
 Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
+  Rgb sum(0);
+  const auto add = [&](const LightSample& light) {
+    const vec3& wi = light.direction.wi;
+    const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
+    if (isBlack(bsdf.fCos)) return;
+    const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
+    if (isBlack(passed)) return;
+    sum += contribution(light.direction, bsdf) * passed;
+    if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
+  };
+  if (guideChooses(vertex, context)) {
+    const auto guided = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
+    add(ofGuide(*vertex.region, guided, lighting_.escaped(vertex.point, guided.direction)));
+    return sum;
+  }
   std::vector<DirectionSample>& samples = context.lightSamples;
   samples.clear();
   lighting_.sample(vertex.point, context.sampler, samples);
-  Rgb sum(0);
-  for (const DirectionSample& own : samples) {
-    LightSample light = ofStrategy(vertex, own);
-    if (guideChooses(vertex, context)) {
-      const auto guided = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
-      light = ofGuide(*vertex.region, guided, lighting_.escaped(vertex.point, guided.direction));
-    }
-    const vec3& wi = light.direction.wi;
-    const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
-    if (isBlack(bsdf.fCos)) continue;
-    const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
-    if (isBlack(passed)) continue;
-    sum += contribution(light.direction, bsdf) * passed;
-    if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
-  }
+  for (const DirectionSample& own : samples) add(ofStrategy(vertex, own));
   return sum;
 }
 

@@ -119,7 +119,6 @@ void checkGuide(const SceneFile& file) {
   const std::string strategy = resolveStrategy(s.get<std::string>("lighting.strategy"));
   if (s.get<bool>("two-pass"))
     throwInput("{}: a reference of two passes is not guided; leave one of the two out", location);
-  if (file.surroundings) throwInput("{}: light from [surroundings] is not guided", location);
   if (strategy != "importance")
     throwInput("{}: guides renders with the strategy `importance`, not with `{}`", location,
                strategy);

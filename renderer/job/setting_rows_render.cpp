@@ -82,9 +82,9 @@ void addRender(std::vector<Setting>& rows) {
            [] {
              return Names{"auto", "on", "off"};
            },
-       .help = "Learns from which directions the probe lights each region, for light samples of "
-               "`importance`: auto where that pays (rooms), on wherever it reduces the variance; "
-               "from 8 samples per pixel.",
+       .help = "Learns from which directions the probe lights each region, for light samples "
+               "(rooms) and for bounces towards caustics, with `importance`: auto where that "
+               "pays, on wherever it reduces the variance; from 8 samples per pixel.",
        .renderOnly = true});
   add({.key = "regularize",
        .option = "regularize",

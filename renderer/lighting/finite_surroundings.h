@@ -32,6 +32,7 @@ class FiniteSurroundings : public LightingStrategy {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
+  bool takesOneSample() const override { return strategy_->takesOneSample(); }
   Rgb background(const vec3& origin, const vec3& wi) const override;
   float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
   bool unbiased() const override { return strategy_->unbiased(); }

@@ -70,8 +70,8 @@ class LightingStrategy {
     return false;
   }
 
-  // Whether sample() takes one sample that does not depend on the point, and is not a delta.
-  bool takesOneSample() const { return sampleMany({}, {}); }
+  // Whether sample() takes one sample at most, which is not a delta.
+  virtual bool takesOneSample() const { return sampleMany({}, {}); }
 
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;

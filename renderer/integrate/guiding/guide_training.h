@@ -25,8 +25,8 @@ class GuideTraining {
 
   // Both guides; of bounces only for integrators with layers, whose film has no weights.
   enum class Guides { Both, Bounces };
-  // `world` and `lighting` must outlive this. Guides nothing if the strategy does not take one
-  // sample (LightingStrategy::takesOneSample()).
+  // All arguments must outlive this. Guides nothing if the strategy takes more than one sample
+  // (LightingStrategy::takesOneSample()).
   GuideTraining(const World& world, const LightingStrategy& lighting,
                 const RenderSettings& settings, Guides guides);
 

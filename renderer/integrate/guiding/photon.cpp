@@ -172,7 +172,7 @@ class PhotonTracer {
 std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting, size_t count,
                                  uint64_t seed) {
   const PhotonTracer tracer(world, lighting);
-  if (!tracer.hasTargets()) return {};
+  if (!tracer.hasTargets() || !lighting.sampleMany({}, {})) return {};
   std::vector<std::vector<Photon>> found((count + kPathsPerTask - 1) / kPathsPerTask);
   tbb::parallel_for(size_t(0), found.size(), [&](size_t task) {
     const size_t end = std::min(count, (task + 1) * kPathsPerTask);

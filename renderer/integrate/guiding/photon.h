@@ -24,9 +24,9 @@ struct Photon {
   float flux;      // luminance
 };
 
-// Traces `count` paths, each with a light sample of the strategy, which must take one sample per
-// point (LightingStrategy::takesOneSample()). They start towards instances with narrow lobes; empty
-// if there are none. Does not depend on the number of threads.
+// Traces `count` paths from light samples of the strategy towards instances with narrow lobes; none
+// if there are no such instances, or if light samples depend on the point
+// (LightingStrategy::sampleMany()). Does not depend on the number of threads.
 std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting, size_t count,
                                  uint64_t seed);
 
