@@ -121,7 +121,7 @@ TEST(PathBatch, AlsoWithGuidedBounces) {
     const World world(named.scene, {}, allTables());
     const Probe probe(named.probe);
     const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
-    const CausticGuide caustics(tracePhotons(world, *lighting, 20'000, 1));
+    const CausticGuide caustics(tracePhotons(world, *lighting, {20'000}, 1));
     ASSERT_FALSE(caustics.empty());
     expectSame(named, cameraAbove(), "importance", smallRender(40, 30, 37, 5), nullptr, &caustics);
   }

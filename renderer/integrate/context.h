@@ -48,6 +48,7 @@ struct GuidedBounce {
 
 // What guides learn from paths.
 struct GuideRecords {
+  bool wantsLights = true;
   std::vector<LightRecord> lights;
   std::vector<BounceRecord> bounces;
 };
@@ -67,7 +68,8 @@ struct PathContext {
   // `passed`: transmittance of the shadow ray.
   void addRecord(LightRecord record, const Rgb& passed = Rgb(1)) const {
     record.integrand *= luminance(passed);
-    if (record.integrand > 0 && std::isfinite(record.integrand / record.density))
+    if (records->wantsLights && record.integrand > 0 &&
+        std::isfinite(record.integrand / record.density))
       records->lights.push_back(record);
   }
   // At the end of a path.

@@ -11,6 +11,7 @@ GuidedBsdf::GuidedBsdf(const Bsdf& bsdf, const vec3& position, const vec3& wo,
   if (!lobes) return;
   const vec3 mirrored = 2 * glm::dot(wo, bsdf.normal()) * bsdf.normal() - wo;
   if (!(bsdf.evaluate(mirrored).pdf < kConcentratedPdf)) return;
+  if (bsdf.transmits() && !(bsdf.evaluate(-wo).pdf < kConcentratedPdf)) return;
   lobes_ = lobes;
   fraction_ = guide->fraction();
 }

@@ -10,7 +10,8 @@ namespace chromeball {
 
 // Broad bounces are drawn from a mixture of the BSDF and the guide's lobes at the position
 // (one-sample model; Veach 1997, section 9.2.4). Narrow and delta lobes are not guided, nor are
-// BSDFs whose mirror direction has a larger pdf than kConcentratedPdf: they find their light.
+// BSDFs with a pdf above kConcentratedPdf in the mirror direction or straight behind the surface:
+// they find their light.
 class GuidedBsdf {
  public:
   // `guide` may be null. `wo`: unit, towards the viewer. The BSDF must outlive this.

@@ -127,7 +127,9 @@ Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
 // A bounce that the guide might have chosen. The rest of the first one is recorded.
 void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                             const PathContext& context) {
-  if (bounce.bsdfPdf > 0) state.guideRatio *= bounce.pdf / bounce.bsdfPdf;
+  constexpr float kLargest = 1e20f;  // no overflow on long paths
+  if (bounce.bsdfPdf > 0)
+    state.guideRatio = std::min(state.guideRatio * bounce.pdf / bounce.bsdfPdf, kLargest);
   if (context.records && state.guided.record.lobesPdf == 0)
     state.guided = {{0, bounce.lobesPdf, bounce.bsdfPdf, bounce.fraction}, {}, true};
 }

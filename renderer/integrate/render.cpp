@@ -105,9 +105,15 @@ class Renderer {
       }
   }
 
+  RayCounts rays() const {
+    RayCounts sum;
+    for (const Worker& worker : workers_) sum.add(worker.context.counts);
+    return sum;
+  }
+
   void gather() {
+    result_.rays = rays();
     for (const Worker& worker : workers_) {
-      result_.rays.add(worker.context.counts);
       result_.depthCut.add(worker.context.depthCut);
       result_.invalid.add(worker.invalid);
       result_.clamped.add(worker.context.clamp.clamped());
@@ -271,12 +277,13 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
           LayerFilm(settings.width, settings.height, integrator.layers(), settings.wantsFeatures()),
       .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
-  if (training) training->tracePhotons();
   Renderer renderer(integrator, world, camera, settings, training, result);
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {
     if (schedule.endsPilot()) renderer.adapt(done);
+    if (training && done > 0 && !training->triedPhotons())
+      training->tracePhotons(renderer.rays(), done, schedule.goal());
     const auto report = [&](double fraction) {
       progress(schedule.progress(done + fraction * (wanted - done)));
     };

@@ -84,7 +84,7 @@ void addRender(std::vector<Setting>& rows) {
            },
        .help = "Learns from which directions the probe lights each region, for light samples "
                "(rooms) and for bounces towards caustics, with `importance`: auto where that "
-               "pays, on wherever it reduces the variance; from 8 samples per pixel.",
+               "pays, on always; from 8 samples per pixel.",
        .renderOnly = true});
   add({.key = "regularize",
        .option = "regularize",

@@ -10,6 +10,7 @@
 #include "job/job_description.h"
 #include "job/machine.h"
 #include "job/output_file.h"
+#include "job/setting_table.h"
 #include "lighting/methods.h"
 #include "messages.h"
 #include "progress_bar.h"
@@ -153,9 +154,8 @@ void compare(const Arguments& a) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
-  for (const char* name : {"output.aovs", "render.adaptive", "render.guide", "render.regularize",
-                           "render.glass_shadows", "render.denoise"})
-    scene.settings.erase(name);
+  for (const Setting& setting : settingTable())  // compare() varies or ignores these
+    if (setting.renderOnly) scene.settings.erase(setting.name());
   RenderJob job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
   const ThreadLimit threads(a.scene.settings);

@@ -36,8 +36,10 @@ double meanLuminance(size_t tile, const TileGrid& tiles, const PixelErrors& erro
 // changes by the ratio of the pdfs. Variances count relative to
 // the luminance of the tile.
 float bestFraction(std::span<const GuideRecords> records, double fractionOfPixels,
-                   const TileGrid& tiles, const PixelErrors& errors, uint32_t samples,
+                   const TileGrid& tiles, const PixelErrors& errors, const RecordedSamples& samples,
                    bool always) {
+  const double recordedSamples = double(samples.all - samples.first) * fractionOfPixels;
+  if (!(recordedSamples > 0)) return always ? CausticGuide::kTrainingFraction : 0;
   std::vector<double> luminances(records.size());
   double mean = 0;
   for (size_t tile = 0; tile < records.size(); ++tile) {
@@ -53,10 +55,9 @@ float bestFraction(std::span<const GuideRecords> records, double fractionOfPixel
       const double larger = std::max(ofPixel, luminance);  // highlights
       now += squared / (larger * larger);
     });
-    const double scale =
-        1 / (luminance * luminance * double(samples) * double(samples) * fractionOfPixels);
+    const double scale = 1 / (luminance * luminance * double(samples.all) * recordedSamples);
     double sum = 0, count = 0;
-    tiles.forPixels(tile, [&](int, int) { count += samples * fractionOfPixels; });
+    tiles.forPixels(tile, [&](int, int) { count += recordedSamples; });
     for (const BounceRecord& r : records[tile].bounces) sum += std::sqrt(double(r.squared));
     const double squaredMean = scale * sum * sum / count;
     recorded -= squaredMean;
@@ -72,9 +73,10 @@ float bestFraction(std::span<const GuideRecords> records, double fractionOfPixel
     }
   }
   const double rest = std::max(now - recorded, 0.0);
+  const auto cost = [&](size_t k) { return (rest + moments[k]) * kTimes[k]; };
   size_t best = always ? 1 : 0;
   for (size_t k = best; k < kFractions.size(); ++k)
-    if ((rest + moments[k]) * kTimes[k] < (rest + moments[best]) * kTimes[best]) best = k;
+    if (cost(k) < cost(best)) best = k;
   return kFractions[best];
 }
 

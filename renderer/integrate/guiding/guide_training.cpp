@@ -10,16 +10,17 @@
 namespace chromeball {
 namespace {
 
-constexpr uint32_t kMinSamples = 8;      // per pixel of a render that is guided
-constexpr uint32_t kTraining = 16;       // samples per pixel; a quarter of the render, 4 to this
+constexpr uint32_t kMinSamples = 8;  // per pixel of a render that is guided
+// Samples per pixel: a quarter of the render within these limits.
+constexpr uint32_t kMinTraining = 8, kTraining = 16;
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
 // Ratio of second moments with and without the guide: below, `Auto` guides light samples; above,
 // there is nothing to gain.
 constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
-// Photons take at most about 10% of the time of a render on two cores.
-constexpr double kPhotonsPerSample = 0.2, kPhotonsPerSecond = 150'000;
+constexpr double kUnknownGoal = 256;  // samples per pixel under a limit of noise
+constexpr double kPhotonRays = 0.1;   // relative to those of the render
 
 }  // namespace
 
@@ -31,7 +32,7 @@ GuideTraining::GuideTraining(const World& world, const LightingStrategy& lightin
       guiding_(settings.samples < kMinSamples || !lighting.takesOneSample() ? Guiding::Off
                                                                             : settings.guiding),
       lightGuiding_(guides == Guides::Both ? guiding_ : Guiding::Off),
-      lastSample_(std::clamp(settings.samples / 4, 4u, kTraining)),
+      lastSample_(std::clamp(settings.samples / 4, kMinTraining, kTraining)),
       tiles_{settings.width, settings.height},
       maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles_.count(), 8)),
       pixelFraction_(double(kMaxRecords) /
@@ -44,13 +45,15 @@ PathSettings GuideTraining::guided(PathSettings path) const {
   return path;
 }
 
-void GuideTraining::tracePhotons() {
-  if (guiding_ == Guiding::Off) return;
-  double count = kPhotonsPerSample * settings_.width * settings_.height * settings_.samples;
-  if (settings_.timeLimit) count = std::min(count, kPhotonsPerSecond * *settings_.timeLimit);
-  count = std::min(count, double(kMaxPhotons));
-  caustics_ =
-      CausticGuide(chromeball::tracePhotons(world_, lighting_, size_t(count), settings_.seed));
+void GuideTraining::tracePhotons(const RayCounts& rays, uint32_t done, double goal) {
+  // A path needs two bounces to find a caustic, and the training some passes.
+  triedPhotons_ = true;
+  if (guiding_ == Guiding::Off || settings_.maxDepth < 2 || done >= lastSample_) return;
+  if (settings_.noiseLimit) goal = std::min(goal, kUnknownGoal);
+  const double raysOfRender = double(rays.camera + rays.shadow + rays.bounce) / done * goal;
+  caustics_ = CausticGuide(chromeball::tracePhotons(
+      world_, lighting_, {kMaxPhotons, kPhotonRays * raysOfRender}, settings_.seed));
+  firstGuided_ = done;
 }
 
 bool GuideTraining::startPass(uint32_t done, uint32_t wanted) const {
@@ -60,7 +63,11 @@ bool GuideTraining::startPass(uint32_t done, uint32_t wanted) const {
 
 GuideRecords* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
   const bool chosen = double(uint32_t(hash(pixel, 0x6775696465))) * 0x1p-32 < pixelFraction_;
-  return chosen && records_[tile].lights.size() < maxRecordsOfTile_ ? &records_[tile] : nullptr;
+  if (!chosen) return nullptr;
+  GuideRecords& records = records_[tile];
+  records.wantsLights = lightGuiding_ != Guiding::Off;
+  const size_t size = records.wantsLights ? records.lights.size() : records.bounces.size();
+  return size < maxRecordsOfTile_ ? &records : nullptr;
 }
 
 std::optional<double> GuideTraining::learnLights() {
@@ -87,7 +94,7 @@ void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
   if (records_.empty()) return;
   if (!caustics_.empty()) {
     const float fraction = bestFraction(records_, std::min(pixelFraction_, 1.0), tiles_, errors,
-                                        samples, guiding_ == Guiding::On);
+                                        {firstGuided_, samples}, guiding_ == Guiding::On);
     if (fraction > 0)
       caustics_.setFraction(fraction);
     else

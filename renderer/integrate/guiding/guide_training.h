@@ -18,7 +18,7 @@ namespace chromeball {
 // The first passes of a render are its training. What is learned does not depend on the number of
 // threads, because the records are kept by tile. Some kMaxRecords of either kind, at most twice as
 // many, are taken, from pixels chosen at random if the image is large. They take 370 MB at most,
-// and photons 60 MB.
+// and photons 120 MB.
 class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
@@ -33,8 +33,11 @@ class GuideTraining {
   // With the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
 
-  // Before the first pass.
-  void tracePhotons();
+  // After the first pass, of `done` samples per pixel and so many rays. `goal`: samples per pixel
+  // of the whole render, as far as is known.
+  void tracePhotons(const RayCounts& rays, uint32_t done, double goal);
+
+  bool triedPhotons() const { return triedPhotons_; }
 
   const LightGuide& lights() const { return lights_; }
   const CausticGuide& caustics() const { return caustics_; }
@@ -56,7 +59,9 @@ class GuideTraining {
   const LightingStrategy& lighting_;
   const RenderSettings& settings_;
   Guiding guiding_, lightGuiding_;  // the latter is off when nothing is to be gained
-  bool hasBegun_ = false;           // from then on `Auto` keeps the guide of light samples
+  bool triedPhotons_ = false;
+  uint32_t firstGuided_ = 0;  // sample per pixel of guided bounces
+  bool hasBegun_ = false;     // from then on `Auto` keeps the guide of light samples
   uint32_t lastSample_;
   TileGrid tiles_;
   size_t maxRecordsOfTile_;

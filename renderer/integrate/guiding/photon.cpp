@@ -20,7 +20,9 @@ constexpr int kMaxBounces = 12;
 constexpr float kMaxRoughness = 0.5f;  // of a material that may have narrow lobes
 
 bool mayHaveNarrowLobes(const Material& m) {
-  return m.roughness <= kMaxRoughness || m.metallicRoughnessTexture || m.extended;
+  if (m.straightShadows) return false;  // light passes it without a change of direction
+  return m.roughness <= kMaxRoughness || m.metallicRoughnessTexture ||
+         (m.extended && (m.extended->transmission > 0 || m.extended->clearcoat > 0));
 }
 
 struct Sphere {
@@ -28,17 +30,32 @@ struct Sphere {
   float radius = 0;
 };
 
-Sphere sphereAround(const Scene& scene, const Instance& instance) {
-  const std::vector<vec3>& positions = scene.meshes[size_t(instance.mesh)].positions;
+Bounds boundsOf(const std::vector<vec3>& positions) {
   Bounds box;
   for (const vec3& p : positions) {
-    box.min = glm::min(box.min, instance.point(p));
-    box.max = glm::max(box.max, instance.point(p));
+    box.min = glm::min(box.min, p);
+    box.max = glm::max(box.max, p);
   }
-  Sphere sphere{box.min + (box.max - box.min) / 2.0f, 0};
-  for (const vec3& p : positions)
-    sphere.radius = std::max(sphere.radius, glm::distance(instance.point(p), sphere.center));
-  return sphere;
+  return box;
+}
+
+// Spheres around the instances, from the corners of their meshes' boxes.
+std::vector<Sphere> spheresAround(const Scene& scene) {
+  std::vector<Bounds> boxes;
+  for (const Mesh& mesh : scene.meshes) boxes.push_back(boundsOf(mesh.positions));
+  std::vector<Sphere> spheres;
+  for (const Instance& instance : scene.instances) {
+    const Bounds& box = boxes[size_t(instance.mesh)];
+    const vec3 center = instance.point(box.min + (box.max - box.min) / 2.0f);
+    Sphere sphere{center, 0};
+    for (int corner = 0; corner < 8; ++corner) {
+      const vec3 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                   corner & 4 ? box.max.z : box.min.z);
+      sphere.radius = std::max(sphere.radius, glm::distance(instance.point(p), center));
+    }
+    spheres.push_back(sphere);
+  }
+  return spheres;
 }
 
 // An instance that paths start towards. The probability is proportional to the radius, so that
@@ -49,13 +66,13 @@ struct Target {
   double probability, upTo;  // the sum of the probabilities up to this one
 };
 
-std::vector<Target> targetsOf(const Scene& scene) {
+std::vector<Target> targetsOf(const Scene& scene, const std::vector<Sphere>& spheres) {
   std::vector<Target> targets;
   double sum = 0;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (!mayHaveNarrowLobes(scene.materials[size_t(instance.material)])) continue;
-    const Sphere sphere = sphereAround(scene, instance);
+    const Sphere& sphere = spheres[i];
     if (!(sphere.radius > 0 && std::isfinite(sphere.radius))) continue;
     sum += sphere.radius;
     targets.push_back({i, sphere, sphere.radius, sum});
@@ -79,28 +96,61 @@ class Random {
   uint64_t key_, index_ = 0;
 };
 
+// What a task has found, with how many rays.
+struct Traced {
+  std::vector<Photon> photons;
+  size_t rays = 0;
+};
+
 class PhotonTracer {
  public:
   PhotonTracer(const World& world, const LightingStrategy& lighting)
-      : world_(world), lighting_(lighting), targets_(targetsOf(world.scene)) {
-    const Bounds box = bounds(world.scene);
+      : world_(world), lighting_(lighting) {
+    const std::vector<Sphere> spheres = spheresAround(world.scene);
+    targets_ = targetsOf(world.scene, spheres);
+    Bounds box;
+    for (const Sphere& s : spheres) {
+      box.min = glm::min(box.min, s.center - s.radius);
+      box.max = glm::max(box.max, s.center + s.radius);
+    }
     sceneSize_ = glm::distance(box.min, box.max);
   }
 
   bool hasTargets() const { return !targets_.empty(); }
 
-  void trace(uint64_t key, std::vector<Photon>& out) const {
-    Random random(key);
+  void traceFromProbe(Random random, Traced& out) const {
     const Target& target = chooseTarget(random);
     const uint32_t first = random.bits(), second = random.bits();
     const glm::uvec2 bits(first, second);
     DirectionSample light{};
     lighting_.sampleMany(std::span(&bits, 1), std::span(&light, 1));
     if (!(light.pdf > 0)) return;
-    follow(startTowards(target, light.wi, random.get2()), target,
-           luminance(light.irradiance) * kPi * target.sphere.radius * target.sphere.radius /
-               float(target.probability),
-           light.wi, random, out);
+    const float flux = luminance(light.irradiance) * kPi * target.sphere.radius *
+                       target.sphere.radius / float(target.probability);
+    follow({startTowards(target, light.wi, random.get2()), flux, light.wi, 0}, &target, random,
+           out);
+  }
+
+  // From a point on an emissive triangle, in a cosine-distributed direction.
+  void traceFromLamp(Random random, Traced& out) const {
+    const Emitters::Point lamp =
+        world_.emitters->sample(double(random.bits()) * 0x1p-32, random.get1());
+    const Instance& instance = world_.scene.instances[lamp.instance];
+    const auto surfaceTowards = [&](const vec3& direction) {
+      return surfaceAt(world_.scene, instance, lamp.triangle, lamp.barycentric, direction);
+    };
+    const Surface some = surfaceTowards({0, 0, 1});
+    const vec3 front = some.frontFace ? some.geometricNormal : -some.geometricNormal;
+    const float sides = some.material->doubleSided ? 2 : 1;
+    const vec3 normal = random.get1() < 1 / sides ? front : -front;
+    const vec3 direction = Frame(normal).toWorld(squareToCosineHemisphere(random.get2()));
+    const Surface surface = surfaceTowards(direction);
+    const float flux = luminance(emittedRadiance(world_.scene, instance, surface, direction)) *
+                       sides * kPi *
+                       surfaceAlpha(world_.scene, instance, lamp.triangle, lamp.barycentric) /
+                       world_.emitters->pdf(instance.material, 1, 1);
+    follow({{surface.rayOrigin(direction), direction}, flux, {0, 0, 1}, hash(lamp.instance)},
+           nullptr, random, out);
   }
 
  private:
@@ -131,15 +181,25 @@ class PhotonTracer {
                 lighting_.mirrorAlpha());
   }
 
-  // Until the path leaves the scene or a bounce is not narrow.
-  void follow(Ray ray, const Target& target, float flux, const vec3& emission, Random& random,
-              std::vector<Photon>& out) const {
+  struct Start {
+    Ray ray;
+    float flux;
+    vec3 emission;
+    uint64_t chain;
+  };
+  // Until the path leaves the scene or a bounce is not narrow. `target`: null for lamps.
+  void follow(const Start& start, const Target* target, Random& random, Traced& out) const {
+    auto [ray, flux, emission, chain] = start;
     Media media;
-    uint64_t chain = 0;
     for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
       Hit hit;
+      ++out.rays;
       if (!world_.accel.intersect(ray, random.bits(), hit)) return;
-      if (bounce == 0 && hit.instance != target.instance) return;  // counted with that one
+      if (world_.scene.materials[size_t(world_.scene.instances[hit.instance].material)]
+              .straightShadows)
+        return;
+      if (bounce == 0 && target && hit.instance != target->instance)
+        return;  // counted with that one
       const Instance& instance = world_.scene.instances[hit.instance];
       const Surface surface =
           surfaceAt(world_.scene, instance, hit.triangle, hit.barycentric, -ray.direction);
@@ -150,7 +210,7 @@ class PhotonTracer {
       if (!bsdf.sample(u, random.get1(), next)) return;
       if (!next.isDelta && next.pdf < kConcentratedPdf) {
         if (bounce > 0 && flux > 0 && std::isfinite(flux))
-          out.push_back(
+          out.photons.push_back(
               {surface.position, bsdf.normal(), -ray.direction, emission, uint32_t(chain), flux});
         return;
       }
@@ -169,18 +229,34 @@ class PhotonTracer {
 
 }  // namespace
 
-std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting, size_t count,
-                                 uint64_t seed) {
+std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
+                                 const PhotonBudget& budget, uint64_t seed) {
   const PhotonTracer tracer(world, lighting);
-  if (!tracer.hasTargets() || !lighting.sampleMany({}, {})) return {};
-  std::vector<std::vector<Photon>> found((count + kPathsPerTask - 1) / kPathsPerTask);
-  tbb::parallel_for(size_t(0), found.size(), [&](size_t task) {
-    const size_t end = std::min(count, (task + 1) * kPathsPerTask);
-    for (size_t i = task * kPathsPerTask; i < end; ++i)
-      tracer.trace(hash(seed, i, 0x70686f746f6e), found[task]);
-  });
+  const bool fromProbe = lighting.sampleMany({}, {}), fromLamps = world.emitters != nullptr;
   std::vector<Photon> photons;
-  for (const auto& some : found) photons.insert(photons.end(), some.begin(), some.end());
+  if (!tracer.hasTargets() || !(fromProbe || fromLamps)) return photons;
+  const size_t tasks = (budget.paths + kPathsPerTask - 1) / kPathsPerTask;
+  size_t rays = 0;
+  for (size_t begin = 0, end = std::min<size_t>(tasks, 1); begin < end;) {
+    std::vector<Traced> found(end - begin);
+    tbb::parallel_for(begin, end, [&](size_t task) {
+      const size_t last = std::min(budget.paths, (task + 1) * kPathsPerTask);
+      for (size_t i = task * kPathsPerTask; i < last; ++i) {
+        Traced& out = found[task - begin];
+        if (fromProbe) tracer.traceFromProbe(Random(hash(seed, i, 0x70726f6265)), out);
+        if (fromLamps) tracer.traceFromLamp(Random(hash(seed, i, 0x6c616d70)), out);
+      }
+    });
+    for (const Traced& some : found) {
+      photons.insert(photons.end(), some.photons.begin(), some.photons.end());
+      rays += some.rays;
+    }
+    if (photons.empty()) break;
+    // Twice as many as so far, within the budget.
+    const double affordable = double(end) * std::max(budget.rays / double(rays) - 1, 0.0);
+    begin = end;
+    end = std::min({tasks, 3 * end, end + size_t(std::min(affordable, 1e9))});
+  }
   return photons;
 }
 

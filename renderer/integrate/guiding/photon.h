@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light of the probe that mirrors, metals and glass throw onto rough surfaces: paths from the probe
-// (Jensen 1996, "Global Illumination using Photon Maps").
+// Light of the probe and of lamps that mirrors, metals and glass throw onto rough surfaces: paths
+// from the light (Jensen 1996, "Global Illumination using Photon Maps").
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,15 +20,21 @@ inline constexpr float kConcentratedPdf = 2;
 struct Photon {
   vec3 position, normal;
   vec3 direction;  // unit, towards the last surface that reflected or refracted the light
-  vec3 emission;   // unit, towards the light on the probe
-  uint32_t chain;  // a hash of the instances that reflected or refracted the light, in order
+  vec3 emission;   // unit, towards the light on the probe; the same for all light of lamps
+  uint32_t chain;  // a hash of the lamp and of the instances that the path met, in order
   float flux;      // luminance
 };
 
-// Traces `count` paths from light samples of the strategy towards instances with narrow lobes; none
-// if there are no such instances, or if light samples depend on the point
-// (LightingStrategy::sampleMany()). Does not depend on the number of threads.
-std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting, size_t count,
-                                 uint64_t seed);
+struct PhotonBudget {
+  size_t paths;
+  double rays = INFINITY;  // the first 4,096 paths are always traced
+};
+
+// Traces paths from light samples of the strategy towards instances with narrow lobes, and as many
+// from emissive triangles, up to the budget; none if there are no such instances, or if the first
+// leave no photons. Light samples must not depend on the point (LightingStrategy::sampleMany());
+// else only lamps have photons. The result does not depend on the number of threads.
+std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
+                                 const PhotonBudget& budget, uint64_t seed);
 
 }  // namespace chromeball
