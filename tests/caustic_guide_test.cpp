@@ -286,7 +286,7 @@ TEST(SlowCausticGuide, FindsALampBehindGlass) {
     EXPECT_EQ(r.causticFraction > 0, guiding != Guiding::Off);
     return r.film.mean();
   };
-  const Image reference = rendered(2048, Guiding::On, 99);
+  const Image reference = rendered(4096, Guiding::On, 99);
   double off = 0, guided = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {
     off += relMse(rendered(128, Guiding::Off, seed), reference);

@@ -20,7 +20,7 @@ constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
 constexpr double kUnknownGoal = 256;  // samples per pixel under a limit of noise
-constexpr double kPhotonRays = 0.1;   // relative to those of the render
+constexpr double kPhotonRays = 0.15;   // relative to those of the render
 
 }  // namespace
 
