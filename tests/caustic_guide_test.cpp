@@ -8,7 +8,8 @@
 #include <tbb/global_control.h>
 
 #include "composite/render_composite.h"
-#include "integrate/guiding/guide_gain.h"
+#include "integrate/guide_gain.h"
+#include "integrate/trace_photons.h"
 #include "measure/statistics.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
@@ -357,7 +358,7 @@ TEST(CausticGuide, IsUsedWhereItPays) {
     const std::vector<double> luminances(256, 1);
     // In units of the records' part: sum of 1 over 1000 records / 16^2 samples.
     const std::vector<glm::dvec4> errors(256, glm::dvec4(variance * 1000 / 256 / 256));
-    return bestFraction(records, 1, tiles, {16, 16, luminances, errors, errors}, {0, 16}, always);
+    return bestFraction(records, 1, tiles, {16, 16, luminances, errors, errors}, 16, always);
   };
   EXPECT_GT(fraction(2, false), 0);
   EXPECT_EQ(fraction(1000, false), 0);

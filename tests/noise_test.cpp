@@ -175,6 +175,7 @@ TEST(SlowNoise, MatchesTheVarianceOverSeedsWithRareLight) {
     for (const bool adaptive : {false, true}) {
       RenderSettings settings = smallRender(kLarge, kLarge, 64, 6);
       settings.adaptive = adaptive;
+      settings.guiding = Guiding::Off;
       const std::vector<Seed> seeds = renderSeeds(c, settings);
       EXPECT_NEAR(noiseRatio(seeds), 1, 0.12);
       if (&c == &cases.back()) continue;  // pixels that are still black have no error estimate
@@ -183,6 +184,15 @@ TEST(SlowNoise, MatchesTheVarianceOverSeedsWithRareLight) {
       EXPECT_GT(coverage(seeds, 3), adaptive ? 0.94 : 0.955);
     }
   }
+}
+
+// Guided bounces leave few fireflies, which count for the pixels around them too.
+TEST(SlowNoise, IsConservativeWithGuidedBounces) {
+  RenderSettings settings = smallRender(48, 48, 64, 6);
+  settings.guiding = Guiding::On;
+  const double ratio = noiseRatio(renderSeeds(glassBall(), settings));
+  EXPECT_GT(ratio, 0.9);
+  EXPECT_LT(ratio, 2.2);
 }
 
 TEST(SlowNoise, IsConservativeOnMetalsUnderRealProbes) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "integrate/trace_photons.h"
 #include "paths.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"

@@ -12,7 +12,7 @@
 #include <mutex>
 
 #include "film/allocation.h"
-#include "integrate/guiding/guide_training.h"
+#include "integrate/guide_training.h"
 #include "integrate/path_batch.h"
 #include "integrate/regularization.h"
 #include "integrate/schedule.h"
@@ -25,6 +25,8 @@ constexpr uint32_t kLargestTable = 4096;  // samples of a half that share one ra
 // Deeper vertices contribute too little to profit from stratification; they use independent random
 // numbers.
 constexpr int kTabulatedVertices = 6;
+
+constexpr double kRaysOfHit = 3;  // of a path from a camera ray that hits something; on average
 
 // How many of a pixel's first `samples` samples belong to the half.
 uint32_t samplesOf(int half, uint32_t samples) {
@@ -63,6 +65,21 @@ class Renderer {
                          .clamp = Clamp(settings_.clamp),
                          .layers = std::vector<Rgb>(integrator_.layers().size())}};
         }) {}
+
+  // Of the camera rays through a grid of points, those that hit something.
+  double fractionOfHits() const {
+    constexpr int kPoints = 32;
+    int hits = 0;
+    for (int i = 0; i < kPoints * kPoints; ++i) {
+      const float u = (float(i % kPoints) + 0.5f) / kPoints;
+      const float v = (float(i / kPoints) + 0.5f) / kPoints;
+      Ray ray;
+      cameraRays_.ray(u, v, ray.origin, ray.direction);
+      Hit hit;
+      hits += world_.accel.intersect(ray, uint32_t(i), hit, integrator_.visible());
+    }
+    return double(hits) / (kPoints * kPoints);
+  }
 
   // From here on, each pixel takes samples by the noise around it so far.
   void adapt(uint32_t done) {
@@ -105,15 +122,9 @@ class Renderer {
       }
   }
 
-  RayCounts rays() const {
-    RayCounts sum;
-    for (const Worker& worker : workers_) sum.add(worker.context.counts);
-    return sum;
-  }
-
   void gather() {
-    result_.rays = rays();
     for (const Worker& worker : workers_) {
+      result_.rays.add(worker.context.counts);
       result_.depthCut.add(worker.context.depthCut);
       result_.invalid.add(worker.invalid);
       result_.clamped.add(worker.context.clamp.clamped());
@@ -278,12 +289,11 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
       .features = FeatureFilm(settings.width, settings.height, settings.wantsFeatures())};
   Schedule schedule(settings);
   Renderer renderer(integrator, world, camera, settings, training, result);
+  if (training) training->tracePhotons(1 + kRaysOfHit * renderer.fractionOfHits());
 
   uint32_t& done = result.samples;
   for (uint32_t wanted; (wanted = schedule.next(done, result.film)) > done; done = wanted) {
     if (schedule.endsPilot()) renderer.adapt(done);
-    if (training && done > 0 && !training->triedPhotons())
-      training->tracePhotons(renderer.rays(), done, schedule.goal());
     const auto report = [&](double fraction) {
       progress(schedule.progress(done + fraction * (wanted - done)));
     };

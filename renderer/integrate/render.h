@@ -9,7 +9,7 @@
 #include "film/feature_film.h"
 #include "film/film.h"
 #include "film/layer_film.h"
-#include "integrate/guiding/guide_training.h"
+#include "integrate/guide_training.h"
 #include "integrate/integrator.h"
 #include "integrate/render_settings.h"
 #include "scene/camera.h"

@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Of light samples and bounces (guiding/guide_training.h). `Auto` guides if that is worth its time;
+// Of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
 // `On` guides light samples wherever that reduces their variance, and bounces always.
 enum class Guiding { Off, On, Auto };
 

@@ -19,12 +19,12 @@ constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples 
 
 Schedule::Schedule(const RenderSettings& settings)
     : settings_(settings),
-      goal_(settings.samples),
+
       pilot_(settings.adaptive && settings.samples >= kMinToAdapt) {}
 
 uint32_t Schedule::next(uint32_t done, const Film& film) {
   if (done == 0) return std::min(kFirstPass, settings_.samples);
-  const double goal = goal_ = goalAfter(done, film);
+  const double goal = goalAfter(done, film);
   double wanted = std::min(2.0 * done, goal);
   const double pilot = std::floor(std::clamp(kPilot, kMinPilot * goal, kMaxPilot * goal));
   endsPilot_ = pilot_ && done >= pilot && goal >= kMinToAdapt;

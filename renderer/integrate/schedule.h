@@ -25,9 +25,6 @@ class Schedule {
   // returned last is the first whose samples are allotted by its noise.
   bool endsPilot() const { return endsPilot_; }
 
-  // The number of samples per pixel at which the render ends, as far as next() knew.
-  double goal() const { return goal_; }
-
   // Completed fraction after `samples` samples per pixel; NaN under a noise limit without a time
   // limit.
   double progress(double samples) const;
@@ -39,7 +36,6 @@ class Schedule {
 
   const RenderSettings& settings_;
   Stopwatch elapsed_;
-  double goal_;
   bool pilot_, endsPilot_ = false;
   struct {
     uint32_t samples = 0;

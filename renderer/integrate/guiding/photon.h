@@ -3,12 +3,9 @@
 // from the light (Jensen 1996, "Global Illumination using Photon Maps").
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
-#include "integrate/world.h"
-#include "lighting/strategy.h"
+#include "math/vec.h"
 
 namespace chromeball {
 
@@ -24,17 +21,5 @@ struct Photon {
   uint32_t chain;  // a hash of the lamp and of the instances that the path met, in order
   float flux;      // luminance
 };
-
-struct PhotonBudget {
-  size_t paths;
-  double rays = INFINITY;  // the first 4,096 paths are always traced
-};
-
-// Traces paths from light samples of the strategy towards instances with narrow lobes, and as many
-// from emissive triangles, up to the budget; none if there are no such instances, or if the first
-// leave no photons. Light samples must not depend on the point (LightingStrategy::sampleMany());
-// else only lamps have photons. The result does not depend on the number of threads.
-std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
-                                 const PhotonBudget& budget, uint64_t seed);
 
 }  // namespace chromeball

@@ -33,11 +33,8 @@ class GuideTraining {
   // With the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
 
-  // After the first pass, of `done` samples per pixel and so many rays. `goal`: samples per pixel
-  // of the whole render, as far as is known.
-  void tracePhotons(const RayCounts& rays, uint32_t done, double goal);
-
-  bool triedPhotons() const { return triedPhotons_; }
+  // Before the first pass. `raysPerSample`: about how many rays a sample of a pixel takes.
+  void tracePhotons(double raysPerSample);
 
   const LightGuide& lights() const { return lights_; }
   const CausticGuide& caustics() const { return caustics_; }
@@ -59,9 +56,7 @@ class GuideTraining {
   const LightingStrategy& lighting_;
   const RenderSettings& settings_;
   Guiding guiding_, lightGuiding_;  // the latter is off when nothing is to be gained
-  bool triedPhotons_ = false;
-  uint32_t firstGuided_ = 0;  // sample per pixel of guided bounces
-  bool hasBegun_ = false;     // from then on `Auto` keeps the guide of light samples
+  bool hasBegun_ = false;           // from then on `Auto` keeps the guide of light samples
   uint32_t lastSample_;
   TileGrid tiles_;
   size_t maxRecordsOfTile_;

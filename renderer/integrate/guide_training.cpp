@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/guiding/guide_training.h"
+#include "integrate/guide_training.h"
 
 #include <algorithm>
 
 #include "base/hash.h"
-#include "integrate/guiding/guide_gain.h"
-#include "integrate/guiding/photon.h"
+#include "integrate/guide_gain.h"
+#include "integrate/trace_photons.h"
 
 namespace chromeball {
 namespace {
@@ -19,8 +19,9 @@ constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays 
 constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
-constexpr double kUnknownGoal = 256;  // samples per pixel under a limit of noise
-constexpr double kPhotonRays = 0.15;   // relative to those of the render
+constexpr double kPhotonRays = 0.15;  // relative to those of the render, which are estimated:
+constexpr double kRaysPerSecond = 2e6;
+constexpr double kSamplesUnderNoiseLimit = 256;
 
 }  // namespace
 
@@ -45,15 +46,14 @@ PathSettings GuideTraining::guided(PathSettings path) const {
   return path;
 }
 
-void GuideTraining::tracePhotons(const RayCounts& rays, uint32_t done, double goal) {
-  // A path needs two bounces to find a caustic, and the training some passes.
-  triedPhotons_ = true;
-  if (guiding_ == Guiding::Off || settings_.maxDepth < 2 || done >= lastSample_) return;
-  if (settings_.noiseLimit) goal = std::min(goal, kUnknownGoal);
-  const double raysOfRender = double(rays.camera + rays.shadow + rays.bounce) / done * goal;
+void GuideTraining::tracePhotons(double raysPerSample) {
+  if (guiding_ == Guiding::Off || settings_.maxDepth < 2) return;  // no path would find a caustic
+  double samples = settings_.samples;
+  if (settings_.noiseLimit) samples = std::min(samples, kSamplesUnderNoiseLimit);
+  double rays = raysPerSample * samples * settings_.width * settings_.height;
+  if (settings_.timeLimit) rays = std::min(rays, kRaysPerSecond * *settings_.timeLimit);
   caustics_ = CausticGuide(chromeball::tracePhotons(
-      world_, lighting_, {kMaxPhotons, kPhotonRays * raysOfRender}, settings_.seed));
-  firstGuided_ = done;
+      world_, lighting_, {kMaxPhotons, kPhotonRays * rays}, settings_.seed));
 }
 
 bool GuideTraining::startPass(uint32_t done, uint32_t wanted) const {
@@ -94,7 +94,7 @@ void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
   if (records_.empty()) return;
   if (!caustics_.empty()) {
     const float fraction = bestFraction(records_, std::min(pixelFraction_, 1.0), tiles_, errors,
-                                        {firstGuided_, samples}, guiding_ == Guiding::On);
+                                        samples, guiding_ == Guiding::On);
     if (fraction > 0)
       caustics_.setFraction(fraction);
     else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/guiding/guide_gain.h"
+#include "integrate/guide_gain.h"
 
 #include <algorithm>
 #include <array>
@@ -36,10 +36,9 @@ double meanLuminance(size_t tile, const TileGrid& tiles, const PixelErrors& erro
 // changes by the ratio of the pdfs. Variances count relative to
 // the luminance of the tile.
 float bestFraction(std::span<const GuideRecords> records, double fractionOfPixels,
-                   const TileGrid& tiles, const PixelErrors& errors, const RecordedSamples& samples,
+                   const TileGrid& tiles, const PixelErrors& errors, uint32_t samples,
                    bool always) {
-  const double recordedSamples = double(samples.all - samples.first) * fractionOfPixels;
-  if (!(recordedSamples > 0)) return always ? CausticGuide::kTrainingFraction : 0;
+  const double recordedSamples = samples * fractionOfPixels;
   std::vector<double> luminances(records.size());
   double mean = 0;
   for (size_t tile = 0; tile < records.size(); ++tile) {
@@ -55,7 +54,7 @@ float bestFraction(std::span<const GuideRecords> records, double fractionOfPixel
       const double larger = std::max(ofPixel, luminance);  // highlights
       now += squared / (larger * larger);
     });
-    const double scale = 1 / (luminance * luminance * double(samples.all) * recordedSamples);
+    const double scale = 1 / (luminance * luminance * samples * recordedSamples);
     double sum = 0, count = 0;
     tiles.forPixels(tile, [&](int, int) { count += recordedSamples; });
     for (const BounceRecord& r : records[tile].bounces) sum += std::sqrt(double(r.squared));

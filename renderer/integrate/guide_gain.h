@@ -10,15 +10,9 @@
 
 namespace chromeball {
 
-// The samples per pixel that have been taken; from `first` on, bounces were guided and recorded.
-struct RecordedSamples {
-  uint32_t first, all;
-};
-
 // The fraction of bounces from the lobes that makes variances times time least; 0, unless `always`:
-// none. `records`: by tile, of a fraction of the pixels.
+// none. `records`: by tile, of a fraction of the pixels, with `samples` each.
 float bestFraction(std::span<const GuideRecords> records, double fractionOfPixels,
-                   const TileGrid& tiles, const PixelErrors& errors, const RecordedSamples& samples,
-                   bool always);
+                   const TileGrid& tiles, const PixelErrors& errors, uint32_t samples, bool always);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/guiding/photon.h"
+#include "integrate/trace_photons.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paths from the light, for guided bounces.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "integrate/guiding/photon.h"
+#include "integrate/world.h"
+#include "lighting/strategy.h"
+
+namespace chromeball {
+
+struct PhotonBudget {
+  size_t paths;
+  double rays = INFINITY;  // the first 4,096 paths are always traced
+};
+
+// Traces paths from light samples of the strategy towards instances with narrow lobes, and as many
+// from emissive triangles, up to the budget; none if there are no such instances, or if the first
+// leave no photons. Light samples must not depend on the point (LightingStrategy::sampleMany());
+// else only lamps have photons. The result does not depend on the number of threads.
+std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
+                                 const PhotonBudget& budget, uint64_t seed);
+
+}  // namespace chromeball
