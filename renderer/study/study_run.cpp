@@ -23,8 +23,7 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     built.row = rowNamed(row, location);
     built.strategy = makeLighting({built.row.strategy, location}, settings.mis, loaded);
     if (built.row.has(Mode::Guide) && !built.strategy->takesOneSample())
-      throwInput("{}: {}: only renders with the strategy `importance` are guided",
-                 location, row);
+      throwInput("{}: {}: only renders with the strategy `importance` are guided", location, row);
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
