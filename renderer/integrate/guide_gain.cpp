@@ -33,8 +33,7 @@ double meanLuminance(size_t tile, const TileGrid& tiles, const PixelErrors& erro
 }  // namespace
 
 // The part of recorded light in a pixel's variance is E[x^2] / samples, which another fraction
-// changes by the ratio of the pdfs. Variances count relative to
-// the luminance of the tile.
+// changes by the ratio of the pdfs. Variances count relative to the luminance of the tile.
 float bestFraction(std::span<const GuideRecords> records, double fractionOfPixels,
                    const TileGrid& tiles, const PixelErrors& errors, uint32_t samples,
                    bool always) {

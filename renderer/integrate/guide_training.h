@@ -18,7 +18,7 @@ namespace chromeball {
 // The first passes of a render are its training. What is learned does not depend on the number of
 // threads, because the records are kept by tile. Some kMaxRecords of either kind, at most twice as
 // many, are taken, from pixels chosen at random if the image is large. They take 370 MB at most,
-// and photons 120 MB.
+// and photons some 250 MB.
 class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;

@@ -18,7 +18,6 @@ class GuidedBsdf {
   GuidedBsdf(const Bsdf& bsdf, const vec3& position, const vec3& wo, const CausticGuide* guide);
 
   const Bsdf& bsdf() const { return bsdf_; }
-  bool isGuided() const { return lobes_ != nullptr; }
 
   // Of broad lobes, with the pdf of the mixture.
   BsdfValue evaluate(const vec3& wi) const {

@@ -231,6 +231,8 @@ class PhotonTracer {
 
 std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
                                  const PhotonBudget& budget, uint64_t seed) {
+  const Scene& scene = world.scene;
+  if (std::ranges::none_of(scene.materials, mayHaveNarrowLobes)) return {};  // before any bounds
   const PhotonTracer tracer(world, lighting);
   const bool fromProbe = lighting.sampleMany({}, {}), fromLamps = world.emitters != nullptr;
   std::vector<Photon> photons;

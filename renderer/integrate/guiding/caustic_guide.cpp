@@ -24,10 +24,4 @@ CausticGuide::CausticGuide(std::vector<Photon> photons) {
     *this = CausticGuide();
 }
 
-size_t CausticGuide::byteCount() const {
-  size_t sum = 0;
-  for (const CausticLobes& r : regions_) sum += sizeof(r) + r.byteCount();
-  return sum;
-}
-
 }  // namespace chromeball

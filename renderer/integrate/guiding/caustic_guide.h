@@ -38,8 +38,6 @@ class CausticGuide {
   static constexpr float kTrainingFraction = 0.25f;
   void setFraction(float fraction) { fraction_ = fraction; }
 
-  size_t byteCount() const;
-
  private:
   RegionTree tree_;
   std::vector<CausticLobes> regions_;

@@ -24,7 +24,6 @@ class CausticLobes {
 
   bool empty() const { return upTo_.empty(); }
   size_t count() const { return upTo_.size(); }
-  size_t byteCount() const { return upTo_.size() * sizeof(float) + packs_.size() * sizeof(Pack); }
 
   struct Sample {
     vec3 direction;  // unit
