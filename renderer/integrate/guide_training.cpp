@@ -47,7 +47,9 @@ PathSettings GuideTraining::guided(PathSettings path) const {
 }
 
 void GuideTraining::tracePhotons(double raysPerSample) {
-  if (guiding_ == Guiding::Off || settings_.maxDepth < 2) return;  // no path would find a caustic
+  // Less bounces find no caustic. (Those in glass are not counted.)
+  const int minDepth = std::ranges::any_of(world_.scene.materials, &Material::isBody) ? 1 : 2;
+  if (guiding_ == Guiding::Off || settings_.maxDepth < minDepth) return;
   double samples = settings_.samples;
   if (settings_.noiseLimit) samples = std::min(samples, kSamplesUnderNoiseLimit);
   double rays = raysPerSample * samples * settings_.width * settings_.height;

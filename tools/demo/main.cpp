@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_demo still-life|lambertian|conductors|glass|plastics|room|caustics|fine OUT.glb
+// make_demo still-life|lambertian|conductors|glass|plastics|room|lamp|caustics|fine OUT.glb
 // make_demo terrace|terrace-photograph|terrace-whole OUT.glb
 // make_demo dusk|noon OUT.exr
 #include <iostream>
@@ -15,11 +15,15 @@ namespace {
 
 using chromeball::demo::Finish;
 
-const std::map<std::string, Finish> kFinishes = {
-    {"still-life", Finish::Demo},       {"lambertian", Finish::Lambertian},
-    {"conductors", Finish::Conductors}, {"glass", Finish::Glass},
-    {"plastics", Finish::Plastics},     {"room", Finish::Room},
-    {"caustics", Finish::Caustics},     {"fine", Finish::Fine}};
+const std::map<std::string, Finish> kFinishes = {{"still-life", Finish::Demo},
+                                                 {"lambertian", Finish::Lambertian},
+                                                 {"conductors", Finish::Conductors},
+                                                 {"glass", Finish::Glass},
+                                                 {"plastics", Finish::Plastics},
+                                                 {"room", Finish::Room},
+                                                 {"lamp", Finish::Lamp},
+                                                 {"caustics", Finish::Caustics},
+                                                 {"fine", Finish::Fine}};
 
 }  // namespace
 
@@ -42,7 +46,7 @@ int main(int argc, char** argv) {
     else
       throwInput(
           "make_demo: "
-          "still-life|lambertian|conductors|glass|plastics|room|caustics|fine|"
+          "still-life|lambertian|conductors|glass|plastics|room|lamp|caustics|fine|"
           "terrace|terrace-photograph|terrace-whole OUT.glb, or dusk|noon OUT.exr");
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

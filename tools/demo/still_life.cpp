@@ -62,9 +62,9 @@ std::vector<Object> causticBalls() {
       {"gold", tessellate(112, 56, ball({0.7, 0.6, 0.1}, 0.6)), {1, 0.71f, 0.29f}, 1, 0.1f, 0}};
 }
 
-// Walls of 9.5 by 6 by 4.5 m around the table and the camera, seen from inside. The window on the
-// left is 3 by 2.3 m.
-void addRoom(std::vector<Object>& objects) {
+// Walls of 9.5 by 6 by 4.5 m around the table and the camera, seen from inside. If there is a
+// window, it is on the left, 3 by 2.3 m.
+void addRoom(std::vector<Object>& objects, bool window) {
   const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const auto add = [&](const char* name, dvec3 corner, dvec3 right, dvec3 up) {
     objects.push_back({name, tessellate(2, 2, patch(corner, right, up)), {0.7f, 0.68f, 0.64f}});
@@ -74,10 +74,27 @@ void addRoom(std::vector<Object>& objects) {
   add("back", {-3, -1, -3}, 6.0 * x, 4.5 * y);
   add("front", {3, -1, 6.5}, -6.0 * x, 4.5 * y);
   add("right", {3, -1, -3}, 9.5 * z, 4.5 * y);
+  if (!window) return add("left", {-3, -1, 6.5}, -9.5 * z, 4.5 * y);
   add("left, behind the window", {-3, -1, -1}, -2.0 * z, 4.5 * y);
   add("left, before the window", {-3, -1, 6.5}, -4.5 * z, 4.5 * y);
   add("left, below the window", {-3, -1, 2}, -3.0 * z, 1.5 * y);
   add("left, above the window", {-3, 2.8, 2}, -3.0 * z, 0.7 * y);
+}
+
+// Above the table: a glowing ball within a shell of glass, 3 mm thick.
+void addBulb(std::vector<Object>& objects) {
+  const dvec3 center(0.2, 1.9, 0.4);
+  const auto inner = ball(center, 0.217);
+  const auto shell = [&](const char* name, const Parametrisation& point) {
+    objects.push_back({.name = name, .surface = tessellate(64, 32, point), .color = {1, 1, 1}});
+    objects.back().glass = true;
+  };
+  shell("bulb, outside", ball(center, 0.22));
+  shell("bulb, inside", [&](double u, double v) { return inner(1 - u, v); });
+  objects.push_back({.name = "filament",
+                     .surface = tessellate(32, 16, ball(center, 0.04)),
+                     .color = {0, 0, 0},
+                     .glow = 300});
 }
 
 // Makes all materials diffuse, except conductors (with a roughness that both renderers sample
@@ -119,7 +136,8 @@ void writeStillLife(const std::string& path, Finish finish) {
   const bool caustics = finish == Finish::Caustics;
   std::vector<Object> objects = caustics ? causticBalls() : stillLife(finish == Finish::Fine);
   if (finish != Finish::Demo && !caustics) makePlain(objects, finish);
-  if (finish == Finish::Room) addRoom(objects);
+  if (finish == Finish::Room || finish == Finish::Lamp) addRoom(objects, finish == Finish::Room);
+  if (finish == Finish::Lamp) addBulb(objects);
 
   GlbWriter glb;
   if (finish == Finish::Demo) objects[0].texture = addTexture(glb, wood(1024));

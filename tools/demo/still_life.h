@@ -13,6 +13,7 @@ enum class Finish {
   Glass,       // diffuse, except for a ball and a knot of smooth glass
   Plastics,    // diffuse below a glossy dielectric layer
   Room,        // Lambertian, in a room with one window
+  Lamp,        // Lambertian, in a closed room; the only light is a filament in a bulb of glass
   Caustics,    // a mirror and a golden ball on a diffuse ground, nothing else
   Fine,        // Lambertian, of 0.9 million triangles
 };

@@ -14,9 +14,10 @@ import argparse
 import hashlib
 import json
 import pathlib
-import re
 import statistics
-import subprocess
+
+import cycles
+from cycles import run
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "versus"
@@ -44,13 +45,6 @@ def arguments():
     return parser.parse_args()
 
 
-def run(*command):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"{command[0]} failed:\n{done.stdout}{done.stderr}")
-    return done.stdout
-
-
 class Chromeball:
     name = "chromeball"
 
@@ -71,16 +65,11 @@ class Cycles:
 
     @staticmethod
     def render(options, model, output, samples, seed, approximate=False):
-        """Returns the seconds of rendering, from the clock in Cycles' own progress lines."""
-        log = run("blender", "--background", "--factory-startup", "--python-exit-code", 1,
-                  "--python", ROOT / "tools" / "scripts" / "cycles_render.py", "--", model,
-                  options.probe, output, options.size, samples, seed, options.threads, options.depth,
-                  "defaults" if approximate and options.cycles_defaults else "unbiased")
-        clock = re.compile(r"Time:(?:(\d+):)?(\d+):([\d.]+) .*\| (Sample 0/|Finished)")
-        times = {}
-        for hours, minutes, seconds, event in clock.findall(log):
-            times[event] = 3600 * int(hours or 0) + 60 * int(minutes) + float(seconds)
-        return times["Finished"] - times["Sample 0/"]
+        """Returns the seconds of rendering."""
+        return cycles.render(cycles.Settings(
+            str(model), str(options.probe), str(output),
+            tuple(int(number) for number in options.size.split("x")), samples, seed,
+            options.threads, options.depth, defaults=approximate and options.cycles_defaults))[0]
 
 
 def error(image, reference):

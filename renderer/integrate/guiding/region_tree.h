@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,8 @@ namespace chromeball {
 class RegionTree {
  public:
   RegionTree() = default;
-  // Divides at the median along the longest axis while each half has at least `minRecords`.
+  // Divides at the median along the longest axis, or above it where many records have the smallest
+  // coordinate, while both parts have at least `minRecords`.
   // Reorders the records.
   template <class Record>
   RegionTree(std::span<Record> records, size_t minRecords, std::vector<std::span<Record>>& regions);
@@ -46,6 +48,10 @@ class RegionTree {
     const uint32_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     return 2 * axis + (n[int(axis)] < 0);
   }
+  // Reorders the records for a split of the node along the longest axis that allows one; the first
+  // that is above it, or the first of all if there is none.
+  template <class Record>
+  auto split(size_t node, std::span<Record> records, size_t minRecords);
   template <class Record>
   void divide(size_t node, std::span<Record> records, size_t minRecords,
               std::vector<std::span<Record>>& regions);
@@ -67,33 +73,47 @@ RegionTree::RegionTree(std::span<Record> records, size_t minRecords,
 }
 
 template <class Record>
-void RegionTree::divide(size_t node, std::span<Record> records, size_t minRecords,
-                        std::vector<std::span<Record>>& regions) {
+auto RegionTree::split(size_t node, std::span<Record> records, size_t minRecords) {
+  if (records.size() < 2 * minRecords) return records.begin();
   vec3 low(INFINITY), high(-INFINITY);
   for (const Record& r : records) {
     low = glm::min(low, r.position);
     high = glm::max(high, r.position);
   }
-  const vec3 size = high - low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  auto right = records.begin();
-  float split = 0;
-  if (records.size() >= 2 * minRecords) {
+  std::array<int, 3> axes = {0, 1, 2};
+  std::ranges::stable_sort(axes, std::greater(), [&](int axis) { return (high - low)[axis]; });
+  for (const int axis : axes) {
     const auto middle = records.begin() + std::ptrdiff_t(records.size() / 2);
     std::nth_element(records.begin(), middle, records.end(), [&](const auto& a, const auto& b) {
       return a.position[axis] < b.position[axis];
     });
-    split = middle->position[axis];
-    right = std::partition(records.begin(), records.end(),
-                           [&](const auto& r) { return r.position[axis] < split; });
+    float at = middle->position[axis];
+    if (at == low[axis]) {  // of at least half the records, as on a wall
+      at = high[axis];
+      for (const Record& r : records)
+        if (r.position[axis] > low[axis]) at = std::min(at, r.position[axis]);
+    }
+    const auto right = std::partition(records.begin(), records.end(),
+                                      [&](const auto& r) { return r.position[axis] < at; });
+    const size_t count = size_t(right - records.begin());
+    if (count < minRecords || records.size() - count < minRecords) continue;
+    nodes_[node] = {at, uint32_t(axis), 0};
+    return right;
   }
-  if (right == records.begin()) {  // too few, or half of them have the smallest coordinate
+  return records.begin();
+}
+
+template <class Record>
+void RegionTree::divide(size_t node, std::span<Record> records, size_t minRecords,
+                        std::vector<std::span<Record>>& regions) {
+  const auto right = split(node, records, minRecords);
+  if (right == records.begin()) {
     nodes_[node] = {0, kLeaf, uint32_t(regions.size())};
     regions.push_back(records);
     return;
   }
   const size_t child = nodes_.size();
-  nodes_[node] = {split, uint32_t(axis), uint32_t(child)};
+  nodes_[node].index = uint32_t(child);
   nodes_.resize(child + 2);
   divide(child, std::span<Record>(records.begin(), right), minRecords, regions);
   divide(child + 1, std::span<Record>(right, records.end()), minRecords, regions);
