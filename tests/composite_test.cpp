@@ -101,8 +101,8 @@ TEST(Composite, EqualsThePlateWhereObjectsChangeNothing) {
         composite(w, Probe(sunnyProbe(), 25), strategy, smallRender(24, 16, 13, 6), plate);
     EXPECT_EQ(r.mean.texels, plate.texels) << strategy;
     for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
-      EXPECT_EQ(compose(r.film, r.mean, plate, mode).color.texels, plate.texels) << strategy;
-    EXPECT_GT(luminance(meanColor(compositeLayer(r.film, CompositeLayer::WithoutObjects))), 0.1f);
+      EXPECT_EQ(compose(r.film(), r.mean, plate, mode).color.texels, plate.texels) << strategy;
+    EXPECT_GT(luminance(meanColor(compositeLayer(r.film(), CompositeLayer::WithoutObjects))), 0.1f);
   }
 }
 
@@ -121,10 +121,11 @@ TEST(Composite, ObjectsAreVisibleThroughSingleSidedBacks) {
   const Probe probe(sunnyProbe());
   const Image plate = noisyPlate(16, 16);
   std::vector<Image> alphas;
-  for (const Passes passes : {Passes::One, Passes::Two})
-    alphas.push_back(compositeLayer(
-        composite(w, probe, "importance", smallRender(16, 16, 16, 3), plate, passes).film,
-        CompositeLayer::Alpha));
+  for (const Passes passes : {Passes::One, Passes::Two}) {
+    const CompositeRender r =
+        composite(w, probe, "importance", smallRender(16, 16, 16, 3), plate, passes);
+    alphas.push_back(compositeLayer(r.film(), CompositeLayer::Alpha));
+  }
   EXPECT_EQ(*alphas[0].at(8, 8), 1);
   EXPECT_EQ(alphas[0].texels, alphas[1].texels);
 }
@@ -146,7 +147,7 @@ TEST(Composite, InvalidSamplesAreCountedByCause) {
     EXPECT_EQ(r.result.invalid.of(Defect::Nan), 0u);
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x)
-        EXPECT_TRUE(std::isfinite(r.film.at(x, y).objects.x + r.film.at(x, y).difference.x));
+        EXPECT_TRUE(std::isfinite(r.film().at(x, y).objects.x + r.film().at(x, y).difference.x));
   }
 }
 
@@ -162,7 +163,7 @@ TEST(Composite, ChangesNothingBehindAWall) {
   const Image plate = noisyPlate(32, 32);
   const CompositeRender r =
       composite(w, Probe(sunnyProbe()), "importance", smallRender(32, 32, 32, 6), plate);
-  const Image difference = compositeLayer(r.film, CompositeLayer::Difference);
+  const Image difference = compositeLayer(r.film(), CompositeLayer::Difference);
   int changed = 0;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x)
@@ -196,7 +197,7 @@ TEST(Composite, LayersEqualPlainRenders) {
     const Image plain = render(
                             world, w.camera, *lighting, settings, [](double) {}, stop)
                             .film.mean();
-    const Image ours = compositeLayer(r.film, aov);
+    const Image ours = compositeLayer(r.film(), aov);
     for (size_t i = 0; i < plain.texels.size(); ++i)
       ASSERT_NEAR(ours.texels[i], plain.texels[i], 1e-5f * (1 + plain.texels[i]))
           << int(aov) << " " << i;
@@ -256,7 +257,7 @@ TEST(Composite, LampsLightGlossySurfacesWithEveryStrategy) {
     RenderSettings settings = smallRender(24, 16, 64, 3);
     settings.mis = mis;
     const CompositeRender r = composite(w, dim, strategy, settings, noisyPlate(24, 16));
-    return luminance(meanColor(compositeLayer(r.film, CompositeLayer::Difference)));
+    return luminance(meanColor(compositeLayer(r.film(), CompositeLayer::Difference)));
   };
   const float expected = difference("importance", Mis::Balance);
   EXPECT_GT(expected, 0.01f);
@@ -286,7 +287,7 @@ TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
       const RenderSettings settings = smallRender(kSize, kSize, 16, 5, 40 + uint64_t(repeat));
       const CompositeRender r = composite(w, Probe(sunnyProbe()), "importance", settings,
                                           noisyPlate(kSize, kSize), passes);
-      const Image difference = compositeLayer(r.film, CompositeLayer::Difference);
+      const Image difference = compositeLayer(r.film(), CompositeLayer::Difference);
       for (size_t i = 0; i < pixels.size(); ++i) pixels[i].push_back(difference.texels[i]);
     }
     for (const auto& repeats : pixels)
@@ -340,8 +341,8 @@ TEST(SlowComposite, NoiseEstimateMatchesTheComposite) {
       const CompositeRender r =
           composite(w, Probe(sunnyProbe()), "importance",
                     smallRender(kSize, kSize, 32, 5, 170 + uint64_t(repeat)), plate, way.passes);
-      const Composite c = compose(r.film, r.mean, plate, way.mode);
-      const PixelErrors errors = compositeErrors(r.film, c, r.errors);
+      const Composite c = compose(r.film(), r.mean, plate, way.mode);
+      const PixelErrors errors = compositeErrors(r.film(), c, r.errors);
       for (size_t i = 0; i < pixels.size(); ++i) {
         pixels[i].push_back(luminance(glm::dvec3(c.color.rgb(int(i) % kSize, int(i) / kSize))));
         squared[i] += errors.halves[i].w / kRepeats;
@@ -376,8 +377,8 @@ TEST(SlowComposite, MatchesTheReferenceIfTheLocalSceneIsExact) {
   const Image referenceMean = reference.mean(), referenceError = varianceImage(reference.errors()),
               plateError = varianceImage(photograph.errors());
   for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio}) {
-    const Composite c = compose(r.film, r.mean, photograph.mean(), mode);
-    const Image error = varianceImage(compositeErrors(r.film, c, r.errors));
+    const Composite c = compose(r.film(), r.mean, photograph.mean(), mode);
+    const Image error = varianceImage(compositeErrors(r.film(), c, r.errors));
     double sum = 0, squares = 0, n = 0;
     for (size_t i = 0; i < referenceMean.texels.size(); ++i) {
       const double variance =
@@ -394,7 +395,7 @@ TEST(SlowComposite, MatchesTheReferenceIfTheLocalSceneIsExact) {
   }
 }
 
-DifferentialFilm onePixel(const DifferentialPixel& pixel) {
+LayerFilm onePixel(const DifferentialPixel& pixel) {
   LayerFilm film(2, 1, DifferentialFilm::layers());
   const auto add = [&](int x, const DifferentialPixel& p) {
     const std::vector<Rgb> none(DifferentialFilm::kLayers, Rgb(0));
@@ -405,7 +406,7 @@ DifferentialFilm onePixel(const DifferentialPixel& pixel) {
   };
   add(0, pixel);
   add(1, {1, 0, {}, {}, glm::dvec3(1), {}});  // and one of L_noobj = 1
-  return DifferentialFilm(std::move(film));
+  return film;
 }
 
 // Difference: alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj).
@@ -413,8 +414,9 @@ DifferentialFilm onePixel(const DifferentialPixel& pixel) {
 TEST(Composite, MatchesTheFormulas) {
   // Four samples: one hits the object, with L_obj = (2, 4, 6); three have L_noobj = 0.5, L_obj =
   // 0.2.
-  const DifferentialFilm film =
+  const LayerFilm layers =
       onePixel({4, 1, {2, 4, 6}, {}, glm::dvec3(1.5), glm::dvec3(3 * (0.2 - 0.5))});
+  const DifferentialFilm film(layers);
   Image plate(2, 1, 3);
   plate.setRgb(0, 0, {0.6f, 1, 0.4f});
   const Image mean = [&] {
@@ -439,7 +441,8 @@ TEST(Composite, RatioFallsBackToTheDifferenceInTheDark) {
   for (double local : {0.0, 1e-7, 1e-4, 4.99e-4, 5.01e-4, 7e-4, 9.99e-4, 1.001e-3, 0.01}) {
     // The mean of both pixels is near 0.5, so the thresholds are near 5e-4 and 1e-3.
     const double added = 0.001;
-    const DifferentialFilm film = onePixel({1, 0, {}, {}, glm::dvec3(local), glm::dvec3(added)});
+    const LayerFilm layers = onePixel({1, 0, {}, {}, glm::dvec3(local), glm::dvec3(added)});
+    const DifferentialFilm film(layers);
     const double found =
         compose(film, Image(2, 1, 3), plate, CompositeMode::Ratio).color.rgb(0, 0).y;
     ASSERT_TRUE(std::isfinite(found));
@@ -461,7 +464,8 @@ TEST(Composite, RatioFallsBackToTheDifferenceInTheDark) {
 
 // plate + L_obj - L_noobj may be negative; it is clamped to 0 and counted.
 TEST(Composite, NegativeValuesAreClamped) {
-  const DifferentialFilm film = onePixel({1, 0, {}, {}, glm::dvec3(1), glm::dvec3(-0.5)});
+  const LayerFilm layers = onePixel({1, 0, {}, {}, glm::dvec3(1), glm::dvec3(-0.5)});
+  const DifferentialFilm film(layers);
   Image plate(2, 1, 3), mean(2, 1, 3);
   plate.setRgb(0, 0, {0.3f, 0.6f, 0.7f});
   mean.setRgb(0, 0, {-0.2f, 0.1f, 0.2f});
@@ -483,7 +487,7 @@ TEST(Composite, AlphaIsFractional) {
   w.markRestObjects();
   const CompositeRender r = composite(w, Probe(constantProbe({8, 4}, Rgb(1))), "importance",
                                       smallRender(4, 4, 1024, 1), Image(4, 4, 3));
-  const Image alpha = compositeLayer(r.film, CompositeLayer::Alpha);
+  const Image alpha = compositeLayer(r.film(), CompositeLayer::Alpha);
   const float expected[4] = {0.3f, 0.3f, 0.15f, 0};
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) EXPECT_NEAR(*alpha.at(x, y), expected[x], 0.06f) << x;

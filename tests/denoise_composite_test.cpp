@@ -44,10 +44,10 @@ struct TwoBalls {
   }
   Denoised denoised(const CompositeRender& render, CompositeMode mode) const {
     return *denoiseComposite(
-        render, plate, mode, [](double) {}, never);
+        render.result, plate, mode, [](double) {}, never);
   }
   Image composed(const CompositeRender& render, CompositeMode mode) const {
-    return compose(render.film, render.mean, plate, mode).color;
+    return compose(render.film(), render.mean, plate, mode).color;
   }
 };
 
@@ -82,8 +82,8 @@ TEST(SlowDenoiseComposite, OfTwoPassesToo) {
 TEST(DenoiseComposite, KeepsThePlate) {
   const TwoBalls setup;
   const CompositeRender noisy = setup.render(8);
-  const Image alpha = compositeLayer(noisy.film, CompositeLayer::Alpha);
-  const Image difference = compositeLayer(noisy.film, CompositeLayer::Difference);
+  const Image alpha = compositeLayer(noisy.film(), CompositeLayer::Alpha);
+  const Image difference = compositeLayer(noisy.film(), CompositeLayer::Difference);
   const auto isTouched = [&](int x, int y) {
     return *alpha.at(x, y) > 0 || difference.rgb(x, y) != Rgb(0);
   };
@@ -116,7 +116,7 @@ TEST(DenoiseComposite, StopsAtOnce) {
   const TwoBalls setup;
   const std::atomic<bool> stop = true;
   EXPECT_FALSE(denoiseComposite(
-      setup.render(2), setup.plate, CompositeMode::Difference, [](double) {}, stop));
+      setup.render(2).result, setup.plate, CompositeMode::Difference, [](double) {}, stop));
 }
 
 }  // namespace

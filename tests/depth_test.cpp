@@ -143,8 +143,8 @@ TEST(Depth, AVaseInACompositePassesTheWhiteFurnaceTest) {
     double covered = 0;
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 8; ++x) {
-        objects += r.film.at(x, y).objects;
-        covered += r.film.at(x, y).covered;
+        objects += r.film().at(x, y).objects;
+        covered += r.film().at(x, y).covered;
       }
     EXPECT_GT(covered, 0);
     // Camera rays see the black plate as background; rays reflected or refracted by glass see the

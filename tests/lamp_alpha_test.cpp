@@ -124,7 +124,7 @@ TEST(LampAlpha, CompositesScaleTheDifferenceByAlpha) {
     const CompositeRender r = renderComposite(
         world, camera, *lighting, Image(8, 8, 3), settings, Passes::One, false, [](double) {},
         stop);
-    return meanColor(compositeLayer(r.film, CompositeLayer::Difference)).y;
+    return meanColor(compositeLayer(r.film(), CompositeLayer::Difference)).y;
   };
   const float opaque = difference(lampMaterial(AlphaMode::Opaque, 1));
   EXPECT_NEAR(difference(lampMaterial(AlphaMode::Blend, 0.3f)) / opaque, 0.3f, 0.02f);

@@ -174,8 +174,8 @@ TEST(Punctual, LightBothScenesOfAComposite) {
     const CompositeRender r = renderComposite(
         world, above(), *lighting, Image(kSize, kSize, 3), settings, passes, true, [](double) {},
         stop);
-    const Image with = compositeLayer(r.film, CompositeLayer::WithObjects);
-    const Image without = compositeLayer(r.film, CompositeLayer::WithoutObjects);
+    const Image with = compositeLayer(r.film(), CompositeLayer::WithObjects);
+    const Image without = compositeLayer(r.film(), CompositeLayer::WithoutObjects);
     const Image whole = renderFromAbove(scene, 64, 1, kSize);
     int shadowed = 0;
     for (int y = 0; y < kSize; ++y)

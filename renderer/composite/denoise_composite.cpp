@@ -50,14 +50,15 @@ Image errorOf(const std::vector<DenoisedPart>& parts, const Image& differences,
 
 }  // namespace
 
-std::optional<Denoised> denoiseComposite(const CompositeRender& render, const Image& plate,
+std::optional<Denoised> denoiseComposite(const RenderResult& render, const Image& plate,
                                          CompositeMode mode, const Progress& progress,
                                          const std::atomic<bool>& stop) {
-  const FeatureFilm& features = render.result.features;
+  const FeatureFilm& features = render.features;
   std::vector<Layer> layers{DifferentialFilm::kObjects, DifferentialFilm::kDifference};
   if (mode == CompositeMode::Ratio) layers.push_back(DifferentialFilm::kLocal);
+  const DifferentialFilm noisy(render.layers);
   DenoiseInput input{{}, features.albedo(), features.normal(), features.disparity()};
-  for (const Layer layer : layers) input.parts.push_back(render.film.mean(layer));
+  for (const Layer layer : layers) input.parts.push_back(noisy.mean(layer));
   const auto parts = denoise(input, progress, stop);
   if (!parts) return std::nullopt;
 
@@ -69,12 +70,13 @@ std::optional<Denoised> denoiseComposite(const CompositeRender& render, const Im
   }
   if (mode == CompositeMode::Ratio)
     limitDifference(means.at(DifferentialFilm::kLocal), means.at(DifferentialFilm::kDifference));
-  const DifferentialFilm film = render.film.with(means);
+  const LayerFilm filtered = render.layers.with(means);
+  const DifferentialFilm film(filtered);
   const Image difference = differenceOf(film, plate);
   Composite composite = compose(film, difference, plate, mode);
   const Image& unclamped = mode == CompositeMode::Difference ? difference : composite.color;
   Image error = errorOf(*parts, means.at(DifferentialFilm::kDifference), composite, unclamped,
-                        render.film.mean(DifferentialFilm::kCoverage), plate);
+                        noisy.mean(DifferentialFilm::kCoverage), plate);
   return Denoised{std::move(composite.color), std::move(error)};
 }
 

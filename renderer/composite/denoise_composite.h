@@ -13,7 +13,7 @@ namespace chromeball {
 // bits where neither it nor a pixel around it (7 columns and rows) is affected by the objects, and
 // where the camera sees no surface. `render` must be of settings with `denoise`. nullopt if `stop`
 // is set meanwhile.
-std::optional<Denoised> denoiseComposite(const CompositeRender& render, const Image& plate,
+std::optional<Denoised> denoiseComposite(const RenderResult& render, const Image& plate,
                                          CompositeMode mode, const Progress& progress,
                                          const std::atomic<bool>& stop);
 

@@ -15,6 +15,7 @@ struct DifferentialPixel {
   glm::dvec3 difference{0};  // L_obj - L_noobj of the other samples; exactly 0 without any effect
 };
 
+// A view of an integrator's layers.
 class DifferentialFilm {
  public:
   enum Layer { kCoverage, kObjects, kBehind, kLocal, kDifference, kLayers };
@@ -23,25 +24,22 @@ class DifferentialFilm {
     return std::vector<Accumulation>(kLayers, Accumulation::Sum);
   }
 
-  explicit DifferentialFilm(LayerFilm film) : film_(std::move(film)) {}
+  explicit DifferentialFilm(const LayerFilm& film) : film_(&film) {}  // must outlive this
+  explicit DifferentialFilm(LayerFilm&&) = delete;
 
-  HalvedImage mean(Layer layer) const { return film_.mean(layer); }  // film in halves
-  // With other means of some layers.
-  DifferentialFilm with(const std::map<int, Image>& means) const {
-    return DifferentialFilm(film_.with(means));
-  }
+  HalvedImage mean(Layer layer) const { return film_->mean(layer); }  // film in halves
 
-  int width() const { return film_.width(); }
-  int height() const { return film_.height(); }
+  int width() const { return film_->width(); }
+  int height() const { return film_->height(); }
 
   DifferentialPixel at(int x, int y) const {
-    return {double(film_.count(x, y)),   film_.value(x, y, kCoverage).x,
-            film_.value(x, y, kObjects), film_.value(x, y, kBehind),
-            film_.value(x, y, kLocal),   film_.value(x, y, kDifference)};
+    return {double(film_->count(x, y)),   film_->value(x, y, kCoverage).x,
+            film_->value(x, y, kObjects), film_->value(x, y, kBehind),
+            film_->value(x, y, kLocal),   film_->value(x, y, kDifference)};
   }
 
  private:
-  LayerFilm film_;
+  const LayerFilm* film_;
 };
 
 }  // namespace chromeball

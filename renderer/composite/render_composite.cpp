@@ -48,25 +48,21 @@ Image sum(Image a, const Image& b) {
   return a;
 }
 
-CompositeRender finished(RenderResult result, Image mean, PixelErrors errors) {
-  DifferentialFilm film(std::move(result.layers));
-  return {std::move(result), std::move(film), std::move(mean), std::move(errors)};
-}
-
 }  // namespace
 
 CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightingStrategy& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
-                                const Progress& progress, const std::atomic<bool>& stop) {
+                                const Progress& progress, const std::atomic<bool>& stop,
+                                RenderControl* control) {
   if (passes == Passes::One) {
     GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
     const CompositeWorlds worlds(world, lighting, training.guided(settings.path()));
     RenderResult result = render(DifferentialIntegrator(worlds, plate, behindObjects), world,
-                                 camera, settings, progress, stop, &training);
+                                 camera, settings, progress, stop, &training, control);
     Image mean = result.film.mean();
     PixelErrors errors = result.film.errors();
-    return finished(std::move(result), std::move(mean), std::move(errors));
+    return {std::move(result), std::move(mean), std::move(errors)};
   }
 
   const CompositeWorlds worlds(world, lighting, settings.path());
@@ -75,7 +71,7 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
       [&](double fraction) { progress(fraction / 2); }, stop);
   Image mean = result.film.mean();
   PixelErrors errors = result.film.errors();
-  if (result.samples == 0) return finished(std::move(result), std::move(mean), std::move(errors));
+  if (result.samples == 0) return {std::move(result), std::move(mean), std::move(errors)};
   RenderSettings second = settings;
   second.seed = hash(settings.seed, 1);
   second.samples = result.samples;  // a limit may have ended the first pass early
@@ -91,7 +87,7 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
   result.layers.addValues(without.layers);
   errors.add(without.film.errors());
   mean = sum(std::move(mean), without.film.mean());
-  return finished(std::move(result), std::move(mean), std::move(errors));
+  return {std::move(result), std::move(mean), std::move(errors)};
 }
 
 }  // namespace chromeball

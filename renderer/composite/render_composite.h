@@ -14,17 +14,20 @@ enum class Passes {
 
 struct CompositeRender {
   RenderResult result;  // of the only pass, or of the pass with objects
-  DifferentialFilm film;
-  Image mean;          // the composite by the difference formula (compose.h)
-  PixelErrors errors;  // of the mean
+  Image mean;           // the composite by the difference formula (compose.h)
+  PixelErrors errors;   // of the mean
+
+  DifferentialFilm film() const { return DifferentialFilm(result.layers); }
 };
 
 // `world` must have the masks of composite/objects.h, and the plate the size of the image.
-// `behindObjects`: also estimate L_noobj where an object hides it.
+// `behindObjects`: also estimate L_noobj where an object hides it. `control`: of one pass; may be
+// null.
 CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightingStrategy& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
-                                const Progress& progress, const std::atomic<bool>& stop);
+                                const Progress& progress, const std::atomic<bool>& stop,
+                                RenderControl* control = nullptr);
 
 // Memory of a composite in addition to that of a plain render.
 inline size_t compositeBytesPerPixel(bool denoises) {

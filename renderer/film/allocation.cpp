@@ -90,4 +90,10 @@ uint32_t SampleAllocation::count(int x, int y, uint32_t mean) const {
   return uint32_t(std::min(pilotSamples_ + std::floor(more), kMaxCount));
 }
 
+void SampleAllocation::archive(Archive& a) {
+  a(pilotSamples_);
+  a.fixed(rates_);
+  for (const float rate : rates_) a.check(rate >= 0 && rate <= kMaxRate);
+}
+
 }  // namespace chromeball

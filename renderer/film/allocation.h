@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/archive.h"
 #include "film/noise.h"
 
 namespace chromeball {
@@ -17,6 +18,9 @@ namespace chromeball {
 // samples: its weight, the normalization of the weights and the exposure all exclude it.
 class SampleAllocation {
  public:
+  // As many samples everywhere; to be read from an archive.
+  SampleAllocation(int width, int height)
+      : width_(width), rates_(size_t(width) * size_t(height), 1.0f) {}
   // `pilotSamples`: per pixel.
   SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples);
 
@@ -24,11 +28,13 @@ class SampleAllocation {
   // not decrease with `mean`; equals it up to the pilot's number.
   uint32_t count(int x, int y, uint32_t mean) const;
 
+  void archive(Archive& a);
+
  private:
   size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
 
   int width_;
-  uint32_t pilotSamples_;
+  uint32_t pilotSamples_ = 0;
   std::vector<float> rates_;  // samples of the pixel per mean sample, after the pilot
 };
 

@@ -88,6 +88,28 @@ void AovFilm::add(int x, int y, Defect defect) {
     if (sum.aov == Aov::Invalid) sum.sums[pixel(x, y) * sum.channels + size_t(defect)] += 1;
 }
 
+void AovFilm::add(const AovFilm& part, int left, int top) {
+  for (int y = 0; y < part.height_ && !empty(); ++y)
+    for (int x = 0; x < part.width_; ++x) {
+      const size_t from = part.pixel(x, y), to = pixel(left + x, top + y);
+      for (size_t i = 0; i < sums_.size(); ++i) {
+        Sum& sum = sums_[i];
+        const bool isIndex = sum.aov == Aov::Material || sum.aov == Aov::Node;
+        if (isIndex && hits_[to] > 0) continue;
+        for (int c = 0; c < sum.channels; ++c)
+          sum.sums[to * sum.channels + c] += part.sums_[i].sums[from * sum.channels + c];
+      }
+      samples_[to] += part.samples_[from];
+      hits_[to] += part.hits_[from];
+    }
+}
+
+void AovFilm::archive(Archive& a) {
+  for (Sum& sum : sums_) a.fixed(sum.sums);
+  a.fixed(samples_);
+  a.fixed(hits_);
+}
+
 Image AovFilm::finished(Aov aov) const {
   for (const Sum& sum : sums_) {
     if (sum.aov != aov) continue;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "film/invalid.h"
 #include "image/image.h"
 
@@ -66,6 +67,10 @@ class AovFilm {
   // Adds a sample, or the defect of one. Thread-safe for different pixels.
   void add(int x, int y, const FirstHit& first);
   void add(int x, int y, Defect defect);
+
+  // As Film::add() and archive(). Of indices, this film's stay.
+  void add(const AovFilm& part, int x, int y);
+  void archive(Archive& a);
 
   Image finished(Aov aov) const;
 

@@ -25,6 +25,18 @@ void FeatureFilm::weigh(double weight) {
     }
 }
 
+void FeatureFilm::add(const FeatureFilm& part, int left, int top) {
+  for (int y = 0; y < part.height_ && !part.empty(); ++y)
+    for (int x = 0; x < part.width_; ++x) {
+      const Pixel& from = part.pixels_[size_t(y) * size_t(part.width_) + size_t(x)];
+      Pixel& to = pixels_[size_t(top + y) * size_t(width_) + size_t(left + x)];
+      for (size_t half = 0; half < to.size(); ++half) {
+        to[half].weight += from[half].weight;
+        for (size_t c = 0; c < kChannels; ++c) to[half].sums[c] += from[half].sums[c];
+      }
+    }
+}
+
 HalvedImage FeatureFilm::channels(size_t first, int count) const {
   HalvedImage result{Image(width_, height_, count), Image(width_, height_, count)};
   for (size_t i = 0; i < pixels_.size(); ++i) {

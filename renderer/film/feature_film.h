@@ -23,6 +23,9 @@ class FeatureFilm {
   void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
   // As Film::weigh().
   void weigh(double weight);
+  // As Film::add() and archive().
+  void add(const FeatureFilm& part, int x, int y);
+  void archive(Archive& a) { a.fixed(pixels_); }
 
   HalvedImage direct() const { return channels(0, 3); }
   HalvedImage albedo() const { return channels(3, 3); }

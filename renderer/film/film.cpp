@@ -32,6 +32,36 @@ void Film::add(int x, int y, int half, const SampleSums& samples) {
   p.sumOfSquares += samples.sumOfSquares;
 }
 
+void Film::Pixel::add(const Pixel& other) {
+  for (size_t half = 0; half < kHalves; ++half) {
+    counts[half] += other.counts[half];
+    weights[half] += other.weights[half];
+    sums[half] += other.sums[half];
+  }
+  sumOfSquares += other.sumOfSquares;
+}
+
+void Film::add(const Film& part, int x, int y) {
+  assert(x >= 0 && y >= 0 && x + part.width_ <= width_ && y + part.height_ <= height_);
+  if (!part.early_.empty()) early_.resize(pixels_.size());
+  for (int row = 0; row < part.height_; ++row)
+    for (int column = 0; column < part.width_; ++column) {
+      const size_t from = size_t(row) * size_t(part.width_) + size_t(column);
+      const size_t to = size_t(y + row) * size_t(width_) + size_t(x + column);
+      pixels_[to].add(part.pixels_[from]);
+      if (part.early_.empty()) continue;
+      early_[to].count += part.early_[from].count;
+      early_[to].sum += part.early_[from].sum;
+      early_[to].squaredDeviations += part.early_[from].squaredDeviations;
+    }
+}
+
+void Film::archive(Archive& a) {
+  a.fixed(pixels_);
+  a(early_);
+  a.check(early_.empty() || early_.size() == pixels_.size());
+}
+
 void Film::weigh(double weight) {
   assert(early_.empty());
   early_.reserve(pixels_.size());
@@ -42,7 +72,7 @@ void Film::weigh(double weight) {
       p.weights[half] *= weight;
       p.sums[half] *= weight;
     }
-    early_.push_back({p.count(), p.sums[0] + p.sums[1], weight * weight * deviations});
+    early_.push_back({uint64_t(p.count()), p.sums[0] + p.sums[1], weight * weight * deviations});
     p.sumOfSquares = glm::dvec4(0);
   }
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/archive.h"
 #include "film/noise.h"
 #include "image/image.h"
 #include "math/vec.h"
@@ -47,6 +48,10 @@ class Film {
   void add(int x, int y, int half, const SampleSums& samples);
   // Sets the weight of all samples so far, which is 1 at first; at most once.
   void weigh(double weight);
+  // Adds the samples of another film, whose first pixel is this one's pixel (x, y), and which must
+  // lie within this one.
+  void add(const Film& part, int x, int y);
+  void archive(Archive& a);
 
   Image mean() const;            // RGB radiance
   Image halfDifference() const;  // half the difference of the means of the halves
@@ -63,6 +68,7 @@ class Film {
     std::array<glm::dvec3, kHalves> sums{};
     glm::dvec4 sumOfSquares{0};  // since weigh()
 
+    void add(const Pixel& other);
     uint32_t count() const { return counts[0] + counts[1]; }
     double weight() const { return weights[0] + weights[1]; }
     glm::dvec3 mean() const;
@@ -70,9 +76,9 @@ class Film {
 
   // The samples of a pixel before weigh().
   struct Early {
-    uint32_t count;
-    glm::dvec3 sum;                // weighted
-    glm::dvec4 squaredDeviations;  // sum over the samples of (weight (x - mean))^2
+    uint64_t count = 0;
+    glm::dvec3 sum{0};                // weighted
+    glm::dvec4 squaredDeviations{0};  // sum over the samples of (weight (x - mean))^2
   };
   glm::dvec4 scatter(size_t pixel) const;
 

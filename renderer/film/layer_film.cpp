@@ -32,6 +32,25 @@ void LayerFilm::addValues(const LayerFilm& other) {
   for (size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
 }
 
+void LayerFilm::add(const LayerFilm& part, int left, int top) {
+  for (int y = 0; y < part.height_ && !empty(); ++y)
+    for (int x = 0; x < part.width_; ++x)
+      for (int half = 0; half < halves_; ++half) {
+        const size_t from = part.at(x, y, half), to = at(left + x, top + y, half);
+        counts_[to] += part.counts_[from];
+        for (size_t i = 0; i < layers_.size(); ++i) {
+          glm::dvec3& value = values_[to * layers_.size() + i];
+          const glm::dvec3& other = part.values_[from * layers_.size() + i];
+          value = layers_[i] == Accumulation::Sum ? value + other : glm::max(value, other);
+        }
+      }
+}
+
+void LayerFilm::archive(Archive& a) {
+  a.fixed(counts_);
+  a.fixed(values_);
+}
+
 uint32_t LayerFilm::count(int x, int y) const {
   return counts_[at(x, y, 0)] + (halves_ > 1 ? counts_[at(x, y, 1)] : 0);
 }

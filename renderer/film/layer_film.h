@@ -31,6 +31,10 @@ class LayerFilm {
   // counts unchanged.
   void addValues(const LayerFilm& other);
 
+  // As Film::add() and archive(). Both films have the same layers.
+  void add(const LayerFilm& part, int x, int y);
+  void archive(Archive& a);
+
   uint32_t count(int x, int y) const;  // samples
   glm::dvec3 value(int x, int y, int layer) const;
   HalvedImage mean(int layer) const;  // of a layer of sums; the film must be in halves

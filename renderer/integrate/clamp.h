@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "math/vec.h"
 
@@ -40,6 +41,7 @@ class Clamp {
   }
 
   const ClampedSamples& clamped() const { return clamped_; }
+  ClampedSamples takeClamped() { return std::exchange(clamped_, {}); }
 
  private:
   std::optional<float> limit_;

@@ -34,10 +34,10 @@ GuideTraining::GuideTraining(const World& world, const LightingStrategy& lightin
                                                                             : settings.guiding),
       lightGuiding_(guides == Guides::Both ? guiding_ : Guiding::Off),
       lastSample_(std::clamp(settings.samples / 4, kMinTraining, kTraining)),
-      tiles_{settings.width, settings.height},
+      tiles_{settings.window().width, settings.window().height},
       maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles_.count(), 8)),
       pixelFraction_(double(kMaxRecords) /
-                     (kRecordsPerSample * settings.width * settings.height * lastSample_)),
+                     (kRecordsPerSample * tiles_.width * tiles_.height * lastSample_)),
       records_(guiding_ == Guiding::Off ? 0 : tiles_.count()) {}
 
 PathSettings GuideTraining::guided(PathSettings path) const {
@@ -52,7 +52,7 @@ void GuideTraining::tracePhotons(double raysPerSample) {
   if (guiding_ == Guiding::Off || settings_.maxDepth < minDepth) return;
   double samples = settings_.samples;
   if (settings_.noiseLimit) samples = std::min(samples, kSamplesUnderNoiseLimit);
-  double rays = raysPerSample * samples * settings_.width * settings_.height;
+  double rays = raysPerSample * samples * tiles_.width * tiles_.height;
   if (settings_.timeLimit) rays = std::min(rays, kRaysPerSecond * *settings_.timeLimit);
   caustics_ = CausticGuide(chromeball::tracePhotons(
       world_, lighting_, {kMaxPhotons, kPhotonRays * rays}, settings_.seed));
@@ -103,6 +103,14 @@ void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
       caustics_ = CausticGuide();
   }
   records_ = {};
+}
+
+void GuideTraining::archive(Archive& a) {
+  records_ = {};
+  a.enumerator(lightGuiding_, Guiding::Auto);
+  a(hasBegun_);
+  lights_.archive(a);
+  caustics_.archive(a);
 }
 
 }  // namespace chromeball

@@ -50,6 +50,8 @@ class GuideTraining {
   // Bounces: decides with which fraction they are guided, if at all. Frees the records. `errors`:
   // of the image so far, with `samples` per pixel. Does nothing if the training has ended before.
   void end(const PixelErrors& errors, uint32_t samples);
+  bool hasEnded() const { return records_.empty(); }
+  void archive(Archive& a);  // after the end
 
  private:
   const World& world_;

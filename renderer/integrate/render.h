@@ -16,7 +16,15 @@
 
 namespace chromeball {
 
+class RenderControl;
+
 struct RenderResult {
+  // Empty films. `layers`: those of the integrator.
+  RenderResult(const RenderSettings& settings, std::vector<Accumulation> layers);
+  // Adds the samples of a part of the image, whose first pixel is this one's pixel (x, y).
+  void add(const RenderResult& part, int x, int y);
+  void archive(Archive& a);
+
   Film film;
   AovFilm aovs;
   LayerFilm layers;      // of the integrator
@@ -34,14 +42,16 @@ struct RenderResult {
 
 // Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers
 // the whole image; the first takes a few samples per pixel, each later one doubles them. The result
-// does not depend on the number of threads (except under a time limit).
+// does not depend on the number of threads (except under a time limit). `control`
+// (render_state.h) may be null.
 RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
                     const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop);
+                    const std::atomic<bool>& stop, RenderControl* control = nullptr);
 
 // The same for any integrator. `training`: of the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
                     const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop, GuideTraining* training = nullptr);
+                    const std::atomic<bool>& stop, GuideTraining* training = nullptr,
+                    RenderControl* control = nullptr);
 
 }  // namespace chromeball

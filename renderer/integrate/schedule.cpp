@@ -18,9 +18,7 @@ constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples 
 }  // namespace
 
 Schedule::Schedule(const RenderSettings& settings)
-    : settings_(settings),
-
-      pilot_(settings.adaptive && settings.samples >= kMinToAdapt) {}
+    : settings_(settings), pilot_(settings.adaptive && settings.samples >= kMinToAdapt) {}
 
 uint32_t Schedule::next(uint32_t done, const Film& film) {
   if (done == 0) return std::min(kFirstPass, settings_.samples);
@@ -42,13 +40,13 @@ double Schedule::goalAfter(uint32_t done, const Film& film) {
 }
 
 double Schedule::progress(double samples) const {
-  if (settings_.timeLimit) return std::min(1.0, elapsed_.seconds() / *settings_.timeLimit);
+  if (settings_.timeLimit) return std::min(1.0, seconds() / *settings_.timeLimit);
   if (settings_.noiseLimit) return std::nan("");
   return samples / settings_.samples;
 }
 
 double Schedule::untilTime(uint32_t done) const {
-  const double affordable = done * *settings_.timeLimit / elapsed_.seconds();
+  const double affordable = done * *settings_.timeLimit / seconds();
   return affordable < done * (1 + kMinGrowth) ? 0 : affordable;
 }
 
@@ -61,9 +59,17 @@ double Schedule::untilNoise(uint32_t done, const Film& film) {
   if (excess <= 1) return 0;
   double rate = 0.5;
   if (last_.samples > 0 && noise.noise < last_.noise)
-    rate = std::log(last_.noise / noise.noise) / std::log(double(done) / last_.samples);
+    rate = std::log(last_.noise / noise.noise) / std::log(double(done) / double(last_.samples));
   last_ = {done, noise.noise};
   return done * std::max(std::pow(excess, 1 / std::clamp(rate, 0.5, 1.0)), 1 + kMinGrowth);
+}
+
+void Schedule::archive(Archive& a) {
+  double elapsed = seconds();
+  a(elapsed);
+  a(pilot_);
+  a(last_);
+  if (a.reads()) before_ = elapsed;
 }
 
 }  // namespace chromeball

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/archive.h"
 #include "base/stopwatch.h"
 #include "film/film.h"
 #include "integrate/render_settings.h"
@@ -29,16 +30,21 @@ class Schedule {
   // limit.
   double progress(double samples) const;
 
+  void archive(Archive& a);  // with the time so far
+
  private:
   double goalAfter(uint32_t done, const Film& film);
   double untilTime(uint32_t done) const;
   double untilNoise(uint32_t done, const Film& film);
 
+  double seconds() const { return before_ + elapsed_.seconds(); }
+
   const RenderSettings& settings_;
   Stopwatch elapsed_;
+  double before_ = 0;  // seconds of rendering before it was resumed
   bool pilot_, endsPilot_ = false;
   struct {
-    uint32_t samples = 0;
+    uint64_t samples = 0;
     double noise = 0;
   } last_;  // the previous estimate of noise
 };

@@ -12,6 +12,7 @@
 namespace chromeball {
 
 double imageBytes(const RenderSettings& settings) {
+  const Crop window = settings.window();
   double sums = settings.aovs.empty() ? 0 : 2 * sizeof(uint32_t), texels = 4 * sizeof(float);
   if (settings.wantsFeatures()) sums += double(FeatureFilm::bytesPerPixel());
   for (Aov aov : settings.aovs) {
@@ -27,9 +28,8 @@ double imageBytes(const RenderSettings& settings) {
   const double maximum = std::max(kNoise, 2 * texels);
   constexpr int kMaxParts = 3;  // of denoise(): of composites
   const double denoising =
-      settings.denoise ? denoiseBytes(settings.width, settings.height, kMaxParts) : 0;
-  return double(settings.width) * settings.height *
-             (double(Film::bytesPerPixel()) + sums + maximum) +
+      settings.denoise ? denoiseBytes(window.width, window.height, kMaxParts) : 0;
+  return double(window.width) * window.height * (double(Film::bytesPerPixel()) + sums + maximum) +
          denoising;
 }
 

@@ -16,10 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Rows that are excluded: paths (contents are compared instead), and settings that a comparison
-// varies.
-constexpr std::array kNotOfTheIdentity = {"scene",       "probe",      "files",    "strategy",
-                                          "noise-limit", "time-limit", "adaptive", "guide"};
+// Contents of files are compared instead.
+constexpr std::array kPaths = {"scene", "probe", "files"};
+constexpr std::array kLimits = {"noise-limit", "time-limit"};
+constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
 Json toJson(const SettingValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
@@ -85,6 +85,19 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
 
+// The description, with contents of files instead of their names, and without limits.
+Json describeContents(const RenderJob& job, const LoadedScene& loaded) {
+  Json identity = describeJob(job, loaded);
+  for (const char* name : kPaths) identity.erase(name);
+  for (const char* name : kLimits) identity.erase(name);
+  identity["contents of scene"] = fingerprint(job.file.path);
+  for (const std::string& file : loaded.files) {
+    const std::string row = "contents of " + std::filesystem::path(file).filename().string();
+    identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
+  }
+  return identity;
+}
+
 }  // namespace
 
 Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
@@ -123,16 +136,24 @@ Metadata toMetadata(const Json& description) {
 }
 
 std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
-  Json identity = describeJob(job, loaded);
-  for (const char* name : kNotOfTheIdentity) identity.erase(name);
+  Json identity = describeContents(job, loaded);
+  for (const char* name : kVariedByComparisons) identity.erase(name);
   identity["threads"] =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  identity["contents of scene"] = fingerprint(job.file.path);
-  for (const std::string& file : loaded.files) {
-    const std::string row = "contents of " + std::filesystem::path(file).filename().string();
-    identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
-  }
   return identity.dump();
+}
+
+std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
+  Json identity = describeContents(job, loaded);
+  identity["layers"] = job.file.settings.get<std::vector<std::string>>("output.aovs");
+  return identity.dump();
+}
+
+std::string withoutParts(const std::string& identity) {
+  Json whole = Json::parse(identity, nullptr, false);
+  if (!whole.is_object()) return identity;
+  for (const char* name : {"shard", "crop"}) whole.erase(name);
+  return whole.dump();
 }
 
 std::string differenceOf(const std::string& stored, const std::string& own) {

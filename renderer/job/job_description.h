@@ -33,6 +33,11 @@ Metadata toMetadata(const nlohmann::ordered_json& description);
 // threads, on which times depend.
 std::string identityOf(const RenderJob& job, const LoadedScene& loaded);
 
+// The same for parts of one render (render_part.h): also with the settings that a comparison
+// varies, and without threads.
+std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded);
+std::string withoutParts(const std::string& identity);  // without `shard` and `crop`
+
 // The first difference between two identities: "`mis` was off and is power".
 std::string differenceOf(const std::string& stored, const std::string& own);
 

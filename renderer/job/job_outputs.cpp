@@ -18,11 +18,16 @@ Messages checkOutputs(const RenderJob& job) {
     job.makesOutputFolders ? checkSceneOutput(output) : checkWritable(output);
   if (const auto stats = settings.getIfGiven<std::string>("stats"))
     checkOutputFile(*stats, {".json"});
+  if (const auto checkpoint = settings.getIfGiven<std::string>("checkpoint"))
+    checkOutputFile(*checkpoint, {".exr"});
 
   const auto has = [&](std::string_view extension) {
     return std::any_of(job.outputs.begin(), job.outputs.end(),
                        [&](const auto& output) { return lowerExtension(output) == extension; });
   };
+  if (settings.has("shard") && !has(".exr"))
+    throwInput("{}: needs an .exr as output, which `chromeball merge` reads",
+               settings.location("shard"));
   Messages messages;
   const auto warn = [&](std::string_view setting, const std::string& why) {
     if (settings.has(setting))
@@ -39,8 +44,8 @@ Messages checkOutputs(const RenderJob& job) {
 void prepareOutputs(const RenderJob& job, std::vector<std::string> inputs) {
   inputs.push_back(job.file.path);
   std::vector<std::string> outputs = job.outputs;
-  if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))
-    outputs.push_back(*stats);
+  for (const char* name : {"stats", "checkpoint"})
+    if (const auto file = job.file.settings.getIfGiven<std::string>(name)) outputs.push_back(*file);
   checkDistinct(outputs, inputs);
   if (job.makesOutputFolders)
     for (const std::string& output : job.outputs) makeFolder(output);

@@ -94,22 +94,28 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
   return j;
 }
 
-Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const JobResult& result) {
-  const RayCounts& rays = result.render.rays;
+Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render) {
+  const RayCounts& rays = render.rays;
+  Metadata metadata;
+  metadata["samples"] = int(render.samples);
+  metadata["rays"] = std::to_string(rays.camera + rays.shadow + rays.bounce);
+  metadata["noise"] = float(finished.noise.noise);
+  metadata["noise_median"] = float(finished.noise.median);
+  metadata["noise_p95"] = float(finished.noise.p95);
+  if (finished.denoised && std::isfinite(finished.denoised->noise))
+    metadata["denoised_noise"] = float(finished.denoised->noise);
+  return metadata;
+}
+
+Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded,
+                       const FinishedImage& finished, const RenderResult& render, double seconds) {
   Metadata metadata = toMetadata(describeJob(job, loaded));
   metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
   metadata["command"] = commandLine();
-  metadata["samples"] = int(result.render.samples);
-  metadata["seconds"] = float(result.seconds);
-  metadata["rays"] = std::to_string(rays.camera + rays.shadow + rays.bounce);
-  metadata["noise"] = float(result.noise.noise);
-  metadata["noise_median"] = float(result.noise.median);
-  metadata["noise_p95"] = float(result.noise.p95);
-  if (result.denoised && std::isfinite(result.denoised->noise))
-    metadata["denoised_noise"] = float(result.denoised->noise);
-  if (job.settings.clamp)
-    metadata["clamp_light_removed"] = float(result.render.clamped.fractionRemoved());
-  metadata.merge(idManifests(result.image, loaded.scene));
+  metadata["seconds"] = float(seconds);
+  metadata.merge(sampleMetadata(finished, render));
+  if (job.settings.clamp) metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
+  metadata.merge(idManifests(finished.image, loaded.scene));
   return metadata;
 }
 

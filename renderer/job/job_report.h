@@ -19,6 +19,10 @@ nlohmann::json statistics(const RenderJob& job, const LoadedScene& loaded, const
                           const PhaseSeconds& seconds);
 
 // The attributes of the EXR file: the job, and the noise, samples, rays and seconds of the render.
-Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded, const JobResult& result);
+Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded,
+                       const FinishedImage& finished, const RenderResult& render, double seconds);
+
+// Those that depend on the samples.
+Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
 
 }  // namespace chromeball

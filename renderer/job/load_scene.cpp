@@ -117,6 +117,10 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
+  if (const auto& crop = settings.crop)
+    if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
+      throwInput("{}: is not within the image of {}x{} pixels", job.file.settings.location("crop"),
+                 settings.width, settings.height);
   const double composite = job.composite ? double(compositeBytesPerPixel(settings.denoise)) : 0;
   const double needed = imageBytes(settings) + composite * settings.width * settings.height;
   const Settings& given = job.file.settings;

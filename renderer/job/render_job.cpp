@@ -2,6 +2,7 @@
 #include "job/render_job.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "base/error.h"
 #include "composite/layers.h"
@@ -16,6 +17,21 @@ Mis misNamed(const std::string& name) {
 
 Guiding guidingNamed(const std::string& name) {
   return name == "off" ? Guiding::Off : name == "on" ? Guiding::On : Guiding::Auto;
+}
+
+// Whole numbers up to a million, with this character between; nullopt for any other text.
+std::optional<std::vector<uint32_t>> splitNumbers(const std::string& text, char between) {
+  std::vector<uint32_t> numbers;
+  const char *at = text.data(), *end = at + text.size();
+  for (;; ++at) {
+    uint32_t number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || number > 1'000'000) return {};
+    numbers.push_back(number);
+    at = next;
+    if (at == end) return numbers;
+    if (*at != between) return {};
+  }
 }
 
 SingleSided singleSidedNamed(const std::string& name) {
@@ -74,6 +90,32 @@ std::vector<Aov> layersOf(const SceneFile& file) {
   return layers;
 }
 
+// "K/N": the K-th of N shards of all samples.
+Shard shardOf(const Settings& s, uint32_t samples) {
+  const auto text = s.getIfGiven<std::string>("shard");
+  if (!text) return {};
+  const auto numbers = splitNumbers(*text, '/');
+  if (!numbers || numbers->size() != 2 || (*numbers)[0] < 1 || (*numbers)[0] > (*numbers)[1])
+    throwInput("{}: `{}` is not a shard; give K/N with K from 1 to N, such as 2/8",
+               s.location("shard"), *text);
+  const Shard shard{(*numbers)[0] - 1, (*numbers)[1], samples};
+  if (samples / 2 < shard.count)
+    throwInput("{}: {} samples per pixel are less than two for each of {} shards",
+               s.location("shard"), samples, shard.count);
+  return shard;
+}
+
+std::optional<Crop> cropOf(const Settings& s) {
+  const auto text = s.getIfGiven<std::string>("crop");
+  if (!text) return {};
+  const auto numbers = splitNumbers(*text, ',');
+  if (!numbers || numbers->size() != 4 || (*numbers)[2] < 1 || (*numbers)[3] < 1)
+    throwInput("{}: `{}` is not a part of an image; give X,Y,WIDTH,HEIGHT in pixels",
+               s.location("crop"), *text);
+  const auto& n = *numbers;
+  return Crop{int(n[0]), int(n[1]), int(n[2]), int(n[3])};
+}
+
 RenderSettings integratorSettings(const SceneFile& file) {
   const Settings& s = file.settings;
   RenderSettings r;
@@ -82,6 +124,9 @@ RenderSettings integratorSettings(const SceneFile& file) {
   if (r.noiseLimit) *r.noiseLimit /= 100;
   r.samples = uint32_t(s.get<uint64_t>("render.samples"));
   if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
+  r.crop = cropOf(s);
+  r.shard = shardOf(s, r.samples);
+  if (r.shard.count > 1) r.samples = r.shard.samples();
   r.adaptive = s.get<std::string>("render.adaptive") == "on";
   r.guiding = guidingNamed(s.get<std::string>("render.guide"));
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
@@ -138,6 +183,19 @@ void checkDenoise(const SceneFile& file) {
     throwInput("{}: needs at least 2 samples per pixel", location);
 }
 
+void checkParts(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (s.get<bool>("resume") && !s.has("checkpoint"))
+    throwInput("{}: needs --checkpoint FILE.exr", s.location("resume"));
+  if (s.has("checkpoint-every") && !s.has("checkpoint"))
+    throwInput("{}: needs --checkpoint FILE.exr", s.location("checkpoint-every"));
+  if (!s.get<bool>("two-pass")) return;
+  for (const char* name : {"shard", "crop", "checkpoint", "write-every"})
+    if (s.has(name))
+      throwInput("{}: not for a reference of two passes; leave one of the two out",
+                 s.location(name));
+}
+
 void checkTransparent(const SceneFile& file) {
   const Settings& s = file.settings;
   if (file.composite && s.get<bool>("transparent"))
@@ -156,6 +214,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   checkTransparent(job.file);
   checkGuide(job.file);
   checkDenoise(job.file);
+  checkParts(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));

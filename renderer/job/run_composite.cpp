@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "composite/denoise_composite.h"
-#include "composite/layers.h"
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
 #include "probe/irradiance.h"
@@ -29,6 +27,9 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
                                    job.composite->plate};
   RenderSettings settings = job.settings;
   settings.denoise = false;  // only the composite is denoised
+  settings.crop.reset();     // all parts of a render need the same reflectance
+  if (settings.shard.count > 1) settings.samples = settings.shard.samplesOfAll;
+  settings.shard = {};
   const ReflectanceSolution solution =
       job.composite->reflectance == CompositePlan::Reflectance::Flat
           ? solveFlatReflectance(problem, settings, flatIrradiance(loaded), *loaded.projection,
@@ -37,34 +38,6 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
                              progress, stop);
   const double clamped = double(solution.clamped) / double(std::max<size_t>(solution.pixels, 1));
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
-}
-
-Layer layerOf(const std::string& name, const LoadedScene& loaded, const CompositeRender& render,
-              const Image& variance) {
-  if (const CompositeLayerInfo* own = findCompositeLayer(name))
-    return {own->name, own->channels,
-            own->layer == CompositeLayer::Reflectance ? loaded.projection->colors()
-                                                      : compositeLayer(render.film, own->layer)};
-  const Aov aov = aovFromName(name, "output.aovs");
-  const AovInfo& info = aovInfo(aov);
-  switch (aov) {
-    case Aov::Variance:
-      return {info.name, info.channels, variance};
-    case Aov::Samples:
-      return {info.name, info.channels, render.result.film.sampleCounts()};
-    default:
-      return {info.name, info.channels, render.result.aovs.finished(aov)};
-  }
-}
-
-double meanAlpha(const DifferentialFilm& film) {
-  double covered = 0, count = 0;
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) {
-      const DifferentialPixel pixel = film.at(x, y);
-      covered += pixel.covered, count += pixel.count;
-    }
-  return covered / std::max(count, 1.0);
 }
 
 Messages warningsOf(const CompositeReport& report, double probeScale) {
@@ -92,39 +65,24 @@ Messages warningsOf(const CompositeReport& report, double probeScale) {
 
 JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
                           const PreparedScene& prepared, const Progress& progress,
-                          const std::atomic<bool>& stop) {
+                          const std::atomic<bool>& stop, RenderControl* control) {
   const CompositePlan& plan = *job.composite;
-  const bool solves = loaded.projection != nullptr, denoises = job.settings.denoise;
-  const double share = denoises ? kRenderShare : 1;
-  CompositeReport report;
+  const bool solves = loaded.projection != nullptr;
+  const double share = job.settings.denoise && !job.settings.isPart() ? kRenderShare : 1;
+  std::optional<CompositeReport::Reflectance> reflectance;
   if (solves)
-    report.reflectance = solveReflectance(
+    reflectance = solveReflectance(
         job, loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
       *prepared.world, loaded.camera, *prepared.lighting, plan.plate, job.settings, plan.passes,
       needsBehind,
-      [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop);
-  const Composite composite = compose(rendered.film, rendered.mean, plan.plate, plan.mode);
-  report.coverage = meanAlpha(rendered.film);
-  report.darkerThanBlack = composite.darkerThanBlack;
-
-  ImageNoise noise(compositeErrors(rendered.film, composite, std::move(rendered.errors)));
-  OutputImage image;
-  image.layers.push_back({"", "RGB", composite.color});
-  for (const std::string& name : plan.layers)
-    image.layers.push_back(layerOf(name, loaded, rendered, noise.variance));
-  std::optional<DenoiseReport> denoised;
-  if (denoises && !rendered.result.interrupted)
-    denoised = addDenoised(
-        [&](const Progress& part) {
-          return denoiseComposite(rendered, plan.plate, plan.mode, part, stop);
-        },
-        progress, image);
-  rendered.result.interrupted |= denoises && !denoised;
-  Messages messages = warningsOf(report, job.file.settings.get<double>("probe.scale"));
-  return {std::move(image), std::move(rendered.result), std::move(noise), report,
-          denoised,         std::move(messages)};
+      [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
+      control);
+  FinishedImage finished = finishComposite(ownFinishPlan(job, loaded), rendered, progress, stop);
+  finished.composite->reflectance = reflectance;
+  Messages messages = warningsOf(*finished.composite, job.file.settings.get<double>("probe.scale"));
+  return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 
 }  // namespace chromeball

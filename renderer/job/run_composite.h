@@ -9,6 +9,6 @@ namespace chromeball {
 // Estimates the local scene's reflectance if the job requests it, then renders the composite.
 JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
                           const PreparedScene& prepared, const Progress& progress,
-                          const std::atomic<bool>& stop);
+                          const std::atomic<bool>& stop, RenderControl* control);
 
 }  // namespace chromeball

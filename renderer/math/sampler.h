@@ -37,7 +37,9 @@ class PixelSampler {
   PixelSampler(const SobolTable& table, uint64_t seed)
       : table_(&table), dimensions_(table.dimensions()), seed_(seed), shifts_(dimensions_) {}
 
-  void startPixel(uint32_t x, uint32_t y, uint64_t block) {
+  // Sample i of the pixel is point first + i stride of the block.
+  void startPixel(uint32_t x, uint32_t y, uint64_t block, uint32_t first = 0, uint32_t stride = 1) {
+    first_ = first, stride_ = stride;
     key_ = hash(seed_, uint64_t(y) << 32 | x, block);
     for (size_t d = 0; d < shifts_.size(); d += 2) {
       const uint64_t bits = hash(key_ + d);
@@ -45,9 +47,9 @@ class PixelSampler {
       shifts_[d + 1] = uint32_t(bits >> 32);
     }
   }
-  void startSample(uint32_t indexInBlock) {
-    point_ = table_->point(indexInBlock);
-    index_ = indexInBlock;
+  void startSample(uint32_t i) {
+    index_ = first_ + i * stride_;
+    point_ = table_->point(index_);
     base_ = 0;
   }
   // Later dimensions are relative to the vertex's block.
@@ -78,7 +80,8 @@ class PixelSampler {
   uint64_t seed_, key_ = 0;
   std::vector<uint32_t> shifts_;
   const uint32_t* point_ = nullptr;
-  uint32_t index_ = 0;
+  uint32_t first_ = 0, stride_ = 1;
+  uint32_t index_ = 0;  // in the block
   int base_ = 0;
 };
 

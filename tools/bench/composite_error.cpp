@@ -119,7 +119,7 @@ void compositeError(benchmark::State& state, const Mistake& mistake) {
     const CompositeRender r = renderComposite(world, camera, *lighting, reference.plate, settings,
                                               Passes::One, false, kQuiet, kGoOn);
     for (CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio})
-      errorOf(compose(r.film, r.mean, reference.plate, mode).color, r.film,
+      errorOf(compose(r.film(), r.mean, reference.plate, mode).color, r.film(),
               mode == CompositeMode::Difference ? "difference" : "ratio", state);
   }
 }
@@ -163,7 +163,7 @@ void compositeNoise(benchmark::State& state, float minRoughness) {
     glm::dvec2 all(0), changed(0);  // sums of squared standard errors
     for (int y = 0; y < kRows; ++y)
       for (int x = 0; x < kColumns; ++x) {
-        if (one.film.at(x, y).covered > 0) continue;
+        if (one.film().at(x, y).covered > 0) continue;
         const size_t i = size_t(y) * kColumns + size_t(x);
         const glm::dvec2 errors(oneErrors[i].w, twoErrors[i].w);
         all += errors;

@@ -102,6 +102,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
   app.require_subcommand(1);
   addRenderCommand(app);
+  addMergeCommand(app);
   addCompareCommand(app);
   addProbeCommand(app);
   addImageCommand(app);

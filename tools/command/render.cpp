@@ -7,7 +7,10 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
+#include "image_noise_text.h"
+#include "job/checkpoint.h"
 #include "job/job.h"
+#include "job/job_description.h"
 #include "job/job_outputs.h"
 #include "job/job_report.h"
 #include "job/output_file.h"
@@ -32,18 +35,6 @@ void nameAsPartial(std::vector<std::string>& outputs) {
   }
 }
 
-std::string inWords(const ImageNoise& n) {
-  if (!std::isfinite(n.noise)) return "unknown";
-  return fmt::format("{:.2f}% (median of the pixels {:.2f}%, 95% of them below {:.2f}%)",
-                     100 * n.noise, 100 * n.median, 100 * n.p95);
-}
-
-std::string denoisedInWords(const JobResult& result) {
-  if (!result.denoised) return "";
-  if (!std::isfinite(result.denoised->noise)) return "; denoised";
-  return fmt::format("; denoised to about {:.2f}%", 100 * result.denoised->noise);
-}
-
 std::string guidedInWords(const RenderResult& render) {
   const bool lights = render.guidedRegions > 0, bounces = render.causticFraction > 0;
   if (!lights && !bounces) return "";
@@ -57,13 +48,17 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
                                   fmt::join(job.outputs, ", ")));
+  const auto checkpoint = job.file.settings.getIfGiven<std::string>("checkpoint");
   if (render.interrupted)
-    throw Interrupted(fmt::format("interrupted; the image so far is saved{}",
-                                  job.settings.denoise ? ", not denoised" : ""));
+    throw Interrupted(fmt::format("interrupted; the image so far is saved{}{}",
+                                  job.settings.denoise ? ", not denoised" : "",
+                                  checkpoint && std::filesystem::exists(*checkpoint)
+                                      ? fmt::format("; --resume goes on from {}", *checkpoint)
+                                      : ""));
   if (!quiet)
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
-               denoisedInWords(result), fmt::join(job.outputs, ", "));
+               inWords(result.denoised), fmt::join(job.outputs, ", "));
 }
 
 void render(const SceneOptions& options) {
@@ -79,6 +74,7 @@ void render(const SceneOptions& options) {
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
+  JobControl control(job, loaded);
   print(outputMessages, options.quiet());  // after the last error that input can cause
   print(loaded.messages, options.quiet());
 
@@ -87,12 +83,18 @@ void render(const SceneOptions& options) {
   JobResult result = [&] {
     ProgressBar bar(options.showsProgress());
     return renderJob(
-        job, loaded, prepared, [&](double fraction) { bar.update(fraction); }, interrupted);
+        job, loaded, prepared, [&](double fraction) { bar.update(fraction); }, interrupted,
+        job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
   }();
   seconds.render = result.seconds;
 
   watch.lap();
-  result.image.metadata = imageMetadata(job, loaded, result);
+  result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
+  RenderPart part;
+  if (job.settings.isPart()) {
+    part = {renderIdentity(job, loaded), finishPlan(job, loaded)};
+    result.image.state = partState(part, result.render);
+  }
   if (result.render.samples == 0) nameAsPartial(job.outputs);
   for (const std::string& path : job.outputs) writeImage(path, result.image, job.display);
   seconds.write = watch.lap();

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/write_image.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "image/io/encode_png.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
+#include "image/io/write_exr.h"
 
 namespace chromeball {
 namespace {
@@ -25,60 +22,6 @@ std::string extension(const fs::path& path) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   return text;
-}
-
-// `texels` holds channels of the spec's format, interleaved.
-void writeByLibrary(const fs::path& path, const std::string& format, const OIIO::ImageSpec& spec,
-                    const void* texels) {
-  const auto check = [&](bool ok, const std::string& reason) {
-    if (!ok)
-      throwRun("{}: cannot be written: {}", path.string(),
-               reason.empty() ? std::strerror(errno) : reason);
-  };
-  AtomicFile file(path);
-  const auto output = OIIO::ImageOutput::create(format);
-  check(output != nullptr, "this build of OpenImageIO does not support the format");
-  check(output->open(file.temporary().string(), spec), output->geterror());
-  check(output->write_image(spec.format, texels), output->geterror());
-  check(output->close(), output->geterror());
-  file.commit();
-}
-
-std::vector<std::string> channelNames(const OutputImage& output) {
-  std::vector<std::string> names;
-  for (const Layer& layer : output.layers) {
-    if (layer.channels.empty()) names.push_back(layer.name);
-    for (const char letter : layer.channels)
-      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
-  }
-  return names;
-}
-
-void writeExr(const fs::path& path, const OutputImage& output) {
-  const Image& color = output.layers.front().image;
-  const std::vector<std::string> names = channelNames(output);
-  Image all(color.width, color.height, int(names.size()));
-  int offset = 0;
-  for (const Layer& layer : output.layers) {
-    for (int y = 0; y < all.height; ++y)
-      for (int x = 0; x < all.width; ++x)
-        std::copy_n(layer.image.at(x, y), layer.image.channels, all.at(x, y) + offset);
-    offset += layer.image.channels;
-  }
-
-  OIIO::ImageSpec spec(all.width, all.height, all.channels, OIIO::TypeDesc::FLOAT);
-  spec.channelnames = names;
-  spec.attribute("compression", "zip");
-  for (const auto& [name, contents] : output.metadata)
-    if (const auto* matrix = std::get_if<Matrix44>(&contents))
-      spec.attribute(name, OIIO::TypeMatrix, matrix->data());
-    else if (const auto* text = std::get_if<std::string>(&contents))
-      spec.attribute(name, *text);
-    else if (const auto* number = std::get_if<float>(&contents))
-      spec.attribute(name, *number);
-    else
-      spec.attribute(name, std::get<int>(contents));
-  writeByLibrary(path, "openexr", spec, all.texels.data());
 }
 
 // Colour in a PNG is unassociated; black where alpha is 0. This comes before the tone curve, which
@@ -136,7 +79,7 @@ void writeImage(const fs::path& path, const OutputImage& output,
 
 void writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
-  writeImage(path, OutputImage{{{"", letters, color}}, {}}, transform);
+  writeImage(path, OutputImage{{{"", letters, color}}, {}, {}, {}}, transform);
 }
 
 }  // namespace chromeball

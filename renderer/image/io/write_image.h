@@ -3,9 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
 #include "image/tonemap.h"
@@ -24,6 +27,13 @@ struct Layer {
 struct OutputImage {
   std::vector<Layer> layers;
   Metadata metadata;
+
+  // The position of the first pixel in a larger image, and the size of that.
+  struct Placement {
+    int x, y, width, height;
+  };
+  std::optional<Placement> placement;   // of an .exr
+  std::function<void(Archive&)> state;  // what else an .exr holds (write_exr.h); may be empty
 };
 
 // Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.

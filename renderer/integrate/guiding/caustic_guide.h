@@ -38,6 +38,13 @@ class CausticGuide {
   static constexpr float kTrainingFraction = 0.25f;
   void setFraction(float fraction) { fraction_ = fraction; }
 
+  void archive(Archive& a) {
+    a(regions_);
+    tree_.archive(a, regions_.size());
+    a(fraction_);
+    a.check(fraction_ >= 0 && fraction_ < 1);
+  }
+
  private:
   RegionTree tree_;
   std::vector<CausticLobes> regions_;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "integrate/guiding/photon.h"
 
 namespace chromeball {
@@ -31,6 +32,13 @@ class CausticLobes {
   };
   Sample sample(const vec3& position, vec2 u, float lobe) const;
   float pdf(const vec3& position, const vec3& direction) const;  // over solid angle
+
+  void archive(Archive& a) {
+    a(origin_);
+    a(upTo_);
+    a(packs_);
+    a.check(upTo_.size() <= packs_.size() * Pack::kLobes);
+  }
 
  private:
   struct Lobe {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "math/vec.h"
 
 namespace chromeball {
@@ -34,6 +35,14 @@ class DirectionTree {
   };
   Sample sample(vec2 u) const;
   float pdf(const vec3& direction) const;  // over solid angle; always positive
+
+  void archive(Archive& a) {
+    a(nodes_);
+    a.check(!nodes_.empty());
+    for (size_t i = 0; i < nodes_.size(); ++i)
+      for (const uint16_t child : nodes_[i].children)
+        a.check(child == 0 || (child > i && child < nodes_.size()));
+  }
 
   size_t byteCount() const { return nodes_.size() * sizeof(Node); }
 

@@ -50,6 +50,13 @@ class GuideRegion {
   };
   const Moments& moments() const { return moments_; }
 
+  void archive(Archive& a) {
+    tree_.archive(a);
+    a(strategyFraction_);
+    a(moments_);
+    a.check(strategyFraction_ >= 0 && strategyFraction_ <= 1);
+  }
+
  private:
   DirectionTree tree_;
   float strategyFraction_ = 1;
@@ -73,6 +80,11 @@ class LightGuide {
 
   size_t guidedRegions() const;
   GuideRegion::Moments moments() const;  // of all regions
+
+  void archive(Archive& a) {
+    a(regions_);
+    tree_.archive(a, regions_.size());
+  }
 
  private:
   RegionTree tree_;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "math/vec.h"
 
 namespace chromeball {
@@ -26,6 +27,17 @@ class RegionTree {
   RegionTree(std::span<Record> records, size_t minRecords, std::vector<std::span<Record>>& regions);
 
   bool empty() const { return nodes_.empty(); }
+  // `regions`: their number.
+  void archive(Archive& a, size_t regions) {
+    a(nodes_);
+    a.check(nodes_.empty() || nodes_.size() >= kSides);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& node = nodes_[i];
+      a.check(node.axis == kLeaf
+                  ? node.index < regions
+                  : node.axis < kLeaf && node.index > i && size_t(node.index) + 1 < nodes_.size());
+    }
+  }
   // The index of a region.
   uint32_t find(const vec3& position, const vec3& normal) const {
     const Node* node = &nodes_[sideOf(normal)];

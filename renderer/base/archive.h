@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects as bytes, for files that this program reads again. One function of a class, archive(),
+// both writes its members and reads them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+class Archive {
+ public:
+  virtual ~Archive() = default;
+
+  virtual bool reads() const = 0;
+  virtual std::string name() const { return {}; }  // of the file that is read
+  virtual uint64_t left() const { return 0; }      // its bytes that are not read yet
+  // What a damaged file would do otherwise must be checked after reading. Throws InputError.
+  void check(bool holds) const {
+    if (reads() && !holds) throwInput("{}: damaged: its parts do not fit together", name());
+  }
+
+  template <class T>
+  requires(std::is_trivially_copyable_v<T> && !std::is_enum_v<T>) void operator()(T& value) {
+    bytes(&value, sizeof(value));
+  }
+
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void operator()(std::vector<T>& items) {
+    uint64_t count = items.size();
+    (*this)(count);
+    if (reads()) {
+      check(count <= left() / sizeof(T));  // before it is allocated
+      items.resize(count);
+    }
+    bytes(items.data(), count * sizeof(T));
+  }
+
+  // Of objects with archive().
+  template <class T>
+  requires requires(T& t, Archive& a) { t.archive(a); }
+  void operator()(std::vector<T>& items) {
+    uint64_t count = items.size();
+    (*this)(count);
+    if (reads()) items.clear();
+    for (uint64_t i = 0; i < count; ++i) {
+      if (reads()) items.emplace_back();  // one by one: the number may be wrong
+      items[i].archive(*this);
+    }
+  }
+
+  void operator()(bool& flag) {
+    uint8_t value = flag;
+    bytes(&value, sizeof(value));
+    check(value <= 1);
+    flag = value == 1;
+  }
+
+  // An enum with the values 0 to `last`.
+  template <class T>
+  requires std::is_enum_v<T>
+  void enumerator(T& value, T last) {
+    auto number = uint32_t(value);
+    (*this)(number);
+    check(number <= uint32_t(last));
+    value = T(number);
+  }
+
+  void operator()(std::string& text) {
+    uint64_t count = text.size();
+    (*this)(count);
+    if (reads()) {
+      check(count <= left());
+      text.resize(count);
+    }
+    bytes(text.data(), count);
+  }
+
+  // A list whose number of items is known before it is read.
+  template <class T>
+  void fixed(std::vector<T>& items) {
+    const size_t count = items.size();
+    (*this)(items);
+    check(items.size() == count);
+  }
+
+ protected:
+  virtual void bytes(void* data, size_t count) = 0;
+};
+
+}  // namespace chromeball

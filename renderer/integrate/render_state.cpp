@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/render_state.h"
+
+namespace chromeball {
+
+void RenderState::archive(Archive& a) {
+  result.archive(a);
+  a(wanted);
+  a(finished);
+  const TileGrid tiles{result.film.width(), result.film.height()};
+  a.check(finished.empty() || finished.size() == tiles.count());
+  bool isAdaptive = allocation.has_value();
+  a(isAdaptive);
+  if (isAdaptive) {
+    if (a.reads()) allocation.emplace(result.film.width(), result.film.height());
+    allocation->archive(a);
+  }
+  schedule.archive(a);
+  if (training) training->archive(a);
+}
+
+}  // namespace chromeball

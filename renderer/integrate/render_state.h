@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A render between two tiles: everything that it needs to go on.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/archive.h"
+#include "film/allocation.h"
+#include "integrate/guide_training.h"
+#include "integrate/render.h"
+#include "integrate/schedule.h"
+
+namespace chromeball {
+
+struct RenderState {
+  RenderResult result;
+  uint32_t wanted = 0;                         // samples per pixel after the pass in progress
+  std::vector<uint8_t> finished;               // by tile: 1 if it has them; empty between passes
+  std::optional<SampleAllocation> allocation;  // none: the same number of samples everywhere
+  Schedule schedule;
+  GuideTraining* training = nullptr;  // of the integrator's guides; null: none
+
+  // While the guides are being trained, their records are not stored.
+  bool canBeStored() const { return !training || training->hasEnded(); }
+  // Throws InputError for a state of an image of another size or with other layers.
+  void archive(Archive& a);
+};
+
+// What a long render does besides rendering.
+class RenderControl {
+ public:
+  virtual ~RenderControl() = default;
+
+  // Before the first pass: fills the state from a checkpoint, and returns true, if there is one.
+  virtual bool restore(RenderState& state) = 0;
+  // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
+  virtual bool wantsPause() const = 0;
+  // No thread renders meanwhile.
+  virtual void pause(RenderState& state) = 0;
+  // After the last pass, and when the render is stopped; not while the guides are being trained.
+  virtual void end(RenderState& state) = 0;
+};
+
+}  // namespace chromeball

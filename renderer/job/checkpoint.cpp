@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/checkpoint.h"
+
+#include "image/io/write_exr.h"
+#include "job/job_description.h"
+#include "job/job_report.h"
+
+namespace chromeball {
+JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded)
+    : job_(job),
+      loaded_(loaded),
+      path_(job.file.settings.getIfGiven<std::string>("checkpoint")),
+      images_(job.file.settings.getIfGiven<double>("write-every")),
+      checkpoints_(path_ ? std::optional(job.file.settings.get<double>("checkpoint-every"))
+                         : std::nullopt) {
+  if (!path_) return;
+  lock_.emplace(*path_);
+  if (!std::filesystem::exists(*path_)) return;
+  if (!job.file.settings.get<bool>("resume"))
+    throw InputError(fmt::format("{}: exists; continue that render, or remove the file", *path_),
+                     Remedy{"resume", {}});
+  const std::string own = renderIdentity(job, loaded), stored = readPartHeader(*path_).identity;
+  if (stored != own)
+    throwInput("{}: is a checkpoint of another render: {}", *path_, differenceOf(stored, own));
+}
+
+bool JobControl::restore(RenderState& state) {
+  if (!path_ || !std::filesystem::exists(*path_)) return false;
+  readExrState(*path_, [&](Archive& a) {
+    RenderPart().archive(a);  // has been compared
+    state.archive(a);
+  });
+  return true;
+}
+
+bool JobControl::wantsPause() const { return images_.isDue() || checkpoints_.isDue(); }
+
+void JobControl::pause(RenderState& state) {
+  if (images_.isDue()) {
+    if (state.result.samples > 0) {
+      const OutputImage image = imageOf(state);
+      for (const std::string& output : job_.outputs) writeImage(output, image, job_.display);
+    }
+    images_.restart();
+  }
+  if (checkpoints_.isDue()) writeCheckpoint(state);
+}
+
+void JobControl::end(RenderState& state) {
+  if (path_) writeCheckpoint(state);
+}
+
+OutputImage JobControl::imageOf(RenderState& state) {
+  FinishPlan plan = finishPlan(job_, loaded_);
+  plan.settings.denoise = false;
+  const std::atomic<bool> never = false;
+  FinishedImage finished = finish(
+      plan, state.result, [](double) {}, never);
+  finished.image.metadata =
+      imageMetadata(job_, loaded_, finished, state.result, rendering_.seconds());
+  return std::move(finished.image);
+}
+
+void JobControl::writeCheckpoint(RenderState& state) {
+  OutputImage image = imageOf(state);
+  RenderPart part{renderIdentity(job_, loaded_), finishPlan(job_, loaded_)};
+  image.state = [&](Archive& a) {
+    part.archive(a);
+    state.archive(a);
+  };
+  writeExr(*path_, image);
+  checkpoints_.restart();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images and checkpoints that are written while a render runs, so that it can be looked at and
+// continued.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "base/file_lock.h"
+#include "base/stopwatch.h"
+#include "integrate/render_state.h"
+#include "job/render_part.h"
+#include "job/run_job.h"
+
+namespace chromeball {
+
+// Calls something again and again, so many seconds after its last call has ended.
+class Interval {
+ public:
+  explicit Interval(std::optional<double> seconds) : seconds_(seconds) {}  // nullopt: never
+  bool isDue() const { return seconds_ && watch_.seconds() >= *seconds_; }
+  void restart() { watch_ = Stopwatch(); }
+
+ private:
+  std::optional<double> seconds_;
+  Stopwatch watch_;
+};
+
+// Writes the job's images every `write-every` seconds, without denoising, and its checkpoint every
+// `checkpoint-every` seconds and at the end.
+class JobControl : public RenderControl {
+ public:
+  // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
+  // or if there is a checkpoint of another job, or one that the job is not to resume.
+  JobControl(const RenderJob& job, const LoadedScene& loaded);
+
+  // Throws InputError for a damaged checkpoint.
+  bool restore(RenderState& state) override;
+  bool wantsPause() const override;
+  void pause(RenderState& state) override;
+  void end(RenderState& state) override;
+
+ private:
+  OutputImage imageOf(RenderState& state);
+  void writeCheckpoint(RenderState& state);
+
+  const RenderJob& job_;
+  const LoadedScene& loaded_;
+  std::optional<std::string> path_;  // of the checkpoint
+  std::optional<FileLock> lock_;
+  Interval images_, checkpoints_;
+  Stopwatch rendering_;
+};
+
+}  // namespace chromeball

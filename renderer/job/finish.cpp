@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/finish.h"
+
+#include <algorithm>
+
+#include "composite/denoise_composite.h"
+#include "composite/layers.h"
+
+namespace chromeball {
+namespace {
+
+Image withAlpha(const Image& color, const Image& alpha) {
+  Image image(color.width, color.height, 4);
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) {
+      image.setRgb(x, y, color.rgb(x, y));
+      image.at(x, y)[3] = *alpha.at(x, y);
+    }
+  return image;
+}
+
+// The layers that `chromeball image denoise` reads.
+void addFeatures(const RenderResult& result, OutputImage& output) {
+  const auto add = [&](const std::string& name, const char* channels, HalvedImage image) {
+    output.layers.push_back({"denoise." + name, channels, std::move(image.mean)});
+    output.layers.push_back({"denoise." + name + "_half", channels, std::move(image.half)});
+  };
+  output.layers.push_back({"denoise.half", "RGB", result.film.halfDifference()});
+  add("direct", "RGB", result.features.direct());
+  add("albedo", "RGB", result.features.albedo());
+  add("normal", "XYZ", result.features.normal());
+  add("disparity", "Y", result.features.disparity());
+}
+
+Layer layerOf(Aov aov, const RenderResult& result, const Image& variance) {
+  const AovInfo& info = aovInfo(aov);
+  return {info.name, info.channels,
+          aov == Aov::Variance  ? variance
+          : aov == Aov::Samples ? result.film.sampleCounts()
+                                : result.aovs.finished(aov)};
+}
+
+OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
+                     const Image& variance) {
+  OutputImage output;
+  if (settings.hideProbe)
+    output.layers.push_back(
+        {"", "RGBA", withAlpha(result.film.mean(), result.aovs.finished(Aov::Alpha))});
+  else
+    output.layers.push_back({"", "RGB", result.film.mean()});
+  for (const Aov aov : settings.aovs)
+    if (aov == Aov::Denoise)
+      addFeatures(result, output);
+    else
+      output.layers.push_back(layerOf(aov, result, variance));
+  return output;
+}
+
+Layer compositeLayerOf(const std::string& name, const FinishPlan::Composite& plan,
+                       const RenderResult& result, const Image& variance) {
+  const CompositeLayerInfo* own = findCompositeLayer(name);
+  if (!own) return layerOf(aovFromName(name, "output.aovs"), result, variance);
+  return {own->name, own->channels,
+          own->layer == CompositeLayer::Reflectance
+              ? plan.reflectance
+              : compositeLayer(DifferentialFilm(result.layers), own->layer)};
+}
+
+double meanAlpha(const DifferentialFilm& film) {
+  double covered = 0, count = 0;
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const DifferentialPixel pixel = film.at(x, y);
+      covered += pixel.covered, count += pixel.count;
+    }
+  return covered / std::max(count, 1.0);
+}
+
+std::optional<OutputImage::Placement> placementOf(const RenderSettings& s) {
+  if (!s.crop) return {};
+  return OutputImage::Placement{s.crop->x, s.crop->y, s.width, s.height};
+}
+
+// By the difference formula, with its errors.
+struct Difference {
+  Image mean;
+  PixelErrors errors;
+};
+
+FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result,
+                              Difference difference, const Progress& progress,
+                              const std::atomic<bool>& stop) {
+  const FinishPlan::Composite& composite = *plan.composite;
+  const DifferentialFilm film(result.layers);
+  const Composite composed = compose(film, difference.mean, composite.plate, composite.mode);
+  FinishedImage finished{
+      {}, ImageNoise(compositeErrors(film, composed, std::move(difference.errors))), {}, {}};
+  finished.composite.emplace();
+  finished.composite->coverage = meanAlpha(film);
+  finished.composite->darkerThanBlack = composed.darkerThanBlack;
+  finished.image.placement = placementOf(plan.settings);
+  finished.image.layers.push_back({"", "RGB", composed.color});
+  for (const std::string& name : composite.layers)
+    finished.image.layers.push_back(
+        compositeLayerOf(name, composite, result, finished.noise.variance));
+  if (plan.settings.denoise && !result.interrupted)
+    finished.denoised = addDenoised(
+        [&](const Progress& part) {
+          return denoiseComposite(result, composite.plate, composite.mode, part, stop);
+        },
+        progress, finished.image);
+  return finished;
+}
+
+template <class T>
+void archiveOptional(Archive& a, std::optional<T>& value) {
+  bool has = value.has_value();
+  a(has);
+  if (has && !value) value.emplace();
+}
+
+void archiveImage(Archive& a, Image& image) {
+  a(image.width), a(image.height), a(image.channels), a(image.texels);
+  a.check(image.width >= 0 && image.height >= 0 && image.channels >= 0 &&
+          uint64_t(image.width) * uint64_t(image.height) <= image.texels.size() &&
+          uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.channels) ==
+              image.texels.size());
+}
+
+}  // namespace
+
+std::vector<Accumulation> FinishPlan::layers() const {
+  return composite ? DifferentialFilm::layers() : std::vector<Accumulation>();
+}
+
+void FinishPlan::archive(Archive& a) {
+  RenderSettings& s = settings;
+  a(s.width), a(s.height), a(s.samples), a(s.shard), a(s.hideProbe), a(s.denoise);
+  archiveOptional(a, s.crop);
+  if (s.crop) a(*s.crop);
+  std::vector<uint32_t> aovs;
+  for (const Aov aov : s.aovs) aovs.push_back(uint32_t(aov));
+  a(aovs);
+  s.aovs.clear();
+  for (const uint32_t aov : aovs) {
+    a.check(aov < allAovs().size());
+    s.aovs.push_back(Aov(aov));
+  }
+  archiveOptional(a, composite);
+  if (!composite) return;
+  a.enumerator(composite->mode, CompositeMode::Ratio);
+  uint64_t count = composite->layers.size();
+  a(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    if (a.reads()) composite->layers.emplace_back();
+    a(composite->layers[i]);
+  }
+  archiveImage(a, composite->plate);
+  archiveImage(a, composite->reflectance);
+}
+
+FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
+                     const std::atomic<bool>& stop) {
+  if (plan.composite)
+    return finishComposite(plan, result, {result.film.mean(), result.film.errors()}, progress,
+                           stop);
+  FinishedImage finished{{}, ImageNoise(result.film.errors()), {}, {}};
+  finished.image = assemble(result, plan.settings, finished.noise.variance);
+  finished.image.placement = placementOf(plan.settings);
+  if (plan.settings.denoise && !result.interrupted)
+    finished.denoised =
+        addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
+                    progress, finished.image);
+  return finished;
+}
+
+FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,
+                              const Progress& progress, const std::atomic<bool>& stop) {
+  return finishComposite(plan, render.result, {render.mean, render.errors}, progress, stop);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the samples of a render to its image: the means, the layers, the composite. No scene is
+// needed, so that parts of a render can be put together elsewhere (merge.h).
+#pragma once
+
+#include <atomic>
+
+#include "base/archive.h"
+#include "base/message.h"
+#include "base/progress.h"
+#include "composite/compose.h"
+#include "composite/render_composite.h"
+#include "image/io/write_image.h"
+#include "integrate/render.h"
+#include "job/denoised_image.h"
+#include "job/image_noise.h"
+
+namespace chromeball {
+
+// Statistics of a composite.
+struct CompositeReport {
+  double coverage = 0;           // mean alpha of the objects
+  size_t darkerThanBlack = 0;    // number of pixels with negative results, which are set to 0
+  struct Reflectance {           // of the local scene, estimated from the plate (reflectance.h)
+    size_t pixels = 0;           // number of pixels that see the local scene
+    double clampedFraction = 0;  // fraction of these that need an albedo above 1
+    double exposureRatio = 0;    // plate over the local scene with the model's own reflectance
+    double lastChange = 0;       // mean |change| of the reflectance in the last iteration
+  };
+  std::optional<Reflectance> reflectance;
+};
+
+// What the image is made of besides the samples.
+struct FinishPlan {
+  RenderSettings settings;  // size, crop, layers of the first hit, hideProbe, denoise
+  struct Composite {
+    CompositeMode mode = CompositeMode::Difference;
+    std::vector<std::string> layers;
+    Image plate, reflectance;  // of the whole image; the latter may be empty
+  };
+  std::optional<Composite> composite;
+
+  std::vector<Accumulation> layers() const;  // of the integrator
+  void archive(Archive& a);
+};
+
+struct FinishedImage {
+  OutputImage image;  // the color first, then the layers; no metadata
+  ImageNoise noise;   // of the color, before denoising
+  std::optional<CompositeReport> composite;
+  std::optional<DenoiseReport> denoised;
+};
+
+// Denoises if the plan says so; not if `stop` is set meanwhile. `progress` receives fractions from
+// kRenderShare to 1 then.
+FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
+                     const std::atomic<bool>& stop);
+// Of a composite of two passes.
+FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,
+                              const Progress& progress, const std::atomic<bool>& stop);
+
+}  // namespace chromeball

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the shards and crops of a render together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/io/read_image.h"
+#include "job/render_part.h"
+
+namespace chromeball {
+
+// The parts in an order that does not depend on that of the arguments, so that the sums have the
+// same bits. Only their headers have been read.
+class PartSet {
+ public:
+  // Throws InputError, naming the file or the part, if one belongs to another render, is there
+  // twice, or is missing.
+  explicit PartSet(const std::vector<std::string>& paths);
+
+  const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+  std::vector<std::string> paths_;
+};
+
+// The whole render: reads one part after the other. `progress` receives fractions.
+StoredPart merge(const PartSet& parts, const Progress& progress);
+
+}  // namespace chromeball

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shards and crops of a render, put together again.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "integrate/sample_sequence.h"
+#include "measure/image_error.h"
+#include "measure/statistics.h"
+#include "small_scenes.h"
+#include "test_probes.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 36;
+const Camera kCamera = Camera::lookAt({0, 1.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.8f);
+
+// A render without adaptation and guides, with which parts have the samples of the whole.
+RenderSettings fixedSettings(uint32_t samples) {
+  RenderSettings settings = smallRender(kWidth, kHeight, samples, 5);
+  settings.adaptive = false;
+  settings.guiding = Guiding::Off;
+  settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Alpha, Aov::Node, Aov::Denoise};
+  return settings;
+}
+
+RenderSettings shardOf(RenderSettings whole, uint32_t index, uint32_t count) {
+  whole.shard = {index, count, whole.samples};
+  whole.samples = whole.shard.samples();
+  return whole;
+}
+
+RenderResult renderSmall(const NamedScene& small, const RenderSettings& settings) {
+  return renderScene(small.scene, kCamera, Probe(small.probe), "importance", settings);
+}
+
+RenderResult merged(const NamedScene& small, const RenderSettings& whole, uint32_t shards) {
+  RenderResult sum(whole, {});
+  for (uint32_t i = 0; i < shards; ++i)
+    sum.add(renderSmall(small, shardOf(whole, i, shards)), 0, 0);
+  return sum;
+}
+
+void expectNear(const Image& a, const Image& b, float tolerance) {
+  ASSERT_EQ(a.texels.size(), b.texels.size());
+  for (size_t i = 0; i < a.texels.size(); ++i)
+    ASSERT_NEAR(a.texels[i], b.texels[i], tolerance * std::max(1.0f, std::fabs(b.texels[i]))) << i;
+}
+
+TEST(Shard, SharesAreEqualAndComplete) {
+  for (const uint32_t samples : {2u, 7u, 64u, 1000u, 2'000'000'000u})
+    for (uint32_t count = 1; count <= std::min(samples / 2, 13u); ++count) {
+      uint64_t next = 0;
+      for (uint32_t i = 0; i < count; ++i) {
+        const Shard shard{i, count, samples};
+        EXPECT_EQ(shard.first(), next);
+        EXPECT_EQ(shard.first() % 2, 0u);
+        EXPECT_NEAR(double(shard.samples()), double(samples) / count, 3);
+        EXPECT_GT(shard.samples(), 0u);
+        next += shard.samples();
+      }
+      EXPECT_EQ(next, samples);
+    }
+}
+
+// No two samples of all shards are the same point, however many a pixel of an adaptive render has.
+TEST(Shard, TakesPointsOfItsOwn) {
+  for (const bool adaptive : {false, true}) {
+    RenderSettings whole = smallRender(8, 8, 100, 3);
+    whole.adaptive = adaptive;
+    std::set<std::pair<uint64_t, uint32_t>> points;
+    size_t count = 0;
+    for (uint32_t i = 0; i < 3; ++i) {
+      const RenderSettings settings = shardOf(whole, i, 3);
+      const uint32_t samples = settings.samples * (adaptive ? 40 : 1);
+      SampleSequence(settings).forRuns(0, samplesOf(0, samples),
+                                       [&](uint64_t table, uint32_t first, uint32_t length) {
+                                         for (uint32_t k = 0; k < length; ++k)
+                                           points.insert({table, first + k * SampleSequence(settings).stride()});
+                                         count += length;
+                                       });
+    }
+    EXPECT_EQ(points.size(), count);
+  }
+}
+
+TEST(Shard, UnionHasTheSamplesOfTheWhole) {
+  for (const NamedScene& small : threeScenes()) {
+    SCOPED_TRACE(small.name);
+    for (const auto [samples, shards] :
+         {std::pair(32u, 4u), std::pair(30u, 4u), std::pair(7u, 3u)}) {
+      const RenderSettings settings = fixedSettings(samples);
+      const RenderResult whole = renderSmall(small, settings);
+      const RenderResult sum = merged(small, settings, shards);
+      expectNear(sum.film.mean(), whole.film.mean(), 1e-6f);
+      expectNear(sum.film.halfDifference(), whole.film.halfDifference(), 1e-5f);
+      EXPECT_EQ(sum.film.sampleCounts().texels, whole.film.sampleCounts().texels);
+      for (const Aov aov : {Aov::Albedo, Aov::Depth, Aov::Alpha})
+        expectNear(sum.aovs.finished(aov), whole.aovs.finished(aov), 1e-5f);
+      expectNear(sum.features.direct().mean, whole.features.direct().mean, 1e-5f);
+      EXPECT_EQ(sum.rays.camera, whole.rays.camera);
+      EXPECT_NEAR(sum.film.noise().noise / whole.film.noise().noise, 1, 1e-6);
+    }
+  }
+}
+
+// The variance of a union of adaptive shards is at most 10% above that of one render; the
+// differences to a reference of many images tell it to some percent.
+TEST(SlowShard, UnionOfAdaptiveShardsIsAsGoodAsOneRender) {
+  const NamedScene small = threeScenes()[0];
+  RenderSettings settings = smallRender(kWidth, kHeight, 128, 4);
+  settings.adaptive = true;
+  RenderSettings best = settings;
+  best.samples = 8192;
+  best.seed = 99;
+  const Image reference = renderSmall(small, best).film.mean();
+  std::vector<double> ratios;
+  for (settings.seed = 0; settings.seed < 24; ++settings.seed) {
+    const auto relMse = [&](const RenderResult& r) {
+      return imageError(r.film.mean(), reference, nullptr, nullptr).relMse;
+    };
+    ratios.push_back(relMse(merged(small, settings, 4)) / relMse(renderSmall(small, settings)));
+  }
+  const Moments ratio = Moments::of(ratios);
+  const double error = std::sqrt(ratio.variance / ratio.count);
+  EXPECT_LT(ratio.mean, 1.1 + 2.5 * error);
+  EXPECT_LT(error, 0.05);
+}
+
+TEST(Crop, HasThePixelsOfTheWhole) {
+  for (const NamedScene& small : threeScenes()) {
+    SCOPED_TRACE(small.name);
+    RenderSettings settings = fixedSettings(8);
+    const RenderResult whole = renderSmall(small, settings);
+    RenderResult sum(settings, {});
+    for (const Crop crop : {Crop{0, 0, 17, 36}, Crop{17, 0, 31, 5}, Crop{17, 5, 31, 31}}) {
+      settings.crop = crop;
+      const RenderResult part = renderSmall(small, settings);
+      ASSERT_EQ(part.film.width(), crop.width);
+      sum.add(part, crop.x, crop.y);
+    }
+    EXPECT_EQ(sum.film.mean().texels, whole.film.mean().texels);
+    EXPECT_EQ(sum.film.errors().luminances, whole.film.errors().luminances);
+    for (const Aov aov : {Aov::Albedo, Aov::Depth, Aov::Node})
+      EXPECT_EQ(sum.aovs.finished(aov).texels, whole.aovs.finished(aov).texels);
+    EXPECT_EQ(sum.features.albedo().half.texels, whole.features.albedo().half.texels);
+  }
+}
+
+// Guided and adaptive parts are other estimates of the same image.
+TEST(Shard, GuidedShardsAreUnbiased) {
+  const NamedScene small = threeScenes()[2];  // with a mirror
+  RenderSettings settings = smallRender(kWidth, kHeight, 512, 4);
+  settings.adaptive = true;
+  settings.guiding = Guiding::On;
+  const RenderResult sum = merged(small, settings, 4);
+  EXPECT_GT(sum.causticFraction, 0);
+  settings.adaptive = false;
+  settings.guiding = Guiding::Off;
+  settings.seed = 5;
+  const RenderResult whole = renderSmall(small, settings);
+  const PixelErrors a = sum.film.errors(), b = whole.film.errors();
+  double difference = 0, variance = 0;
+  for (size_t i = 0; i < a.luminances.size(); ++i) {
+    difference += a.luminances[i] - b.luminances[i];
+    variance += a.scatter[i].w + b.scatter[i].w;
+  }
+  EXPECT_LT(std::fabs(difference) / std::sqrt(variance), 3.3);
+}
+
+}  // namespace
+}  // namespace chromeball

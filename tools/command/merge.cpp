@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball merge PART... -o OUT: puts shards and crops of a render together.
+#include <atomic>
+
+#include "base/stopwatch.h"
+#include "commands.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "image_noise_text.h"
+#include "job/job_report.h"
+#include "job/merge.h"
+#include "job/output_file.h"
+#include "progress_bar.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> parts, outputs;
+  bool quiet = false;
+};
+
+// The attributes of a part that hold for the whole image.
+Metadata wholeMetadata(const std::string& part) {
+  Metadata metadata = readImageFile(part).metadata;
+  for (const char* name : {"shard", "crop", "seconds", "command", "clamp_light_removed"})
+    metadata.erase(name);
+  return metadata;
+}
+
+void run(const Arguments& arguments) {
+  for (const std::string& output : arguments.outputs) checkWritable(output);
+  checkDistinct(arguments.outputs, arguments.parts);
+  const PartSet parts(arguments.parts);
+  const std::atomic<bool> never = false;
+  ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
+  StoredPart whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
+  FinishedImage finished = finish(
+      whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
+  finished.image.metadata = sampleMetadata(finished, whole.result);
+  finished.image.metadata.merge(wholeMetadata(parts.paths().front()));
+  for (const std::string& output : arguments.outputs) writeImage(output, finished.image);
+  if (!arguments.quiet)
+    fmt::print("{} samples per pixel of {} parts, noise {}{}: {}\n", whole.result.samples,
+               parts.paths().size(), inWords(finished.noise), inWords(finished.denoised),
+               fmt::join(arguments.outputs, ", "));
+}
+
+}  // namespace
+
+void addMergeCommand(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "merge", "Put the parts of a render together, of `render --shard` and `--crop`");
+  command
+      ->add_option("PART", arguments->parts,
+                   "All parts, .exr, in any order; the image has the same bits for each")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->outputs,
+                   "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "Show neither progress nor the noise");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
