@@ -9,10 +9,12 @@ _chromeball() {
   esac
   case $command in
     '')
-      words='render compare probe image lights lights-error'
+      words='render merge compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --allow-external --output --aov --tonemap --exposure --memory --threads --stats --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --allow-external --output --aov --tonemap --exposure --memory --threads --stats --write-every --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+    'merge')
+      options='--help --output --quiet' ;;
     'compare')
       options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --threads --progress --quiet' ;;
     'probe')

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// tools/scripts/farm_slurm.sh on a real Slurm cluster: $SLURM_CONF, such as
+// tools/scripts/one_machine_slurm.sh starts; skipped without one.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "image/io/read_image.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+int shell(const std::string& line) { return std::system((line + " > /dev/null 2>&1").c_str()); }
+
+TEST(Farm, MergesShardsOneOfWhichWasKilled) {
+  if (shell("sinfo -h -o %T | grep -E 'idle|mix|alloc'") != 0)
+    GTEST_SKIP() << "no Slurm cluster; see tools/scripts/one_machine_slurm.sh";
+  const TemporaryFolder folder;
+  const std::string source = kSourceDir, merged = folder / "merged.exr", log = folder / "log";
+  const std::string options =
+      " --size 96x64 --samples 4000 --adaptive off --guide off --checkpoint-every 0.2";
+  ASSERT_EQ(
+      shell("CHROMEBALL=" + std::string(kCommand) + " " + source + "/tools/scripts/farm_slurm.sh " +
+            source + "/scenes/demo.toml --shards 4 -o " + merged + " --" + options),
+      0);
+  bool killed = false;
+  for (int tenths = 0; tenths < 2400 && !std::filesystem::exists(merged); ++tenths) {
+    if (!killed && std::filesystem::exists(folder / "merged.parts/part-2.checkpoint.exr"))
+      killed = shell("pkill -9 -f 'shard 2/4 .*" + merged.substr(0, merged.size() - 4) + "'") == 0;
+    usleep(100'000);
+  }
+  ASSERT_TRUE(std::filesystem::exists(merged));
+  EXPECT_TRUE(killed);
+  const std::string whole = folder / "whole.exr";
+  ASSERT_EQ(shell(std::string(kCommand) + " render " + source + "/scenes/demo.toml" +
+                  " --size 96x64 --samples 4000 --adaptive off --guide off -o " + whole),
+            0);
+  const Image a = readImage(merged), b = readImage(whole);
+  ASSERT_EQ(a.texels.size(), b.texels.size());
+  for (size_t i = 0; i < a.texels.size(); ++i)
+    ASSERT_NEAR(a.texels[i], b.texels[i], 1e-6f * std::max(1.0f, b.texels[i]));
+}
+
+}  // namespace
+}  // namespace chromeball
