@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace chromeball {
 
@@ -39,7 +41,7 @@ class Archive {
       check(count <= left() / sizeof(T));  // before it is allocated
       items.resize(count);
     }
-    bytes(items.data(), count * sizeof(T));
+    transfer(items.data(), count * sizeof(T));
   }
 
   // Of objects with archive().
@@ -57,7 +59,7 @@ class Archive {
 
   void operator()(bool& flag) {
     uint8_t value = flag;
-    bytes(&value, sizeof(value));
+    transfer(&value, sizeof(value));
     check(value <= 1);
     flag = value == 1;
   }
@@ -79,7 +81,7 @@ class Archive {
       check(count <= left());
       text.resize(count);
     }
-    bytes(text.data(), count);
+    transfer(text.data(), count);
   }
 
   // A list whose number of items is known before it is read.
@@ -90,8 +92,27 @@ class Archive {
     check(items.size() == count);
   }
 
+  // A checksum of what lies between these two calls.
+  void startSum() { sum_ = 1; }
+  void endSum() {
+    uint64_t sum = std::exchange(sum_, 0);
+    const uint64_t own = sum;
+    (*this)(sum);
+    if (sum != own) throwInput("{}: damaged: its checksum is wrong", name());
+  }
+
  protected:
   virtual void bytes(void* data, size_t count) = 0;
+
+ private:
+  void transfer(void* data, size_t count) {
+    bytes(data, count);
+    if (sum_ == 0) return;
+    const auto* byte = static_cast<const unsigned char*>(data);
+    for (size_t i = 0; i < count; ++i) sum_ = hash(sum_ ^ byte[i]) | 1;
+  }
+
+  uint64_t sum_ = 0;  // 0: not wanted
 };
 
 }  // namespace chromeball

@@ -15,7 +15,7 @@ void RenderState::archive(Archive& a) {
     if (a.reads()) allocation.emplace(result.film.width(), result.film.height());
     allocation->archive(a);
   }
-  schedule.archive(a);
+  schedule.archive(a, isAdaptive);
   if (training) training->archive(a);
 }
 

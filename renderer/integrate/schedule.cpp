@@ -64,12 +64,13 @@ double Schedule::untilNoise(uint32_t done, const Film& film) {
   return done * std::max(std::pow(excess, 1 / std::clamp(rate, 0.5, 1.0)), 1 + kMinGrowth);
 }
 
-void Schedule::archive(Archive& a) {
+void Schedule::archive(Archive& a, bool adapts) {
   double elapsed = seconds();
   a(elapsed);
-  a(pilot_);
   a(last_);
-  if (a.reads()) before_ = elapsed;
+  if (!a.reads()) return;
+  before_ = elapsed;
+  pilot_ = pilot_ && !adapts;
 }
 
 }  // namespace chromeball

@@ -30,7 +30,8 @@ class Schedule {
   // limit.
   double progress(double samples) const;
 
-  void archive(Archive& a);  // with the time so far
+  // With the time so far. `adapts`: whether the pilot has ended.
+  void archive(Archive& a, bool adapts);
 
  private:
   double goalAfter(uint32_t done, const Film& film);

@@ -14,6 +14,7 @@ JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded)
       checkpoints_(path_ ? std::optional(job.file.settings.get<double>("checkpoint-every"))
                          : std::nullopt) {
   if (!path_) return;
+  path_ = std::filesystem::weakly_canonical(std::filesystem::absolute(*path_)).string();  // links
   lock_.emplace(*path_);
   if (!std::filesystem::exists(*path_)) return;
   if (!job.file.settings.get<bool>("resume"))

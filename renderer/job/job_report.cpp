@@ -104,6 +104,8 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
   metadata["noise_p95"] = float(finished.noise.p95);
   if (finished.denoised && std::isfinite(finished.denoised->noise))
     metadata["denoised_noise"] = float(finished.denoised->noise);
+  if (render.clamped.kept + render.clamped.removed > 0)  // else nothing was to be clamped
+    metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
   return metadata;
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "job/image_memory.h"
 #include "job/job_description.h"
 
 namespace chromeball {
@@ -123,6 +124,9 @@ PartSet::PartSet(const std::vector<std::string>& paths) {
 StoredPart merge(const PartSet& parts, const Progress& progress) {
   const RenderPart first = readPartHeader(parts.paths().front());
   RenderPart whole{withoutParts(first.identity), wholePlan(first.plan)};
+  if (const double needed = imageBytes(whole.plan.settings); needed > memoryBudget())
+    throwInput("{}: an image of {}x{} takes {:.3g} GB of memory", parts.paths().front(),
+               whole.plan.settings.width, whole.plan.settings.height, needed * 1e-9);
   RenderResult result(whole.plan.settings, whole.plan.layers());
   uint32_t samples = 0;  // of the shards of one crop
   for (size_t i = 0; i < parts.paths().size(); ++i) {

@@ -18,8 +18,11 @@ namespace {
 bool isSameFile(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
-  const fs::path canonicalA = fs::weakly_canonical(a, error);
-  return !error && canonicalA == fs::weakly_canonical(b, error) && !error;
+  const auto canonical = [&](const fs::path& path) {  // a missing file's relative path stays so
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  const fs::path canonicalA = canonical(a);
+  return !error && canonicalA == canonical(b) && !error;
 }
 
 fs::path folderOf(const fs::path& file) {

@@ -11,8 +11,10 @@ void RenderPart::archive(Archive& a) {
   a(version);
   if (version != own)
     throwInput("{}: was written by another version of chromeball; render it again", a.name());
+  a.startSum();
   a(identity);
   plan.archive(a);
+  a.endSum();
   constexpr int kMaxSide = 65536;
   const auto& s = plan.settings;
   const Crop w = s.window();

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
 #include <atomic>
+#include <nlohmann/json.hpp>
 
-#include "base/stopwatch.h"
 #include "commands.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_noise_text.h"
+#include "job/id_manifest.h"
 #include "job/job_report.h"
 #include "job/merge.h"
 #include "job/output_file.h"
+#include "messages.h"
 #include "progress_bar.h"
+#include "render_hints.h"
 
 namespace chromeball {
 namespace {
@@ -20,11 +23,20 @@ struct Arguments {
   bool quiet = false;
 };
 
-// The attributes of a part that hold for the whole image.
-Metadata wholeMetadata(const std::string& part) {
-  Metadata metadata = readImageFile(part).metadata;
+// The attributes that hold for the whole image: those of the first part, and the names of the
+// numbers in the layers of all parts.
+Metadata wholeMetadata(const PartSet& parts) {
+  Metadata metadata = readExrMetadata(parts.paths().front());
   for (const char* name : {"shard", "crop", "seconds", "command", "clamp_light_removed"})
     metadata.erase(name);
+  for (const std::string layer : {"node", "material"}) {
+    std::map<int, std::string> names;
+    for (const std::string& part : parts.paths())
+      names.merge(readManifest(readExrMetadata(part), layer));
+    nlohmann::ordered_json manifest;
+    for (const auto& [number, name] : names) manifest[std::to_string(number)] = name;
+    if (!names.empty()) metadata["manifest/" + layer] = manifest.dump();
+  }
   return metadata;
 }
 
@@ -38,8 +50,11 @@ void run(const Arguments& arguments) {
   FinishedImage finished = finish(
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
-  finished.image.metadata.merge(wholeMetadata(parts.paths().front()));
+  finished.image.metadata.merge(wholeMetadata(parts));
   for (const std::string& output : arguments.outputs) writeImage(output, finished.image);
+  Messages messages;
+  addExcluded(whole.result, messages);
+  print(messages, arguments.quiet);
   if (!arguments.quiet)
     fmt::print("{} samples per pixel of {} parts, noise {}{}: {}\n", whole.result.samples,
                parts.paths().size(), inWords(finished.noise), inWords(finished.denoised),

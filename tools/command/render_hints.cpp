@@ -98,7 +98,9 @@ void addDepthCut(const char* option, int depth, double fraction, Messages& messa
                                     option, depth, 100 * fraction)});
 }
 
-void addMissingLight(const RenderJob& job, const RenderResult& result, Messages& messages) {
+}  // namespace
+
+void addExcluded(const RenderResult& result, Messages& messages) {
   const auto warning = [&](std::string text) {
     messages.push_back({Message::Kind::Warning, std::move(text)});
   };
@@ -111,21 +113,19 @@ void addMissingLight(const RenderJob& job, const RenderResult& result, Messages&
   if (result.clamped.count)
     warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",
                         result.clamped.count, 100 * result.clamped.fractionRemoved(),
-                        job.composite ? "objects and differences" : "the image"));
-  const DepthCut& cut = result.depthCut;
-  addDepthCut("--max-depth", job.settings.maxDepth, cut.fraction(cut.byDepth), messages);
-  addDepthCut("--max-transmission-depth", job.settings.maxTransmissionDepth,
-              cut.fraction(cut.byTransmission), messages);
+                        result.layers.empty() ? "the image" : "objects and differences"));
 }
-
-}  // namespace
 
 Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
                         const PreparedScene& prepared, const JobResult& result) {
   Messages messages;
-  addMissingLight(job, result.render, messages);
+  addExcluded(result.render, messages);
+  const DepthCut& cut = result.render.depthCut;
+  addDepthCut("--max-depth", job.settings.maxDepth, cut.fraction(cut.byDepth), messages);
+  addDepthCut("--max-transmission-depth", job.settings.maxTransmissionDepth,
+              cut.fraction(cut.byTransmission), messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
-  if (job.composite) return messages;
+  if (job.composite || job.settings.isPart()) return messages;
   if (job.settings.maxDepth > 0)  // at 0, only emitters are not black
     if (const auto why = whyBlack(job, loaded, prepared.world->accel, result.render))
       messages.push_back({Message::Kind::Warning, *why});

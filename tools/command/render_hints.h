@@ -11,4 +11,7 @@ namespace chromeball {
 Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
                         const PreparedScene& prepared, const JobResult& result);
 
+// Those about excluded samples and clamped light alone.
+void addExcluded(const RenderResult& result, Messages& messages);
+
 }  // namespace chromeball

@@ -150,6 +150,14 @@ std::optional<Image> findChannels(const ImageFile& file, const std::string& pref
 
 }  // namespace
 
+Metadata readExrMetadata(const fs::path& path) {
+  checkReadable(path);
+  checkExrHeaders(path);
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) fail(path, OIIO::geterror());
+  return metadataOf(input->spec());
+}
+
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   const std::string magic = firstBytes(path);
   if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};

@@ -31,6 +31,9 @@ struct ImageFile {
   bool integers = false;  // the file has 8 or 16 bits per channel, so no texel is above 1
 };
 
+// The attributes alone, of an .exr.
+Metadata readExrMetadata(const std::filesystem::path& path);
+
 ImageFile readImageFile(const std::filesystem::path& path,
                         IntegerTexels integers = IntegerTexels::Srgb);
 
