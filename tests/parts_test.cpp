@@ -74,12 +74,12 @@ TEST(Shard, TakesPointsOfItsOwn) {
     for (uint32_t i = 0; i < 3; ++i) {
       const RenderSettings settings = shardOf(whole, i, 3);
       const uint32_t samples = settings.samples * (adaptive ? 40 : 1);
-      SampleSequence(settings).forRuns(0, samplesOf(0, samples),
-                                       [&](uint64_t table, uint32_t first, uint32_t length) {
-                                         for (uint32_t k = 0; k < length; ++k)
-                                           points.insert({table, first + k * SampleSequence(settings).stride()});
-                                         count += length;
-                                       });
+      SampleSequence(settings).forRuns(
+          0, samplesOf(0, samples), [&](uint64_t table, uint32_t first, uint32_t length) {
+            for (uint32_t k = 0; k < length; ++k)
+              points.insert({table, first + k * SampleSequence(settings).stride()});
+            count += length;
+          });
     }
     EXPECT_EQ(points.size(), count);
   }
