@@ -27,7 +27,8 @@ TEST(Farm, MergesShardsOneOfWhichWasKilled) {
   bool killed = false;
   for (int tenths = 0; tenths < 2400 && !std::filesystem::exists(merged); ++tenths) {
     if (!killed && std::filesystem::exists(folder / "merged.parts/part-2.checkpoint.exr"))
-      killed = shell("pkill -9 -f 'shard[ ]2/4 .*" + merged.substr(0, merged.size() - 4) + "'") == 0;
+      killed =
+          shell("pkill -9 -f 'shard[ ]2/4 .*" + merged.substr(0, merged.size() - 4) + "'") == 0;
     usleep(100'000);
   }
   ASSERT_TRUE(std::filesystem::exists(merged));
