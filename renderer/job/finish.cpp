@@ -56,7 +56,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
   return output;
 }
 
-Layer compositeLayerOf(const std::string& name, const FinishPlan::Composite& plan,
+Layer compositeLayerOf(const std::string& name, const CompositeFinish& plan,
                        const RenderResult& result, const Image& variance) {
   const CompositeLayerInfo* own = findCompositeLayer(name);
   if (!own) return layerOf(aovFromName(name, "output.aovs"), result, variance);
@@ -90,7 +90,7 @@ struct Difference {
 FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result,
                               Difference difference, const Progress& progress,
                               const std::atomic<bool>& stop) {
-  const FinishPlan::Composite& composite = *plan.composite;
+  const CompositeFinish& composite = *plan.composite;
   const DifferentialFilm film(result.layers);
   const Composite composed = compose(film, difference.mean, composite.plate, composite.mode);
   FinishedImage finished{

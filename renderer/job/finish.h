@@ -30,15 +30,16 @@ struct CompositeReport {
   std::optional<Reflectance> reflectance;
 };
 
+struct CompositeFinish {
+  CompositeMode mode = CompositeMode::Difference;
+  std::vector<std::string> layers;
+  Image plate, reflectance;  // of the rendered part of the image; the latter may be empty
+};
+
 // What the image is made of besides the samples.
 struct FinishPlan {
   RenderSettings settings;  // size, crop, layers of the first hit, hideProbe, denoise
-  struct Composite {
-    CompositeMode mode = CompositeMode::Difference;
-    std::vector<std::string> layers;
-    Image plate, reflectance;  // of the whole image; the latter may be empty
-  };
-  std::optional<Composite> composite;
+  std::optional<CompositeFinish> composite;
 
   std::vector<Accumulation> layers() const;  // of the integrator
   void archive(Archive& a);
