@@ -88,7 +88,7 @@ TEST(Shard, TakesPointsOfItsOwn) {
 TEST(Shard, UnionHasTheSamplesOfTheWhole) {
   for (const NamedScene& small : threeScenes()) {
     SCOPED_TRACE(small.name);
-    for (const auto [samples, shards] :
+    for (const auto& [samples, shards] :
          {std::pair(32u, 4u), std::pair(30u, 4u), std::pair(7u, 3u)}) {
       const RenderSettings settings = fixedSettings(samples);
       const RenderResult whole = renderSmall(small, settings);
