@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "image/io/write_exr.h"
+#include "memory_archive.h"
 #include "run_command.h"
 
 namespace chromeball {
@@ -87,6 +88,30 @@ TEST(ExrState, IsOfThisProgram) {
   writeImage(path, Image(2, 2, 3));
   EXPECT_THROW(readExrState(path, [](Archive&) {}), InputError);
   EXPECT_THROW(readExrState(folder / "none.exr", [](Archive&) {}), InputError);
+}
+
+// Every byte of what is summed counts: numbers, flags, texts and lists.
+TEST(Archive, SumsFindAnyDamage) {
+  Contents contents;
+  contents.bytes.assign(20, 'x');
+  const auto archive = [](Archive& a, Contents& c) {
+    a.startSum();
+    c.archive(a);
+    a.endSum();
+  };
+  MemoryWriter writer;
+  archive(writer, contents);
+  for (size_t at = 0; at < writer.contents.size(); ++at) {
+    std::vector<char> damaged = writer.contents;
+    damaged[at] ^= 1;
+    MemoryReader reader(damaged);
+    Contents read;
+    EXPECT_THROW(archive(reader, read), InputError) << at;
+  }
+  MemoryReader reader(writer.contents);
+  Contents read;
+  archive(reader, read);
+  EXPECT_EQ(read.bytes, contents.bytes);
 }
 
 // A file may claim to hold more than it does.

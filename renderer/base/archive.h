@@ -29,7 +29,7 @@ class Archive {
 
   template <class T>
   requires(std::is_trivially_copyable_v<T> && !std::is_enum_v<T>) void operator()(T& value) {
-    bytes(&value, sizeof(value));
+    transfer(&value, sizeof(value));
   }
 
   template <class T>

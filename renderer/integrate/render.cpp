@@ -106,10 +106,8 @@ class Renderer {
   // noise limit leaves that open, the number after this pass is used.
   Beam beamOfPass(uint32_t wanted) const {
     if (world_.scene.textures.empty()) return {};
-    const uint32_t all =
-        settings_.shard.count > 1 ? settings_.shard.samplesOfAll : settings_.samples;
     const bool open = settings_.timeLimit || settings_.noiseLimit;
-    return beamOf(camera_, settings_.height, open ? wanted : all);
+    return beamOf(camera_, settings_.height, open ? wanted : settings_.samplesOfAll());
   }
 
   uint32_t countOf(int x, int y, uint32_t mean) const {

@@ -59,8 +59,11 @@ struct RenderSettings {
   bool regularize = false;  // biased: see regularization.h; the World needs tables for it
   bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
 
+  // Per pixel, of all shards together.
+  uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
   // Whether the image is put together from several renders (job/merge.h).
   bool isPart() const { return crop || shard.count > 1; }
+  bool denoisesAtEnd() const { return denoise && !isPart(); }  // a part: when it is merged
   Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
 
   bool wantsFeatures() const {

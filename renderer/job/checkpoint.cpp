@@ -6,6 +6,7 @@
 #include "job/job_report.h"
 
 namespace chromeball {
+
 JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded)
     : job_(job),
       loaded_(loaded),
@@ -16,13 +17,15 @@ JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded)
   if (!path_) return;
   path_ = std::filesystem::weakly_canonical(std::filesystem::absolute(*path_)).string();  // links
   lock_.emplace(*path_);
+  part_.identity = renderIdentity(job, loaded);
   if (!std::filesystem::exists(*path_)) return;
   if (!job.file.settings.get<bool>("resume"))
     throw InputError(fmt::format("{}: exists; continue that render, or remove the file", *path_),
                      Remedy{"resume", {}});
-  const std::string own = renderIdentity(job, loaded), stored = readPartHeader(*path_).identity;
-  if (stored != own)
-    throwInput("{}: is a checkpoint of another render: {}", *path_, differenceOf(stored, own));
+  const std::string stored = readPartHeader(*path_).identity;
+  if (stored != part_.identity)
+    throwInput("{}: is a checkpoint of another render: {}", *path_,
+               differenceOf(stored, part_.identity));
 }
 
 bool JobControl::restore(RenderState& state) {
@@ -64,9 +67,9 @@ OutputImage JobControl::imageOf(RenderState& state) {
 
 void JobControl::writeCheckpoint(RenderState& state) {
   OutputImage image = imageOf(state);
-  RenderPart part{renderIdentity(job_, loaded_), finishPlan(job_, loaded_)};
+  part_.plan = finishPlan(job_, loaded_);
   image.state = [&](Archive& a) {
-    part.archive(a);
+    part_.archive(a);
     state.archive(a);
   };
   writeExr(*path_, image);

@@ -49,6 +49,7 @@ class JobControl : public RenderControl {
   const LoadedScene& loaded_;
   std::optional<std::string> path_;  // of the checkpoint
   std::optional<FileLock> lock_;
+  RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded
   Interval images_, checkpoints_;
   Stopwatch rendering_;
 };

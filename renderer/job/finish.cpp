@@ -103,7 +103,7 @@ FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result
   for (const std::string& name : composite.layers)
     finished.image.layers.push_back(
         compositeLayerOf(name, composite, result, finished.noise.variance));
-  if (plan.settings.denoise && !result.interrupted)
+  if (plan.settings.denoisesAtEnd() && !result.interrupted)
     finished.denoised = addDenoised(
         [&](const Progress& part) {
           return denoiseComposite(result, composite.plate, composite.mode, part, stop);
@@ -167,7 +167,7 @@ FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const P
   FinishedImage finished{{}, ImageNoise(result.film.errors()), {}, {}};
   finished.image = assemble(result, plan.settings, finished.noise.variance);
   finished.image.placement = placementOf(plan.settings);
-  if (plan.settings.denoise && !result.interrupted)
+  if (plan.settings.denoisesAtEnd() && !result.interrupted)
     finished.denoised =
         addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
                     progress, finished.image);

@@ -52,8 +52,8 @@ struct FinishedImage {
   std::optional<DenoiseReport> denoised;
 };
 
-// Denoises if the plan says so; not if `stop` is set meanwhile. `progress` receives fractions from
-// kRenderShare to 1 then.
+// Denoises a whole image if the plan says so; not if `stop` is set meanwhile. `progress` receives
+// fractions from kRenderShare to 1 then.
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
                      const std::atomic<bool>& stop);
 // Of a composite of two passes.

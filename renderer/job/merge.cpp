@@ -91,7 +91,7 @@ void paste(const Image& part, const Crop& at, Image& whole) {
 FinishPlan wholePlan(FinishPlan plan) {
   RenderSettings& s = plan.settings;
   s.crop.reset();
-  if (s.shard.count > 1) s.samples = s.shard.samplesOfAll;
+  s.samples = s.samplesOfAll();
   s.shard = {};
   if (plan.composite)
     for (Image* image : {&plan.composite->plate, &plan.composite->reflectance})

@@ -23,12 +23,10 @@ void RenderPart::archive(Archive& a) {
           w.width > 0 && w.height > 0 && w.width <= s.width - w.x && w.height <= s.height - w.y);
 }
 
-std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result,
-                                        std::function<void(Archive&)> more) {
-  return [&part, &result, more = std::move(more)](Archive& a) {
+std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result) {
+  return [&](Archive& a) {
     part.archive(a);
     result.archive(a);
-    if (more) more(a);
   };
 }
 

@@ -21,9 +21,8 @@ struct RenderPart {
   void archive(Archive& a);
 };
 
-// For OutputImage::state: the part, its result, and what `more` adds. All must outlive the writing.
-std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result,
-                                        std::function<void(Archive&)> more = {});
+// For OutputImage::state. Both must outlive the writing.
+std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result);
 
 // Reads a file of a part with its result; skips what follows. Throws InputError.
 struct StoredPart {

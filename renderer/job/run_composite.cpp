@@ -28,7 +28,7 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   RenderSettings settings = job.settings;
   settings.denoise = false;  // only the composite is denoised
   settings.crop.reset();     // all parts of a render need the same reflectance
-  if (settings.shard.count > 1) settings.samples = settings.shard.samplesOfAll;
+  settings.samples = settings.samplesOfAll();
   settings.shard = {};
   const ReflectanceSolution solution =
       job.composite->reflectance == CompositePlan::Reflectance::Flat
@@ -68,7 +68,7 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
                           const std::atomic<bool>& stop, RenderControl* control) {
   const CompositePlan& plan = *job.composite;
   const bool solves = loaded.projection != nullptr;
-  const double share = job.settings.denoise && !job.settings.isPart() ? kRenderShare : 1;
+  const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CompositeReport::Reflectance> reflectance;
   if (solves)
     reflectance = solveReflectance(
@@ -79,7 +79,7 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
       needsBehind,
       [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
       control);
-  FinishedImage finished = finishComposite(ownFinishPlan(job, loaded), rendered, progress, stop);
+  FinishedImage finished = finishComposite(finishPlan(job, loaded), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
   Messages messages = warningsOf(*finished.composite, job.file.settings.get<double>("probe.scale"));
   return {std::move(finished), std::move(rendered.result), std::move(messages)};

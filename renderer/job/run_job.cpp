@@ -12,12 +12,11 @@ namespace {
 JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
                       const PreparedScene& prepared, const Progress& progress,
                       const std::atomic<bool>& stop, RenderControl* control) {
-  const FinishPlan plan = ownFinishPlan(job, loaded);
-  const double share = plan.settings.denoise ? kRenderShare : 1;
+  const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   RenderResult result = render(
       *prepared.world, loaded.camera, *prepared.lighting, job.settings,
       [&](double fraction) { progress(share * fraction); }, stop, control);
-  FinishedImage finished = finish(plan, result, progress, stop);
+  FinishedImage finished = finish(finishPlan(job, loaded), result, progress, stop);
   return {std::move(finished), std::move(result)};
 }
 
@@ -41,12 +40,6 @@ FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded) {
   return plan;
 }
 
-FinishPlan ownFinishPlan(const RenderJob& job, const LoadedScene& loaded) {
-  FinishPlan plan = finishPlan(job, loaded);
-  if (job.settings.isPart()) plan.settings.denoise = false;
-  return plan;
-}
-
 PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
   Stopwatch watch;
   PreparedScene prepared;
@@ -65,7 +58,7 @@ JobResult renderJob(const RenderJob& job, const LoadedScene& loaded, const Prepa
   Stopwatch watch;
   JobResult result = job.composite ? renderComposite(job, loaded, prepared, progress, stop, control)
                                    : renderPlain(job, loaded, prepared, progress, stop, control);
-  result.render.interrupted |= ownFinishPlan(job, loaded).settings.denoise && !result.denoised;
+  result.render.interrupted |= job.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   return result;
 }

@@ -24,8 +24,6 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded);
 
 // How the image is made of the job's samples.
 FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded);
-// The same, but a part is denoised only when it is merged.
-FinishPlan ownFinishPlan(const RenderJob& job, const LoadedScene& loaded);
 
 struct JobResult : FinishedImage {
   RenderResult render;

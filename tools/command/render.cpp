@@ -75,6 +75,8 @@ void render(const SceneOptions& options) {
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
   JobControl control(job, loaded);
+  RenderPart part;
+  if (job.settings.isPart()) part.identity = renderIdentity(job, loaded);  // of the files loaded
   print(outputMessages, options.quiet());  // after the last error that input can cause
   print(loaded.messages, options.quiet());
 
@@ -90,9 +92,8 @@ void render(const SceneOptions& options) {
 
   watch.lap();
   result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
-  RenderPart part;
   if (job.settings.isPart()) {
-    part = {renderIdentity(job, loaded), finishPlan(job, loaded)};
+    part.plan = finishPlan(job, loaded);
     result.image.state = partState(part, result.render);
   }
   if (result.render.samples == 0) nameAsPartial(job.outputs);

@@ -145,6 +145,9 @@ class Comparison:
             partial.rename(path)
         return path
 
+    def image(self, renderer, way):
+        return self.folder / f"{renderer}-{way.replace(', ', '-').replace(' ', '-')}.exr"
+
     def rows(self):
         """(way, relMSE, FLIP, seconds, samples, picture) of each way."""
         ways = [("chromeball", way, lambda *a, way=way: self.render(way, *a)) for way in WAYS]
@@ -159,13 +162,13 @@ class Comparison:
         found = [[] for _ in ways]
         for seed in range(1, self.options.seeds + 1):
             for row, (renderer, way, render) in zip(found, ways):
-                image = self.folder / f"{renderer}-{way.replace(', ', '-').replace(' ', '-')}.exr"
+                image = self.image(renderer, way)
                 taken, samples = render(image, self.options.seconds, seed)
                 apart = error(image, references[renderer])
                 row.append((apart["relmse"], apart["flip"], taken, samples))
         rows = []
         for row, (renderer, way, _) in zip(found, ways):
-            image = self.folder / f"{renderer}-{way.replace(', ', '-').replace(' ', '-')}.exr"
+            image = self.image(renderer, way)
             means = [statistics.mean(column) for column in zip(*row)]
             rows.append((way, *means, picture(image)))
         rows.append(("reference", None, None, None, None, picture(references["chromeball"])))
