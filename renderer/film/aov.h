@@ -19,6 +19,10 @@ struct FirstHit {
   Rgb albedo{0};    // base colour
   vec3 normal{0};   // unit shading normal, world space
   int material = -1, node = -1;
+  // What the camera sees behind mirrors, glass and other narrow lobes: the base colour of the last
+  // such surface or of the one behind, weighted by the throughput; or radiance L of the probe, as
+  // L / (L + its median). For a denoiser: the reflected and refracted details.
+  Rgb seen{0};
   // Radiance found before the path's second scattering by a broad lobe; none: all of the path's.
   std::optional<Rgb> direct;
 };

@@ -10,8 +10,8 @@ void FeatureFilm::add(int x, int y, int half, const FirstHit& first, const Rgb& 
   const Rgb direct = first.direct ? glm::min(*first.direct, radiance) : radiance;
   const float disparity = first.hit && first.depth > 0 ? 1 / first.depth : 0;
   const std::array<float, kChannels> values{
-      direct.x,       direct.y,       direct.z,       first.albedo.x, first.albedo.y,
-      first.albedo.z, first.normal.x, first.normal.y, first.normal.z, disparity};
+      direct.x,       direct.y,       direct.z,       first.seen.x, first.seen.y,
+      first.seen.z, first.normal.x, first.normal.y, first.normal.z, disparity};
   Half& to = pixels_[size_t(y) * size_t(width_) + size_t(x)][size_t(half)];
   to.weight += 1;
   for (size_t c = 0; c < kChannels; ++c) to.sums[c] += values[c];

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/path.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "integrate/mis.h"
 #include "integrate/regularization.h"
+#include "math/warp.h"
 #include "scene/thin_wall.h"
 
 namespace chromeball {
@@ -66,6 +69,24 @@ bool passAtLimit(const Scene& scene, PathState& state, const Instance& instance,
   return true;
 }
 
+// The median luminance of the background; 1 if it is black.
+float typicalRadiance(const LightingStrategy& lighting) {
+  constexpr int kSide = 16;
+  std::vector<float> luminances;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    luminances.push_back(luminance(lighting.background(vec3(0), squareToUniformSphere(u))));
+  }
+  const auto middle = luminances.begin() + kSide * kSide / 2;
+  std::nth_element(luminances.begin(), middle, luminances.end());
+  return *middle > 0 && std::isfinite(*middle) ? *middle : 1;
+}
+
+// Whether all lobes so far were narrow, so that the camera sees the surface.
+bool isSeen(const PathState& state) {
+  return state.first && state.lobes == Lobes::Narrow && !state.first->direct;
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
@@ -74,6 +95,7 @@ PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
       lighting_(lighting),
       settings_(settings),
       mirrorAlpha_(lighting.mirrorAlpha()),
+      typicalRadiance_(typicalRadiance(lighting)),
       direct_(world, lighting, settings) {}
 
 std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) const {
@@ -223,7 +245,10 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
 bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
                         PathContext& context) const {
   if (!hit) {
-    state.radiance += escapedRadiance(state, context);
+    const Rgb escaped = escapedRadiance(state, context);
+    if (isSeen(state) && state.depth > 0) [[unlikely]]
+      state.first->seen = escaped / (escaped + typicalRadiance_);
+    state.radiance += escaped;
     return false;
   }
   const Scene& scene = world_.scene;
@@ -249,9 +274,11 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
 
   MaterialPoint material = materialAt(scene, surface);
   if (isFirst)
-    *state.first = {true,           state.length,      material.baseColor,
-                    surface.normal, instance.material, instance.node,
-                    std::nullopt};
+    *state.first = {
+        true,          state.length,       material.baseColor, surface.normal, instance.material,
+        instance.node, material.baseColor, std::nullopt};
+  else if (isSeen(state)) [[unlikely]]
+    state.first->seen = glm::min(state.throughput * material.baseColor, 1.0f);
   if (ends) return passAtLimit(scene, state, instance, surface);
   if (state.minAlpha > 0 && !goesStraight(state, *surface.material)) [[unlikely]]
     widen(material, state.minAlpha);

@@ -113,6 +113,7 @@ class PathTracer {
   const LightingStrategy& lighting_;
   PathSettings settings_;
   float mirrorAlpha_;
+  float typicalRadiance_;  // luminance
   DirectLight direct_;
 };
 
