@@ -405,7 +405,7 @@ TEST(FeatureFilm, DirectLightIsThatOfOneBounce) {
 TEST(FeatureFilm, HalvesEstimateTheVariance) {
   FeatureFilm film(1, 1, true);
   for (uint64_t i = 0; i < 4; ++i)
-    film.add(0, 0, int(i % 2), {.hit = true, .depth = 4, .albedo = Rgb(i < 2 ? 1.0f : 0.0f)},
+    film.add(0, 0, int(i % 2), {.hit = true, .depth = 4, .seen = Rgb(i < 2 ? 1.0f : 0.0f)},
              Rgb(float(i)));
   EXPECT_EQ(film.direct().mean.texels[0], 1.5f);
   EXPECT_EQ(film.direct().half.texels[0], -0.5f);  // (0 + 2) / 2 - (1 + 3) / 2, halved

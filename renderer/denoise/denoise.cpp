@@ -140,9 +140,10 @@ Selection denoise(const Component& component, const FeaturePlanes& features,
   const auto second =
       filterHalves(component, guidesOf(first[1], component), features, {1, 4}, stop);
   progress(1);
-  return best({filtered(component, second[0]), filtered(component, second[1]),
-               filtered(component, first[0]), filtered(component, first[1]),
-               unfiltered(component)});
+  return best({filtered(component, second[0], Bandwidth::Wide),
+               filtered(component, second[1], Bandwidth::Narrow),
+               filtered(component, first[0], Bandwidth::Wide),
+               filtered(component, first[1], Bandwidth::Narrow), unfiltered(component)});
 }
 
 // No sample hit a surface or found light: the background of a transparent image.

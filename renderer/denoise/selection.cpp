@@ -6,16 +6,17 @@
 namespace chromeball {
 namespace {
 
-constexpr int kErrorReach = 3;     // of the window over which errors are averaged
+constexpr int kErrorReach = 3;     // of the window over which the noise is averaged
 constexpr int kBiasReach = 6;      // squared biases in the final estimate
 constexpr int kVarianceReach = 1;  // variances in it
 constexpr float kDark = 0.01f;     // as in film/noise.h; the mean of the image is about 1
-constexpr int kChoiceReach = 2;    // and choices
-constexpr float kWindow = (2 * kErrorReach + 1) * (2 * kErrorReach + 1);
+constexpr int kChoiceReach = 2;  // of the windows over which errors decide, and choices are blended
+constexpr float kWindow = (2 * kChoiceReach + 1) * (2 * kChoiceReach + 1);
+constexpr float kDarkChoice = 1.5f;  // as kDark, where the errors of a window decide
 
 // Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both
 // are known equally badly, and the filtered image is better.
-constexpr float kFilteredMargin = 0.5f, kUnfilteredMargin = 1.5f;
+constexpr float kFilteredMargin = 0.6f, kUnfilteredMargin = 0.8f;
 
 float square(float x) { return x * x; }
 
@@ -32,11 +33,31 @@ float total(const RgbPlanes& planes, int x, int y) {
   return planes[0].at(x, y) + planes[1].at(x, y) + planes[2].at(x, y);
 }
 
-// The index of the chosen candidate.
+// What the errors of a pixel are relative to. The narrow filters know a sharp highlight from the
+// dark pixels around it, and both halves of the samples contain it, but only one contains a
+// firefly.
+Plane squaredSizes(const std::vector<Candidate>& candidates) {
+  const Candidate& noisy = candidates.back();
+  return makePlaneLike(noisy.error[0], [&](int x, int y) {
+    float size = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      float sum = 0, count = 0;
+      for (const Candidate& candidate : candidates)
+        if (candidate.bandwidth == Bandwidth::Narrow) sum += candidate.color[c].at(x, y), ++count;
+      const float lesserHalf = noisy.color[c].at(x, y) - std::sqrt(noisy.variance[c].at(x, y));
+      size += square((sum / count + std::max(lesserHalf, 0.0f)) / 2);
+    }
+    return std::max(size, 3 * square(kDarkChoice));
+  });
+}
+
+// The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
+// pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
+  const Plane size = squaredSizes(candidates);
   const auto errorOf = [&](size_t i) {
-    return makePlaneLike(candidates[i].error[0],
-                         [&, i](int x, int y) { return total(candidates[i].error, x, y); });
+    return makePlaneLike(
+        size, [&, i](int x, int y) { return total(candidates[i].error, x, y) / size.at(x, y); });
   };
   Plane chosen = makePlaneLike(candidates[0].error[0], [](int, int) { return 0.0f; });
   Plane error = errorOf(0);
@@ -45,7 +66,7 @@ Plane choose(const std::vector<Candidate>& candidates) {
     const Plane gain =
         makePlaneLike(error, [&](int x, int y) { return error.at(x, y) - next.at(x, y); });
     const Plane squared = makePlaneLike(gain, [&](int x, int y) { return square(gain.at(x, y)); });
-    const Plane mean = boxMean(gain, kErrorReach), meanSquare = boxMean(squared, kErrorReach);
+    const Plane mean = boxMean(gain, kChoiceReach), meanSquare = boxMean(squared, kChoiceReach);
     const float margin = candidates[i].margin / std::sqrt(kWindow);
     const auto isBetter = [&](int x, int y) {
       return mean.at(x, y) > margin * std::sqrt(meanSquare.at(x, y));
@@ -73,8 +94,8 @@ Candidate unfiltered(const Component& component) {
   return candidate;
 }
 
-Candidate filtered(const Component& component, const HalfPlanes& halves) {
-  Candidate candidate{.margin = kFilteredMargin};
+Candidate filtered(const Component& component, const HalfPlanes& halves, Bandwidth bandwidth) {
+  Candidate candidate{.margin = kFilteredMargin, .bandwidth = bandwidth};
   for (size_t c = 0; c < 3; ++c) {
     const Plane &f0 = halves[0][c], &f1 = halves[1][c];
     const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];

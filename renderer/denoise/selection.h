@@ -8,11 +8,14 @@
 
 namespace chromeball {
 
+enum class Bandwidth { None, Narrow, Wide };  // of the filter
+
 // An image, and unbiased but noisy estimates of the squared errors of its pixels: squared bias and
 // variance together, and the variance alone.
 struct Candidate {
   RgbPlanes color{}, error{}, variance{};
   float margin = 0;  // standard errors by which it must be better than those before it
+  Bandwidth bandwidth = Bandwidth::None;
 };
 
 // The noisy image itself.
@@ -24,7 +27,7 @@ Candidate unfiltered(const Component& component);
 //   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 / 2,
 // and the error of the mean is the mean error of f0 and f1 less half the variance of either
 // (Bitterli et al. 2016, section 5.3).
-Candidate filtered(const Component& component, const HalfPlanes& halves);
+Candidate filtered(const Component& component, const HalfPlanes& halves, Bandwidth bandwidth);
 
 // An image, and its squared errors, averaged over windows.
 struct Selection {
@@ -32,8 +35,8 @@ struct Selection {
 };
 
 // At each pixel the first candidate than which no later one is significantly better on average over
-// the window around the pixel; blended where the choice changes. The last candidate is the
-// unfiltered image.
+// the window around the pixel; blended where the choice changes. One or more
+// candidates are narrow, and the last is the unfiltered image.
 Selection best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball

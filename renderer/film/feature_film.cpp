@@ -10,7 +10,7 @@ void FeatureFilm::add(int x, int y, int half, const FirstHit& first, const Rgb& 
   const Rgb direct = first.direct ? glm::min(*first.direct, radiance) : radiance;
   const float disparity = first.hit && first.depth > 0 ? 1 / first.depth : 0;
   const std::array<float, kChannels> values{
-      direct.x,       direct.y,       direct.z,       first.seen.x, first.seen.y,
+      direct.x,     direct.y,       direct.z,       first.seen.x,   first.seen.y,
       first.seen.z, first.normal.x, first.normal.y, first.normal.z, disparity};
   Half& to = pixels_[size_t(y) * size_t(width_) + size_t(x)][size_t(half)];
   to.weight += 1;
