@@ -13,9 +13,12 @@ namespace {
 
 int shell(const std::string& line) { return std::system((line + " > /dev/null 2>&1").c_str()); }
 
+bool hasCluster() { return shell("sinfo -h -o %T | grep -E 'idle|mix|alloc'") == 0; }
+
+constexpr const char* kNoCluster = "no Slurm cluster; see tools/scripts/one_machine_slurm.sh";
+
 TEST(Farm, MergesShardsOneOfWhichWasKilled) {
-  if (shell("sinfo -h -o %T | grep -E 'idle|mix|alloc'") != 0)
-    GTEST_SKIP() << "no Slurm cluster; see tools/scripts/one_machine_slurm.sh";
+  if (!hasCluster()) GTEST_SKIP() << kNoCluster;
   const TemporaryFolder folder;
   const std::string source = kSourceDir, merged = folder / "merged.exr", log = folder / "log";
   const std::string options =
@@ -41,6 +44,31 @@ TEST(Farm, MergesShardsOneOfWhichWasKilled) {
   ASSERT_EQ(a.texels.size(), b.texels.size());
   for (size_t i = 0; i < a.texels.size(); ++i)
     ASSERT_NEAR(a.texels[i], b.texels[i], 1e-6f * std::max(1.0f, b.texels[i]));
+}
+
+TEST(Farm, RendersFrames) {
+  if (!hasCluster()) GTEST_SKIP() << kNoCluster;
+  const TemporaryFolder folder;
+  const std::string source = kSourceDir, demo = source + "/scenes/demo.toml";
+  const std::string options = " --size 48x32 --samples 16 --orbit 360 -o ";
+  ASSERT_EQ(shell("CHROMEBALL=" + std::string(kCommand) + " " + source +
+                  "/tools/scripts/farm_slurm.sh " + demo + " --frames 2:6:2 -o " +
+                  folder / "farm.##.exr -- --size 48x32 --samples 16 --orbit 360"),
+            0);
+  const auto frame = [&](const std::string& name, int number) {
+    return folder / fmt::format("{}.{:02}.exr", name, number);
+  };
+  for (int tenths = 0; tenths < 1200; ++tenths) {
+    if (std::filesystem::exists(frame("farm", 2)) && std::filesystem::exists(frame("farm", 4)) &&
+        std::filesystem::exists(frame("farm", 6)))
+      break;
+    usleep(100'000);
+  }
+  ASSERT_EQ(shell(std::string(kCommand) + " render " + demo + " --frames 2:6:2" + options +
+                  folder / "own.##.exr"),
+            0);
+  for (const int number : {2, 4, 6})
+    EXPECT_EQ(readImage(frame("farm", number)).texels, readImage(frame("own", number)).texels);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "job/load_scene.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/error.h"
 #include "base/suggest.h"
@@ -16,7 +17,7 @@
 namespace chromeball {
 namespace {
 
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin,
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache* texels,
                  std::vector<std::string>& warnings) {
   Scene scene;
   warnings.clear();
@@ -24,6 +25,7 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin,
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
+    choice.texels = texels;
     choice.environment = !file.settings.has("probe.file");
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
@@ -76,7 +78,7 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
                    file.settings.location("probe.mapping"));
 }
 
-Camera chooseCamera(const RenderJob& job, const Scene& scene) {
+Camera chooseCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
   if (job.file.camera) return *job.file.camera;
   if (const auto wanted = job.file.settings.getIfGiven<std::string>("camera.name")) {
     std::vector<std::string_view> names;
@@ -90,8 +92,38 @@ Camera chooseCamera(const RenderJob& job, const Scene& scene) {
                *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
+  return *view.camera;
+}
+
+AutomaticView viewOf(const RenderJob& job, const Scene& scene, const glm::dvec3& origin) {
   const RenderSettings& s = job.settings;
-  return framingCamera(scene, float(s.width) / float(s.height));
+  const float aspect = float(s.width) / float(s.height);
+  const bool isPlaced = job.file.camera || job.file.settings.has("camera.name");
+  AutomaticView view{{}, centreOf(scene), origin};
+  if (!isPlaced && scene.cameras.empty())
+    view.camera = job.file.settings.has("orbit") ? framingCameraAround(scene, aspect)
+                                                 : framingCamera(scene, aspect);
+  return view;
+}
+
+// The job's view, or that of the time 0. `scene`: at the job's time, with its origin.
+AutomaticView viewAtStart(const RenderJob& job, const Scene& scene, const glm::dvec3& origin,
+                          TexelCache* texels) {
+  if (job.view) {
+    AutomaticView view = *job.view;
+    const vec3 move(view.origin - origin);
+    view.origin = origin;
+    view.centre += move;
+    if (view.camera) view.camera->position += move;
+    return view;
+  }
+  AutomaticView now = viewOf(job, scene, origin);
+  if (!scene.isAnimated || !(now.camera || job.file.settings.has("orbit"))) return now;
+  SceneFile start = job.file;
+  for (ModelEntry& model : start.models)
+    if (model.choice.animation) model.choice.animation->seconds = 0;
+  std::vector<std::string> known;
+  return viewOf(job, loadModels(start, origin, texels, known), origin);
 }
 
 Camera withLens(const RenderJob& job, Camera camera) {
@@ -113,7 +145,7 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     settings.width = job.size->width;
     settings.height = job.size->height;
   } else if (!job.file.camera && !scene.cameras.empty()) {
-    const float aspect = chooseCamera(job, scene).aspect;
+    const float aspect = chooseCamera(job, scene, {}).aspect;
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
@@ -150,6 +182,48 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   return std::make_unique<const Room>(std::move(model), surroundings->capture, surroundings->model);
 }
 
+// The models in the scene's coordinates, with the scene file's lamps.
+struct PlacedModels {
+  Scene scene;
+  Camera camera;  // before its `orbit`
+  AutomaticView view;
+  glm::dvec3 origin{0};
+  std::vector<std::string> warnings;
+};
+
+// Moves what the scene file places in the world to the scene's coordinates.
+void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
+  if (job.file.camera) job.file.camera->position -= vec3(origin);
+  if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
+}
+
+PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
+  PlacedModels placed;
+  Scene& scene = placed.scene;
+  scene = loadModels(job.file, glm::dvec3(0), texels, placed.warnings);
+  placed.origin = originFor(scene, job.file.models.front().file);
+  if (placed.origin != glm::dvec3(0)) {
+    scene = loadModels(job.file, placed.origin, texels, placed.warnings);
+    moveToOrigin(job, placed.origin);
+  }
+  chooseSize(job, scene);
+  placed.view = viewAtStart(job, scene, placed.origin, texels);
+  placed.camera = withLens(job, chooseCamera(job, scene, placed.view));
+  for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
+  for (Material& material : scene.materials) material.singleSided = job.singleSided;
+  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
+  return placed;
+}
+
+Camera turned(const RenderJob& job, const Camera& start, const vec3& centre) {
+  return start.turnedAround(centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
+}
+
+// Whether rays see the same: materials and textures are not animated.
+bool isSameWorld(const Scene& a, const Scene& b) {
+  return a.instances == b.instances && a.lights == b.lights && a.meshes == b.meshes;
+}
+
 void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
   surroundings.grow(1e-4f);  // objects on the floor touch it
   for (const Instance& instance : scene.instances)
@@ -161,37 +235,52 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 
 }  // namespace
 
-LoadedScene loadScene(RenderJob& job) {
-  std::vector<std::string> modelWarnings;
-  Scene scene = loadModels(job.file, glm::dvec3(0), modelWarnings);
-  const glm::dvec3 origin = originFor(scene, job.file.models.front().file);
-  if (origin != glm::dvec3(0)) {
-    scene = loadModels(job.file, origin, modelWarnings);
-    if (job.file.camera) job.file.camera->position -= vec3(origin);
-    if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
-  }
-  chooseSize(job, scene);
-  const Camera camera = withLens(job, chooseCamera(job, scene));
-  for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, origin);
-  for (Material& material : scene.materials) material.singleSided = job.singleSided;
-  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
+LoadedScene loadScene(RenderJob& job, TexelCache* texels) {
+  PlacedModels models = placeModels(job, texels);
+  Scene& scene = models.scene;
+  const Camera camera = turned(job, models.camera, models.view.centre);
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
   if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
-  std::unique_ptr<const Room> room = loadRoom(job, origin, files);
+  std::unique_ptr<const Room> room = loadRoom(job, models.origin, files);
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
               float(settings.get<double>("probe.scale")));
   loaded.latLong = {};
-  LoadedScene result{
-      std::move(scene), camera, std::move(loaded), std::move(probe), job.file.surroundings,
-      std::move(room),  origin, std::move(files)};
+  LoadedScene result{std::move(scene),  camera,           models.camera,         models.view,
+                     std::move(loaded), std::move(probe), job.file.surroundings, std::move(room),
+                     models.origin,     std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
-  result.messages = loadMessages(job, result, modelWarnings);
+  result.messages = loadMessages(job, result, models.warnings);
   return result;
+}
+
+bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
+  assert(!job.composite);
+  if (!loaded.scene.isAnimated) {
+    chooseSize(job, loaded.scene);
+    loaded.camera = turned(job, loaded.startCamera, loaded.view.centre);
+    return false;
+  }
+  PlacedModels models = placeModels(job, &texels);
+  if (job.file.surroundings && !loaded.room)
+    checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
+  loaded.startCamera = models.camera;
+  loaded.view = models.view;
+  loaded.camera = turned(job, models.camera, models.view.centre);
+  loaded.messages = loadMessages(job, loaded, models.warnings);
+  const bool moved = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
+  if (moved) loaded.scene = std::move(models.scene);
+  if (models.origin != loaded.origin) {
+    loaded.origin = models.origin;
+    loaded.surroundings = job.file.surroundings;
+    std::vector<std::string> known;
+    loaded.room = loadRoom(job, loaded.origin, known);
+  }
+  return moved;
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,

@@ -15,7 +15,9 @@ namespace chromeball {
 
 struct LoadedScene {
   Scene scene;
-  Camera camera;            // the camera of the image
+  Camera camera;       // the camera of the image
+  Camera startCamera;  // the same before its `orbit`
+  AutomaticView view;
   LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
   Probe probe;              // black if only the scene's own lights are used
   std::optional<Surroundings> surroundings;  // the model is inside
@@ -30,8 +32,12 @@ struct LoadedScene {
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
-// camera. Throws InputError.
-LoadedScene loadScene(RenderJob& job);
+// camera. `texels`: those of the models' other loads; may be null. Throws InputError.
+LoadedScene loadScene(RenderJob& job, TexelCache* texels = nullptr);
+
+// Replaces the camera and, where a model is animated, what moves with it, for another frame of the
+// same job. Returns whether the scene's geometry or lights changed. Not for composites.
+bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels);
 
 // The strategy, with the probe mapped onto the scene's surroundings if it has any. `loaded`
 // must outlive it. Throws InputError for an unknown name.

@@ -45,12 +45,14 @@ NamedSetting named(const Settings& settings, std::string_view name) {
 }
 
 // Applies the settings that are stored per model.
-void applyToModels(const Settings& over, const Settings& all, std::vector<ModelEntry>& models) {
-  for (ModelEntry& model : models) {
+void applyToModels(const Settings& over, SceneFile& file) {
+  const Settings& all = file.settings;
+  for (ModelEntry& model : file.models) {
     GltfChoice& choice = model.choice;
     for (const char* name : {"model.time", "model.animation"})
       if (over.has(name)) {
         if (!choice.animation) choice.animation.emplace();
+        choice.animation->ifAny = all.has("frames") || !file.probeTurns.empty();
         if (choice.animation->location.empty() || name == std::string_view("model.animation"))
           choice.animation->location = over.location(name);
       }
@@ -64,6 +66,17 @@ void applyToModels(const Settings& over, const Settings& all, std::vector<ModelE
   }
 }
 
+// Between the keys linear, before and after them constant.
+double rotationAt(const std::vector<std::pair<double, double>>& keys, double seconds) {
+  const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
+                                      [](double t, const auto& key) { return t < key.first; });
+  if (after == keys.begin()) return keys.front().second;
+  if (after == keys.end()) return keys.back().second;
+  const auto& [t0, degrees0] = *(after - 1);
+  const auto& [t1, degrees1] = *after;
+  return degrees0 + (degrees1 - degrees0) * (seconds - t0) / (t1 - t0);
+}
+
 // Overrides the settings of the scene file by `over`.
 void merge(SceneFile& file, const Settings& over) {
   if (over.has("camera.name")) file.camera.reset();
@@ -72,7 +85,11 @@ void merge(SceneFile& file, const Settings& over) {
   if (std::any_of(std::begin(limits), std::end(limits), isGiven))  // the limits are one decision
     for (const std::string_view name : limits) file.settings.erase(name);
   file.settings.merge(over);
-  applyToModels(over, file.settings, file.models);
+  applyToModels(over, file);
+  if (!file.probeTurns.empty() && !over.has("probe.rotation"))
+    file.settings.set(
+        "probe.rotation",
+        rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
 }
 
 // The layers of plain renders; those of composites are in CompositePlan.

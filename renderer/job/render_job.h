@@ -14,6 +14,14 @@
 
 namespace chromeball {
 
+// What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
+// times.
+struct AutomaticView {
+  std::optional<Camera> camera;  // if nobody has placed one
+  vec3 centre{0};                // of `orbit`
+  glm::dvec3 origin{0};          // of these coordinates in the world, metres
+};
+
 struct RenderJob {
   SceneFile file;                 // its `settings` include the given ones
   RenderSettings settings;        // of the integrator; the size is final after loadScene()
@@ -22,6 +30,7 @@ struct RenderJob {
   bool straightGlassShadows = false;  // passShadowsStraight()
   NamedSetting strategy;
   std::optional<CompositePlan> composite;
+  std::optional<AutomaticView> view;  // nullopt: to be found by loadScene()
 
   // For writing the image; no effect on rendering.
   std::vector<std::string> outputs;

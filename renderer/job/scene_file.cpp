@@ -52,6 +52,18 @@ ModelEntry readModel(const Entry& entry) {
   return result;
 }
 
+void readProbeTurns(const Entry& keys, SceneFile& scene) {
+  if (!keys) return;
+  if (!keys.isArray()) keys.mustBe(keys.setting->form);
+  forEach(keys, [&](const Entry& key) {
+    if (!key.isArrayOf(2)) keys.mustBe(keys.setting->form);
+    const double seconds = key.element(0).number();
+    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().first))
+      keys.mustBe(keys.setting->form);
+    scene.probeTurns.emplace_back(seconds, key.element(1).number());
+  });
+}
+
 void readLens(const Section& camera, SceneFile& scene) {
   const Entry aperture = camera["aperture"], focus = camera["focus"];
   if (!aperture && !focus) return;
@@ -111,6 +123,7 @@ SceneFile readSceneFile(const std::string& path) {
   for (const char* section : {"camera", "probe", "lighting", "render", "output"})
     root.section(section).read(scene.settings);
   readCamera(root.section("camera"), scene);
+  readProbeTurns(root.section("probe")["rotation_keys"], scene);
   forEach(root["light"], [&](const Entry& e) { scene.lamps.push_back(readLamp(e)); });
   if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));

@@ -40,6 +40,7 @@ struct SceneFile {
   std::vector<ModelEntry> models;  // at least one
   Settings settings;               // the given keys, except those of structured parts
   std::optional<Camera> camera;    // [camera] with `position`
+  std::vector<std::pair<double, double>> probeTurns;  // seconds, degrees; ascending, may be empty
   std::optional<Lens> lens;
   std::vector<Lamp> lamps;  // [[light]]
   std::optional<CompositeEntry> composite;

@@ -145,6 +145,12 @@ void addProbe(std::vector<Setting>& rows) {
        .unit = "degrees",
        .fallback = "0",
        .help = "Turns the environment about +Y, counter-clockwise seen from above."});
+  add({.key = "rotation_keys",
+       .type = Compound,
+       .form = "pairs [seconds, degrees] in ascending order of time",
+       .absent = "`rotation` at all times",
+       .help = "The rotation at times of an animation, linear between; see --frames and "
+               "--animation-time."});
   add({.key = "scale",
        .option = "probe-scale",
        .argument = "FACTOR",

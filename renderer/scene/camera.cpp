@@ -60,4 +60,19 @@ Camera Camera::lookAt(vec3 position, vec3 target, vec3 up, float fovRadians) {
   return camera;
 }
 
+Camera Camera::turnedAround(const vec3& centre, double degrees) const {
+  if (degrees == 0) return *this;
+  const glm::dvec3 forward = -glm::dvec3(back);
+  const double distance =
+      std::max(0.0, glm::dot(glm::dvec3(centre) - glm::dvec3(position), forward));
+  const glm::dvec3 pivot = glm::dvec3(position) + distance * forward;
+  const glm::dquat turn = glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0));
+  Camera turned = *this;
+  turned.position = vec3(pivot + turn * (glm::dvec3(position) - pivot));
+  turned.right = vec3(turn * glm::dvec3(right));
+  turned.up = vec3(turn * glm::dvec3(up));
+  turned.back = vec3(turn * glm::dvec3(back));
+  return turned;
+}
+
 }  // namespace chromeball

@@ -22,6 +22,10 @@ struct Camera {
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);
+
+  // The camera after a turn about the vertical (Y) through the point of its line of sight that is
+  // nearest to `centre`; counter-clockwise seen from above.
+  Camera turnedAround(const vec3& centre, double degrees) const;
 };
 
 // The beam around a camera ray. Its cross-section after `distance` metres is

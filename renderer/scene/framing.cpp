@@ -40,6 +40,12 @@ Bounds boundsOf(const Scene& scene, const Instance& instance) {
   return box;
 }
 
+Bounds boundsOf(const Scene& scene, const std::vector<int>& instances) {
+  Bounds box;
+  for (const int i : instances) extend(box, boundsOf(scene, scene.instances[size_t(i)]));
+  return box;
+}
+
 bool isFlat(const Bounds& box) {
   constexpr float kFlat = 20;
   const vec3 size = box.max - box.min;
@@ -70,11 +76,15 @@ std::vector<int> subjects(const Scene& scene) {
 
 }  // namespace
 
+vec3 centreOf(const Scene& scene) {
+  const Bounds box = boundsOf(scene, subjects(scene));
+  return box.empty() ? vec3(0) : 0.5f * box.min + 0.5f * box.max;
+}
+
 Camera framingCamera(const Scene& scene, float aspectRatio) {
   const std::vector<int> framed = subjects(scene);
   if (const auto inside = interiorView(scene, framed)) return *inside;
-  Bounds box;
-  for (const int i : framed) extend(box, boundsOf(scene, scene.instances[size_t(i)]));
+  const Bounds box = boundsOf(scene, framed);
   glm::dvec3 centre(0), size(0);
   if (!box.empty()) {
     centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
@@ -104,6 +114,28 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
   const double distance = std::max(across.distance(), upwards.distance());
   camera.position =
       vec3(centre + across.position() * right + upwards.position() * up + distance * back);
+  return camera;
+}
+
+Camera framingCameraAround(const Scene& scene, float aspectRatio) {
+  const std::vector<int> framed = subjects(scene);
+  const vec3 centre = centreOf(scene);
+  float squaredRadius = 0;
+  for (const int i : framed) {
+    const Instance& instance = scene.instances[size_t(i)];
+    for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
+      const vec3 p = instance.point(position) - centre;
+      squaredRadius = std::max(squaredRadius, glm::dot(p, p));
+    }
+  }
+  const float radius = std::sqrt(squaredRadius);
+  Camera camera = framingCamera(scene, aspectRatio);
+  if (radius <= 1e-6f * glm::length(centre)) return camera;
+  // The sphere touches the narrower pair of the view's planes.
+  const double slope = std::tan(0.5 * kFov) / kMargin * std::min(1.0, double(aspectRatio));
+  const double distance = radius * std::sqrt(1 + 1 / (slope * slope));
+  camera = Camera::lookAt({0.45f, 0.35f, 1}, vec3(0), vec3(0, 1, 0), kFov);
+  camera.position = vec3(glm::dvec3(centre) + distance * glm::dvec3(camera.back));
   return camera;
 }
 

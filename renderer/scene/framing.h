@@ -14,4 +14,11 @@ namespace chromeball {
 // that extend beyond the bounds of all other instances by more than the width of those bounds.
 Camera framingCamera(const Scene& scene, float aspectRatio);
 
+// A camera that sees the scene from the same direction, and can turn around its centre with all
+// vertices in view.
+Camera framingCameraAround(const Scene& scene, float aspectRatio);
+
+// The centre of the bounds of what framingCamera() frames; 0 for a scene without triangles.
+vec3 centreOf(const Scene& scene);
+
 }  // namespace chromeball

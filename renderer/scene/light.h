@@ -27,6 +27,8 @@ struct PunctualLight {
   float range = INFINITY;                      // metres; beyond it the light is 0
   float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
 
+  bool operator==(const PunctualLight&) const = default;
+
   // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions).
   float intensityOfOneWatt() const;
 };

@@ -87,6 +87,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.nodeNames, other.nodeNames);
   moveToEnd(scene.files, other.files);
   moveToEnd(scene.notes, other.notes);
+  scene.isAnimated |= other.isAnimated;
 }
 
 }  // namespace chromeball

@@ -26,6 +26,8 @@ struct Mesh {
   std::vector<vec4> tangents;          // filled only where a material has a normal map
   std::vector<vec4> colors;            // linear RGBA; empty: white
   std::vector<std::vector<vec2>> uvs;  // by UV set; filled only for sets that the material uses
+
+  bool operator==(const Mesh&) const = default;
 };
 
 // Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
@@ -34,6 +36,7 @@ struct Transform {
   vec3 translation{0};
 
   vec3 point(const vec3& p) const { return linear * p + translation; }
+  bool operator==(const Transform&) const = default;
 };
 
 // A mesh with a transform and a material. A mesh with a single instance is stored in world space
@@ -46,6 +49,7 @@ struct Instance {
   std::optional<Transform> toWorld;
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
+  bool operator==(const Instance&) const = default;
 };
 
 struct Scene {
@@ -62,6 +66,7 @@ struct Scene {
   std::vector<std::string> notes;  // hints for the user: "FILE: ..."
   std::vector<int> nodeParents;    // by node, -1 for none; empty if no node has a parent
   std::vector<std::string> files;  // paths of all files read: models, their buffers and images
+  bool isAnimated = false;         // shown at a time of an animation
 
   size_t triangleCount() const;  // instanced triangles count once per instance
   size_t byteCount() const;      // of geometry and texels, for the statistics

@@ -3,17 +3,20 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <set>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "image_noise_text.h"
 #include "job/checkpoint.h"
+#include "job/frame_scene.h"
 #include "job/job.h"
 #include "job/job_description.h"
 #include "job/job_outputs.h"
 #include "job/job_report.h"
 #include "job/output_file.h"
+#include "job/sequence.h"
 #include "lighting/methods.h"
 #include "messages.h"
 #include "progress_bar.h"
@@ -61,8 +64,34 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
                inWords(result.denoised), fmt::join(job.outputs, ", "));
 }
 
-void render(const SceneOptions& options) {
-  RenderJob job = planJob(openScene(options.scene), options.settings);
+void stopOnSignals() {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+}
+
+// The image, ready to be written except for its state.
+JobResult renderImage(const RenderJob& job, const LoadedScene& loaded,
+                      const PreparedScene& prepared, const Progress& progress) {
+  JobControl control(job, loaded);
+  JobResult result =
+      renderJob(job, loaded, prepared, progress, interrupted,
+                job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
+  result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
+  return result;
+}
+
+void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
+                 PhaseSeconds seconds) {
+  Stopwatch watch;
+  for (const std::string& path : job.outputs) writeImage(path, result.image, job.display);
+  seconds.render = result.seconds;
+  seconds.write = watch.lap();
+  if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))
+    writeText(*stats, statistics(job, loaded, result, seconds).dump(2) + "\n");
+}
+
+void renderStill(const SceneFile& scene, const SceneOptions& options) {
+  RenderJob job = planJob(scene, options.settings);
   const Messages outputMessages = checkOutputs(job);
   const ThreadLimit threads(options.settings);
 
@@ -74,36 +103,82 @@ void render(const SceneOptions& options) {
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
-  JobControl control(job, loaded);
   RenderPart part;
   if (job.settings.isPart()) part.identity = renderIdentity(job, loaded);  // of the files loaded
   print(outputMessages, options.quiet());  // after the last error that input can cause
   print(loaded.messages, options.quiet());
 
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  stopOnSignals();
   JobResult result = [&] {
     ProgressBar bar(options.showsProgress());
-    return renderJob(
-        job, loaded, prepared, [&](double fraction) { bar.update(fraction); }, interrupted,
-        job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
+    return renderImage(job, loaded, prepared, [&](double fraction) { bar.update(fraction); });
   }();
-  seconds.render = result.seconds;
-
-  watch.lap();
-  result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
   if (job.settings.isPart()) {
     part.plan = finishPlan(job, loaded);
     result.image.state = partState(part, result.render);
   }
   if (result.render.samples == 0) nameAsPartial(job.outputs);
-  for (const std::string& path : job.outputs) writeImage(path, result.image, job.display);
-  seconds.write = watch.lap();
-  if (const auto stats = options.settings.getIfGiven<std::string>("stats"))
-    writeText(*stats, statistics(job, loaded, result, seconds).dump(2) + "\n");
+  writeImages(job, loaded, result, seconds);
 
   print(resultMessages(job, loaded, prepared, result), options.quiet());
   printOutcome(job, result, options.quiet());
+}
+
+bool isFinished(const RenderJob& job) {
+  return std::all_of(job.outputs.begin(), job.outputs.end(),
+                     [](const std::string& path) { return std::filesystem::exists(path); });
+}
+
+// Messages that an earlier frame has not printed.
+void printNew(const Messages& messages, std::set<std::string>& printed, bool quiet) {
+  for (const Message& message : messages)
+    if (printed.insert(message.text).second) print({message}, quiet);
+}
+
+void renderFrames(const std::vector<SequenceFrame>& frames, const SceneOptions& options) {
+  const ThreadLimit threads(options.settings);
+  stopOnSignals();
+  FrameScene scene;
+  std::set<std::string> printed;
+  size_t kept = 0;
+  for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
+    const SequenceFrame& frame = frames[i];
+    RenderJob job = planJob(frame.scene, frame.given);
+    const Messages outputMessages = checkOutputs(job);
+    if (!options.settings.get<bool>("overwrite") && isFinished(job)) {
+      ++kept;
+      continue;
+    }
+    Stopwatch watch;
+    scene.show(job);
+    const PhaseSeconds seconds{.load = watch.lap()};
+    prepareOutputs(job, scene.loaded().files);
+    printNew(outputMessages, printed, options.quiet());
+    printNew(scene.loaded().messages, printed, options.quiet());
+    const JobResult result = [&] {
+      ProgressBar bar(options.showsProgress());
+      return renderImage(job, scene.loaded(), scene.prepared(), [&](double fraction) {
+        bar.update((double(i - kept) + fraction) / double(frames.size() - kept));
+      });
+    }();
+    if (result.render.interrupted) break;  // an image that exists is a finished one
+    writeImages(job, scene.loaded(), result, seconds);
+    printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,
+             options.quiet());
+    if (!options.quiet()) fmt::print("frame {}: ", frame.number);
+    printOutcome(job, result, options.quiet());
+  }
+  if (interrupted)
+    throw Interrupted("interrupted; the same command goes on with the frames that are missing");
+  if (kept > 0 && !options.quiet())
+    fmt::print("{} of {} frames existed before; --overwrite renders them again\n", kept,
+               frames.size());
+}
+
+void render(const SceneOptions& options) {
+  const SceneFile scene = openScene(options.scene);
+  const std::vector<SequenceFrame> frames = framesOf(scene, options.settings);
+  frames.empty() ? renderStill(scene, options) : renderFrames(frames, options);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ Transform roundToFloat(const dmat4& m) { return {glm::mat3(glm::dmat3(m)), vec3(
 
 class InstanceReader {
  public:
-  InstanceReader(GltfFile& file, const NodeTree& tree)
-      : file_(file), tree_(tree), materials_(file) {}
+  InstanceReader(GltfFile& file, const NodeTree& tree, TexelCache* cache)
+      : file_(file), tree_(tree), materials_(file, cache) {}
 
   Scene read() {
     for (int node : tree_.inScene) planNode(node);
@@ -148,8 +148,8 @@ class InstanceReader {
 
 }  // namespace
 
-Scene readInstances(GltfFile& file, const NodeTree& tree) {
-  return InstanceReader(file, tree).read();
+Scene readInstances(GltfFile& file, const NodeTree& tree, TexelCache* cache) {
+  return InstanceReader(file, tree, cache).read();
 }
 
 }  // namespace chromeball

@@ -4,12 +4,13 @@
 
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/node_tree.h"
+#include "scene/gltf/texel_cache.h"
 #include "scene/scene.h"
 
 namespace chromeball {
 
 // A scene with the meshes, instances, materials and textures of the nodes in the tree. Geometry
-// that several primitives share is stored once.
-Scene readInstances(GltfFile& file, const NodeTree& tree);
+// that several primitives share is stored once. `cache`: as MaterialReader.
+Scene readInstances(GltfFile& file, const NodeTree& tree, TexelCache* cache);
 
 }  // namespace chromeball

@@ -77,10 +77,12 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   decodeMeshopt(file);
   decodeDraco(file);
   if (choice.variant) applyVariant(file, *choice.variant);
-  if (choice.animation) applyAnimation(file, *choice.animation);
+  const bool isAnimated =
+      choice.animation && !(choice.animation->ifAny && file.model.animations.empty());
+  if (isAnimated) applyAnimation(file, *choice.animation);
   addMissingNodes(file.model);
   const NodeTree tree = readNodes(file, placement, choice.origin);
-  Scene scene = readInstances(file, tree);
+  Scene scene = readInstances(file, tree, choice.texels);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
   scene.lights = readLights(file, tree, choice.lightUnits);
@@ -88,6 +90,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scene.nodeNames = tree.names;
   scene.nodeParents = tree.parents;
   scene.files = file.files();
+  scene.isAnimated = isAnimated;
   if (!choice.animation && !file.model.animations.empty())
     scene.notes.push_back(
         fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS selects "

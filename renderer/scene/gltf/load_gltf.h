@@ -10,6 +10,8 @@
 
 namespace chromeball {
 
+struct TexelCache;
+
 // Receives one line per warning ("FILE: what was ignored"), the same one only once per file.
 using Warn = std::function<void(const std::string&)>;
 
@@ -22,6 +24,7 @@ struct AnimationTime {
   std::string name;      // or its index if it has no name; empty: the first animation
   std::string location;  // of the setting, for the error if the animation does not exist
   double seconds = 0;
+  bool ifAny = false;  // a file without animations stays in its rest pose
 };
 
 // A variant of the file's materials (KHR_materials_variants).
@@ -37,6 +40,7 @@ struct GltfChoice {
   ExternalFiles external = ExternalFiles::Refuse;
   LightUnits lightUnits = LightUnits::Photometric;  // of KHR_lights_punctual
   bool environment = true;                          // whether to read the file's own light probe
+  TexelCache* texels = nullptr;                     // of earlier loads; outlives this one
   glm::dvec3 origin{0};  // scene origin in world space, subtracted in double precision
 };
 

@@ -23,6 +23,8 @@ Wrap wrapOf(int code) {
   return Wrap::Repeat;
 }
 
+bool isDecoded(const TexelGrid& grid) { return grid.width > 0; }
+
 }  // namespace
 
 int MaterialReader::use(int index, const std::string& where) {
@@ -167,7 +169,12 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
 TexelGrid* MaterialReader::grid(int image) {
   const auto [found, isNew] = gridOf_.try_emplace(image, int(grids_.size()));
   if (isNew) {
-    grids_.push_back(std::make_unique<TexelGrid>());
+    std::shared_ptr<TexelGrid> cached;
+    if (cache_)
+      if (const auto at = cache_->grids.find({file_.files().front(), image});
+          at != cache_->grids.end())
+        cached = at->second;
+    grids_.push_back(cached ? std::move(cached) : std::make_shared<TexelGrid>());
     imageOf_.push_back(image);
   }
   return grids_[size_t(found->second)].get();
@@ -177,8 +184,9 @@ TexelGrid* MaterialReader::grid(int image) {
 // files come first, so that no thread works on one alone at the end. Textures of one image that
 // differ in their samplers only share the mip levels.
 void MaterialReader::moveInto(Scene& scene) {
-  using Chain = std::shared_ptr<const std::vector<TexelGrid>>;
-  std::map<std::tuple<const TexelGrid*, bool, bool>, Chain> chains;
+  TexelCache own;
+  TexelCache& cache = cache_ ? *cache_ : own;
+  auto& chains = cache.chains;
   for (const Texture& t : textures_) chains[{t.grid, t.srgb, t.weightedByAlpha}];
   struct Source {
     size_t grid;
@@ -188,6 +196,7 @@ void MaterialReader::moveInto(Scene& scene) {
   std::vector<Source> sources(grids_.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     sources[i].grid = i;
+    if (isDecoded(*grids_[i])) continue;
     sources[i].bytes = file_.image(imageOf_[i], sources[i].storage);
   }
   std::sort(sources.begin(), sources.end(),
@@ -195,17 +204,22 @@ void MaterialReader::moveInto(Scene& scene) {
   std::atomic<size_t> next = 0;
   tbb::parallel_for(size_t(0), sources.size(), [&](size_t) {
     const Source& source = sources[next++];
-    DecodedImage decoded = decodeImage(source.bytes, file_.describeImage(imageOf_[source.grid]));
     TexelGrid& grid = *grids_[source.grid];
-    grid = {decoded.width, decoded.height, std::move(decoded.texels8),
-            std::move(decoded.texelsFloat)};
+    if (!isDecoded(grid)) {
+      DecodedImage decoded = decodeImage(source.bytes, file_.describeImage(imageOf_[source.grid]));
+      grid = {decoded.width, decoded.height, std::move(decoded.texels8),
+              std::move(decoded.texelsFloat)};
+    }
     for (bool srgb : {false, true})
       for (bool weighted : {false, true})
-        if (const auto wanted = chains.find({&grid, srgb, weighted}); wanted != chains.end())
+        if (const auto wanted = chains.find({&grid, srgb, weighted});
+            wanted != chains.end() && !wanted->second)
           wanted->second =
               std::make_shared<const std::vector<TexelGrid>>(makeMipLevels(grid, srgb, weighted));
   });
   for (Texture& t : textures_) t.mipLevels = chains[{t.grid, t.srgb, t.weightedByAlpha}];
+  for (size_t i = 0; i < grids_.size(); ++i)
+    cache.grids.try_emplace({file_.files().front(), imageOf_[i]}, grids_[i]);
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

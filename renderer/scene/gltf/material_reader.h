@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/gltf/gltf_file.h"
+#include "scene/gltf/texel_cache.h"
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -16,13 +17,15 @@ namespace chromeball {
 // Converts on demand, so that unused materials and images cost nothing.
 class MaterialReader {
  public:
-  explicit MaterialReader(GltfFile& file) : file_(file) {}
+  // `cache` receives what is decoded; null: none.
+  MaterialReader(GltfFile& file, TexelCache* cache) : file_(file), cache_(cache) {}
 
   // Converts glTF material `index` (-1: the default material); returns its index in the scene.
   int use(int index, const std::string& where);
   const Material& operator[](int material) const { return materials_[size_t(material)]; }
 
-  // Decodes the images in use, each once, in parallel, and moves all results into the scene.
+  // Decodes the images in use that the cache lacks, in parallel, and moves all results into the
+  // scene.
   void moveInto(Scene& scene);
 
  private:
@@ -52,6 +55,7 @@ class MaterialReader {
                        ExtendedMaterial& m);
 
   GltfFile& file_;
+  TexelCache* cache_;
   std::map<int, int> materialOf_;  // glTF index to index in the scene
   std::vector<Material> materials_;
   std::map<TextureKey, int> textureOf_;

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/sequence.h"
+
+#include <algorithm>
+#include <regex>
+
+#include "base/error.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kLargestNumber = 1'000'000;
+
+struct FrameRange {
+  int first = 0, last = 0, step = 1;
+
+  bool contains(int number) const {
+    return number >= first && number <= last && (number - first) % step == 0;
+  }
+  // Of the way from the first frame to the one after the last.
+  double fraction(int number) const {
+    const int end = first + (last - first) / step * step + step;
+    return double(number - first) / (end - first);
+  }
+};
+
+// "A:B" or "A:B:STEP".
+FrameRange rangeOf(const Settings& given) {
+  const auto text = given.get<std::string>("frames");
+  static const std::regex form("([0-9]{1,7}):([0-9]{1,7})(:([0-9]{1,7}))?");
+  std::smatch match;
+  FrameRange range;
+  if (std::regex_match(text, match, form)) {
+    range.first = std::stoi(match[1]), range.last = std::stoi(match[2]);
+    if (match[4].matched) range.step = std::stoi(match[4]);
+    if (range.first <= range.last && range.last <= kLargestNumber && range.step > 0) return range;
+  }
+  throwInput("{}: `{}` are no frames; give FIRST:LAST or FIRST:LAST:STEP, such as 0:47",
+             given.location("frames"), text);
+}
+
+void nameFiles(Settings& settings, int number) {
+  const auto named = [&](const std::string& name, const std::string& path) {
+    const std::string result = withNumber(path, number);
+    if (result == path)
+      throwInput("{}: `{}` has no # for the number of the frame, as in frame.####.exr",
+                 settings.location(name), path);
+    return result;
+  };
+  if (auto paths = settings.getIfGiven<std::vector<std::string>>("output.file")) {
+    for (std::string& path : *paths) path = named("output.file", path);
+    settings.set("output.file", *paths, settings.location("output.file"));
+  }
+  for (const char* name : {"stats", "checkpoint"})
+    if (const auto path = settings.getIfGiven<std::string>(name))
+      settings.set(name, named(name, *path), settings.location(name));
+}
+
+SequenceFrame frameOf(const SceneFile& scene, const Settings& given, const FrameRange& range,
+                      int number) {
+  SequenceFrame frame{number, scene, given};
+  if (given.has("output.file")) frame.scene.settings.erase("output.file");
+  nameFiles(frame.scene.settings, number);
+  nameFiles(frame.given, number);
+  Settings all = scene.settings;
+  all.merge(given);
+  Settings& s = frame.given;
+  s.set("model.time", number / all.get<double>("fps"), "--frames");
+  if (const auto orbit = all.getIfGiven<double>("orbit"))
+    s.set("orbit", range.fraction(number) * *orbit, given.location("orbit"));
+  if (all.get<bool>("seed-per-frame"))
+    s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
+  return frame;
+}
+
+void check(const SceneFile& scene, const Settings& given) {
+  const auto refuse = [&](const char* name, const char* why) {
+    if (given.has(name)) throwInput("{}: {}", given.location(name), why);
+  };
+  if (!given.has("frames")) {
+    for (const char* name : {"frame", "fps", "overwrite", "seed-per-frame"})
+      refuse(name, "needs --frames FIRST:LAST");
+    return;
+  }
+  refuse("model.time", "frames have times of their own; leave one of the two out");
+  refuse("write-every", "a frame is written when it is finished");
+  refuse("crop", "not for frames; render a still with --animation-time");
+  refuse("shard", "not for frames; render a still with --animation-time");
+  if (scene.composite && given.has("orbit"))
+    throwInput("{}: the plate of a composite does not turn", given.location("orbit"));
+}
+
+}  // namespace
+
+std::string withNumber(const std::string& pattern, int number) {
+  const size_t last = pattern.rfind('#');
+  if (last == std::string::npos) return pattern;
+  const size_t begin = pattern.find_last_not_of('#', last) + 1;  // 0 if there is no other character
+  return pattern.substr(0, begin) + fmt::format("{:0{}}", number, last + 1 - begin) +
+         pattern.substr(last + 1);
+}
+
+std::vector<SequenceFrame> framesOf(const SceneFile& scene, const Settings& given) {
+  check(scene, given);
+  if (!given.has("frames")) return {};
+  const FrameRange range = rangeOf(given);
+  if (const auto only = given.getIfGiven<uint64_t>("frame")) {
+    if (*only > kLargestNumber || !range.contains(int(*only)))
+      throwInput("{}: {} is not one of the frames {}", given.location("frame"), *only,
+                 given.get<std::string>("frames"));
+    return {frameOf(scene, given, range, int(*only))};
+  }
+  std::vector<SequenceFrame> frames;
+  for (int number = range.first; number <= range.last; number += range.step)
+    frames.push_back(frameOf(scene, given, range, number));
+  return frames;
+}
+
+}  // namespace chromeball

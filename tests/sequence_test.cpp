@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball render --frames: each frame is the still at its time, bit for bit.
+#include <gtest/gtest.h>
+
+#include "gltf_writer.h"
+#include "image/io/read_image.h"
+#include "job/frame_scene.h"
+#include "job/sequence.h"
+#include "run_command.h"
+#include "shared_data.h"
+
+namespace chromeball {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const std::string kProbe = std::string(kSourceDir) + "/probes/dusk.exr";
+
+// Two triangles, of which one moves by a metre per second along X, and one has a texture.
+class Moving {
+ public:
+  GltfWriter w;
+
+  Moving() {
+    w.write("texels.png", kPng);
+    w.add("images", {{"uri", "texels.png"}});
+    w.add("textures", {{"source", 0}});
+    w.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    addTriangle(w);
+    addTriangle(w, {{"material", 0}, {"attributes", {{"TEXCOORD_0", w.vec2s({0, 0, 1, 0, 0, 1})}}}},
+                {{"translation", {0, 1, 0}}});
+    const std::vector<float> times{0, 10};
+    w.add("animations",
+          {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+           {"samplers",
+            {{{"input", w.accessor(w.view(times), kFloat, "SCALAR", 2)},
+              {"output", w.vec3s({0, 0, 0, 10, 0, 0})}}}}});
+    w.save();
+  }
+
+  // A scene file with the model; returns its path.
+  std::string scene(const std::string& more = "") const {
+    const std::string path = (w.folder() / "scene.toml").string();
+    std::ofstream(path) << "model = \"model.gltf\"\n[probe]\nfile = \"" << kProbe << "\"\n" << more;
+    return path;
+  }
+};
+
+Words words(const std::string& scene, const Words& more, const std::string& output,
+            const std::string& samples = "4") {
+  Words all{"render",      scene, "--size",  "32x24", "--samples", samples,
+            "--max-depth", "3",   "--quiet", "-o",    output};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+void run(const Words& arguments) {
+  const CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 0) << result.error;
+}
+
+std::vector<float> texelsOf(const std::string& path) { return readImage(path).texels; }
+
+// Renders frames at two per second, and three stills at their times, with settings from `still`.
+void expectStills(const std::string& scene, const Words& more,
+                  const std::function<Words(int)>& still) {
+  const TemporaryFolder out;
+  Words frames = more;
+  frames.insert(frames.end(), {"--frames", "0:5", "--fps", "2"});
+  run(words(scene, frames, out / "frame.##.exr"));
+  ASSERT_EQ(out.files().size(), 6u);
+  std::vector<float> before;
+  for (const int number : {1, 2, 4}) {
+    Words one = still(number);
+    one.insert(one.end(), {"--animation-time", fmt::format("{}", 0.5 * number)});
+    run(words(scene, one, out / "still.exr"));
+    const std::vector<float> frame = texelsOf(out / fmt::format("frame.{:02}.exr", number));
+    EXPECT_EQ(frame, texelsOf(out / "still.exr")) << number;
+    EXPECT_NE(frame, before) << number;
+    before = frame;
+  }
+}
+
+TEST(Sequence, FramesAreStills) {
+  const Moving model;
+  const auto alike = [](int) { return Words{}; };
+  expectStills(model.scene(), {}, alike);
+  expectStills(model.scene("[camera]\nposition = [1, 1, 4]\nlook_at = [1, 0.5, 0]\n"), {}, alike);
+}
+
+TEST(Sequence, FramesOfATurntableAreStills) {
+  const Moving model;
+  const auto turned = [](int number) { return Words{"--orbit", fmt::format("{}", 60 * number)}; };
+  expectStills(model.scene(), {"--orbit", "360"}, turned);
+}
+
+TEST(Sequence, ProbeTurns) {
+  const Moving model;
+  const std::string keys = "rotation_keys = [[0, 20], [1, 10], [2, 50]]\n";
+  expectStills(model.scene(keys), {}, [](int) { return Words{}; });
+  const TemporaryFolder out;
+  run(words(model.scene(keys), {"--animation-time", "1.5"}, out / "a.exr"));
+  run(words(model.scene(), {"--animation-time", "1.5", "--probe-rotation", "30"}, out / "b.exr"));
+  EXPECT_EQ(texelsOf(out / "a.exr"), texelsOf(out / "b.exr"));
+  expectError(words(model.scene("rotation_keys = [[1, 10], [1, 50]]\n"), {}, out / "a.exr"),
+              "ascending");
+}
+
+TEST(Sequence, SeedsDifferIfAsked) {
+  const Moving model;
+  expectStills(model.scene("[render]\nseed = 5\n"), {"--seed-per-frame"}, [](int number) {
+    return Words{"--seed", fmt::format("{}", 5 + number)};
+  });
+}
+
+// Skins and morphs.
+TEST(Sequence, FramesOfRealModelsAreStills) {
+  for (const char* name : {"Fox/glTF/Fox.gltf", "SimpleMorph/glTF/SimpleMorph.gltf",
+                           "RiggedFigure/glTF/RiggedFigure.gltf"}) {
+    const auto model = sharedData(std::string("gltf/") + name);
+    if (!model) GTEST_SKIP() << "no shared data: gltf/" << name;
+    SCOPED_TRACE(name);
+    expectStills(*model, {"--probe", kProbe}, [](int) { return Words{"--probe", kProbe}; });
+  }
+}
+
+TEST(Sequence, LeavesFinishedFramesAlone) {
+  const Moving model;
+  const TemporaryFolder out;
+  std::ofstream(out / "frame.1.exr") << "kept";
+  const Words frames{"--frames", "0:2"};
+  run(words(model.scene(), frames, out / "frame.#.exr"));
+  EXPECT_EQ(out.files().size(), 3u);
+  EXPECT_EQ(fileContents(out / "frame.1.exr"), "kept");
+  run(words(model.scene(), {"--frames", "0:2", "--overwrite"}, out / "frame.#.exr"));
+  EXPECT_EQ(readImage(out / "frame.1.exr").width, 32);
+}
+
+TEST(Sequence, OutputOfTheSceneFile) {
+  const Moving model;
+  const std::string scene = model.scene("[output]\nfile = \"out/of-scene.#.exr\"\n");
+  run({"render", scene, "--frames", "0:1", "--size", "8x8", "--samples", "2"});
+  EXPECT_TRUE(std::filesystem::exists(model.w.folder() / "out/of-scene.1.exr"));
+  const TemporaryFolder out;
+  run(words(model.scene("[output]\nfile = \"still.exr\"\n"), {"--frames", "0:0"},
+            out / "frame.#.exr"));
+  EXPECT_EQ(out.files(), Words{"frame.0.exr"});
+}
+
+TEST(Sequence, OneOfTheFrames) {
+  const Moving model;
+  const TemporaryFolder out;
+  const Words all{"--frames", "1:9:4", "--orbit", "90"};
+  run(words(model.scene(), all, out / "all.#.exr"));
+  EXPECT_EQ(out.files(), (Words{"all.1.exr", "all.5.exr", "all.9.exr"}));
+  Words one = all;
+  one.insert(one.end(), {"--frame", "5"});
+  run(words(model.scene(), one, out / "one.#.exr"));
+  EXPECT_EQ(texelsOf(out / "one.5.exr"), texelsOf(out / "all.5.exr"));
+}
+
+// An image that exists is a finished one; a checkpoint keeps what there is of the next.
+TEST(SlowSequence, SurvivesInterruption) {
+  const Moving model;
+  const TemporaryFolder out;
+  const std::string samples = "20000";
+  Words frames =
+      words(model.scene(),
+            {"--frames", "0:1", "--checkpoint", out / "frame.#.checkpoint.exr", "--progress"},
+            out / "frame.#.exr", samples);
+  const CommandResult stopped = runCommand(frames, "2%");
+  EXPECT_EQ(stopped.status, 130) << stopped.error;
+  EXPECT_EQ(out.files(), (Words{"frame.0.checkpoint.exr"}));
+  frames.push_back("--resume");
+  run(frames);
+  run(words(model.scene(), {"--animation-time", "0"}, out / "still.exr", samples));
+  EXPECT_EQ(texelsOf(out / "frame.0.exr"), texelsOf(out / "still.exr"));
+  EXPECT_TRUE(std::filesystem::exists(out / "frame.1.exr"));
+}
+
+RenderJob jobAt(const std::string& scene, double seconds, double degrees = 0) {
+  Settings given;
+  given.set("frames", std::string("0:9"));
+  given.set("model.time", seconds);
+  given.set("orbit", degrees);
+  return planJob(openScene(scene), given);
+}
+
+TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
+  const Moving model;
+  FrameScene scene;
+  RenderJob first = jobAt(model.scene(), 0), turned = jobAt(model.scene(), 0, 30),
+            later = jobAt(model.scene(), 1);
+  scene.show(first);
+  const World* world = scene.prepared().world.get();
+  const LightingStrategy* lighting = scene.prepared().lighting.get();
+  const vec3 position = scene.loaded().camera.position;
+  const TexelGrid* texels = scene.loaded().scene.grids.at(0).get();
+  const auto chain = scene.loaded().scene.textures.at(0).mipLevels;
+  scene.show(turned);
+  EXPECT_EQ(scene.prepared().world.get(), world);
+  EXPECT_NE(scene.loaded().camera.position, position);
+  const vec3 moving = scene.loaded().scene.meshes.at(0).positions.at(0);
+  scene.show(later);
+  EXPECT_NE(scene.loaded().scene.meshes.at(0).positions.at(0), moving);
+  EXPECT_EQ(scene.prepared().lighting.get(), lighting);
+  EXPECT_EQ(scene.loaded().scene.grids.at(0).get(), texels);
+  EXPECT_EQ(scene.loaded().scene.textures.at(0).mipLevels, chain);
+}
+
+TEST(Sequence, NamesFiles) {
+  EXPECT_EQ(withNumber("a.####.exr", 7), "a.0007.exr");
+  EXPECT_EQ(withNumber("a.#.exr", 12345), "a.12345.exr");
+  EXPECT_EQ(withNumber("#/a.##.exr", 3), "#/a.03.exr");
+  EXPECT_EQ(withNumber("##", 3), "03");
+  EXPECT_EQ(withNumber("a.exr", 3), "a.exr");
+}
+
+TEST(Sequence, RefusesWhatItCannotRender) {
+  const Moving model;
+  const TemporaryFolder out;
+  const auto refused = [&](const Words& more, const std::string& reason,
+                           const std::string& name = "frame.#.exr") {
+    expectError(words(model.scene(), more, out / name), reason);
+  };
+  for (const char* frames : {"5:2", "3", "0:9:0", "-1:4", "0:99999999", "0:1:2:3"})
+    refused({"--frames", frames}, "FIRST:LAST");
+  refused({"--fps", "12"}, "needs --frames");
+  refused({"--overwrite"}, "needs --frames");
+  refused({"--frames", "0:1", "--fps", "0"}, "--fps");
+  refused({"--frames", "0:4:2", "--frame", "3"}, "not one of the frames");
+  refused({"--frames", "0:1", "--animation-time", "2"}, "times of their own");
+  refused({"--frames", "0:1", "--shard", "1/2"}, "not for frames");
+  refused({"--frames", "0:1", "--write-every", "2"}, "finished");
+  refused({"--frames", "0:1"}, "no #", "frame.exr");
+  refused({"--frames", "0:1", "--checkpoint", out / "c.exr"}, "no #");
+  EXPECT_TRUE(out.files().empty());
+}
+
+TEST(Camera, TurnsAroundTheCentre) {
+  const Camera camera = Camera::lookAt({0, 1, 5}, {0, 1, 0}, {0, 1, 0}, 1);
+  const Camera quarter = camera.turnedAround({3, 7, 0}, 90);  // nearest on the line: (0, 1, 0)
+  EXPECT_LT(glm::distance(quarter.position, vec3(5, 1, 0)), 1e-5f);
+  EXPECT_LT(glm::distance(quarter.back, vec3(1, 0, 0)), 1e-6f);
+  EXPECT_LT(glm::distance(quarter.right, vec3(0, 0, -1)), 1e-6f);
+  EXPECT_LT(glm::distance(camera.turnedAround(vec3(0), 360).position, camera.position), 1e-5f);
+  // Behind the camera there is nothing to turn around.
+  EXPECT_LT(glm::distance(camera.turnedAround({0, 1, 9}, 90).position, camera.position), 1e-6f);
+}
+
+}  // namespace
+}  // namespace chromeball
