@@ -213,6 +213,18 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
 }
 
+// Also under a noise limit, where the remaining time is an extrapolation.
+TEST(CommandRender, ProgressSaysSamplesNoiseAndTimeLeft) {
+  const RenderScene scene;
+  const CommandResult result =
+      runCommand({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--noise",
+                  "0.001", "--progress", "-o", scene.out / "a.png"},
+                 "rays/s");
+  EXPECT_EQ(result.status, 130) << result.error;
+  for (const char* words : {" remaining, ", " samples, noise "})
+    EXPECT_NE(result.error.find(words), std::string::npos) << result.error;
+}
+
 TEST(CommandRender, OneSampleHasNoNoiseEstimate) {
   const RenderScene s;
   const CommandResult result =

@@ -150,7 +150,10 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
     renderer.renderTiles(
         [&](double fraction) { progress(state.schedule.progress(from + fraction * samples)); },
         [&] { return stop || pauses(); });
-    if (renderer.hasFinishedPass()) renderer.endPass();
+    if (renderer.hasFinishedPass()) {
+      renderer.endPass();
+      if (control) control->endPass(state);
+    }
     if (!stop && pauses()) control->pause(state);
   }
   result.interrupted = true;

@@ -35,6 +35,8 @@ class RenderControl {
 
   // Before the first pass: fills the state from a checkpoint, and returns true, if there is one.
   virtual bool restore(RenderState& state) = 0;
+  // After each pass. No thread renders meanwhile.
+  virtual void endPass(const RenderState&) {}
   // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
   virtual bool wantsPause() const = 0;
   // No thread renders meanwhile.

@@ -35,14 +35,17 @@ uint32_t Schedule::next(uint32_t done, const Film& film) {
 double Schedule::goalAfter(uint32_t done, const Film& film) {
   double goal = settings_.samples;
   if (settings_.timeLimit) goal = std::min(goal, untilTime(done));
-  if (settings_.noiseLimit && done >= kMinForNoise) goal = std::min(goal, untilNoise(done, film));
+  if (settings_.noiseLimit && done >= kMinForNoise) {
+    goal = std::min(goal, untilNoise(done, film));
+    goal_ = goal;
+  }
   return goal;
 }
 
 double Schedule::progress(double samples) const {
   if (settings_.timeLimit) return std::min(1.0, seconds() / *settings_.timeLimit);
-  if (settings_.noiseLimit) return std::nan("");
-  return samples / settings_.samples;
+  if (!settings_.noiseLimit) return samples / settings_.samples;
+  return std::isfinite(goal_) && goal_ > 0 ? std::min(1.0, samples / goal_) : std::nan("");
 }
 
 double Schedule::untilTime(uint32_t done) const {

@@ -26,8 +26,8 @@ class Schedule {
   // returned last is the first whose samples are allotted by its noise.
   bool endsPilot() const { return endsPilot_; }
 
-  // Completed fraction after `samples` samples per pixel; NaN under a noise limit without a time
-  // limit.
+  // Completed fraction after `samples` samples per pixel. Under a noise limit without a time limit
+  // it is an extrapolation of the noise, and NaN before the first estimate of that.
   double progress(double samples) const;
 
   // With the time so far. `adapts`: whether the pilot has ended.
@@ -44,6 +44,7 @@ class Schedule {
   Stopwatch elapsed_;
   double before_ = 0;  // seconds of rendering before it was resumed
   bool pilot_, endsPilot_ = false;
+  double goal_ = 0;  // of goalAfter(); 0: none yet
   struct {
     uint64_t samples = 0;
     double noise = 0;

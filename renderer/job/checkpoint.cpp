@@ -7,9 +7,11 @@
 
 namespace chromeball {
 
-JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded)
+JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded,
+                       std::function<void(const RenderState&)> onPass)
     : job_(job),
       loaded_(loaded),
+      onPass_(std::move(onPass)),
       path_(job.file.settings.getIfGiven<std::string>("checkpoint")),
       images_(job.file.settings.getIfGiven<double>("write-every")),
       checkpoints_(path_ ? std::optional(job.file.settings.get<double>("checkpoint-every"))
@@ -35,6 +37,10 @@ bool JobControl::restore(RenderState& state) {
     state.archive(a);
   });
   return true;
+}
+
+void JobControl::endPass(const RenderState& state) {
+  if (onPass_) onPass_(state);
 }
 
 bool JobControl::wantsPause() const { return images_.isDue() || checkpoints_.isDue(); }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -33,10 +34,13 @@ class JobControl : public RenderControl {
  public:
   // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
   // or if there is a checkpoint of another job, or one that the job is not to resume.
-  JobControl(const RenderJob& job, const LoadedScene& loaded);
+  // `onPass` is called after each pass.
+  JobControl(const RenderJob& job, const LoadedScene& loaded,
+             std::function<void(const RenderState&)> onPass = {});
 
   // Throws InputError for a damaged checkpoint.
   bool restore(RenderState& state) override;
+  void endPass(const RenderState& state) override;
   bool wantsPause() const override;
   void pause(RenderState& state) override;
   void end(RenderState& state) override;
@@ -47,6 +51,7 @@ class JobControl : public RenderControl {
 
   const RenderJob& job_;
   const LoadedScene& loaded_;
+  std::function<void(const RenderState&)> onPass_;
   std::optional<std::string> path_;  // of the checkpoint
   std::optional<FileLock> lock_;
   RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded

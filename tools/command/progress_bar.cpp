@@ -2,16 +2,26 @@
 #include "progress_bar.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace chromeball {
 namespace {
 
-constexpr int kWidth = 32;
+constexpr int kWidth = 32, kLeastWidth = 8;
+constexpr std::string_view kTitle = "rendering  ";
+
+int terminalColumns() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 100;
+}
 
 std::string clockTime(double seconds) {
   const auto s = long(std::ceil(seconds));
@@ -33,14 +43,22 @@ void ProgressBar::update(double fraction) {
   last_ = now;
   drawn_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
+  std::string times = fmt::format("{} elapsed", clockTime(elapsed));
+  if (!std::isnan(fraction))
+    times = fmt::format("{:3.0f}%  {}, {} remaining", 100 * fraction, times,
+                        fraction > 0 ? clockTime(elapsed * (1 - fraction) / fraction) : "?");
+  const int columns = terminalColumns();
+  const std::string described =
+      description_.empty() ? times : fmt::format("{}, {}", times, description_);
+  const bool fits = int(kTitle.size() + described.size()) + kLeastWidth + 3 < columns;
+  const std::string& text = fits ? described : times;
   if (std::isnan(fraction)) {
-    fmt::print(stderr, "\rrendering  {} elapsed\x1b[K", clockTime(elapsed));
+    fmt::print(stderr, "\r{}{}\x1b[K", kTitle, text);
   } else {
-    const int full = int(fraction * kWidth);
-    fmt::print(stderr, "\rrendering  [{}{}] {:3.0f}%  {} elapsed, {} remaining\x1b[K",
-               std::string(full, '#'), std::string(kWidth - full, '.'), 100 * fraction,
-               clockTime(elapsed),
-               fraction > 0 ? clockTime(elapsed * (1 - fraction) / fraction) : "?");
+    const int room = columns - int(kTitle.size() + text.size()) - 4;
+    const int width = std::clamp(room, kLeastWidth, kWidth), full = int(fraction * width);
+    fmt::print(stderr, "\r{}[{}{}] {}\x1b[K", kTitle, std::string(full, '#'),
+               std::string(width - full, '.'), text);
   }
   std::fflush(stderr);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A progress bar on standard error: fraction done, time elapsed and time remaining.
+// A progress bar on standard error: fraction done, time elapsed and time remaining, and a line of
+// the caller's about the work.
 #pragma once
 
 #include <chrono>
+#include <string>
 
 namespace chromeball {
 
@@ -14,12 +16,15 @@ class ProgressBar {
 
   // `fraction` of the work done, in [0, 1]; NaN if it is unknown.
   void update(double fraction);
+  // Shown after the times where the terminal is wide enough, from the next update on.
+  void describe(std::string text) { description_ = std::move(text); }
 
   static bool isTerminal();  // whether standard error is one
 
  private:
   using Clock = std::chrono::steady_clock;
   bool shown_, drawn_ = false;
+  std::string description_;
   Clock::time_point start_ = Clock::now(), last_{};
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <set>
@@ -69,13 +70,40 @@ void stopOnSignals() {
   std::signal(SIGTERM, [](int) { interrupted = true; });
 }
 
-// The image, ready to be written except for its state.
+// Says after each pass what there is so far.
+class PassReport {
+ public:
+  std::string of(const RenderResult& result) {
+    const RayCounts& counts = result.rays;
+    const uint64_t rays = counts.camera + counts.shadow + counts.bounce;
+    std::string text = fmt::format("{} samples", result.samples);
+    if (const Noise noise = result.film.noise(); !std::isnan(noise.noise))
+      text += fmt::format(", noise {:.2g}%", 100 * noise.noise);
+    if (rays_ > 0)  // a render that was resumed has rays of other times
+      text += fmt::format(", {:.1f} M rays/s", 1e-6 * double(rays - rays_) / watch_.seconds());
+    rays_ = rays;
+    watch_ = Stopwatch();
+    return text;
+  }
+
+ private:
+  uint64_t rays_ = 0;
+  Stopwatch watch_;
+};
+
+// The image, ready to be written except for its state. `fractionOfAll`: of all work, by that of
+// this image.
 JobResult renderImage(const RenderJob& job, const LoadedScene& loaded,
-                      const PreparedScene& prepared, const Progress& progress) {
-  JobControl control(job, loaded);
-  JobResult result =
-      renderJob(job, loaded, prepared, progress, interrupted,
-                job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
+                      const PreparedScene& prepared, bool showsProgress,
+                      const std::function<double(double)>& fractionOfAll) {
+  ProgressBar bar(showsProgress);
+  PassReport report;
+  JobControl control(job, loaded, [&](const RenderState& state) {
+    if (showsProgress) bar.describe(report.of(state.result));
+  });
+  JobResult result = renderJob(
+      job, loaded, prepared, [&](double fraction) { bar.update(fractionOfAll(fraction)); },
+      interrupted, job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
   result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
   return result;
 }
@@ -109,10 +137,8 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   print(loaded.messages, options.quiet());
 
   stopOnSignals();
-  JobResult result = [&] {
-    ProgressBar bar(options.showsProgress());
-    return renderImage(job, loaded, prepared, [&](double fraction) { bar.update(fraction); });
-  }();
+  JobResult result = renderImage(job, loaded, prepared, options.showsProgress(),
+                                 [](double fraction) { return fraction; });
   if (job.settings.isPart()) {
     part.plan = finishPlan(job, loaded);
     result.image.state = partState(part, result.render);
@@ -155,12 +181,10 @@ void renderFrames(const std::vector<SequenceFrame>& frames, const SceneOptions& 
     prepareOutputs(job, scene.loaded().files);
     printNew(outputMessages, printed, options.quiet());
     printNew(scene.loaded().messages, printed, options.quiet());
-    const JobResult result = [&] {
-      ProgressBar bar(options.showsProgress());
-      return renderImage(job, scene.loaded(), scene.prepared(), [&](double fraction) {
-        bar.update((double(i - kept) + fraction) / double(frames.size() - kept));
-      });
-    }();
+    const double before = double(i - kept), count = double(frames.size() - kept);
+    const JobResult result =
+        renderImage(job, scene.loaded(), scene.prepared(), options.showsProgress(),
+                    [&](double fraction) { return (before + fraction) / count; });
     if (result.render.interrupted) break;  // an image that exists is a finished one
     writeImages(job, scene.loaded(), result, seconds);
     printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,
