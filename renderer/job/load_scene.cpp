@@ -5,12 +5,11 @@
 #include <cassert>
 
 #include "base/error.h"
-#include "base/suggest.h"
 #include "composite/render_composite.h"
+#include "job/choose_camera.h"
 #include "job/image_memory.h"
 #include "job/load_messages.h"
 #include "lighting/finite_surroundings.h"
-#include "scene/framing.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/thin_wall.h"
 
@@ -78,63 +77,17 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
                    file.settings.location("probe.mapping"));
 }
 
-Camera chooseCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
-  if (job.file.camera) return *job.file.camera;
-  if (const auto wanted = job.file.settings.getIfGiven<std::string>("camera.name")) {
-    std::vector<std::string_view> names;
-    for (const auto name : {&Camera::name, &Camera::node})
-      for (const Camera& camera : scene.cameras) {
-        if (camera.*name == *wanted) return camera;
-        if (std::count(names.begin(), names.end(), camera.*name) == 0)
-          names.push_back(camera.*name);
-      }
-    throwInput("{}: the model has no camera `{}`; {}", job.file.settings.location("camera.name"),
-               *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
-  }
-  if (!scene.cameras.empty()) return scene.cameras.front();
-  return *view.camera;
-}
-
-AutomaticView viewOf(const RenderJob& job, const Scene& scene, const glm::dvec3& origin) {
-  const RenderSettings& s = job.settings;
-  const float aspect = float(s.width) / float(s.height);
-  const bool isPlaced = job.file.camera || job.file.settings.has("camera.name");
-  AutomaticView view{{}, centreOf(scene), origin};
-  if (!isPlaced && scene.cameras.empty())
-    view.camera = job.file.settings.has("orbit") ? framingCameraAround(scene, aspect)
-                                                 : framingCamera(scene, aspect);
-  return view;
-}
-
 // The job's view, or that of the time 0. `scene`: at the job's time, with its origin.
 AutomaticView viewAtStart(const RenderJob& job, const Scene& scene, const glm::dvec3& origin,
                           TexelCache* texels) {
-  if (job.view) {
-    AutomaticView view = *job.view;
-    const vec3 move(view.origin - origin);
-    view.origin = origin;
-    view.centre += move;
-    if (view.camera) view.camera->position += move;
-    return view;
-  }
-  AutomaticView now = viewOf(job, scene, origin);
+  if (job.view) return job.view->seenFrom(origin);
+  AutomaticView now = automaticView(job, scene, origin);
   if (!scene.isAnimated || !(now.camera || job.file.settings.has("orbit"))) return now;
   SceneFile start = job.file;
   for (ModelEntry& model : start.models)
     if (model.choice.animation) model.choice.animation->seconds = 0;
   std::vector<std::string> known;
-  return viewOf(job, loadModels(start, origin, texels, known), origin);
-}
-
-Camera withLens(const RenderJob& job, Camera camera) {
-  const auto& lens = job.file.lens;
-  if (!lens) return camera;
-  if (camera.orthographic)
-    throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
-               lens->location);
-  camera.lensRadius = 0.5f * lens->aperture;
-  camera.focus = lens->focus;
-  return camera;
+  return automaticView(job, loadModels(start, origin, texels, known), origin);
 }
 
 // The job's size; else the default height, with the aspect ratio of the model's camera. Throws
@@ -208,7 +161,7 @@ PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
   }
   chooseSize(job, scene);
   placed.view = viewAtStart(job, scene, placed.origin, texels);
-  placed.camera = withLens(job, chooseCamera(job, scene, placed.view));
+  placed.camera = chooseCamera(job, scene, placed.view);
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
   if (job.straightGlassShadows) passShadowsStraight(scene.materials);

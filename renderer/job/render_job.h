@@ -9,18 +9,11 @@
 
 #include "image/tonemap.h"
 #include "integrate/render.h"
+#include "job/choose_camera.h"
 #include "job/composite_plan.h"
 #include "job/scene_file.h"
 
 namespace chromeball {
-
-// What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
-// times.
-struct AutomaticView {
-  std::optional<Camera> camera;  // if nobody has placed one
-  vec3 centre{0};                // of `orbit`
-  glm::dvec3 origin{0};          // of these coordinates in the world, metres
-};
 
 struct RenderJob {
   SceneFile file;                 // its `settings` include the given ones
