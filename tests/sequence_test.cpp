@@ -88,6 +88,18 @@ TEST(Sequence, FramesAreStills) {
   expectStills(model.scene("[camera]\nposition = [1, 1, 4]\nlook_at = [1, 0.5, 0]\n"), {}, alike);
 }
 
+// The coordinates of a scene that is far away are those of its own centre, which moves.
+TEST(Sequence, FramesFarAwayAreStills) {
+  const Moving model;
+  const std::string path = (model.w.folder() / "far.toml").string();
+  std::ofstream(path)
+      << "[model]\nfile = \"model.gltf\"\ntranslation = [1e6, 3, 0]\n[probe]\nfile = \"" << kProbe
+      << "\"\n";
+  expectStills(path, {}, [](int) { return Words{}; });
+  const auto turned = [](int number) { return Words{"--orbit", fmt::format("{}", 60 * number)}; };
+  expectStills(path, {"--orbit", "360"}, turned);
+}
+
 TEST(Sequence, FramesOfATurntableAreStills) {
   const Moving model;
   const auto turned = [](int number) { return Words{"--orbit", fmt::format("{}", 60 * number)}; };
@@ -103,7 +115,7 @@ TEST(Sequence, ProbeTurns) {
   run(words(model.scene(), {"--animation-time", "1.5", "--probe-rotation", "30"}, out / "b.exr"));
   EXPECT_EQ(texelsOf(out / "a.exr"), texelsOf(out / "b.exr"));
   expectError(words(model.scene("rotation_keys = [[1, 10], [1, 50]]\n"), {}, out / "a.exr"),
-              "ascending");
+              "must ascend");
 }
 
 TEST(Sequence, SeedsDifferIfAsked) {
@@ -228,6 +240,9 @@ TEST(Sequence, RefusesWhatItCannotRender) {
   refused({"--fps", "12"}, "needs --frames");
   refused({"--overwrite"}, "needs --frames");
   refused({"--frames", "0:1", "--fps", "0"}, "--fps");
+  refused({"--frames", "0:1", "--animation", "None"}, "no animation `None`");
+  const std::string terrace = std::string(kSourceDir) + "/scenes/terrace.toml";
+  expectError({"render", terrace, "--orbit", "9", "-o", out / "t.exr"}, "does not turn");
   refused({"--frames", "0:4:2", "--frame", "3"}, "not one of the frames");
   refused({"--frames", "0:1", "--animation-time", "2"}, "times of their own");
   refused({"--frames", "0:1", "--shard", "1/2"}, "not for frames");

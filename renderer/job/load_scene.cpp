@@ -77,19 +77,6 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
                    file.settings.location("probe.mapping"));
 }
 
-// The job's view, or that of the time 0. `scene`: at the job's time, with its origin.
-AutomaticView viewAtStart(const RenderJob& job, const Scene& scene, const glm::dvec3& origin,
-                          TexelCache* texels) {
-  if (job.view) return job.view->seenFrom(origin);
-  AutomaticView now = automaticView(job, scene, origin);
-  if (!scene.isAnimated || !(now.camera || job.file.settings.has("orbit"))) return now;
-  SceneFile start = job.file;
-  for (ModelEntry& model : start.models)
-    if (model.choice.animation) model.choice.animation->seconds = 0;
-  std::vector<std::string> known;
-  return automaticView(job, loadModels(start, origin, texels, known), origin);
-}
-
 // The job's size; else the default height, with the aspect ratio of the model's camera. Throws
 // InputError if the image does not fit into the job's memory.
 void chooseSize(RenderJob& job, const Scene& scene) {
@@ -150,26 +137,44 @@ void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
   if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
 }
 
-PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
+PlacedModels modelsAtOrigin(const SceneFile& file, TexelCache* texels) {
   PlacedModels placed;
+  placed.scene = loadModels(file, placed.origin, texels, placed.warnings);
+  placed.origin = originFor(placed.scene, file.models.front().file);
+  if (placed.origin != glm::dvec3(0))
+    placed.scene = loadModels(file, placed.origin, texels, placed.warnings);
+  return placed;
+}
+
+// That of time 0, also in the coordinates of that time: with the same rounding for all times.
+AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, TexelCache* texels) {
+  if (job.view) return *job.view;
+  const AutomaticView view = automaticView(job, now.scene, now.origin);
+  if (!now.scene.isAnimated || !(view.camera || job.file.settings.has("orbit"))) return view;
+  SceneFile start = job.file;
+  for (ModelEntry& model : start.models)
+    if (model.choice.animation) model.choice.animation->seconds = 0;
+  const PlacedModels first = modelsAtOrigin(start, texels);
+  return automaticView(job, first.scene, first.origin);
+}
+
+PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
+  PlacedModels placed = modelsAtOrigin(job.file, texels);
+  if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
-  scene = loadModels(job.file, glm::dvec3(0), texels, placed.warnings);
-  placed.origin = originFor(scene, job.file.models.front().file);
-  if (placed.origin != glm::dvec3(0)) {
-    scene = loadModels(job.file, placed.origin, texels, placed.warnings);
-    moveToOrigin(job, placed.origin);
-  }
   chooseSize(job, scene);
-  placed.view = viewAtStart(job, scene, placed.origin, texels);
-  placed.camera = chooseCamera(job, scene, placed.view);
+  placed.view = viewAtStart(job, placed, texels);
+  placed.camera = chooseCamera(job, scene, placed.view.seenFrom(placed.origin));
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
   if (job.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
 }
 
-Camera turned(const RenderJob& job, const Camera& start, const vec3& centre) {
-  return start.turnedAround(centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
+Camera turned(const RenderJob& job, const Camera& start, const AutomaticView& view,
+              const glm::dvec3& origin) {
+  const double degrees = job.file.settings.getIfGiven<double>("orbit").value_or(0);
+  return start.turnedAround(view.seenFrom(origin).centre, degrees);
 }
 
 // Whether rays see the same: materials and textures are not animated.
@@ -191,7 +196,7 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 LoadedScene loadScene(RenderJob& job, TexelCache* texels) {
   PlacedModels models = placeModels(job, texels);
   Scene& scene = models.scene;
-  const Camera camera = turned(job, models.camera, models.view.centre);
+  const Camera camera = turned(job, models.camera, models.view, models.origin);
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
@@ -215,7 +220,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
   assert(!job.composite);
   if (!loaded.scene.isAnimated) {
     chooseSize(job, loaded.scene);
-    loaded.camera = turned(job, loaded.startCamera, loaded.view.centre);
+    loaded.camera = turned(job, loaded.startCamera, loaded.view, loaded.origin);
     return false;
   }
   PlacedModels models = placeModels(job, &texels);
@@ -223,7 +228,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
     checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
   loaded.startCamera = models.camera;
   loaded.view = models.view;
-  loaded.camera = turned(job, models.camera, models.view.centre);
+  loaded.camera = turned(job, models.camera, models.view, models.origin);
   loaded.messages = loadMessages(job, loaded, models.warnings);
   const bool moved = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (moved) loaded.scene = std::move(models.scene);

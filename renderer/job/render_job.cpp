@@ -52,7 +52,8 @@ void applyToModels(const Settings& over, SceneFile& file) {
     for (const char* name : {"model.time", "model.animation"})
       if (over.has(name)) {
         if (!choice.animation) choice.animation.emplace();
-        choice.animation->ifAny = all.has("frames") || !file.probeTurns.empty();
+        choice.animation->ifAny =
+            (all.has("frames") || !file.probeTurns.empty()) && !over.has("model.animation");
         if (choice.animation->location.empty() || name == std::string_view("model.animation"))
           choice.animation->location = over.location(name);
       }
@@ -213,6 +214,11 @@ void checkParts(const SceneFile& file) {
                  s.location(name));
 }
 
+void checkOrbit(const SceneFile& file) {
+  if (file.composite && file.settings.has("orbit"))
+    throwInput("{}: the plate of a composite does not turn", file.settings.location("orbit"));
+}
+
 void checkTransparent(const SceneFile& file) {
   const Settings& s = file.settings;
   if (file.composite && s.get<bool>("transparent"))
@@ -229,6 +235,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   const Settings& s = job.file.settings;
   checkTwoPass(job.file);
   checkTransparent(job.file);
+  checkOrbit(job.file);
   checkGuide(job.file);
   checkDenoise(job.file);
   checkParts(job.file);

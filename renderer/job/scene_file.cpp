@@ -56,10 +56,11 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
   if (!keys) return;
   if (!keys.isArray()) keys.mustBe(keys.setting->form);
   forEach(keys, [&](const Entry& key) {
-    if (!key.isArrayOf(2)) keys.mustBe(keys.setting->form);
+    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, degrees]");
     const double seconds = key.element(0).number();
     if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().first))
-      keys.mustBe(keys.setting->form);
+      failAt(key.location(), "the times of `rotation_keys` must ascend: {:g} s is not after {:g} s",
+             seconds, scene.probeTurns.back().first);
     scene.probeTurns.emplace_back(seconds, key.element(1).number());
   });
 }

@@ -35,8 +35,10 @@ FrameRange rangeOf(const Settings& given) {
     if (match[4].matched) range.step = std::stoi(match[4]);
     if (range.first <= range.last && range.last <= kLargestNumber && range.step > 0) return range;
   }
-  throwInput("{}: `{}` are no frames; give FIRST:LAST or FIRST:LAST:STEP, such as 0:47",
-             given.location("frames"), text);
+  throwInput(
+      "{}: `{}` are no frames; give FIRST:LAST or FIRST:LAST:STEP, such as 0:47, of "
+      "numbers up to {}",
+      given.location("frames"), text, kLargestNumber);
 }
 
 void nameFiles(Settings& settings, int number) {
@@ -73,7 +75,7 @@ SequenceFrame frameOf(const SceneFile& scene, const Settings& given, const Frame
   return frame;
 }
 
-void check(const SceneFile& scene, const Settings& given) {
+void check(const Settings& given) {
   const auto refuse = [&](const char* name, const char* why) {
     if (given.has(name)) throwInput("{}: {}", given.location(name), why);
   };
@@ -86,8 +88,6 @@ void check(const SceneFile& scene, const Settings& given) {
   refuse("write-every", "a frame is written when it is finished");
   refuse("crop", "not for frames; render a still with --animation-time");
   refuse("shard", "not for frames; render a still with --animation-time");
-  if (scene.composite && given.has("orbit"))
-    throwInput("{}: the plate of a composite does not turn", given.location("orbit"));
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ std::string withNumber(const std::string& pattern, int number) {
 }
 
 std::vector<SequenceFrame> framesOf(const SceneFile& scene, const Settings& given) {
-  check(scene, given);
+  check(given);
   if (!given.has("frames")) return {};
   const FrameRange range = rangeOf(given);
   if (const auto only = given.getIfGiven<uint64_t>("frame")) {

@@ -89,8 +89,8 @@ std::vector<Setting> commandRows() {
        .argument = "A:B[:STEP]",
        .type = Name,
        .absent = "one image",
-       .help = "Renders the frames A to B of an animation. A row of # in the names of files "
-               "becomes a frame's number. A frame whose images exist is left alone.",
+       .help = "Renders the frames A to B of an animation. The last row of # in the names of files "
+               "becomes a frame's number. A frame is left alone if all its files exist.",
        .effect = Effect::Run,
        .renderOnly = true},
       {.option = "frame",
@@ -103,7 +103,7 @@ std::vector<Setting> commandRows() {
       {.option = "fps",
        .argument = "NUMBER",
        .type = Number,
-       .range = kPositive,
+       .range = {.min = 0.001, .max = 1e6},
        .fallback = "24",
        .help = "Frames per second: frame N shows the time N / fps.",
        .effect = Effect::Run,

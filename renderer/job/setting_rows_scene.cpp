@@ -147,7 +147,7 @@ void addProbe(std::vector<Setting>& rows) {
        .help = "Turns the environment about +Y, counter-clockwise seen from above."});
   add({.key = "rotation_keys",
        .type = Compound,
-       .form = "pairs [seconds, degrees] in ascending order of time",
+       .form = "pairs [seconds, degrees], each later than the one before",
        .absent = "`rotation` at all times",
        .help = "The rotation at times of an animation, linear between; see --frames and "
                "--animation-time."});

@@ -91,22 +91,36 @@ class PassReport {
   Stopwatch watch_;
 };
 
-// The image, ready to be written except for its state. `fractionOfAll`: of all work, by that of
-// this image.
-JobResult renderImage(const RenderJob& job, const LoadedScene& loaded,
-                      const PreparedScene& prepared, bool showsProgress,
-                      const std::function<double(double)>& fractionOfAll) {
-  ProgressBar bar(showsProgress);
-  PassReport report;
-  JobControl control(job, loaded, [&](const RenderState& state) {
-    if (showsProgress) bar.describe(report.of(state.result));
-  });
-  JobResult result = renderJob(
-      job, loaded, prepared, [&](double fraction) { bar.update(fractionOfAll(fraction)); },
-      interrupted, job.composite && job.composite->passes == Passes::Two ? nullptr : &control);
-  result.image.metadata = imageMetadata(job, loaded, result, result.render, result.seconds);
-  return result;
-}
+// Renders one image, with a progress bar and what is written meanwhile.
+class ImageRender {
+ public:
+  // Throws InputError for a checkpoint that does not fit.
+  ImageRender(const RenderJob& job, const LoadedScene& loaded, bool showsProgress)
+      : job_(job),
+        loaded_(loaded),
+        bar_(showsProgress),
+        control_(job, loaded, [this, showsProgress](const RenderState& state) {
+          if (showsProgress) bar_.describe(report_.of(state.result));
+        }) {}
+
+  // The image, ready to be written except for its state. `fractionOfAll`: of all work, by that of
+  // this image.
+  JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll) {
+    const bool isReference = job_.composite && job_.composite->passes == Passes::Two;
+    JobResult result = renderJob(
+        job_, loaded_, prepared, [&](double fraction) { bar_.update(fractionOfAll(fraction)); },
+        interrupted, isReference ? nullptr : &control_);
+    result.image.metadata = imageMetadata(job_, loaded_, result, result.render, result.seconds);
+    return result;
+  }
+
+ private:
+  const RenderJob& job_;
+  const LoadedScene& loaded_;
+  ProgressBar bar_;
+  PassReport report_;
+  JobControl control_;
+};
 
 void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
                  PhaseSeconds seconds) {
@@ -133,12 +147,13 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   prepareOutputs(job, loaded.files);
   RenderPart part;
   if (job.settings.isPart()) part.identity = renderIdentity(job, loaded);  // of the files loaded
-  print(outputMessages, options.quiet());  // after the last error that input can cause
-  print(loaded.messages, options.quiet());
-
-  stopOnSignals();
-  JobResult result = renderImage(job, loaded, prepared, options.showsProgress(),
-                                 [](double fraction) { return fraction; });
+  JobResult result = [&] {
+    ImageRender render(job, loaded, options.showsProgress());
+    print(outputMessages, options.quiet());  // after the last error that input can cause
+    print(loaded.messages, options.quiet());
+    stopOnSignals();
+    return render.run(prepared, [](double fraction) { return fraction; });
+  }();
   if (job.settings.isPart()) {
     part.plan = finishPlan(job, loaded);
     result.image.state = partState(part, result.render);
@@ -151,8 +166,10 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
 }
 
 bool isFinished(const RenderJob& job) {
+  const auto stats = job.file.settings.getIfGiven<std::string>("stats");
   return std::all_of(job.outputs.begin(), job.outputs.end(),
-                     [](const std::string& path) { return std::filesystem::exists(path); });
+                     [](const std::string& path) { return std::filesystem::exists(path); }) &&
+         (!stats || std::filesystem::exists(*stats));
 }
 
 // Messages that an earlier frame has not printed.
@@ -179,12 +196,14 @@ void renderFrames(const std::vector<SequenceFrame>& frames, const SceneOptions& 
     scene.show(job);
     const PhaseSeconds seconds{.load = watch.lap()};
     prepareOutputs(job, scene.loaded().files);
-    printNew(outputMessages, printed, options.quiet());
-    printNew(scene.loaded().messages, printed, options.quiet());
     const double before = double(i - kept), count = double(frames.size() - kept);
-    const JobResult result =
-        renderImage(job, scene.loaded(), scene.prepared(), options.showsProgress(),
-                    [&](double fraction) { return (before + fraction) / count; });
+    const JobResult result = [&] {
+      ImageRender render(job, scene.loaded(), options.showsProgress());
+      printNew(outputMessages, printed, options.quiet());
+      printNew(scene.loaded().messages, printed, options.quiet());
+      return render.run(scene.prepared(),
+                        [&](double fraction) { return (before + fraction) / count; });
+    }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
     writeImages(job, scene.loaded(), result, seconds);
     printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,

@@ -49,7 +49,7 @@ complete -c chromeball -n '__fish_seen_subcommand_from render' -l exposure -r -d
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l memory -r -d 'Refuses images that take more than this. (default: 0.8 times the machine'\''s memory)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l threads -r -d 'Number of threads; 0 is one for each core. It does not change the image. (default: 0)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l stats -r -d 'Writes times, rays, noise and the job'\''s settings to this file. (default: none)'
-complete -c chromeball -n '__fish_seen_subcommand_from render' -l frames -r -d 'Renders the frames A to B of an animation. A row of # in the names of files becomes a frame'\''s number. A frame whose images exist is left alone. (default: one image)'
+complete -c chromeball -n '__fish_seen_subcommand_from render' -l frames -r -d 'Renders the frames A to B of an animation. The last row of # in the names of files becomes a frame'\''s number. A frame is left alone if all its files exist. (default: one image)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l frame -r -d 'Renders only this one of the frames, for machines that share them. (default: all)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l fps -r -d 'Frames per second: frame N shows the time N / fps. (default: 24)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l overwrite -d 'Renders also the frames whose images exist'
