@@ -35,8 +35,8 @@ struct Selection {
 };
 
 // At each pixel the first candidate than which no later one is significantly better on average over
-// the window around the pixel; blended where the choice changes. One or more
-// candidates are narrow, and the last is the unfiltered image.
+// the window around the pixel; blended where the choice changes. One or more candidates are narrow,
+// and the last is the unfiltered image.
 Selection best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball

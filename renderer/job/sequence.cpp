@@ -13,15 +13,6 @@ constexpr int kLargestNumber = 1'000'000;
 
 struct FrameRange {
   int first = 0, last = 0, step = 1;
-
-  bool contains(int number) const {
-    return number >= first && number <= last && (number - first) % step == 0;
-  }
-  // Of the way from the first frame to the one after the last.
-  double fraction(int number) const {
-    const int end = first + (last - first) / step * step + step;
-    return double(number - first) / (end - first);
-  }
 };
 
 // "A:B" or "A:B:STEP".
@@ -58,23 +49,6 @@ void nameFiles(Settings& settings, int number) {
       settings.set(name, named(name, *path), settings.location(name));
 }
 
-SequenceFrame frameOf(const SceneFile& scene, const Settings& given, const FrameRange& range,
-                      int number) {
-  SequenceFrame frame{number, scene, given};
-  if (given.has("output.file")) frame.scene.settings.erase("output.file");
-  nameFiles(frame.scene.settings, number);
-  nameFiles(frame.given, number);
-  Settings all = scene.settings;
-  all.merge(given);
-  Settings& s = frame.given;
-  s.set("model.time", number / all.get<double>("fps"), "--frames");
-  if (const auto orbit = all.getIfGiven<double>("orbit"))
-    s.set("orbit", range.fraction(number) * *orbit, given.location("orbit"));
-  if (all.get<bool>("seed-per-frame"))
-    s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
-  return frame;
-}
-
 void check(const Settings& given) {
   const auto refuse = [&](const char* name, const char* why) {
     if (given.has(name)) throwInput("{}: {}", given.location(name), why);
@@ -100,20 +74,36 @@ std::string withNumber(const std::string& pattern, int number) {
          pattern.substr(last + 1);
 }
 
-std::vector<SequenceFrame> framesOf(const SceneFile& scene, const Settings& given) {
+Sequence::Sequence(const SceneFile& scene, const Settings& given) : scene_(scene), given_(given) {
   check(given);
-  if (!given.has("frames")) return {};
+  if (!given.has("frames")) return;
   const FrameRange range = rangeOf(given);
-  if (const auto only = given.getIfGiven<uint64_t>("frame")) {
-    if (*only > kLargestNumber || !range.contains(int(*only)))
-      throwInput("{}: {} is not one of the frames {}", given.location("frame"), *only,
-                 given.get<std::string>("frames"));
-    return {frameOf(scene, given, range, int(*only))};
-  }
-  std::vector<SequenceFrame> frames;
   for (int number = range.first; number <= range.last; number += range.step)
-    frames.push_back(frameOf(scene, given, range, number));
-  return frames;
+    numbers_.push_back(number);
+  first_ = range.first;
+  end_ = numbers_.back() + range.step;
+  const auto only = given.getIfGiven<uint64_t>("frame");
+  if (!only) return;
+  if (*only > kLargestNumber || !std::ranges::binary_search(numbers_, int(*only)))
+    throwInput("{}: {} is not one of the frames {}", given.location("frame"), *only,
+               given.get<std::string>("frames"));
+  numbers_ = {int(*only)};
+}
+
+SequenceFrame Sequence::frame(int number) const {
+  SequenceFrame frame{number, scene_, given_};
+  if (given_.has("output.file")) frame.scene.settings.erase("output.file");
+  nameFiles(frame.scene.settings, number);
+  nameFiles(frame.given, number);
+  Settings all = scene_.settings;
+  all.merge(given_);
+  Settings& s = frame.given;
+  s.set("model.time", number / all.get<double>("fps"), "--frames");
+  if (const auto orbit = all.getIfGiven<double>("orbit"))
+    s.set("orbit", *orbit * (number - first_) / (end_ - first_), given_.location("orbit"));
+  if (all.get<bool>("seed-per-frame"))
+    s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
+  return frame;
 }
 
 }  // namespace chromeball

@@ -178,14 +178,15 @@ void printNew(const Messages& messages, std::set<std::string>& printed, bool qui
     if (printed.insert(message.text).second) print({message}, quiet);
 }
 
-void renderFrames(const std::vector<SequenceFrame>& frames, const SceneOptions& options) {
+void renderFrames(const Sequence& sequence, const SceneOptions& options) {
+  const std::vector<int>& frames = sequence.numbers();
   const ThreadLimit threads(options.settings);
   stopOnSignals();
   FrameScene scene;
   std::set<std::string> printed;
   size_t kept = 0;
   for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
-    const SequenceFrame& frame = frames[i];
+    const SequenceFrame frame = sequence.frame(frames[i]);
     RenderJob job = planJob(frame.scene, frame.given);
     const Messages outputMessages = checkOutputs(job);
     if (!options.settings.get<bool>("overwrite") && isFinished(job)) {
@@ -220,8 +221,8 @@ void renderFrames(const std::vector<SequenceFrame>& frames, const SceneOptions& 
 
 void render(const SceneOptions& options) {
   const SceneFile scene = openScene(options.scene);
-  const std::vector<SequenceFrame> frames = framesOf(scene, options.settings);
-  frames.empty() ? renderStill(scene, options) : renderFrames(frames, options);
+  const Sequence sequence(scene, options.settings);
+  sequence.numbers().empty() ? renderStill(scene, options) : renderFrames(sequence, options);
 }
 
 }  // namespace
