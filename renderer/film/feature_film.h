@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a denoiser reads besides the image: direct light and the first surface, as the means of the
-// two halves of each pixel's samples (Film).
+// What a denoiser reads besides the image: direct light and the first surface, with FirstHit::seen
+// as its albedo, as the means of the two halves of each pixel's samples (Film).
 #pragma once
 
 #include <array>

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/path.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "integrate/mis.h"
+#include "integrate/pass_through.h"
 #include "integrate/regularization.h"
-#include "math/warp.h"
-#include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {
@@ -26,67 +23,6 @@ bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
          (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
-// Whether the ray ignores the surface: the back of a single-sided one, seen by the camera or in a
-// mirror.
-bool isHiddenFrom(const PathState& state, const Surface& surface) {
-  return state.isDelta && !surface.frontFace && surface.material->hidesBack();
-}
-
-// The front of a single-sided surface reflects light and also passes light that arrives at its
-// back. The path follows one of the two at random, with twice the throughput. Returns true to
-// continue behind the front; the MIS weights stay valid, because shadow rays pass the front too.
-bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
-                   const PixelSampler& sampler) {
-  if (state.isDelta || !surface.frontFace || !surface.material->backLetsLightThrough())
-    return false;
-  constexpr uint64_t kPurpose = 0x6f6e6577;  // separate random stream
-  state.throughput *= 2;
-  return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
-}
-
-// Whether shadow rays from the path's last vertex pass the surface, so that the path passes it
-// without refraction too.
-bool goesStraight(const PathState& state, const Material& material) {
-  return passesStraight(material) || (state.scattered && material.straightShadows);
-}
-
-// Continues the path straight through the surface. `state.from` and its pdf stay, because shadow
-// rays from there pass the surface too.
-void passStraight(PathState& state, const Surface& surface) {
-  state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
-  if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
-}
-
-// For a path without bounces left: continues straight through the surface, since light from behind
-// it is direct light of the previous vertex. Returns false if nothing passes.
-bool passAtLimit(const Scene& scene, PathState& state, const Instance& instance,
-                 const Surface& surface) {
-  if (!surface.material->extended) return false;
-  state.throughput *= straightTransmittance(scene, instance, surface, state.ray.direction);
-  if (isBlack(state.throughput)) return false;
-  ++state.depth;
-  passStraight(state, surface);
-  return true;
-}
-
-// The median luminance of the background; 1 if it is black.
-float typicalRadiance(const LightingStrategy& lighting) {
-  constexpr int kSide = 16;
-  std::vector<float> luminances;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
-    luminances.push_back(luminance(lighting.background(vec3(0), squareToUniformSphere(u))));
-  }
-  const auto middle = luminances.begin() + kSide * kSide / 2;
-  std::nth_element(luminances.begin(), middle, luminances.end());
-  return *middle > 0 && std::isfinite(*middle) ? *middle : 1;
-}
-
-// Whether all lobes so far were narrow, so that the camera sees the surface.
-bool isSeen(const PathState& state) {
-  return state.first && state.lobes == Lobes::Narrow && !state.first->direct;
-}
-
 }  // namespace
 
 PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
@@ -95,7 +31,7 @@ PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
       lighting_(lighting),
       settings_(settings),
       mirrorAlpha_(lighting.mirrorAlpha()),
-      typicalRadiance_(typicalRadiance(lighting)),
+      seen_(lighting),
       direct_(world, lighting, settings) {}
 
 std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) const {
@@ -246,8 +182,8 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
                         PathContext& context) const {
   if (!hit) {
     const Rgb escaped = escapedRadiance(state, context);
-    if (isSeen(state) && state.depth > 0) [[unlikely]]
-      state.first->seen = escaped / (escaped + typicalRadiance_);
+    if (state.first) [[unlikely]]
+      seen_.noteEscaped(state, escaped);
     state.radiance += escaped;
     return false;
   }
@@ -277,8 +213,8 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     *state.first = {
         true,          state.length,       material.baseColor, surface.normal, instance.material,
         instance.node, material.baseColor, std::nullopt};
-  else if (isSeen(state)) [[unlikely]]
-    state.first->seen = glm::min(state.throughput * material.baseColor, 1.0f);
+  else if (state.first) [[unlikely]]
+    SeenFeature::noteSurface(state, material);
   if (ends) return passAtLimit(scene, state, instance, surface);
   if (state.minAlpha > 0 && !goesStraight(state, *surface.material)) [[unlikely]]
     widen(material, state.minAlpha);

@@ -8,6 +8,7 @@
 #include "integrate/direct_light.h"
 #include "integrate/media.h"
 #include "integrate/path_settings.h"
+#include "integrate/seen_feature.h"
 #include "integrate/world.h"
 #include "scene/camera.h"
 
@@ -113,7 +114,7 @@ class PathTracer {
   const LightingStrategy& lighting_;
   PathSettings settings_;
   float mirrorAlpha_;
-  float typicalRadiance_;  // luminance
+  SeenFeature seen_;
   DirectLight direct_;
 };
 

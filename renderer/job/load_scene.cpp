@@ -125,7 +125,7 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
 // The models in the scene's coordinates, with the scene file's lamps.
 struct PlacedModels {
   Scene scene;
-  Camera camera;  // before its `orbit`
+  Camera camera;
   AutomaticView view;
   glm::dvec3 origin{0};
   std::vector<std::string> warnings;
@@ -158,23 +158,24 @@ AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, TexelCa
   return automaticView(job, first.scene, first.origin);
 }
 
+Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& view,
+                const glm::dvec3& origin) {
+  const AutomaticView here = view.seenFrom(origin);
+  return chooseCamera(job, scene, here)
+      .turnedAround(here.centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
+}
+
 PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
   PlacedModels placed = modelsAtOrigin(job.file, texels);
   if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
   chooseSize(job, scene);
   placed.view = viewAtStart(job, placed, texels);
-  placed.camera = chooseCamera(job, scene, placed.view.seenFrom(placed.origin));
+  placed.camera = cameraOf(job, scene, placed.view, placed.origin);
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
   if (job.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
-}
-
-Camera turned(const RenderJob& job, const Camera& start, const AutomaticView& view,
-              const glm::dvec3& origin) {
-  const double degrees = job.file.settings.getIfGiven<double>("orbit").value_or(0);
-  return start.turnedAround(view.seenFrom(origin).centre, degrees);
 }
 
 // Whether rays see the same: materials and textures are not animated.
@@ -196,7 +197,6 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 LoadedScene loadScene(RenderJob& job, TexelCache* texels) {
   PlacedModels models = placeModels(job, texels);
   Scene& scene = models.scene;
-  const Camera camera = turned(job, models.camera, models.view, models.origin);
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
@@ -208,9 +208,9 @@ LoadedScene loadScene(RenderJob& job, TexelCache* texels) {
   Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
               float(settings.get<double>("probe.scale")));
   loaded.latLong = {};
-  LoadedScene result{std::move(scene),  camera,           models.camera,         models.view,
-                     std::move(loaded), std::move(probe), job.file.surroundings, std::move(room),
-                     models.origin,     std::move(files)};
+  LoadedScene result{std::move(scene),  models.camera,    models.view,
+                     std::move(loaded), std::move(probe), job.file.surroundings,
+                     std::move(room),   models.origin,    std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
   result.messages = loadMessages(job, result, models.warnings);
   return result;
@@ -220,15 +220,15 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
   assert(!job.composite);
   if (!loaded.scene.isAnimated) {
     chooseSize(job, loaded.scene);
-    loaded.camera = turned(job, loaded.startCamera, loaded.view, loaded.origin);
+    moveToOrigin(job, loaded.origin);
+    loaded.camera = cameraOf(job, loaded.scene, loaded.view, loaded.origin);
     return false;
   }
   PlacedModels models = placeModels(job, &texels);
   if (job.file.surroundings && !loaded.room)
     checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
-  loaded.startCamera = models.camera;
   loaded.view = models.view;
-  loaded.camera = turned(job, models.camera, models.view, models.origin);
+  loaded.camera = models.camera;
   loaded.messages = loadMessages(job, loaded, models.warnings);
   const bool moved = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (moved) loaded.scene = std::move(models.scene);

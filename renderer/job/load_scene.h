@@ -15,9 +15,8 @@ namespace chromeball {
 
 struct LoadedScene {
   Scene scene;
-  Camera camera;       // the camera of the image
-  Camera startCamera;  // the same before its `orbit`
-  AutomaticView view;
+  Camera camera;            // the camera of the image
+  AutomaticView view;       // what the models decide of it
   LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
   Probe probe;              // black if only the scene's own lights are used
   std::optional<Surroundings> surroundings;  // the model is inside

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces that a path passes without a bounce.
+#pragma once
+
+#include "integrate/path.h"
+#include "scene/thin_wall.h"
+
+namespace chromeball {
+
+// Whether the ray ignores the surface: the back of a single-sided one, seen by the camera or in a
+// mirror.
+inline bool isHiddenFrom(const PathState& state, const Surface& surface) {
+  return state.isDelta && !surface.frontFace && surface.material->hidesBack();
+}
+
+// The front of a single-sided surface reflects light and also passes light that arrives at its
+// back. The path follows one of the two at random, with twice the throughput. Returns true to
+// continue behind the front; the MIS weights stay valid, because shadow rays pass the front too.
+inline bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
+                          const PixelSampler& sampler) {
+  if (state.isDelta || !surface.frontFace || !surface.material->backLetsLightThrough())
+    return false;
+  constexpr uint64_t kPurpose = 0x6f6e6577;  // separate random stream
+  state.throughput *= 2;
+  return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
+}
+
+// Whether shadow rays from the path's last vertex pass the surface, so that the path passes it
+// without refraction too.
+inline bool goesStraight(const PathState& state, const Material& material) {
+  return passesStraight(material) || (state.scattered && material.straightShadows);
+}
+
+// Continues the path straight through the surface. `state.from` and its pdf stay, because shadow
+// rays from there pass the surface too.
+inline void passStraight(PathState& state, const Surface& surface) {
+  state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
+  if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
+}
+
+// For a path without bounces left: continues straight through the surface, since light from behind
+// it is direct light of the previous vertex. Returns false if nothing passes.
+inline bool passAtLimit(const Scene& scene, PathState& state, const Instance& instance,
+                        const Surface& surface) {
+  if (!surface.material->extended) return false;
+  state.throughput *= straightTransmittance(scene, instance, surface, state.ray.direction);
+  if (isBlack(state.throughput)) return false;
+  ++state.depth;
+  passStraight(state, surface);
+  return true;
+}
+
+}  // namespace chromeball

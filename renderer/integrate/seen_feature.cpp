@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/seen_feature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "integrate/path.h"
+#include "math/warp.h"
+
+namespace chromeball {
+namespace {
+
+float medianLuminance(const LightingStrategy& lighting) {
+  constexpr int kSide = 16;
+  std::vector<float> luminances;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    luminances.push_back(luminance(lighting.background(vec3(0), squareToUniformSphere(u))));
+  }
+  const auto middle = luminances.begin() + kSide * kSide / 2;
+  std::nth_element(luminances.begin(), middle, luminances.end());
+  return *middle > 0 && std::isfinite(*middle) ? *middle : 1;
+}
+
+bool isSeen(const PathState& state) { return state.lobes == Lobes::Narrow && !state.first->direct; }
+
+}  // namespace
+
+SeenFeature::SeenFeature(const LightingStrategy& lighting) : median_(medianLuminance(lighting)) {}
+
+void SeenFeature::noteEscaped(const PathState& state, const Rgb& escaped) const {
+  if (isSeen(state) && state.depth > 0) state.first->seen = escaped / (escaped + median_);
+}
+
+void SeenFeature::noteSurface(const PathState& state, const MaterialPoint& material) {
+  if (isSeen(state)) state.first->seen = glm::min(state.throughput * material.baseColor, 1.0f);
+}
+
+}  // namespace chromeball
