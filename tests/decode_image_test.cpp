@@ -116,6 +116,25 @@ TEST(DecodeImage, DamagedWebpIsRejectedOrRead) {
   EXPECT_NE(errorMessage(large).find("cannot fit into 40 bytes"), std::string::npos);
 }
 
+TEST(DecodeImage, HeadersTellTheSizeOfTheTexels) {
+  EXPECT_EQ(decodedBytes(kWebp), 2u * 4);
+  EXPECT_EQ(decodedBytes(Bytes(kWebp.begin(), kWebp.begin() + 20)), 0u);
+  EXPECT_EQ(decodedBytes({}), 0u);
+  for (const char* name : {"gltf/DamagedHelmet/glTF/Default_normal.jpg",
+                           "gltf/WaterBottle/glTF/WaterBottle_normal.png"}) {
+    const auto path = sharedData(name);
+    if (!path) continue;
+    std::ifstream stream(*path, std::ios::binary);
+    const Bytes file(std::istreambuf_iterator<char>(stream), {});
+    const DecodedImage image = decodeImage(file, name);
+    EXPECT_EQ(decodedBytes(file), 4 * image.texels8.size()) << name;
+    for (size_t length = 0; length < 3000; ++length) {
+      const uint64_t bytes = decodedBytes(std::span(file).first(length));
+      EXPECT_TRUE(bytes == 0 || bytes == 4 * image.texels8.size()) << name << " " << length;
+    }
+  }
+}
+
 TEST(DecodeImage, DamagedFilesAreRejectedOrRead) {
   const auto folder = sharedData("bad/images/png");
   if (!folder) GTEST_SKIP() << "no damaged images";

@@ -99,6 +99,7 @@ class Renderer {
       pixels_.render(worker, x, y, countOf(x, y, state_.result.samples),
                      countOf(x, y, state_.wanted), beam);
     });
+    world_.scene.checkTexels();
     state_.finished[tile] = 1;
   }
 

@@ -85,6 +85,7 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
       {"triangles", loaded.scene.triangleCount()},
       {"scene_bytes", loaded.scene.byteCount()},
       {"texture_bytes", loaded.scene.texelByteCount()},
+      {"texture_file_bytes", loaded.scene.texelFileByteCount()},
       {"peak_memory_bytes", peakMemoryBytes()},
   };
   j.update(describe(result.render));

@@ -11,12 +11,13 @@
 #include "job/load_messages.h"
 #include "lighting/finite_surroundings.h"
 #include "scene/gltf/load_gltf.h"
+#include "scene/gltf/texel_cache.h"
 #include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {
 
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache* texels,
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache& texels,
                  std::vector<std::string>& warnings) {
   Scene scene;
   warnings.clear();
@@ -24,7 +25,7 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache* te
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
-    choice.texels = texels;
+    choice.texels = &texels;
     choice.environment = !file.settings.has("probe.file");
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
@@ -108,7 +109,7 @@ void chooseSize(RenderJob& job, const Scene& scene) {
 
 // Null unless the surroundings are a model.
 std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
-                                     std::vector<std::string>& files) {
+                                     TexelCache& texels, std::vector<std::string>& files) {
   const auto& surroundings = job.file.surroundings;
   if (!surroundings || surroundings->shape != Surroundings::Shape::Model) return nullptr;
   GltfChoice choice = job.file.models.front().choice;
@@ -116,6 +117,7 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   choice.variant.reset();
   choice.environment = false;
   choice.origin = origin;
+  choice.texels = &texels;
   Scene model = loadGltf(
       surroundings->model, {}, [](const std::string&) {}, choice);
   files.insert(files.end(), model.files.begin(), model.files.end());
@@ -137,7 +139,7 @@ void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
   if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
 }
 
-PlacedModels modelsAtOrigin(const SceneFile& file, TexelCache* texels) {
+PlacedModels modelsAtOrigin(const SceneFile& file, TexelCache& texels) {
   PlacedModels placed;
   placed.scene = loadModels(file, placed.origin, texels, placed.warnings);
   placed.origin = originFor(placed.scene, file.models.front().file);
@@ -147,7 +149,7 @@ PlacedModels modelsAtOrigin(const SceneFile& file, TexelCache* texels) {
 }
 
 // That of time 0, also in the coordinates of that time: with the same rounding for all times.
-AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, TexelCache* texels) {
+AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, TexelCache& texels) {
   if (job.view) return *job.view;
   const AutomaticView view = automaticView(job, now.scene, now.origin);
   if (!now.scene.isAnimated || !(view.camera || job.file.settings.has("orbit"))) return view;
@@ -165,7 +167,7 @@ Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& v
       .turnedAround(here.centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
 }
 
-PlacedModels placeModels(RenderJob& job, TexelCache* texels) {
+PlacedModels placeModels(RenderJob& job, TexelCache& texels) {
   PlacedModels placed = modelsAtOrigin(job.file, texels);
   if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
@@ -194,14 +196,18 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 
 }  // namespace
 
-LoadedScene loadScene(RenderJob& job, TexelCache* texels) {
+LoadedScene loadScene(RenderJob& job, TexelCache* shared) {
+  TexelCache own;
+  TexelCache& texels = shared ? *shared : own;
+  if (const auto limit = job.file.settings.getIfGiven<double>("texture-memory"))
+    texels.memory = 1e9 * *limit;
   PlacedModels models = placeModels(job, texels);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
   if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
-  std::unique_ptr<const Room> room = loadRoom(job, models.origin, files);
+  std::unique_ptr<const Room> room = loadRoom(job, models.origin, texels, files);
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
@@ -224,7 +230,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
     loaded.camera = cameraOf(job, loaded.scene, loaded.view, loaded.origin);
     return false;
   }
-  PlacedModels models = placeModels(job, &texels);
+  PlacedModels models = placeModels(job, texels);
   if (job.file.surroundings && !loaded.room)
     checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
   loaded.view = models.view;
@@ -236,7 +242,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
     loaded.origin = models.origin;
     loaded.surroundings = job.file.surroundings;
     std::vector<std::string> known;
-    loaded.room = loadRoom(job, loaded.origin, known);
+    loaded.room = loadRoom(job, loaded.origin, texels, known);
   }
   return moved;
 }

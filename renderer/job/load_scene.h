@@ -31,8 +31,8 @@ struct LoadedScene {
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
-// camera. `texels`: those of the models' other loads; may be null. Throws InputError.
-LoadedScene loadScene(RenderJob& job, TexelCache* texels = nullptr);
+// camera. `shared`: texels of the models' other loads; may be null. Throws InputError.
+LoadedScene loadScene(RenderJob& job, TexelCache* shared = nullptr);
 
 // Replaces the camera and, where a model is animated, what moves with it, for another frame of the
 // same job. Returns whether the scene's geometry or lights changed. Not for composites.

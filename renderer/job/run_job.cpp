@@ -49,6 +49,7 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(job.strategy, job.settings.mis, loaded);
   prepared.prepareSeconds = watch.lap();
+  loaded.scene.checkTexels();
   return prepared;
 }
 
@@ -58,6 +59,7 @@ JobResult renderJob(const RenderJob& job, const LoadedScene& loaded, const Prepa
   Stopwatch watch;
   JobResult result = job.composite ? renderComposite(job, loaded, prepared, progress, stop, control)
                                    : renderPlain(job, loaded, prepared, progress, stop, control);
+  loaded.scene.checkTexels();
   result.render.interrupted |= job.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   return result;

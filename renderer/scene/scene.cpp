@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include "image/io/texel_file.h"
+
 namespace chromeball {
 namespace {
 
@@ -12,8 +14,6 @@ template <class T>
 size_t bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
-
-size_t bytesOf(const TexelGrid& grid) { return bytesOf(grid.texels8) + bytesOf(grid.texelsFloat); }
 
 template <class T>
 void moveToEnd(std::vector<T>& to, std::vector<T>& from) {
@@ -40,12 +40,19 @@ size_t Scene::byteCount() const {
 
 size_t Scene::texelByteCount() const {
   size_t bytes = 0;
-  for (const auto& grid : grids) bytes += bytesOf(*grid);
-  std::set<const void*> counted;
+  std::set<const void*> counted;  // models share what they have in common
+  for (const auto& grid : grids)
+    if (counted.insert(grid.get()).second) bytes += grid->byteCount();
   for (const Texture& texture : textures)
     if (texture.mipLevels && counted.insert(texture.mipLevels.get()).second)
-      for (const TexelGrid& level : *texture.mipLevels) bytes += bytesOf(level);
+      for (const TexelGrid& level : *texture.mipLevels) bytes += level.byteCount();
   return bytes;
+}
+
+size_t Scene::texelFileByteCount() const { return texelFile ? texelFile->byteCount() : 0; }
+
+void Scene::checkTexels() const {
+  if (texelFile) texelFile->check();
 }
 
 Bounds bounds(const Scene& scene) {
@@ -78,6 +85,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
   moveToEnd(scene.lights, other.lights);
+  if (other.texelFile) scene.texelFile = std::move(other.texelFile);
   if (!scene.environment) scene.environment = std::move(other.environment);
   scene.nodeParents.resize(scene.nodeNames.size(), -1);
   other.nodeParents.resize(other.nodeNames.size(), -1);

@@ -59,6 +59,7 @@ struct Scene {
   std::vector<Texture> textures;
   // Own the texels that textures point to. Copies of the scene share them.
   std::vector<std::shared_ptr<TexelGrid>> grids;
+  std::shared_ptr<const TexelFile> texelFile;  // has the texels that are not in memory, or null
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired
@@ -68,9 +69,13 @@ struct Scene {
   std::vector<std::string> files;  // paths of all files read: models, their buffers and images
   bool isAnimated = false;         // shown at a time of an animation
 
-  size_t triangleCount() const;  // instanced triangles count once per instance
-  size_t byteCount() const;      // of geometry and texels, for the statistics
-  size_t texelByteCount() const;
+  size_t triangleCount() const;       // instanced triangles count once per instance
+  size_t byteCount() const;           // of geometry and texels, for the statistics
+  size_t texelByteCount() const;      // of texels in memory
+  size_t texelFileByteCount() const;  // of those in the file
+
+  // Throws RunError if texels could not be read from the file; those were taken as 0.
+  void checkTexels() const;
 };
 
 struct Bounds {

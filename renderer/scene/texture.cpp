@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/texture.h"
 
+#include "image/io/texel_file.h"
+
 namespace chromeball {
 namespace {
 
@@ -30,17 +32,29 @@ float decodeSrgbFast(float c) {
   return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
 }
 
-vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
-  const size_t i = size_t(y) * grid.width + x;
-  if (!grid.texels8.empty()) {
-    const std::array<uint8_t, 4>& t = grid.texels8[i];
-    const float alpha = t[3] * (1 / 255.0f);
-    if (srgb) return {kSrgb8[t[0]], kSrgb8[t[1]], kSrgb8[t[2]], alpha};
-    return vec4(t[0], t[1], t[2], t[3]) * (1 / 255.0f);
-  }
-  const vec4& t = grid.texelsFloat[i];
+vec4 decode(const std::array<uint8_t, 4>& t, bool srgb) {
+  const float alpha = t[3] * (1 / 255.0f);
+  if (srgb) return {kSrgb8[t[0]], kSrgb8[t[1]], kSrgb8[t[2]], alpha};
+  return vec4(t[0], t[1], t[2], t[3]) * (1 / 255.0f);
+}
+
+vec4 decode(const vec4& t, bool srgb) {
   if (!srgb) return t;
   return {decodeSrgbFast(t.x), decodeSrgbFast(t.y), decodeSrgbFast(t.z), t.w};
+}
+
+[[gnu::noinline]] vec4 fetchFromFile(const TexelGrid& grid, bool srgb, int x, int y) {
+  const TexelFile& file = *grid.file;
+  return file.has8Bits(grid.fileImage) ? decode(file.texel8(grid.fileImage, x, y), srgb)
+                                       : decode(file.texelFloat(grid.fileImage, x, y), srgb);
+}
+
+vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
+  const size_t i = size_t(y) * grid.width + x;
+  if (!grid.texels8.empty()) return decode(grid.texels8[i], srgb);
+  if (grid.file) [[unlikely]]
+    return fetchFromFile(grid, srgb, x, y);
+  return decode(grid.texelsFloat[i], srgb);
 }
 
 // Maps a texel index at most one period outside [0, size) into that range. A coordinate after
@@ -79,6 +93,10 @@ float reduce(float x, Wrap wrap) {
 }
 
 }  // namespace
+
+size_t TexelGrid::byteCount() const {
+  return texels8.size() * sizeof(texels8[0]) + texelsFloat.size() * sizeof(vec4);
+}
 
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
 

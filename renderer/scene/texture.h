@@ -11,12 +11,18 @@
 
 namespace chromeball {
 
+class TexelFile;
+
 // The texels of an image file, shared by all textures that use it. Always four channels; exactly
-// one of the two arrays is filled.
+// one of the two arrays is filled, or none if the texels are in a file.
 struct TexelGrid {
   int width = 0, height = 0;
   std::vector<std::array<uint8_t, 4>> texels8;  // 8-bit sources
   std::vector<vec4> texelsFloat;                // sources of more bits; 0..1 for integer files
+  const TexelFile* file = nullptr;              // image/io/texel_file.h; null: in memory
+  int fileImage = -1;                           // index in it
+
+  size_t byteCount() const;  // of the texels in memory
 };
 
 enum class Wrap : uint8_t { Repeat, ClampToEdge, MirroredRepeat };

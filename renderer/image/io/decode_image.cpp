@@ -9,6 +9,7 @@
 #include "image/io/decode_webp.h"
 #include "image/io/oiio_reader.h"
 #include "image/io/silenced_stderr.h"
+#include "image/io/strip_metadata.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -22,6 +23,10 @@ bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at
   return file.size() >= at + magic.size() &&
          std::equal(magic.begin(), magic.end(), file.begin() + at,
                     [](char a, uint8_t b) { return uint8_t(a) == b; });
+}
+
+bool isWebp(std::span<const uint8_t> file) {
+  return startsWith(file, "RIFF") && startsWith(file, "WEBP", 8);
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -83,8 +88,21 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 
 }  // namespace
 
+uint64_t decodedBytes(std::span<const uint8_t> file) {
+  const auto bytes = [](const HeaderSize& size, uint64_t perTexel) {
+    return uint64_t(size.width) * uint64_t(size.height) * perTexel;
+  };
+  if (isWebp(file)) return bytes(webpSize(file), 4);
+  const char* reader = readerFor(file);
+  if (reader && reader == std::string_view("jpeg")) return bytes(jpegSize(file), 4);
+  constexpr size_t kDepthAt = 24;
+  if (reader && reader == std::string_view("png") && file.size() > kDepthAt)
+    return bytes(pngSize(file), file[kDepthAt] > 8 ? sizeof(vec4) : 4);
+  return 0;
+}
+
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
-  if (startsWith(file, "RIFF") && startsWith(file, "WEBP", 8)) return decodeWebp(file, name);
+  if (isWebp(file)) return decodeWebp(file, name);
   const char* reader = readerOf(file, name);
   const SilencedStderr silenced;
   ImageSpec config;

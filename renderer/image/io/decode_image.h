@@ -28,4 +28,7 @@ inline constexpr int kMaxImageSide = 16384;
 // of the file can hold.
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name);
 
+// Bytes of the arrays that decodeImage() would fill, by the header of the file; 0 if it is damaged.
+uint64_t decodedBytes(std::span<const uint8_t> file);
+
 }  // namespace chromeball

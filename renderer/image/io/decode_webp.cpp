@@ -28,4 +28,10 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) 
   return image;
 }
 
+HeaderSize webpSize(std::span<const uint8_t> file) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) return {};
+  return {features.width, features.height};
+}
+
 }  // namespace chromeball

@@ -66,11 +66,18 @@ void checkScans(std::span<const uint8_t> file, size_t at, const std::string& nam
   }
 }
 
+constexpr size_t kFrameBytes = 8;  // length, precision, height, width, components
+
+HeaderSize frameSize(std::span<const uint8_t> segment) {
+  return {bigEndian16(&segment[5]), bigEndian16(&segment[3])};
+}
+
 void readFrame(std::span<const uint8_t> segment, size_t fileBytes, const std::string& name,
                StrippedJpeg& jpeg) {
-  if (segment.size() < 8) return;  // length, precision, height, width, components
-  jpeg.height = bigEndian16(&segment[3]);
-  jpeg.width = bigEndian16(&segment[5]);
+  if (segment.size() < kFrameBytes) return;
+  const HeaderSize size = frameSize(segment);
+  jpeg.width = size.width;
+  jpeg.height = size.height;
   jpeg.components = segment[7];
   if (uint64_t(jpeg.width) * uint64_t(jpeg.height) > fileBytes * kMaxTexelsPerJpegByte)
     throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, jpeg.width,
@@ -78,6 +85,18 @@ void readFrame(std::span<const uint8_t> segment, size_t fileBytes, const std::st
 }
 
 }  // namespace
+
+HeaderSize jpegSize(std::span<const uint8_t> file) {
+  size_t at = 0;
+  while (const uint8_t marker = nextMarker(file, at)) {
+    if (marker == kSos || marker == kEoi) break;
+    const size_t begin = at;
+    at = endOfSegment(file, at, marker);
+    if (isFrame(marker) && at - begin >= kFrameBytes)
+      return frameSize(file.subspan(begin, at - begin));
+  }
+  return {};
+}
 
 StrippedJpeg stripJpeg(std::span<const uint8_t> file, const std::string& name) {
   StrippedJpeg jpeg;

@@ -11,6 +11,14 @@
 
 namespace chromeball {
 
+// Of an image, as its header states it; 0 if that is damaged.
+struct HeaderSize {
+  int width = 0, height = 0;
+};
+
+HeaderSize jpegSize(std::span<const uint8_t> file);
+HeaderSize pngSize(std::span<const uint8_t> file);
+
 // A JPEG without its metadata segments, except those of JFIF and Adobe, which tell how colour is
 // encoded. The size is that of the frame header (SOF), so that it can be checked before a library
 // allocates memory for it.

@@ -8,6 +8,16 @@
 
 namespace chromeball {
 
+HeaderSize pngSize(std::span<const uint8_t> file) {  // the first chunk, IHDR, begins with them
+  constexpr size_t kWidthAt = 16, kEnd = 24;
+  if (file.size() < kEnd) return {};
+  const auto number = [&](size_t at) {
+    return int(uint32_t(file[at]) << 24 | file[at + 1] << 16 | file[at + 2] << 8 | file[at + 3]);
+  };
+  const HeaderSize size{number(kWidthAt), number(kWidthAt + 4)};
+  return size.width > 0 && size.height > 0 ? size : HeaderSize{};
+}
+
 std::vector<uint8_t> stripPng(std::span<const uint8_t> file) {
   constexpr size_t kSignatureBytes = 8;
   constexpr size_t kChunkOverhead = 12;  // bytes of length, type and checksum

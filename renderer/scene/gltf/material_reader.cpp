@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/material_reader.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 
-#include "image/io/decode_image.h"
+#include "scene/gltf/decode_images.h"
 #include "scene/gltf/extension_members.h"
-#include "scene/mip_chain.h"
 
 namespace chromeball {
 namespace {
@@ -22,8 +18,6 @@ Wrap wrapOf(int code) {
   if (code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::MirroredRepeat;
   return Wrap::Repeat;
 }
-
-bool isDecoded(const TexelGrid& grid) { return grid.width > 0; }
 
 }  // namespace
 
@@ -180,46 +174,27 @@ TexelGrid* MaterialReader::grid(int image) {
   return grids_[size_t(found->second)].get();
 }
 
-// Each task decodes an image and builds its mip levels while the texels are in the cache. Long
-// files come first, so that no thread works on one alone at the end. Textures of one image that
-// differ in their samplers only share the mip levels.
+// Textures of one image that differ in their samplers only share the mip levels.
 void MaterialReader::moveInto(Scene& scene) {
   TexelCache own;
   TexelCache& cache = cache_ ? *cache_ : own;
-  auto& chains = cache.chains;
-  for (const Texture& t : textures_) chains[{t.grid, t.srgb, t.weightedByAlpha}];
-  struct Source {
-    size_t grid;
-    Bytes storage;
-    std::span<const uint8_t> bytes;
-  };
-  std::vector<Source> sources(grids_.size());
-  for (size_t i = 0; i < sources.size(); ++i) {
-    sources[i].grid = i;
-    if (isDecoded(*grids_[i])) continue;
-    sources[i].bytes = file_.image(imageOf_[i], sources[i].storage);
-  }
-  std::sort(sources.begin(), sources.end(),
-            [](const Source& a, const Source& b) { return a.bytes.size() > b.bytes.size(); });
-  std::atomic<size_t> next = 0;
-  tbb::parallel_for(size_t(0), sources.size(), [&](size_t) {
-    const Source& source = sources[next++];
-    TexelGrid& grid = *grids_[source.grid];
-    if (!isDecoded(grid)) {
-      DecodedImage decoded = decodeImage(source.bytes, file_.describeImage(imageOf_[source.grid]));
-      grid = {decoded.width, decoded.height, std::move(decoded.texels8),
-              std::move(decoded.texelsFloat)};
-    }
+  for (const Texture& t : textures_) cache.chains[{t.grid, t.srgb, t.weightedByAlpha}];
+  std::vector<ImageToDecode> images;
+  for (size_t i = 0; i < grids_.size(); ++i) {
+    ImageToDecode& image = images.emplace_back();
+    image.image = imageOf_[i];
+    image.grid = grids_[i].get();
     for (bool srgb : {false, true})
       for (bool weighted : {false, true})
-        if (const auto wanted = chains.find({&grid, srgb, weighted});
-            wanted != chains.end() && !wanted->second)
-          wanted->second =
-              std::make_shared<const std::vector<TexelGrid>>(makeMipLevels(grid, srgb, weighted));
-  });
-  for (Texture& t : textures_) t.mipLevels = chains[{t.grid, t.srgb, t.weightedByAlpha}];
+        if (const auto wanted = cache.chains.find({image.grid, srgb, weighted});
+            wanted != cache.chains.end() && !wanted->second)
+          image.chains.push_back({srgb, weighted, &wanted->second});
+  }
+  decodeImages(file_, images, cache);
+  for (Texture& t : textures_) t.mipLevels = cache.chains[{t.grid, t.srgb, t.weightedByAlpha}];
   for (size_t i = 0; i < grids_.size(); ++i)
     cache.grids.try_emplace({file_.files().front(), imageOf_[i]}, grids_[i]);
+  scene.texelFile = cache.file;
   scene.materials = std::move(materials_);
   scene.textures = std::move(textures_);
   scene.grids = std::move(grids_);

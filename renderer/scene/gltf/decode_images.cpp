@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/decode_images.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "image/io/decode_image.h"
+#include "image/io/texel_file.h"
+#include "scene/mip_chain.h"
+
+namespace chromeball {
+namespace {
+
+// A level of so few texels stays in memory: the cache's record of it takes as much.
+constexpr int kMinStoredTexels = 32 * 32;
+
+bool isDecoded(const TexelGrid& grid) { return grid.width > 0; }
+
+struct Source {
+  const ImageToDecode* image;
+  bool isRead = false;  // whether the texels are taken from the file
+  Bytes storage;
+  std::span<const uint8_t> bytes;
+};
+
+std::vector<Source> sourcesOf(const GltfFile& file, const std::vector<ImageToDecode>& images) {
+  std::vector<Source> sources;
+  for (const ImageToDecode& image : images) {
+    if (isDecoded(*image.grid) && image.chains.empty()) continue;
+    Source& source = sources.emplace_back();
+    source.image = &image;
+    source.isRead = !isDecoded(*image.grid) || image.grid->file;
+    if (source.isRead) source.bytes = file.image(image.image, source.storage);
+  }
+  return sources;
+}
+
+// Bytes of the texels to decode and of the mip levels to make, by the headers of the files.
+double bytesOf(const std::vector<Source>& sources) {
+  double bytes = 0;
+  for (const Source& source : sources) {
+    const TexelGrid& grid = *source.image->grid;
+    const double texels =
+        double(source.isRead ? decodedBytes(source.bytes) : uint64_t(grid.byteCount()));
+    bytes += texels * ((isDecoded(grid) ? 0 : 1) + double(source.image->chains.size()) / 3);
+  }
+  return bytes;
+}
+
+TexelGrid stored(TexelGrid grid, TexelFile* file) {
+  if (!file || grid.width * grid.height <= kMinStoredTexels) return grid;
+  TexelGrid inFile{grid.width, grid.height, {}, {}, file};
+  inFile.fileImage = grid.texels8.empty() ? file->add(grid.width, grid.height, grid.texelsFloat)
+                                          : file->add(grid.width, grid.height, grid.texels8);
+  return inFile;
+}
+
+// Mip levels are built while the texels are in the processor's cache.
+void decode(const Source& source, const GltfFile& file, TexelFile* texelFile) {
+  TexelGrid& grid = *source.image->grid;
+  TexelGrid decoded;
+  if (source.isRead) {
+    DecodedImage d = decodeImage(source.bytes, file.describeImage(source.image->image));
+    decoded = {d.width, d.height, std::move(d.texels8), std::move(d.texelsFloat)};
+  }
+  const TexelGrid& from = source.isRead ? decoded : grid;
+  for (const ChainToMake& wanted : source.image->chains) {
+    std::vector<TexelGrid> levels = makeMipLevels(from, wanted.srgb, wanted.weightedByAlpha);
+    for (TexelGrid& level : levels) level = stored(std::move(level), texelFile);
+    *wanted.chain = std::make_shared<const std::vector<TexelGrid>>(std::move(levels));
+  }
+  if (!isDecoded(grid)) grid = stored(std::move(decoded), texelFile);
+}
+
+// Long files come first, so that no thread works on one alone at the end.
+void decodeInParallel(std::vector<Source>& sources, const GltfFile& file) {
+  std::sort(sources.begin(), sources.end(),
+            [](const Source& a, const Source& b) { return a.bytes.size() > b.bytes.size(); });
+  std::atomic<size_t> next = 0;
+  tbb::parallel_for(size_t(0), sources.size(),
+                    [&](size_t) { decode(sources[next++], file, nullptr); });
+}
+
+}  // namespace
+
+void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images,
+                  TexelCache& cache) {
+  std::vector<Source> sources = sourcesOf(file, images);
+  const double bytes = bytesOf(sources);
+  if (!cache.file && cache.used + bytes > cache.memory)
+    cache.file = std::make_shared<TexelFile>(size_t(std::max(cache.memory - cache.used, 0.0)));
+  if (!cache.file) {
+    cache.used += bytes;
+    return decodeInParallel(sources, file);
+  }
+  for (Source& source : sources) {
+    decode(source, file, cache.file.get());
+    source.storage = {};
+  }
+}
+
+}  // namespace chromeball

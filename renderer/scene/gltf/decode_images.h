@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decodes the images of a model, into memory or a temporary file.
+#pragma once
+
+#include <vector>
+
+#include "scene/gltf/gltf_file.h"
+#include "scene/gltf/texel_cache.h"
+
+namespace chromeball {
+
+// Mip levels to make for an image; see makeMipLevels().
+struct ChainToMake {
+  bool srgb = false, weightedByAlpha = false;
+  MipChain* chain = nullptr;
+};
+
+struct ImageToDecode {
+  int image = 0;              // index in the file
+  TexelGrid* grid = nullptr;  // filled unless it already is
+  std::vector<ChainToMake> chains;
+};
+
+// Decodes what is missing, in parallel. If all of it would exceed `cache.memory`, it goes to
+// `cache.file`, one image after another. Throws InputError for a damaged image, RunError if the
+// temporary file cannot be written.
+void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images,
+                  TexelCache& cache);
+
+}  // namespace chromeball
