@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file.h"
 
+#include <fcntl.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -36,6 +40,25 @@ std::vector<uint8_t> readFile(const fs::path& path) {
   if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
     throwInput("{}: cannot read the whole file", path.string());
   return bytes;
+}
+
+FileBytes::FileBytes(const fs::path& path) {
+  checkReadable(path);
+  size_ = size_t(fs::file_size(path));
+  data_.reset(new uint8_t[size_]);
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  constexpr size_t kBlock = 8 << 20;
+  std::atomic<bool> isWhole = file >= 0;
+  tbb::parallel_for(size_t(0), (size_ + kBlock - 1) / kBlock, [&](size_t block) {
+    const size_t end = std::min(size_, (block + 1) * kBlock);
+    for (size_t at = block * kBlock; at < end && isWhole;) {
+      const ssize_t count = pread(file, data_.get() + at, end - at, off_t(at));
+      if (count > 0) at += size_t(count);
+      if (count == 0 || (count < 0 && errno != EINTR)) isWhole = false;
+    }
+  });
+  if (file >= 0) close(file);
+  if (!isWhole) throwInput("{}: cannot read the whole file", path.string());
 }
 
 void checkReplaceable(const fs::path& path) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,19 @@ std::string lowerExtension(const std::filesystem::path& path);
 
 // All bytes of a regular file. Throws InputError.
 std::vector<uint8_t> readFile(const std::filesystem::path& path);
+
+// The same for long files: by several threads, into memory that is not cleared before.
+class FileBytes {
+ public:
+  FileBytes() = default;
+  explicit FileBytes(const std::filesystem::path& path);
+
+  std::span<const uint8_t> bytes() const { return {data_.get(), size_}; }
+
+ private:
+  std::unique_ptr<uint8_t[]> data_;
+  size_t size_ = 0;
+};
 
 // Checks that a file can be created or replaced at `path`, so that a run fails before the work and
 // not after it. The write itself may still fail. Throws InputError if the folder does not exist,

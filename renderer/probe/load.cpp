@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
+#include "base/for_ranges.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/detect_mapping.h"
@@ -37,18 +39,29 @@ Image turned(Image latLong) {
 
 // Finds the maximum, and the fraction of texels that reach it.
 void measureMaximum(const Image& image, LoadedProbe& probe) {
-  size_t count = 0, equalToFirst = 0;
+  const size_t width = size_t(image.width), height = size_t(image.height);
+  std::vector<float> maxima(height);  // by row
+  forRanges(height, width, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y)
+      for (int x = 0; x < image.width; ++x)
+        maxima[y] = std::max(maxima[y], maxComponent(image.rgb(x, int(y))));
+  });
+  probe.maximum = std::max(probe.maximum, *std::max_element(maxima.begin(), maxima.end()));
   const Rgb first = image.rgb(0, 0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const Rgb texel = image.rgb(x, y);
-      const float brightness = maxComponent(texel);
-      if (brightness > probe.maximum) probe.maximum = brightness, count = 0;
-      count += brightness == probe.maximum;
-      equalToFirst += texel == first;
-    }
-  const size_t all = size_t(image.width) * image.height;
-  if (equalToFirst < all) probe.fractionAtMaximum = double(count) / double(all);
+  std::atomic<size_t> atMaximum = 0, equalToFirst = 0;
+  forRanges(height, width, [&](size_t begin, size_t end) {
+    size_t maximal = 0, equal = 0;
+    for (size_t y = begin; y < end; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Rgb texel = image.rgb(x, int(y));
+        maximal += maxComponent(texel) == probe.maximum;
+        equal += texel == first;
+      }
+    atMaximum += maximal;
+    equalToFirst += equal;
+  });
+  const size_t all = width * height;
+  if (equalToFirst < all) probe.fractionAtMaximum = double(atMaximum) / double(all);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/probe.h"
 
+#include <atomic>
+
 #include "base/error.h"
+#include "base/for_ranges.h"
 
 namespace chromeball {
 
@@ -20,14 +23,18 @@ Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
   const auto corner = [&](int x, int cornerRow) -> Rgb& {
     return grid_[size_t(cornerRow) * (width_ + 1) + x];
   };
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const Rgb radiance = latLong.rgb(x, y) * scale;
-      if (!isFinite(radiance))
-        throwInput("probe: texel ({}, {}) times the scale {} exceeds the range of a float", x, y,
-                   scale);
-      corner(x, y + 1) = radiance;
-    }
+  std::atomic<bool> isValid = true;
+  forRanges(size_t(height_), size_t(width_), [&](size_t begin, size_t end) {
+    for (int y = int(begin); y < int(end); ++y)
+      for (int x = 0; x < width_; ++x) {
+        corner(x, y + 1) = latLong.rgb(x, y) * scale;
+        if (!isFinite(corner(x, y + 1))) isValid = false;
+      }
+  });
+  for (int i = 0; !isValid && i < width_ * height_; ++i)
+    if (const int x = i % width_, y = i / width_; !isFinite(corner(x, y + 1)))
+      throwInput("probe: texel ({}, {}) times the scale {} exceeds the range of a float", x, y,
+                 scale);
   const auto rowMean = [&](int cornerRow) {
     glm::dvec3 sum(0);
     for (int x = 0; x < width_; ++x) sum += glm::dvec3(corner(x, cornerRow));

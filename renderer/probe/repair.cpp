@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "base/for_ranges.h"
 
 namespace chromeball {
 namespace {
@@ -40,10 +43,23 @@ Rgb meanOfNeighbours(const Image& image, int x, int y, bool wrapX, float largest
   return count > 0 ? Rgb(sum / double(count)) : Rgb(0);
 }
 
+bool isValid(const Image& image) {
+  std::atomic<bool> valid = true;
+  forRanges(size_t(image.height), size_t(image.width), [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end && valid; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Rgb c = image.rgb(x, int(y));
+        if (!isFinite(c) || c.x < 0 || c.y < 0 || c.z < 0) valid = false;
+      }
+  });
+  return valid;
+}
+
 }  // namespace
 
 RepairReport repair(Image& image, bool wrapX) {
   RepairReport report;
+  if (isValid(image)) return report;
   float largest = 0;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/mesh_attributes.h"
 
+#include <algorithm>
+#include <atomic>
 #include <limits>
+#include <mutex>
 #include <utility>
+
+#include "base/for_ranges.h"
 
 namespace chromeball {
 namespace {
@@ -39,7 +44,22 @@ dvec3 anyPerpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, axis));
 }
 
+template <class T, class Change>
+void forEach(std::vector<T>& array, const Change& change) {
+  forRanges(array.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) change(array[i]);
+  });
+}
+
 }  // namespace
+
+bool areFinite(const std::vector<vec3>& points) {
+  std::atomic<bool> all = true;
+  forRanges(points.size(), [&](size_t begin, size_t end) {
+    if (!std::all_of(points.data() + begin, points.data() + end, isFinite)) all = false;
+  });
+  return all;
+}
 
 void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
   gather(mesh.positions, source);
@@ -78,13 +98,18 @@ void makeFlat(Mesh& mesh) {
 
 void repairNormals(Mesh& mesh) {
   std::vector<uint32_t> bad;
-  for (uint32_t i = 0; i < mesh.normals.size(); ++i) {
-    dvec3 n = mesh.normals[i];
-    if (normalize(n))
-      mesh.normals[i] = vec3(n);
-    else
-      bad.push_back(i);
-  }
+  std::mutex adding;
+  forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      dvec3 n = mesh.normals[i];
+      if (normalize(n)) {
+        mesh.normals[i] = vec3(n);
+      } else {
+        const std::lock_guard lock(adding);
+        bad.push_back(uint32_t(i));
+      }
+    }
+  });
   if (bad.empty()) return;
 
   std::vector<dvec3> around(mesh.normals.size(), dvec3(0));
@@ -108,8 +133,8 @@ void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   const glm::dmat3 linear(transform);
   const glm::dmat3 inverseTranspose = glm::transpose(glm::inverse(linear));
   const bool mirrors = glm::determinant(linear) < 0;
-  for (vec3& p : mesh.positions) p = vec3(transform * glm::dvec4(dvec3(p), 1));
-  for (vec3& n : mesh.normals) n = vec3(inverseTranspose * dvec3(n));
+  forEach(mesh.positions, [&](vec3& p) { p = vec3(transform * glm::dvec4(dvec3(p), 1)); });
+  forEach(mesh.normals, [&](vec3& n) { n = vec3(inverseTranspose * dvec3(n)); });
   for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), mirrors ? -t.w : t.w);
   if (mirrors)
     for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);

@@ -9,6 +9,8 @@
 
 namespace chromeball {
 
+bool areFinite(const std::vector<vec3>& points);
+
 // Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
 // change the triangles.
 void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source);

@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/accessor.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <limits>
+
+#include "base/for_ranges.h"
 
 namespace chromeball {
 namespace {
 
-// The elements of an accessor, tightly packed, after sparse substitution.
-struct Packed {
+// The elements of an accessor, `stride` bytes apart: those of the file, or a copy where some are
+// substituted.
+struct Elements {
   size_t count = 0;
   int components = 0, componentType = 0;
   bool normalized = false;
-  Bytes bytes;
+  const uint8_t* first = nullptr;
+  size_t stride = 0;
+  Bytes copy;
+
+  bool areTight(size_t componentBytes) const {
+    return stride == componentBytes * size_t(components);
+  }
 };
 
 // An accessor without a buffer view is all zeros, so the length of the file does not limit its
@@ -68,106 +79,156 @@ bool isUnsigned(int type) {
 }
 
 void substituteSparse(const GltfFile& file, const tinygltf::Accessor& a, size_t elementSize,
-                      Packed& packed, const std::string& where) {
+                      Elements& elements, const std::string& where) {
   const auto& sparse = a.sparse;
-  if (sparse.count < 1 || size_t(sparse.count) > packed.count || sparse.indices.byteOffset < 0 ||
+  if (sparse.count < 1 || size_t(sparse.count) > elements.count || sparse.indices.byteOffset < 0 ||
       sparse.values.byteOffset < 0 || !isUnsigned(sparse.indices.componentType))
     file.fail("{}: invalid sparse substitution", where);
   const size_t count = size_t(sparse.count);
   const size_t indexSize = componentSize(sparse.indices.componentType);
   const auto indices = file.view(sparse.indices.bufferView, where + ".sparse.indices");
-  const auto elements = file.view(sparse.values.bufferView, where + ".sparse.values");
+  const auto values = file.view(sparse.values.bufferView, where + ".sparse.values");
   const size_t indexOffset = size_t(sparse.indices.byteOffset);
   const size_t elementOffset = size_t(sparse.values.byteOffset);
   checkFit(file, indices.size(), indexOffset, indexSize, indexSize, count,
            where + ".sparse.indices");
-  checkFit(file, elements.size(), elementOffset, elementSize, elementSize, count,
+  checkFit(file, values.size(), elementOffset, elementSize, elementSize, count,
            where + ".sparse.values");
   for (size_t i = 0; i < count; ++i) {
     const size_t index =
         loadUnsigned(indices.data() + indexOffset + i * indexSize, sparse.indices.componentType);
-    if (index >= packed.count)
-      file.fail("{}.sparse: index {} out of range ({} elements)", where, index, packed.count);
-    std::memcpy(packed.bytes.data() + index * elementSize,
-                elements.data() + elementOffset + i * elementSize, elementSize);
+    if (index >= elements.count)
+      file.fail("{}.sparse: index {} out of range ({} elements)", where, index, elements.count);
+    std::memcpy(elements.copy.data() + index * elementSize,
+                values.data() + elementOffset + i * elementSize, elementSize);
   }
 }
 
-Packed readPacked(GltfFile& file, int accessor, const std::string& user) {
+void copyElements(size_t elementSize, Elements& elements) {
+  elements.copy.resize(elements.count * elementSize);
+  if (elements.first)
+    for (size_t i = 0; i < elements.count; ++i)
+      std::memcpy(elements.copy.data() + i * elementSize, elements.first + i * elements.stride,
+                  elementSize);
+  elements.first = elements.copy.data();
+  elements.stride = elementSize;
+}
+
+Elements readElements(GltfFile& file, int accessor, const std::string& user) {
   const tinygltf::Accessor& a = file.at(file.model.accessors, accessor, "accessors", user);
   const std::string where = fmt::format("{}: accessors[{}]", user, accessor);
-  Packed packed;
-  packed.count = a.count;
-  packed.componentType = a.componentType;
-  packed.normalized = a.normalized;
-  packed.components = tinygltf::GetNumComponentsInType(uint32_t(a.type));
+  Elements elements;
+  elements.count = a.count;
+  elements.componentType = a.componentType;
+  elements.normalized = a.normalized;
+  elements.components = tinygltf::GetNumComponentsInType(uint32_t(a.type));
   const size_t size = componentSize(a.componentType);
-  if (size == 0 || packed.components < 1)
+  if (size == 0 || elements.components < 1)
     file.fail("{}: componentType {} is not a glTF 2.0 type", where, a.componentType);
   if (a.count < 1) file.fail("{}: has no elements", where);
 
-  const size_t elementSize = size * size_t(packed.components);
+  const size_t elementSize = size * size_t(elements.components);
   if (a.bufferView < 0) {
     if (a.count > kMaxElementsWithoutView)
       file.fail("{}: {} elements without a buffer view; the limit is {}", where, a.count,
                 kMaxElementsWithoutView);
-    file.spend(a.count * elementSize);
-    packed.bytes.assign(a.count * elementSize, 0);
   } else {
     const std::span<const uint8_t> view = file.view(a.bufferView, where);
     const size_t byteStride = file.model.bufferViews[size_t(a.bufferView)].byteStride;
-    const size_t stride = byteStride ? byteStride : elementSize;
-    if (stride < elementSize)
-      file.fail("{}: byteStride {} is less than the {} bytes of an element", where, stride,
+    elements.stride = byteStride ? byteStride : elementSize;
+    if (elements.stride < elementSize)
+      file.fail("{}: byteStride {} is less than the {} bytes of an element", where, elements.stride,
                 elementSize);
-    checkFit(file, view.size(), a.byteOffset, stride, elementSize, a.count, where);
-    file.spend(a.count * elementSize);
-    packed.bytes.resize(a.count * elementSize);
-    const uint8_t* from = view.data() + a.byteOffset;
-    if (stride == elementSize)
-      std::memcpy(packed.bytes.data(), from, packed.bytes.size());
-    else
-      for (size_t i = 0; i < a.count; ++i)
-        std::memcpy(packed.bytes.data() + i * elementSize, from + i * stride, elementSize);
+    checkFit(file, view.size(), a.byteOffset, elements.stride, elementSize, a.count, where);
+    elements.first = view.data() + a.byteOffset;
   }
-  if (a.sparse.isSparse) substituteSparse(file, a, elementSize, packed, where);
-  return packed;
+  file.spend(a.count * elementSize);
+  if (!elements.first || a.sparse.isSparse) copyElements(elementSize, elements);
+  if (a.sparse.isSparse) substituteSparse(file, a, elementSize, elements, where);
+  return elements;
 }
 
 // Signed normalised integers (glTF 2.0, 3.6.2.2): f = max(c / 127, -1), so two codes give -1.
 template <class T>
-void convert(const Packed& packed, float* out) {
-  const float scale =
-      packed.normalized && std::is_integral_v<T> ? 1 / float(std::numeric_limits<T>::max()) : 1.0f;
-  const size_t n = packed.count * size_t(packed.components);
-  for (size_t i = 0; i < n; ++i) {
-    const float x = float(load<T>(packed.bytes.data() + i * sizeof(T))) * scale;
-    out[i] = packed.normalized && std::is_signed_v<T> && std::is_integral_v<T> && x < -1 ? -1 : x;
-  }
+void convert(const Elements& elements, float* out) {
+  const float scale = elements.normalized && std::is_integral_v<T>
+                          ? 1 / float(std::numeric_limits<T>::max())
+                          : 1.0f;
+  const size_t components = size_t(elements.components);
+  forRanges(elements.count, [&](size_t begin, size_t end) {
+    if (std::is_same_v<T, float> && elements.areTight(sizeof(T))) {
+      std::memcpy(out + begin * components, elements.first + begin * elements.stride,
+                  (end - begin) * elements.stride);
+      return;
+    }
+    for (size_t i = begin; i < end; ++i)
+      for (size_t k = 0; k < components; ++k) {
+        const float x =
+            float(load<T>(elements.first + i * elements.stride + k * sizeof(T))) * scale;
+        const bool isBelow =
+            elements.normalized && std::is_signed_v<T> && std::is_integral_v<T> && x < -1;
+        out[i * components + k] = isBelow ? -1 : x;
+      }
+  });
 }
 
-void toFloats(const Packed& packed, float* out) {
-  switch (packed.componentType) {
+void toFloats(const Elements& elements, float* out) {
+  switch (elements.componentType) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return convert<int8_t>(packed, out);
+      return convert<int8_t>(elements, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return convert<uint8_t>(packed, out);
+      return convert<uint8_t>(elements, out);
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return convert<int16_t>(packed, out);
+      return convert<int16_t>(elements, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return convert<uint16_t>(packed, out);
+      return convert<uint16_t>(elements, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return convert<uint32_t>(packed, out);
+      return convert<uint32_t>(elements, out);
     default:
-      return convert<float>(packed, out);
+      return convert<float>(elements, out);
   }
 }
 
-void checkComponents(const GltfFile& file, const Packed& packed, int expected, int accessor,
+void checkComponents(const GltfFile& file, const Elements& elements, int expected, int accessor,
                      const std::string& where) {
-  if (packed.components != expected)
+  if (elements.components != expected)
     file.fail("{}: accessors[{}] has {} components; it must have {}", where, accessor,
-              packed.components, expected);
+              elements.components, expected);
+}
+
+Elements readIndexElements(GltfFile& file, int accessor, const std::string& where) {
+  Elements elements = readElements(file, accessor, where);
+  checkComponents(file, elements, 1, accessor, where);
+  if (!isUnsigned(elements.componentType))
+    file.fail("{}: accessors[{}] has componentType {}; indices must be unsigned integers", where,
+              accessor, elements.componentType);
+  return elements;
+}
+
+// Throws for the first invalid index, of which there must be one.
+[[noreturn]] void failAtIndex(const GltfFile& file, std::span<const uint32_t> indices,
+                              uint32_t restart, size_t vertexCount, const std::string& where) {
+  const uint32_t index = *std::find_if(
+      indices.begin(), indices.end(), [&](uint32_t i) { return i == restart || i >= vertexCount; });
+  if (index == restart)
+    file.fail("{}: index {} is the primitive-restart value, which glTF forbids", where, index);
+  file.fail("{}: index {} out of range ({} vertices)", where, index, vertexCount);
+}
+
+void copyIndices(const GltfFile& file, const Elements& elements, size_t vertexCount,
+                 const std::string& where, uint32_t* out) {
+  const size_t size = componentSize(elements.componentType);
+  const uint32_t restart = uint32_t((uint64_t(1) << (8 * size)) - 1);
+  std::atomic<bool> isValid = true;
+  forRanges(elements.count, [&](size_t begin, size_t end) {
+    uint32_t max = 0;
+    for (size_t i = begin; i < end; ++i) {
+      out[i] = loadUnsigned(elements.first + i * elements.stride, elements.componentType);
+      max = std::max(max, out[i]);
+    }
+    if (max >= vertexCount || max == restart) isValid = false;
+  });
+  if (!isValid) failAtIndex(file, {out, elements.count}, restart, vertexCount, where);
 }
 
 }  // namespace
@@ -175,10 +236,10 @@ void checkComponents(const GltfFile& file, const Packed& packed, int expected, i
 template <int N>
 std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor,
                                             const std::string& where) {
-  const Packed packed = readPacked(file, accessor, where);
-  checkComponents(file, packed, N, accessor, where);
-  std::vector<glm::vec<N, float>> vectors(packed.count);
-  toFloats(packed, &vectors[0][0]);
+  const Elements elements = readElements(file, accessor, where);
+  checkComponents(file, elements, N, accessor, where);
+  std::vector<glm::vec<N, float>> vectors(elements.count);
+  toFloats(elements, &vectors[0][0]);
   return vectors;
 }
 
@@ -189,30 +250,26 @@ template std::vector<vec4> readVectors<4>(GltfFile&, int, const std::string&);
 
 std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCount,
                                   const std::string& where) {
-  const Packed packed = readPacked(file, accessor, where);
-  checkComponents(file, packed, 1, accessor, where);
-  if (!isUnsigned(packed.componentType))
-    file.fail("{}: accessors[{}] has componentType {}; indices must be unsigned integers", where,
-              accessor, packed.componentType);
-  const size_t size = componentSize(packed.componentType);
-  const uint32_t restart = uint32_t((uint64_t(1) << (8 * size)) - 1);
-  std::vector<uint32_t> indices(packed.count);
-  for (size_t i = 0; i < indices.size(); ++i) {
-    const uint32_t index = loadUnsigned(packed.bytes.data() + i * size, packed.componentType);
-    if (index == restart)
-      file.fail("{}: index {} is the primitive-restart value, which glTF forbids", where, index);
-    if (index >= vertexCount)
-      file.fail("{}: index {} out of range ({} vertices)", where, index, vertexCount);
-    indices[i] = index;
-  }
+  const Elements elements = readIndexElements(file, accessor, where);
+  std::vector<uint32_t> indices(elements.count);
+  copyIndices(file, elements, vertexCount, where, indices.data());
   return indices;
 }
 
+std::vector<Triangle> readTriangles(GltfFile& file, int accessor, size_t vertexCount,
+                                    const std::string& where) {
+  const Elements elements = readIndexElements(file, accessor, where);
+  std::vector<Triangle> triangles((elements.count + 2) / 3);
+  copyIndices(file, elements, vertexCount, where, &triangles[0].x);
+  triangles.resize(elements.count / 3);
+  return triangles;
+}
+
 std::vector<glm::dmat4> readMatrices(GltfFile& file, int accessor, const std::string& where) {
-  const Packed packed = readPacked(file, accessor, where);
-  checkComponents(file, packed, 16, accessor, where);
-  std::vector<glm::mat4> floats(packed.count);
-  toFloats(packed, &floats[0][0][0]);
+  const Elements elements = readElements(file, accessor, where);
+  checkComponents(file, elements, 16, accessor, where);
+  std::vector<glm::mat4> floats(elements.count);
+  toFloats(elements, &floats[0][0][0]);
   return {floats.begin(), floats.end()};
 }
 

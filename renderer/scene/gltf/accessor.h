@@ -21,6 +21,10 @@ std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor, const 
 std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCount,
                                   const std::string& where);
 
+// The same, three by three; a rest of one or two is left out.
+std::vector<Triangle> readTriangles(GltfFile& file, int accessor, size_t vertexCount,
+                                    const std::string& where);
+
 std::vector<glm::dmat4> readMatrices(GltfFile& file, int accessor, const std::string& where);
 
 // RGB (then alpha is 1) or RGBA.

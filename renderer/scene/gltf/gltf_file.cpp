@@ -145,8 +145,8 @@ std::string oneLine(std::string text) {
 GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
     : path_(path), files_{path}, warn_(std::move(warn)), external_(external) {
   try {
-    file_ = readFile(path);
-    const GltfChunks chunks = splitContainer(file_);
+    file_ = FileBytes(path);
+    const GltfChunks chunks = splitContainer(file_.bytes());
     json root = parseJson(chunks.json);
     checkVersion(root);
     checkExtensions(root);
@@ -177,7 +177,7 @@ void GltfFile::checkExtensions(const json& root) {
 // We open the files and not tinygltf, because it would also search the working directory, and
 // because it reads images before their buffer views are checked.
 void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryChunk) {
-  uint64_t total = file_.size();
+  uint64_t total = file_.bytes().size();
   for (size_t i = 0; i < buffers.size(); ++i) {
     const std::string where = fmt::format("buffers[{}]", i);
     const uint64_t length = unsignedMember(buffers[i], "byteLength", where);

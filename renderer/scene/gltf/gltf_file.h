@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "scene/gltf/load_gltf.h"
 
 namespace chromeball {
@@ -90,7 +91,7 @@ class GltfFile {
   Warn warn_;
   ExternalFiles external_;
   std::set<std::string> emittedWarnings_;
-  Bytes file_;                  // includes the GLB's buffer
+  FileBytes file_;              // includes the GLB's buffer
   std::vector<Bytes> storage_;  // the other buffers
   std::vector<std::span<const uint8_t>> buffers_;
   uint64_t spent_ = 0, budget_ = 0;

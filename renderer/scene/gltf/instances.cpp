@@ -88,7 +88,7 @@ class InstanceReader {
         readPrimitive(file_, primitive, poseOf(plan.node), where, materials_[plan.material]);
     if (!mesh) return -1;
     if (transform) transformMesh(*mesh, *transform);
-    if (!std::all_of(mesh->positions.begin(), mesh->positions.end(), isFinite))
+    if (!areFinite(mesh->positions))
       file_.fail("{}: its node's transform exceeds the range of float", where);
     scene_.meshes.push_back(std::move(*mesh));
     return int(scene_.meshes.size()) - 1;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/for_ranges.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/pose.h"
 #include "scene/mesh_attributes.h"
@@ -33,8 +34,31 @@ std::vector<Triangle> assemble(const std::vector<uint32_t>& v, int mode) {
   return triangles;
 }
 
+std::vector<Triangle> readAllTriangles(GltfFile& file, const tinygltf::Primitive& primitive,
+                                       size_t vertexCount, const std::string& where) {
+  const bool isIndexed = primitive.indices >= 0;
+  const bool isList = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+  std::vector<uint32_t> vertices;
+  std::vector<Triangle> triangles;
+  if (isIndexed && isList) {
+    triangles = readTriangles(file, primitive.indices, vertexCount, where + ".indices");
+  } else if (isIndexed) {
+    vertices = readIndices(file, primitive.indices, vertexCount, where + ".indices");
+  } else {
+    vertices.resize(vertexCount);
+    std::iota(vertices.begin(), vertices.end(), 0u);
+  }
+  if (!isIndexed || !isList) triangles = assemble(vertices, primitive.mode);
+  const size_t count =
+      isIndexed ? file.model.accessors[size_t(primitive.indices)].count : vertexCount;
+  if (isList && !triangles.empty() && count % 3 != 0)
+    file.warnOnce("ignored: indices after the last complete triangle");
+  return triangles;
+}
+
 void checkFinite(const GltfFile& file, const std::vector<vec3>& positions,
                  const std::string& where) {
+  if (areFinite(positions)) return;
   for (size_t i = 0; i < positions.size(); ++i)
     if (!isFinite(positions[i])) file.fail("{}: the position of vertex {} is not finite", where, i);
 }
@@ -163,20 +187,11 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
   AttributeReader attributes(file, primitive, where);
   Mesh mesh;
   mesh.positions = attributes.read("POSITION", readVectors<3>);
-  std::vector<uint32_t> vertices;
-  if (primitive.indices >= 0) {
-    vertices = readIndices(file, primitive.indices, mesh.positions.size(), where + ".indices");
-  } else {
-    vertices.resize(mesh.positions.size());
-    std::iota(vertices.begin(), vertices.end(), 0u);
-  }
-  mesh.triangles = assemble(vertices, primitive.mode);
+  mesh.triangles = readAllTriangles(file, primitive, mesh.positions.size(), where);
   if (mesh.triangles.empty()) {
     file.warnOnce("ignored: primitives with fewer than three indices");
     return std::nullopt;
   }
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES && vertices.size() % 3 != 0)
-    file.warnOnce("ignored: indices after the last complete triangle");
 
   mesh.normals = attributes.read("NORMAL", readVectors<3>);
   if (tangentSpace(material) && !mesh.normals.empty())

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// A loop over long arrays, on all threads.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace chromeball {
+
+// Calls body(begin, end) for parts of [0, count) that together cover it; each of the `count` has
+// `elements` elements. Short arrays are one part.
+template <class Body>
+void forRanges(size_t count, size_t elements, const Body& body) {
+  constexpr size_t kMinElements = 1 << 14;
+  const size_t grain = kMinElements / elements + 1;
+  if (count <= grain) return body(size_t(0), count);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); });
+}
+
+template <class Body>
+void forRanges(size_t count, const Body& body) {
+  forRanges(count, 1, body);
+}
+
+}  // namespace chromeball
