@@ -19,7 +19,7 @@ double imageBytes(const RenderSettings& settings) {
     const double channels = aov == Aov::Denoise
                                 ? FeatureFilm::kLayerChannels
                                 : std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
-    sums += channels * sizeof(double);
+    if (aov != Aov::Denoise) sums += channels * sizeof(double);  // made of the features
     texels += channels * sizeof(float);
   }
   // Estimating the noise takes three fields of errors, two of luminances and the variance; later

@@ -9,6 +9,7 @@
 #include "job/id_manifest.h"
 #include "job/job_description.h"
 #include "job/machine.h"
+#include "job/memory_estimate.h"
 
 namespace chromeball {
 namespace {
@@ -19,6 +20,14 @@ uint64_t peakMemoryBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+// What was stated before the render, and the peak since the process began.
+json describe(const MemoryEstimate& stated) {
+  return {
+      {"process", stated.process},         {"images", stated.images}, {"textures", stated.textures},
+      {"geometry", stated.geometry},       {"probe", stated.probe},   {"stated_peak", stated.peak},
+      {"measured_peak", peakMemoryBytes()}};
 }
 
 json describe(const CompositeReport& report) {
@@ -87,6 +96,7 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
       {"texture_bytes", loaded.scene.texelByteCount()},
       {"texture_file_bytes", loaded.scene.texelFileByteCount()},
       {"peak_memory_bytes", peakMemoryBytes()},
+      {"memory", describe(estimateMemory(job, loaded))},
   };
   j.update(describe(result.render));
   if (const auto& d = result.denoised)

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/file.h"
-#include "job/image_memory.h"
+#include "job/memory_estimate.h"
 
 namespace chromeball {
 namespace {
@@ -25,11 +25,11 @@ bool hasBodies(const Scene& scene) {
   });
 }
 
-void addMemory(const RenderSettings& s, Collector& messages) {
+void addMemory(const RenderJob& job, const LoadedScene& loaded, Collector& messages) {
   constexpr double kMinBytes = 1e9;
-  if (const double bytes = imageBytes(s); bytes > kMinBytes)
-    messages.note(fmt::format("an image of {}x{} takes {:.3g} GB of memory", s.width, s.height,
-                              bytes * 1e-9));
+  if (const MemoryEstimate estimate = estimateMemory(job, loaded); estimate.peak > kMinBytes)
+    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.file.path,
+                              1e-9 * estimate.peak, inWords(estimate)));
 }
 
 void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
@@ -69,7 +69,7 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
     messages.warn(
         "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
         "are in full shadow; light from emissive surfaces passes");
-  addMemory(job.settings, messages);
+  addMemory(job, loaded, messages);
   const Settings& settings = job.file.settings;
   if (const auto probe = settings.getIfGiven<std::string>("probe.file"))
     addProbe(*probe, loaded.loadedProbe, messages);

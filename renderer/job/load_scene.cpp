@@ -5,10 +5,9 @@
 #include <cassert>
 
 #include "base/error.h"
-#include "composite/render_composite.h"
 #include "job/choose_camera.h"
-#include "job/image_memory.h"
 #include "job/load_messages.h"
+#include "job/memory_estimate.h"
 #include "lighting/finite_surroundings.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/texel_cache.h"
@@ -94,11 +93,8 @@ void chooseSize(RenderJob& job, const Scene& scene) {
     if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
       throwInput("{}: is not within the image of {}x{} pixels", job.file.settings.location("crop"),
                  settings.width, settings.height);
-  const double composite = job.composite ? double(compositeBytesPerPixel(settings.denoise)) : 0;
-  const double needed = imageBytes(settings) + composite * settings.width * settings.height;
   const Settings& given = job.file.settings;
-  const auto memory = given.getIfGiven<double>("memory");
-  const double budget = memory ? 1e9 * *memory : memoryBudget();
+  const double needed = imageBytes(job), budget = memoryLimit(job);
   if (needed > budget)
     throw InputError(
         fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
@@ -201,6 +197,7 @@ LoadedScene loadScene(RenderJob& job, TexelCache* shared) {
   TexelCache& texels = shared ? *shared : own;
   if (const auto limit = job.file.settings.getIfGiven<double>("texture-memory"))
     texels.memory = 1e9 * *limit;
+  texels.limit = memoryLimit(job);
   PlacedModels models = placeModels(job, texels);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
@@ -218,6 +215,7 @@ LoadedScene loadScene(RenderJob& job, TexelCache* shared) {
                      std::move(loaded), std::move(probe), job.file.surroundings,
                      std::move(room),   models.origin,    std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
+  checkMemory(job, result);
   result.messages = loadMessages(job, result, models.warnings);
   return result;
 }

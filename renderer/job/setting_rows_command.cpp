@@ -69,7 +69,7 @@ std::vector<Setting> commandRows() {
        .range = kPositive,
        .unit = "GB",
        .absent = "0.8 times the machine's memory",
-       .help = "Refuses images that take more than this.",
+       .help = "Refuses images and scenes that take more than this.",
        .effect = Effect::Run},
       {.option = "texture-memory",
        .argument = "GB",

@@ -89,15 +89,19 @@ std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const 
 }  // namespace
 
 uint64_t decodedBytes(std::span<const uint8_t> file) {
-  const auto bytes = [](const HeaderSize& size, uint64_t perTexel) {
-    return uint64_t(size.width) * uint64_t(size.height) * perTexel;
+  const auto bytes = [&](const HeaderSize& size, uint64_t perTexel, uint64_t texelsPerByte) {
+    const uint64_t texels = uint64_t(size.width) * uint64_t(size.height);
+    const bool isPossible = size.width <= kMaxImageSide && size.height <= kMaxImageSide &&
+                            texels <= file.size() * texelsPerByte;
+    return isPossible ? texels * perTexel : 0;
   };
-  if (isWebp(file)) return bytes(webpSize(file), 4);
+  if (isWebp(file)) return bytes(webpSize(file), 4, 1 << 15);
   const char* reader = readerFor(file);
-  if (reader && reader == std::string_view("jpeg")) return bytes(jpegSize(file), 4);
+  if (reader && reader == std::string_view("jpeg"))
+    return bytes(jpegSize(file), 4, kMaxTexelsPerJpegByte);
   constexpr size_t kDepthAt = 24;
   if (reader && reader == std::string_view("png") && file.size() > kDepthAt)
-    return bytes(pngSize(file), file[kDepthAt] > 8 ? sizeof(vec4) : 4);
+    return bytes(pngSize(file), file[kDepthAt] > 8 ? sizeof(vec4) : 4, 8 * kMaxDeflateRatio);
   return 0;
 }
 

@@ -28,7 +28,8 @@ inline constexpr int kMaxImageSide = 16384;
 // of the file can hold.
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name);
 
-// Bytes of the arrays that decodeImage() would fill, by the header of the file; 0 if it is damaged.
+// Bytes of the arrays that decodeImage() would fill, by the header of the file; 0 if it is damaged,
+// or claims more than the file can hold.
 uint64_t decodedBytes(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -93,6 +93,11 @@ void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images
     cache.file = std::make_shared<TexelFile>(size_t(std::max(cache.memory - cache.used, 0.0)));
   if (!cache.file) {
     cache.used += bytes;
+    if (cache.used > cache.limit)
+      throw InputError(
+          fmt::format("{}: its textures take {:.3g} GB of memory; the limit is {:.3g} GB",
+                      file.files().front(), 1e-9 * cache.used, 1e-9 * cache.limit),
+          Remedy{"memory", {}});
     return decodeInParallel(sources, file);
   }
   for (Source& source : sources) {

@@ -22,8 +22,9 @@ struct ImageToDecode {
 };
 
 // Decodes what is missing, in parallel. If all of it would exceed `cache.memory`, it goes to
-// `cache.file`, one image after another. Throws InputError for a damaged image, RunError if the
-// temporary file cannot be written.
+// `cache.file`, one image after another. Throws InputError for a damaged image, and
+// before any is decoded if all exceed `cache.limit`; RunError if the temporary file cannot be
+// written.
 void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images,
                   TexelCache& cache);
 

@@ -17,6 +17,7 @@ namespace chromeball {
 using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
 
 struct TexelCache {
+  double limit = INFINITY;          // bytes; more texels in memory are refused
   double memory = INFINITY;         // bytes for texels in memory; with more, they go to `file`
   double used = 0;                  // of it, by grids and chains in memory
   std::shared_ptr<TexelFile> file;  // null: all are in memory; else it caches the rest of `memory`

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render will take is stated before, agrees with what it took, and is refused if it is too
+// much. Small scenes: the numbers of large ones are in tools/RESULTS.md.
+#include "job/memory_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gltf_writer.h"
+#include "image/io/encode_png.h"
+#include "image/io/write_image.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class SlowMemoryEstimate : public testing::Test {
+ protected:
+  void SetUp() override {
+    addTriangle(small_);
+    model_ = small_.save();
+    probe_ = (small_.folder() / "probe.exr").string();
+    writeImage(probe_, constantProbe({8, 4}, Rgb(1)));
+  }
+
+  Words words(const std::string& model, const std::string& probe, const Words& more) const {
+    Words all{"render", model, "--probe",      probe,     "--samples",
+              "2",      "-o",  out_ / "a.exr", "--stats", out_ / "a.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  // The large scene takes so much more than a small one that its category decides.
+  void expectStated(const std::string& model, const std::string& probe, const Words& more) {
+    const auto memory = [&](const Words& arguments) {
+      const CommandResult result = runCommand(arguments);
+      EXPECT_EQ(result.status, 0) << result.error;
+      return nlohmann::json::parse(std::ifstream(out_ / "a.json"))["memory"];
+    };
+    const auto small = memory(words(model_, probe_, {"--size", "8x8"}));
+    const auto large = memory(words(model, probe, more));
+    const double measured = large["measured_peak"].get<double>();
+    EXPECT_GT(measured, small["measured_peak"].get<double>() + 1e8) << "too small to be measured";
+    EXPECT_NEAR(large["stated_peak"].get<double>() / measured, 1, 0.25) << large.dump();
+  }
+
+  void expectRefused(const std::string& model, const std::string& probe, const Words& more,
+                     const std::string& reason) {
+    const CommandResult result = expectError(words(model, probe, more), reason);
+    EXPECT_NE(result.error.find("--memory"), std::string::npos) << result.error;
+  }
+
+  const TemporaryFolder out_;
+  GltfWriter small_;
+  std::string model_, probe_;
+};
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_F(SlowMemoryEstimate, OfImages) {
+  expectStated(model_, probe_,
+               {"--size", "1000x600", "--aov",
+                "albedo,normal,depth,alpha,variance,samples,material,node,invalid,denoise"});
+}
+
+TEST_F(SlowMemoryEstimate, OfAProbe) {
+  const std::string probe = (small_.folder() / "large.exr").string();
+  writeImage(probe, constantProbe({4096, 2048}, Rgb(1)));
+  expectStated(model_, probe, {"--size", "8x8"});
+  expectRefused(model_, probe, {"--memory", "0.2", "--size", "8x8"}, "takes 0.");
+}
+
+TEST_F(SlowMemoryEstimate, OfGeometry) {
+  constexpr int kSide = 1000;
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
+  for (int y = 0; y <= kSide; ++y)
+    for (int x = 0; x <= kSide; ++x) {
+      const float height = 20 * std::sin(0.01f * float(x)) * std::cos(0.02f * float(y));
+      positions.insert(positions.end(), {float(x), height, float(y)});
+      const uint32_t i = uint32_t(y * (kSide + 1) + x), next = i + kSide + 1;
+      if (x < kSide && y < kSide)
+        indices.insert(indices.end(), {i, next, i + 1, i + 1, next, next + 1});
+    }
+  GltfWriter w;
+  const int count = int(indices.size());
+  addTriangle(w, {{"attributes", {{"POSITION", w.vec3s(positions)}}},
+                  {"indices", w.accessor(w.view(indices), kUInt, "SCALAR", size_t(count))}});
+  const std::string model = w.save();
+  expectStated(model, probe_, {"--size", "8x8"});
+  expectRefused(model, probe_, {"--memory", "0.2", "--size", "8x8"}, "geometry");
+}
+#endif
+
+TEST_F(SlowMemoryEstimate, TexturesAreRefusedByTheirHeaders) {
+  constexpr int kSide = 4096;
+  small_.write("a.png", encodePng(kSide, kSide, 1, std::vector<uint8_t>(kSide * kSide)));
+  small_.add("images", {{"uri", "a.png"}});
+  small_.add("textures", {{"source", 0}});
+  small_.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  addTriangle(small_, {{"material", 0}});
+  expectRefused(small_.save(), probe_, {"--memory", "0.05", "--size", "8x8"},
+                "its textures take 0.0895 GB of memory; the limit is 0.05 GB");
+}
+
+}  // namespace
+}  // namespace chromeball
