@@ -67,6 +67,7 @@ const std::map<std::string, std::string> kIncludedBy = {
     {"Eigen/", "renderer/lighting/fit/"},
     {"boost/", "renderer/measure/"},
     {"CLI/", "tools/command/"},
+    {"httplib.h", "tools/command/viewers/preview_server.cpp"},
 };
 
 // The forbidden includes in the file `path` (relative to the project), one line each.

@@ -4,6 +4,7 @@
 
 #include <regex>
 
+#include "browser.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -64,26 +65,6 @@ constexpr const char* kUse = R"(<script>
   }, 20);
 </script>)";
 
-std::string findChromium() {
-  for (const char* path :
-       {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
-    if (std::filesystem::exists(path)) return path;
-  return "";
-}
-
-std::string dumpedPage(const std::string& chromium, const TemporaryFolder& folder,
-                       const std::string& page) {
-  const std::string command =
-      chromium +
-      " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
-      " --disable-background-networking --disable-component-update --disable-sync"
-      " --user-data-dir=" +
-      folder / "profile" + " --virtual-time-budget=20000 --dump-dom file://" + page + " > " +
-      folder / "dom.html" + " 2> " + folder / "log";
-  EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "log");
-  return fileContents(folder / "dom.html");
-}
-
 TEST(SlowReport, worksInABrowser) {
   const std::string chromium = findChromium();
   if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
@@ -104,7 +85,7 @@ TEST(SlowReport, worksInABrowser) {
   page.replace(page.rfind("</body>"), 7, std::string(kUse) + "</body>");
   std::ofstream(folder / "page.html") << page;
 
-  const std::string dom = dumpedPage(chromium, folder, folder / "page.html");
+  const std::string dom = dumpedPage(chromium, folder, "file://" + (folder / "page.html"));
   const auto hasResult = [&](const std::string& verdict) {
     return dom.find("&lt;" + verdict) != std::string::npos;
   };

@@ -27,7 +27,9 @@ class StopAfter : public RenderControl {
     stored.clear();
     return true;
   }
-  bool wantsPause() const override { return ++asked_ > tiles_; }
+  bool wantsPause(const RenderState& state) const override {
+    return state.canBeStored() && ++asked_ > tiles_;
+  }
   void pause(RenderState& state) override {
     end(state);
     stop_ = true;

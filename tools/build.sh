@@ -17,8 +17,8 @@ fi
 
 packages=(build-essential cmake pkg-config
   libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev
-  libtomlplusplus-dev libcli11-dev libglm-dev libtbb-dev libfmt-dev nlohmann-json3-dev libeigen3-dev
-  libboost-dev libgtest-dev libbenchmark-dev)
+  libtomlplusplus-dev libcli11-dev libcpp-httplib-dev libglm-dev libtbb-dev libfmt-dev
+  nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
 
 needs() {
   echo "chromeball needs these packages (Debian's names), and cannot install them here:" >&2

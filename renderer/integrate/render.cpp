@@ -89,8 +89,6 @@ class Renderer {
     state_.finished.clear();
   }
 
-  bool canPause() const { return !trains_ && state_.canBeStored(); }
-
  private:
   void renderTile(PixelWorker& worker, size_t tile, const Beam& beam) {
     tiles_.forPixels(tile, [&](int x, int y) {
@@ -146,7 +144,7 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
       if (wanted <= result.samples) return;
       renderer.startPass(wanted);
     }
-    const auto pauses = [&] { return control && renderer.canPause() && control->wantsPause(); };
+    const auto pauses = [&] { return control && control->wantsPause(state); };
     const double from = result.samples, samples = state.wanted - from;
     renderer.renderTiles(
         [&](double fraction) { progress(state.schedule.progress(from + fraction * samples)); },
@@ -216,7 +214,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
     result.guidedRegions = training->lights().guidedRegions();
     result.causticFraction = training->caustics().empty() ? 0 : training->caustics().fraction();
   }
-  if (control && renderer.canPause()) control->end(state);
+  if (control && state.canBeStored()) control->end(state);
   return std::move(state.result);
 }
 

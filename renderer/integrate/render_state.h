@@ -38,8 +38,8 @@ class RenderControl {
   // After each pass. No thread renders meanwhile.
   virtual void endPass(const RenderState&) {}
   // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
-  virtual bool wantsPause() const = 0;
-  // No thread renders meanwhile.
+  virtual bool wantsPause(const RenderState& state) const = 0;
+  // No thread renders meanwhile. The state may be one that cannot be stored.
   virtual void pause(RenderState& state) = 0;
   // After the last pass, and when the render is stopped; not while the guides are being trained.
   virtual void end(RenderState& state) = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/checkpoint.h"
 
+#include <algorithm>
+
 #include "image/io/write_exr.h"
 #include "job/job_description.h"
 #include "job/job_report.h"
@@ -8,11 +10,12 @@
 namespace chromeball {
 
 JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded,
-                       std::function<void(const RenderState&)> onPass)
+                       std::function<void(const RenderState&)> onPass, std::vector<Viewer*> viewers)
     : job_(job),
       loaded_(loaded),
       onPass_(std::move(onPass)),
       path_(job.file.settings.getIfGiven<std::string>("checkpoint")),
+      viewers_(std::move(viewers)),
       images_(job.file.settings.getIfGiven<double>("write-every")),
       checkpoints_(path_ ? std::optional(job.file.settings.get<double>("checkpoint-every"))
                          : std::nullopt) {
@@ -41,26 +44,58 @@ bool JobControl::restore(RenderState& state) {
 
 void JobControl::endPass(const RenderState& state) {
   if (onPass_) onPass_(state);
+  publish(state);
 }
 
-bool JobControl::wantsPause() const { return images_.isDue() || checkpoints_.isDue(); }
+bool JobControl::wantsPause(const RenderState& state) const {
+  return filesAreDue() || viewIsDue() || checkpointIsDue(state);
+}
 
 void JobControl::pause(RenderState& state) {
-  if (images_.isDue()) {
-    if (state.result.samples > 0) {
-      const OutputImage image = imageOf(state);
-      for (const std::string& output : job_.outputs) writeImage(output, image, job_.display);
-    }
-    images_.restart();
-  }
-  if (checkpoints_.isDue()) writeCheckpoint(state);
+  publish(state);
+  if (checkpointIsDue(state)) writeCheckpoint(state);
 }
 
 void JobControl::end(RenderState& state) {
   if (path_) writeCheckpoint(state);
 }
 
-OutputImage JobControl::imageOf(RenderState& state) {
+bool JobControl::filesAreDue() const {
+  return images_.isDue() || std::ranges::any_of(viewers_, &Viewer::wantsFiles);
+}
+
+bool JobControl::viewIsDue() const {
+  return views_.isDue() && std::ranges::any_of(viewers_, &Viewer::wantsImage);
+}
+
+bool JobControl::checkpointIsDue(const RenderState& state) const {
+  return checkpoints_.isDue() && state.canBeStored();
+}
+
+void JobControl::publish(const RenderState& state) {
+  if (filesAreDue()) writeFiles(state);
+  if (viewIsDue()) show(state);
+}
+
+void JobControl::writeFiles(const RenderState& state) {
+  if (state.result.samples > 0) {  // else some pixels may have none
+    const OutputImage image = imageOf(state).image;
+    for (const std::string& output : job_.outputs) writeImage(output, image, job_.display);
+  }
+  images_.restart();
+  for (Viewer* viewer : viewers_) viewer->wroteFiles();
+}
+
+void JobControl::show(const RenderState& state) {
+  constexpr double kMostOfTime = 0.1, kLeastInterval = 0.2;  // seconds
+  const Stopwatch watch;
+  const auto shown = std::make_shared<const ImageSoFar>(imageSoFar(imageOf(state), state.result));
+  for (Viewer* viewer : viewers_)
+    if (viewer->wantsImage()) viewer->show(shown);
+  views_.restart(std::max(kLeastInterval, watch.seconds() / kMostOfTime));
+}
+
+FinishedImage JobControl::imageOf(const RenderState& state) const {
   FinishPlan plan = finishPlan(job_, loaded_);
   plan.settings.denoise = false;
   const std::atomic<bool> never = false;
@@ -68,11 +103,11 @@ OutputImage JobControl::imageOf(RenderState& state) {
       plan, state.result, [](double) {}, never);
   finished.image.metadata =
       imageMetadata(job_, loaded_, finished, state.result, rendering_.seconds());
-  return std::move(finished.image);
+  return finished;
 }
 
 void JobControl::writeCheckpoint(RenderState& state) {
-  OutputImage image = imageOf(state);
+  OutputImage image = imageOf(state).image;
   part_.plan = finishPlan(job_, loaded_);
   image.state = [&](Archive& a) {
     part_.archive(a);

@@ -13,6 +13,7 @@
 #include "integrate/render_state.h"
 #include "job/render_part.h"
 #include "job/run_job.h"
+#include "job/viewer.h"
 
 namespace chromeball {
 
@@ -22,6 +23,7 @@ class Interval {
   explicit Interval(std::optional<double> seconds) : seconds_(seconds) {}  // nullopt: never
   bool isDue() const { return seconds_ && watch_.seconds() >= *seconds_; }
   void restart() { watch_ = Stopwatch(); }
+  void restart(double seconds) { seconds_ = seconds, restart(); }
 
  private:
   std::optional<double> seconds_;
@@ -29,24 +31,31 @@ class Interval {
 };
 
 // Writes the job's images every `write-every` seconds, without denoising, and its checkpoint every
-// `checkpoint-every` seconds and at the end.
+// `checkpoint-every` seconds and at the end; shows the image to those who watch.
 class JobControl : public RenderControl {
  public:
   // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
   // or if there is a checkpoint of another job, or one that the job is not to resume.
-  // `onPass` is called after each pass.
+  // `onPass` is called after each pass. The viewers must outlive this.
   JobControl(const RenderJob& job, const LoadedScene& loaded,
-             std::function<void(const RenderState&)> onPass = {});
+             std::function<void(const RenderState&)> onPass = {},
+             std::vector<Viewer*> viewers = {});
 
   // Throws InputError for a damaged checkpoint.
   bool restore(RenderState& state) override;
   void endPass(const RenderState& state) override;
-  bool wantsPause() const override;
+  bool wantsPause(const RenderState& state) const override;
   void pause(RenderState& state) override;
   void end(RenderState& state) override;
 
  private:
-  OutputImage imageOf(RenderState& state);
+  bool filesAreDue() const;
+  bool viewIsDue() const;
+  bool checkpointIsDue(const RenderState& state) const;
+  void publish(const RenderState& state);
+  FinishedImage imageOf(const RenderState& state) const;
+  void writeFiles(const RenderState& state);
+  void show(const RenderState& state);
   void writeCheckpoint(RenderState& state);
 
   const RenderJob& job_;
@@ -55,7 +64,8 @@ class JobControl : public RenderControl {
   std::optional<std::string> path_;  // of the checkpoint
   std::optional<FileLock> lock_;
   RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded
-  Interval images_, checkpoints_;
+  std::vector<Viewer*> viewers_;
+  Interval images_, checkpoints_, views_{0};
   Stopwatch rendering_;
 };
 

@@ -208,7 +208,7 @@ void checkParts(const SceneFile& file) {
   if (s.has("checkpoint-every") && !s.has("checkpoint"))
     throwInput("{}: needs --checkpoint FILE.exr", s.location("checkpoint-every"));
   if (!s.get<bool>("two-pass")) return;
-  for (const char* name : {"shard", "crop", "checkpoint", "write-every"})
+  for (const char* name : {"shard", "crop", "checkpoint", "write-every", "preview", "display"})
     if (s.has(name))
       throwInput("{}: not for a reference of two passes; leave one of the two out",
                  s.location(name));

@@ -57,6 +57,7 @@ struct Setting {
   std::string_view option;         // without dashes; empty: the scene file only
   char letter = 0;                 // short form of the option
   std::string_view argument = {};  // name of the option's argument in --help: "N", "SECONDS"
+  std::string_view bare = {};      // the value of an option without "=ARGUMENT"; empty: not allowed
   SettingType type;
   std::string_view form = {};  // of a Compound: "three numbers"
   Range range = {};

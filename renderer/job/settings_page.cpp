@@ -87,7 +87,10 @@ std::string rangeText(const Setting& s) {
 std::string optionText(const Setting& s) {
   if (s.option.empty()) return "";
   const std::string letter = s.letter ? fmt::format("`-{}`, ", s.letter) : "";
-  return fmt::format("{}`--{}{}{}`", letter, s.option, s.argument.empty() ? "" : " ", s.argument);
+  const std::string argument = !s.bare.empty()      ? fmt::format("[={}]", s.argument)
+                               : s.argument.empty() ? ""
+                                                    : fmt::format(" {}", s.argument);
+  return fmt::format("{}`--{}{}`", letter, s.option, argument);
 }
 
 std::string row(const Setting& s, bool hasKey) {

@@ -24,6 +24,7 @@ find_package(nlohmann_json REQUIRED)
 
 if(NOT CHROMEBALL_FUZZ AND (CHROMEBALL_COMMAND OR CHROMEBALL_TESTS))
   find_package(CLI11 REQUIRED)
+  pkg_check_modules(HttpLib REQUIRED IMPORTED_TARGET cpp-httplib)
 endif()
 if(NOT CHROMEBALL_FUZZ AND CHROMEBALL_TESTS)
   find_package(GTest REQUIRED)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
 #include <atomic>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <set>
@@ -10,7 +9,7 @@
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "image_noise_text.h"
-#include "job/checkpoint.h"
+#include "image_render.h"
 #include "job/frame_scene.h"
 #include "job/job.h"
 #include "job/job_description.h"
@@ -20,10 +19,10 @@
 #include "job/sequence.h"
 #include "lighting/methods.h"
 #include "messages.h"
-#include "progress_bar.h"
 #include "render_hints.h"
 #include "scene_options.h"
 #include "thread_limit.h"
+#include "viewers/viewers.h"
 
 namespace chromeball {
 namespace {
@@ -70,58 +69,6 @@ void stopOnSignals() {
   std::signal(SIGTERM, [](int) { interrupted = true; });
 }
 
-// Says after each pass what there is so far.
-class PassReport {
- public:
-  std::string of(const RenderResult& result) {
-    const RayCounts& counts = result.rays;
-    const uint64_t rays = counts.camera + counts.shadow + counts.bounce;
-    std::string text = fmt::format("{} samples", result.samples);
-    if (const Noise noise = result.film.noise(); !std::isnan(noise.noise))
-      text += fmt::format(", noise {:.2g}%", 100 * noise.noise);
-    if (rays_ > 0)  // a render that was resumed has rays of other times
-      text += fmt::format(", {:.1f} M rays/s", 1e-6 * double(rays - rays_) / watch_.seconds());
-    rays_ = rays;
-    watch_ = Stopwatch();
-    return text;
-  }
-
- private:
-  uint64_t rays_ = 0;
-  Stopwatch watch_;
-};
-
-// Renders one image, with a progress bar and what is written meanwhile.
-class ImageRender {
- public:
-  // Throws InputError for a checkpoint that does not fit.
-  ImageRender(const RenderJob& job, const LoadedScene& loaded, bool showsProgress)
-      : job_(job),
-        loaded_(loaded),
-        bar_(showsProgress),
-        control_(job, loaded, [this, showsProgress](const RenderState& state) {
-          if (showsProgress) bar_.describe(report_.of(state.result));
-        }) {}
-
-  // The image, ready to be written except for its state. `fractionOfAll`: of all work, by that of
-  // this image.
-  JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll) {
-    const bool isReference = job_.composite && job_.composite->passes == Passes::Two;
-    JobResult result = renderJob(
-        job_, loaded_, prepared, [&](double fraction) { bar_.update(fractionOfAll(fraction)); },
-        interrupted, isReference ? nullptr : &control_);
-    result.image.metadata = imageMetadata(job_, loaded_, result, result.render, result.seconds);
-    return result;
-  }
-
- private:
-  const RenderJob& job_;
-  const LoadedScene& loaded_;
-  ProgressBar bar_;
-  PassReport report_;
-  JobControl control_;
-};
-
 void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
                  PhaseSeconds seconds) {
   Stopwatch watch;
@@ -136,6 +83,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderJob job = planJob(scene, options.settings);
   const Messages outputMessages = checkOutputs(job);
   const ThreadLimit threads(options.settings);
+  const Viewers viewers(options.settings, [] { interrupted = true; });
 
   Stopwatch watch;
   PhaseSeconds seconds;
@@ -148,11 +96,13 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderPart part;
   if (job.settings.isPart()) part.identity = renderIdentity(job, loaded);  // of the files loaded
   JobResult result = [&] {
-    ImageRender render(job, loaded, options.showsProgress());
-    print(outputMessages, options.quiet());  // after the last error that input can cause
+    ImageRender render(job, loaded, options.showsProgress(), viewers.all());
+    print(viewers.messages(), options.quiet());  // after the last error that input can cause
+    print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
     stopOnSignals();
-    return render.run(prepared, [](double fraction) { return fraction; });
+    return render.run(
+        prepared, [](double fraction) { return fraction; }, interrupted);
   }();
   if (job.settings.isPart()) {
     part.plan = finishPlan(job, loaded);
@@ -181,6 +131,7 @@ void printNew(const Messages& messages, std::set<std::string>& printed, bool qui
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   const std::vector<int>& frames = sequence.numbers();
   const ThreadLimit threads(options.settings);
+  const Viewers viewers(options.settings, [] { interrupted = true; });
   stopOnSignals();
   FrameScene scene;
   std::set<std::string> printed;
@@ -199,11 +150,13 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     prepareOutputs(job, scene.loaded().files);
     const double before = double(i - kept), count = double(frames.size() - kept);
     const JobResult result = [&] {
-      ImageRender render(job, scene.loaded(), options.showsProgress());
+      ImageRender render(job, scene.loaded(), options.showsProgress(), viewers.all());
+      printNew(viewers.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
       printNew(scene.loaded().messages, printed, options.quiet());
-      return render.run(scene.prepared(),
-                        [&](double fraction) { return (before + fraction) / count; });
+      return render.run(
+          scene.prepared(), [&](double fraction) { return (before + fraction) / count; },
+          interrupted);
     }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
     writeImages(job, scene.loaded(), result, seconds);

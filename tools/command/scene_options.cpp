@@ -65,6 +65,16 @@ void addOption(CLI::App& app, const Setting& setting, Settings& settings) {
         ->group(titleOf(setting));
     return;
   }
+  if (!setting.bare.empty()) {  // --NAME[=ARGUMENT]: without =, the next word is not its argument
+    app.add_flag(names)
+        ->description(helpOf(setting))
+        ->each([&setting, set](const std::string& word) {
+          set({word == "true" ? std::string(setting.bare) : word});
+        })
+        ->type_name(fmt::format("[={}]", setting.argument))
+        ->group(titleOf(setting));
+    return;
+  }
   CLI::Option* option = app.add_option(names, set, helpOf(setting));
   option->type_name(std::string(setting.argument))->group(titleOf(setting));
   if (isList(setting)) option->take_all();

@@ -56,6 +56,8 @@ complete -c chromeball -n '__fish_seen_subcommand_from render' -l fps -r -d 'Fra
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l overwrite -d 'Renders also the frames whose images exist'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l seed-per-frame -d 'Adds a frame'\''s number to the seed. Without it the noise of all frames is alike: it stays where nothing moves, and denoised frames flicker less'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l write-every -r -d 'Writes the image so far again and again, with so many seconds between. (default: at the end)'
+complete -c chromeball -n '__fish_seen_subcommand_from render' -l preview -d 'Serves a page on this machine that shows the image while it grows. 0 or no number: any free port. (default: none)'
+complete -c chromeball -n '__fish_seen_subcommand_from render' -l display -r -d 'Sends the image while it grows to the image viewer tev, at 127.0.0.1:14158 if no address is given. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l checkpoint -r -d 'Keeps what a render needs to go on after it was stopped or killed; also at its end, for more samples. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l checkpoint-every -r -d 'Time between checkpoints. (default: 300)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l resume -d 'Continues from the checkpoint, or starts where there is none'

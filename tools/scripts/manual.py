@@ -19,9 +19,12 @@ WRITTEN = 'Written by tools/scripts/manual.py; edits are lost.'
 class Entry:
     """One line of --help: an option, a positional argument or a subcommand."""
     names: list
-    argument: str  # 'FILE', '' for flags
+    argument: str  # 'FILE', '' for flags, '[=PORT]' if it may be left out
     notes: str     # 'REQUIRED', 'Excludes: ...'
     description: str = ''
+
+    def needs_argument(self):
+        return self.argument != '' and not self.argument.startswith('[')
 
     def choices(self):
         """The names that the description ends with: '... off, balance, power. [balance]'."""
@@ -134,7 +137,8 @@ def man(text):
 
 def man_entry(entry):
     names = ', '.join(rf'\fB{man(name)}\fR' for name in entry.names)
-    argument = rf' \fI{man(entry.argument)}\fR' if entry.argument else ''
+    space = ' ' if entry.needs_argument() else ''
+    argument = rf'{space}\fI{man(entry.argument)}\fR' if entry.argument else ''
     notes = f' ({man(entry.notes.lower())})' if entry.notes else ''
     return f'.TP\n{names}{argument}{notes}\n{man(paragraph(entry.description))}\n'
 
@@ -208,7 +212,7 @@ def zsh_arguments(command):
     for entry in command.options():
         about = re.sub(r'([\[\]:\\])', r'\\\1', sentence(entry.description))
         values = f"({' '.join(entry.choices())})" if entry.choices() else '_files'
-        value = f':value:{values}' if entry.argument else ''
+        value = f':value:{values}' if entry.needs_argument() else ''
         repeated = '*' if '...' in entry.argument else ''
         lines += [quoted(f'{repeated}{name}[{about}]{value}') for name in entry.names]
     return ' \\\n        '.join(['_arguments', *lines, "'*:file:_files'"])
@@ -267,7 +271,7 @@ def fish_completion(program):
         for entry in command.options():
             names = ' '.join(f'-l {n[2:]}' if n.startswith('--') else f'-s {n[1:]}'
                              for n in entry.names)
-            value = ' -r' if entry.argument else ''
+            value = ' -r' if entry.needs_argument() else ''
             if entry.choices():
                 value = f" -x -a {quoted(' '.join(entry.choices()))}"
             lines.append(f'{start} {names}{value} -d {quoted(sentence(entry.description))}')

@@ -28,7 +28,7 @@ std::string extension(const fs::path& path) {
 // is not linear.
 Rgb unassociated(const Rgb& color, float alpha) { return alpha > 0 ? color / alpha : Rgb(0); }
 
-void writePng(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& transform) {
   const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
   const bool hasAlpha = color.channels == 4;
   std::vector<uint8_t> bytes;
@@ -40,7 +40,7 @@ void writePng(const fs::path& path, const Image& color, const DisplayTransform& 
       for (int c = 0; c < 3; ++c) bytes.push_back(byte(linearToSrgb(shown[c])));
       if (hasAlpha) bytes.push_back(byte(alpha));
     }
-  writeFile(path, encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes));
+  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
 }
 
 // Repeats grey in three channels; returns other images unchanged.
@@ -53,6 +53,10 @@ Image withColor(const Image& image) {
 }
 
 }  // namespace
+
+std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
+  return encodeColor(withColor(color), transform);
+}
 
 void checkImageName(const fs::path& path) {
   constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
@@ -74,7 +78,7 @@ void writeImage(const fs::path& path, const OutputImage& output,
   const Image color = withColor(output.layers.front().image);
   if (kind == ".hdr") return writeRadianceHdr(path, color);
   if (kind == ".pfm") return writePfm(path, color);
-  writePng(path, color, transform);
+  writeFile(path, encodeColor(color, transform));
 }
 
 void writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {

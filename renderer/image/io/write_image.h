@@ -2,6 +2,7 @@
 // Writes image files. Every write is atomic: the file appears complete or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -47,6 +48,9 @@ void checkWritable(const std::filesystem::path& path);
 // and is divided by alpha first). Throws as checkWritable() does, and RunError if writing fails.
 void writeImage(const std::filesystem::path& path, const OutputImage& output,
                 const DisplayTransform& transform = {});
+
+// The bytes of that .png. An image of one channel is grey.
+std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
 
 // Writes the colour alone.
 void writeImage(const std::filesystem::path& path, const Image& color,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens pages in Chromium, if it is installed.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "run_command.h"
+
+inline std::string findChromium() {
+  for (const char* path :
+       {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
+    if (std::filesystem::exists(path)) return path;
+  return "";
+}
+
+// The page's document after its scripts have run for a while. `folder` takes the browser's files.
+inline std::string dumpedPage(const std::string& chromium, const TemporaryFolder& folder,
+                              const std::string& address, const std::string& options = "") {
+  const std::string command =
+      chromium +
+      " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
+      " --disable-background-networking --disable-component-update --disable-sync"
+      " --virtual-time-budget=20000 --user-data-dir=" +
+      folder / "profile" + ' ' + options + " --dump-dom " + address + " > " + folder / "dom.html" +
+      " 2> " + folder / "log";
+  EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "log");
+  return fileContents(folder / "dom.html");
+}

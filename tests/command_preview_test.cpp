@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball render --preview: what the server answers.
+#include <gtest/gtest.h>
+
+#include "preview_render.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+// A pixel of the last image, and its picture, are those of the files.
+void expectFilesView(const std::string& layer, const std::vector<std::string>& options,
+                     const std::string& query) {
+  SCOPED_TRACE(layer);
+  PreviewRender preview;
+  preview.start({"--samples", "1000000", "--aov", "normal,depth,samples,variance"});
+  preview.waitForImage();
+  EXPECT_EQ(preview.post("/stop").status, 200);
+  preview.waitUntil([](const json& status) { return status["isLast"] == true; });
+  const json values = json::parse(preview.get("/pixel.json?x=17&y=12").body);
+  const HttpAnswer picture =
+      preview.get("/image.png?layer=" + (layer == "color" ? "" : layer) + query);
+  EXPECT_EQ(preview.result().status, 130);
+
+  const ImageFile file = readImageFile(preview.out());
+  const Rgb color = findColor(file)->rgb(17, 12);
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(values[""][c], fmt::format("{:.6g}", color[c]));
+  EXPECT_EQ(values["depth"][0], fmt::format("{:.6g}", *findLayer(file, "depth")->at(17, 12)));
+  std::vector<std::string> view{"image", "view", preview.out(), preview.folder / "view.png"};
+  view.insert(view.end(), options.begin(), options.end());
+  ASSERT_EQ(runCommand(view).status, 0);
+  EXPECT_EQ(picture.body, fileContents(preview.folder / "view.png"));
+}
+
+TEST(Preview, ShowsWhatImageViewShows) {
+  expectFilesView("color", {"--exposure", "-1.5", "--tonemap", "aces"},
+                  "&exposure=-1.5&tonemap=aces");
+  expectFilesView("variance", {"--layer", "variance"}, "");
+  expectFilesView("depth", {"--layer", "depth"}, "&width=40");  // of 40 pixels: as they are
+}
+
+TEST(Preview, SavesWhileItRenders) {
+  PreviewRender preview;
+  preview.start({"--samples", "1000000"});
+  preview.waitUntil([](const json& status) { return status.value("samples", 0) > 0; });
+  EXPECT_FALSE(std::filesystem::exists(preview.out()));
+  EXPECT_EQ(preview.post("/save").status, 200);
+  preview.waitUntil([](const json& status) { return status["filesWritten"] == 1; });
+  EXPECT_GT(std::get<int>(readImageFile(preview.out()).metadata.at("samples")), 0);
+  preview.post("/stop");
+  EXPECT_EQ(preview.result().status, 130);
+}
+
+TEST(Preview, ReducesWideImages) {
+  PreviewRender preview;
+  preview.start({"--samples", "1000000"});
+  preview.waitForImage();
+  const auto widthOf = [&](const std::string& query) {
+    std::ofstream(preview.folder / "p.png", std::ios::binary) << preview.get(query).body;
+    return readImageFile(preview.folder / "p.png").image.width;
+  };
+  EXPECT_EQ(widthOf("/image.png"), 40);
+  EXPECT_EQ(widthOf("/image.png?width=39"), 20);
+  EXPECT_EQ(widthOf("/image.png?width=13"), 10);
+  EXPECT_EQ(widthOf("/image.png?width=1"), 1);
+  preview.post("/stop");
+  EXPECT_EQ(preview.result().status, 130);
+}
+
+// Pages of other servers, and requests that make no sense.
+TEST(Preview, Refuses) {
+  PreviewRender preview;
+  preview.start({"--samples", "1000000"});
+  preview.waitForImage();
+  EXPECT_EQ(preview.get("/status.json", "Host: example.com\r\n").status, 403);
+  EXPECT_EQ(preview.get("/status.json", "Host: localhost:1234\r\n").status, 200);
+  const std::string own = "Host: localhost\r\n";
+  EXPECT_EQ(preview.post("/stop", own + "Origin: http://example.com\r\n").status, 403);
+  EXPECT_EQ(preview.post("/stop", own + "Origin: null\r\n").status, 403);
+  for (const char* target :
+       {"/image.png?layer=none", "/image.png?exposure=nan", "/image.png?exposure=1x",
+        "/image.png?tonemap=x", "/image.png?width=1e99", "/pixel.json?x=40&y=0", "/pixel.json?x=-1",
+        "/pixel.json?y=99999999999"})
+    EXPECT_EQ(preview.get(target).status, 400) << target;
+  EXPECT_EQ(preview.get("/nothing").status, 404);
+  EXPECT_EQ(preview.get("/stop").status, 404);  // is no link
+  EXPECT_EQ(preview.post("/stop", own, std::string(5000, 'x')).status, 413);
+
+  const CommandResult second = expectError(
+      {"render", preview.folder / "m.gltf", "--preview=" + std::to_string(preview.port()), "-o",
+       preview.folder / "other.png"},
+      "is in use");
+  expectError(
+      {"render", preview.folder / "m.gltf", "--preview=65536", "-o", preview.folder / "other.png"},
+      "from 0 to 65535");
+  preview.post("/stop");
+  EXPECT_EQ(preview.result().status, 130);
+}
+
+// A render that nobody looks at makes no images, and does not wait at its end.
+TEST(Preview, WaitsForNobody) {
+  PreviewRender preview;
+  preview.start({"--samples", "64"});
+  const CommandResult result = preview.result();
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("preview at http://127.0.0.1:"), std::string::npos);
+}
+
+TEST(Preview, ShowsOneFrameAfterTheOther) {
+  PreviewRender preview;
+  preview.start({"--samples", "20000", "--frames", "0:1", "--orbit", "90"}, "f.#.exr");
+  preview.waitUntil(
+      [](const json& status) { return status["name"].dump().ends_with("f.1.exr\""); });
+  preview.post("/stop");
+  EXPECT_EQ(preview.result().status, 130);
+  EXPECT_TRUE(std::filesystem::exists(preview.folder / "f.0.exr"));
+}
+
+}  // namespace
+}  // namespace chromeball

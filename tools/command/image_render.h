@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders one image, with a progress bar, and with what is written and shown meanwhile.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "job/checkpoint.h"
+#include "progress_bar.h"
+
+namespace chromeball {
+
+// Says after each pass what there is so far.
+class PassReport {
+ public:
+  std::string of(const RenderResult& result);
+
+ private:
+  uint64_t rays_ = 0;
+  Stopwatch watch_;
+};
+
+class ImageRender {
+ public:
+  // All references must outlive this. Throws InputError for a checkpoint that does not fit.
+  ImageRender(const RenderJob& job, const LoadedScene& loaded, bool showsProgress,
+              std::vector<Viewer*> viewers);
+
+  // The image, ready to be written except for its state. Ends early if `stop` is set.
+  // `fractionOfAll`: of all work, by that of this image.
+  JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll,
+                const std::atomic<bool>& stop);
+
+ private:
+  const RenderJob& job_;
+  const LoadedScene& loaded_;
+  std::vector<Viewer*> viewers_;
+  ProgressBar bar_;
+  PassReport report_;
+  JobControl control_;
+};
+
+}  // namespace chromeball
