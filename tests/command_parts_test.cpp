@@ -231,6 +231,18 @@ TEST(Checkpoint, GoesOnAfterAnInterrupt) {
   expectError(parts.words(again, parts.out / "o.exr"), "--resume");
 }
 
+// Another number of all samples would give it samples of other shards.
+TEST(Checkpoint, OfAShardKeepsItsNumberOfSamples) {
+  const Parts parts;
+  const std::string checkpoint = parts.out / "c.exr";
+  const auto shardOf = [&](const char* samples) {
+    return Words{"--samples", samples, "--shard", "2/2", "--checkpoint", checkpoint, "--resume"};
+  };
+  parts.render("o.exr", shardOf("32"));
+  expectError(parts.words(shardOf("64"), parts.out / "o.exr"), "`samples` was 32 and is 64");
+  parts.render("o.exr", shardOf("32"));
+}
+
 // Killed at any moment, a render goes on from its last checkpoint and ends with the same bits.
 TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;

@@ -2,7 +2,7 @@
 // Shards and crops of a render, put together again.
 #include <gtest/gtest.h>
 
-#include <set>
+#include <algorithm>
 
 #include "integrate/sample_sequence.h"
 #include "measure/image_error.h"
@@ -23,12 +23,6 @@ RenderSettings fixedSettings(uint32_t samples) {
   settings.guiding = Guiding::Off;
   settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Alpha, Aov::Node, Aov::Denoise};
   return settings;
-}
-
-RenderSettings shardOf(RenderSettings whole, uint32_t index, uint32_t count) {
-  whole.shard = {index, count, whole.samples};
-  whole.samples = whole.shard.samples();
-  return whole;
 }
 
 RenderResult renderSmall(const NamedScene& small, const RenderSettings& settings) {
@@ -53,7 +47,7 @@ TEST(Shard, SharesAreEqualAndComplete) {
     for (uint32_t count = 1; count <= std::min(samples / 2, 13u); ++count) {
       uint64_t next = 0;
       for (uint32_t i = 0; i < count; ++i) {
-        const Shard shard{i, count, samples};
+        const Shard shard{.index = i, .count = count, .samplesOfAll = samples};
         EXPECT_EQ(shard.first(), next);
         EXPECT_EQ(shard.first() % 2, 0u);
         EXPECT_NEAR(double(shard.samples()), double(samples) / count, 3);
@@ -64,25 +58,32 @@ TEST(Shard, SharesAreEqualAndComplete) {
     }
 }
 
-// No two samples of all shards are the same point, however many a pixel of an adaptive render has.
+// The points of all shards are the first points of the whole, once each, however many a pixel of an
+// adaptive render has, and in whatever passes they are taken.
 TEST(Shard, TakesPointsOfItsOwn) {
-  for (const bool adaptive : {false, true}) {
-    RenderSettings whole = smallRender(8, 8, 100, 3);
-    whole.adaptive = adaptive;
-    std::set<std::pair<uint64_t, uint32_t>> points;
-    size_t count = 0;
-    for (uint32_t i = 0; i < 3; ++i) {
-      const RenderSettings settings = shardOf(whole, i, 3);
-      const uint32_t samples = settings.samples * (adaptive ? 40 : 1);
-      SampleSequence(settings).forRuns(
-          0, samplesOf(0, samples), [&](uint64_t table, uint32_t first, uint32_t length) {
-            for (uint32_t k = 0; k < length; ++k)
-              points.insert({table, first + k * SampleSequence(settings).stride()});
-            count += length;
+  RenderSettings whole = smallRender(8, 8, 400, 3);
+  whole.adaptive = true;
+  for (const uint32_t samples : {50u, 51u, 399u, 20'003u})
+    for (const int half : {0, 1}) {
+      std::vector<uint64_t> points;
+      for (uint32_t i = 0; i < 3; ++i) {
+        const RenderSettings settings = shardOf(whole, i, 3);
+        const SampleSequence sequence(settings);
+        const uint32_t common = settings.shard.repeated;
+        ASSERT_EQ(common, 16u);
+        uint32_t from = i == 0 ? 0 : samplesOf(half, common);
+        for (const uint32_t to : {common, common + 7, samples}) {
+          sequence.forRuns(half, from, samplesOf(half, to), [&](const SampleSequence::Run& run) {
+            for (uint32_t k = 0; k < run.count; ++k)
+              points.push_back(run.table * sequence.tableSize() + run.first + k * run.stride);
           });
+          from = samplesOf(half, to);
+        }
+      }
+      std::ranges::sort(points);
+      ASSERT_EQ(points.size(), samplesOf(half, samples));
+      for (size_t i = 0; i < points.size(); ++i) ASSERT_EQ(points[i], i);
     }
-    EXPECT_EQ(points.size(), count);
-  }
 }
 
 TEST(Shard, UnionHasTheSamplesOfTheWhole) {

@@ -54,7 +54,7 @@ std::vector<double> relativeVariances(const PixelErrors& pilot) {
 
 }  // namespace
 
-SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples)
+SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples, float leastRate)
     : width_(pilot.width), pilotSamples_(pilotSamples), rates_(pilot.luminances.size(), 1.0f) {
   const std::vector<double> relative = relativeVariances(pilot);
   std::vector<double> weights(relative.size());
@@ -77,7 +77,7 @@ SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSampl
       double others = total, count = double(weights.size());
       forNeighbors(pilot, x, y, [&](size_t j, int, int) { others -= weights[j], --count; });
       if (others > 1e-12 * total)
-        rates_[i] = std::min(float(weights[i] * count / others), kMaxRate);
+        rates_[i] = std::clamp(float(weights[i] * count / others), leastRate, kMaxRate);
     }
 }
 

@@ -21,8 +21,9 @@ class SampleAllocation {
   // As many samples everywhere; to be read from an archive.
   SampleAllocation(int width, int height)
       : width_(width), rates_(size_t(width) * size_t(height), 1.0f) {}
-  // `pilotSamples`: per pixel.
-  SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples);
+  // `pilotSamples`: per pixel. `leastRate`: every pixel takes at least so many of the samples that
+  // follow, relative to their mean number.
+  SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples, float leastRate = 0);
 
   // Samples of the pixel when the image has `mean` samples per pixel, the pilot's included. Does
   // not decrease with `mean`; equals it up to the pilot's number.

@@ -25,6 +25,12 @@ constexpr double kSamplesUnderNoiseLimit = 256;
 
 }  // namespace
 
+uint32_t GuideTraining::samplesOf(const RenderSettings& settings) {
+  if (settings.guiding == Guiding::Off || settings.samples < kMinSamples) return 0;
+  if (settings.shard.repeated > 0) return settings.shard.repeated;
+  return std::clamp(settings.samples / 4, kMinTraining, kTraining);
+}
+
 GuideTraining::GuideTraining(const World& world, const LightingStrategy& lighting,
                              const RenderSettings& settings, Guides guides)
     : world_(world),
@@ -33,11 +39,11 @@ GuideTraining::GuideTraining(const World& world, const LightingStrategy& lightin
       guiding_(settings.samples < kMinSamples || !lighting.takesOneSample() ? Guiding::Off
                                                                             : settings.guiding),
       lightGuiding_(guides == Guides::Both ? guiding_ : Guiding::Off),
-      lastSample_(std::clamp(settings.samples / 4, kMinTraining, kTraining)),
+      lastSample_(samplesOf(settings)),
       tiles_{settings.window().width, settings.window().height},
       maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles_.count(), 8)),
-      pixelFraction_(double(kMaxRecords) /
-                     (kRecordsPerSample * tiles_.width * tiles_.height * lastSample_)),
+      pixelFraction_(double(kMaxRecords) / (kRecordsPerSample * tiles_.width * tiles_.height *
+                                            std::max(lastSample_, 1u))),
       records_(guiding_ == Guiding::Off ? 0 : tiles_.count()) {}
 
 PathSettings GuideTraining::guided(PathSettings path) const {
@@ -50,7 +56,7 @@ void GuideTraining::tracePhotons(double raysPerSample) {
   // Less bounces find no caustic. (Those in glass are not counted.)
   const int minDepth = std::ranges::any_of(world_.scene.materials, &Material::isBody) ? 1 : 2;
   if (guiding_ == Guiding::Off || settings_.maxDepth < minDepth) return;
-  double samples = settings_.samples;
+  double samples = settings_.samplesOfAll();
   if (settings_.noiseLimit) samples = std::min(samples, kSamplesUnderNoiseLimit);
   double rays = raysPerSample * samples * tiles_.width * tiles_.height;
   if (settings_.timeLimit) rays = std::min(rays, kRaysPerSecond * *settings_.timeLimit);

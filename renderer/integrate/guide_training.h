@@ -23,6 +23,9 @@ class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
 
+  // The samples per pixel from which the guides may learn; 0 for a render that has none.
+  static uint32_t samplesOf(const RenderSettings& settings);
+
   // Both guides; of bounces only for integrators with layers, whose film has no weights.
   enum class Guides { Both, Bounces };
   // All arguments must outlive this. Guides nothing if the strategy takes more than one sample

@@ -59,13 +59,11 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
                            const Beam& beam) const {
   for (int half = 0; half < Film::kHalves; ++half)
     sequence_.forRuns(
-        samplesOf(half, from), samplesOf(half, to),
-        [&](uint64_t table, uint32_t first, uint32_t count) {
+        half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
           worker.context.sampler.startPixel(uint32_t(window_.x + x), uint32_t(window_.y + y),
-                                            Film::kHalves * table + uint64_t(half), first,
-                                            sequence_.stride());
-          result_.film.add(x, y, half,
-                           renderBlock(worker, {x, y, half, table, first}, count, beam));
+                                            Film::kHalves * run.table + uint64_t(half), run.first,
+                                            run.stride);
+          result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, beam));
         });
 }
 
@@ -98,8 +96,9 @@ void PixelRenderer::traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
 }
 
 // Takes the first samples of the sampler's pixel.
-SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block, uint32_t samples,
+SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block,
                                       const Beam& beam) const {
+  const uint32_t samples = block.run.count;
   SampleSums sums;
   std::array<CameraSample, PathBatch::kMaxPaths> cameras;
   std::array<FirstHit, PathBatch::kMaxPaths> firsts;
@@ -126,9 +125,9 @@ SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block, u
 
 float PixelRenderer::wideningOf(const Block& block, uint32_t index) const {
   if (!settings_.regularize) return 0;
-  const uint64_t sample =
-      Film::kHalves * (block.table * table_.size() + block.first + index * sequence_.stride()) +
-      uint64_t(block.half);
+  const uint64_t sample = Film::kHalves * (block.run.table * table_.size() + block.run.first +
+                                           index * block.run.stride) +
+                          uint64_t(block.half);
   return regularizationWidth(
       uint32_t(std::min<uint64_t>(sample, std::numeric_limits<uint32_t>::max())));
 }
@@ -152,7 +151,7 @@ void PixelRenderer::renderBatch(PixelWorker& worker, const Block& block,
 
 void PixelRenderer::add(PixelWorker& worker, const Block& block, const CameraSample& camera,
                         const Sample& sample, SampleSums& sums) const {
-  const auto [x, y, half, table, first] = block;
+  const int x = block.x, y = block.y, half = block.half;
   if (sample.defect) {
     worker.invalid.add(*sample.defect, camera.x, camera.y);
     result_.aovs.add(x, y, *sample.defect);

@@ -23,7 +23,8 @@ class PixelRenderer {
 
   PixelWorker makeWorker() const;
 
-  // Adds samples [from, to) of a pixel of the film to the result. Thread-safe for different pixels.
+  // Adds those of samples [from, to) of a pixel of the film that are the shard's to the result.
+  // Thread-safe for different pixels.
   void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
               const Beam& beam) const;
 
@@ -34,14 +35,12 @@ class PixelRenderer {
   // Samples of a half of a pixel that share a randomisation of the table; x and y are of the film.
   struct Block {
     int x, y, half;
-    uint64_t table;
-    uint32_t first;  // point of the table
+    SampleSequence::Run run;
   };
 
   void traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
                        std::span<CameraSample> cameras) const;
-  SampleSums renderBlock(PixelWorker& worker, const Block& block, uint32_t samples,
-                         const Beam& beam) const;
+  SampleSums renderBlock(PixelWorker& worker, const Block& block, const Beam& beam) const;
   void renderBatch(PixelWorker& worker, const Block& block, std::span<const CameraSample> cameras,
                    uint32_t firstSample, SampleSums& sums) const;
   void add(PixelWorker& worker, const Block& block, const CameraSample& camera,

@@ -22,7 +22,8 @@ class Renderer {
  public:
   Renderer(const Integrator& integrator, const World& world, const Camera& camera,
            const RenderSettings& settings, RenderState& state)
-      : world_(world),
+      : integrator_(integrator),
+        world_(world),
         camera_(camera),
         settings_(settings),
         state_(state),
@@ -38,15 +39,15 @@ class Renderer {
   void startPass(uint32_t wanted) {
     RenderResult& result = state_.result;
     if (state_.schedule.endsPilot()) {
-      state_.allocation.emplace(result.film.errors(), result.samples);
-      result.adaptive = true;
+      state_.allocation.emplace(result.film.errors(), state_.done, leastRate());
     }
     state_.wanted = wanted;
     state_.finished.assign(tiles_.count(), 0);
     GuideTraining* training = state_.training;
-    trains_ = training && training->startPass(result.samples, wanted);
-    if (training && !trains_ && result.samples > 0)
-      training->end(result.film.errors(), result.samples);
+    trains_ = training && training->startPass(state_.done, wanted);
+    if (training && !trains_ && state_.done > 0) training->end(result.film.errors(), state_.done);
+    if (result.isRepeated && state_.done >= settings_.shard.repeated) forgetRepeated();
+    result.adaptive = state_.allocation.has_value();
   }
 
   // Renders tiles that the pass has not finished, until there are none or `isDone`. `progress`
@@ -85,7 +86,8 @@ class Renderer {
         result.features.weigh(*weight);
       }
     trains_ = false;
-    result.samples = state_.wanted;
+    state_.done = state_.wanted;
+    result.samples = settings_.shard.kept(state_.done);
     state_.finished.clear();
   }
 
@@ -94,8 +96,7 @@ class Renderer {
     tiles_.forPixels(tile, [&](int x, int y) {
       const uint64_t pixel = uint64_t(y) * uint64_t(tiles_.width) + uint64_t(x);
       worker.context.records = trains_ ? state_.training->recordsOf(tile, pixel) : nullptr;
-      pixels_.render(worker, x, y, countOf(x, y, state_.result.samples),
-                     countOf(x, y, state_.wanted), beam);
+      pixels_.render(worker, x, y, countOf(x, y, state_.done), countOf(x, y, state_.wanted), beam);
     });
     world_.scene.checkTexels();
     state_.finished[tile] = 1;
@@ -109,8 +110,24 @@ class Renderer {
     return beamOf(camera_, settings_.height, open ? wanted : settings_.samplesOfAll());
   }
 
-  uint32_t countOf(int x, int y, uint32_t mean) const {
+  // Samples of the pixel of all shards when this one has taken `taken` per pixel.
+  uint32_t countOf(int x, int y, uint32_t taken) const {
+    const uint32_t mean = settings_.shard.ofAll(taken);
     return state_.allocation ? state_.allocation->count(x, y, mean) : mean;
+  }
+
+  // They have served to learn from.
+  void forgetRepeated() {
+    RenderResult own(settings_, integrator_.layers());
+    own.rays = state_.result.rays;
+    state_.result = std::move(own);
+  }
+
+  // So that every pixel of a shard of a fixed number of samples has one of each half.
+  float leastRate() const {
+    const Shard& shard = settings_.shard;
+    if (shard.count == 1) return 0;
+    return 2 * float(shard.count) / float(std::max(1u, shard.samplesOfAll - shard.repeated));
   }
 
   // Moves what the threads have counted to the result.
@@ -124,6 +141,7 @@ class Renderer {
     }
   }
 
+  const Integrator& integrator_;
   const World& world_;
   const Camera& camera_;
   const RenderSettings& settings_;
@@ -140,12 +158,12 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
   RenderResult& result = state.result;
   while (!stop) {
     if (state.finished.empty()) {
-      const uint32_t wanted = state.schedule.next(result.samples, result.film);
-      if (wanted <= result.samples) return;
+      const uint32_t wanted = state.schedule.next(state.done, result.film);
+      if (wanted <= state.done) return;
       renderer.startPass(wanted);
     }
     const auto pauses = [&] { return control && control->wantsPause(state); };
-    const double from = result.samples, samples = state.wanted - from;
+    const double from = state.done, samples = state.wanted - from;
     renderer.renderTiles(
         [&](double fraction) { progress(state.schedule.progress(from + fraction * samples)); },
         [&] { return stop || pauses(); });
@@ -192,6 +210,7 @@ void RenderResult::archive(Archive& a) {
   a(invalid);
   a(clamped);
   a(samples);
+  a(isRepeated);
   a(adaptive);
   a(guidedRegions);
   a(causticFraction);
@@ -207,6 +226,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
                     .schedule = Schedule(settings),
                     .training = training};
   Renderer renderer(integrator, world, camera, settings, state);
+  state.result.isRepeated = settings.shard.index > 0 && settings.shard.repeated > 0;
   if (!control || !control->restore(state)) renderer.tracePhotons();
   renderPasses(renderer, state, progress, stop, control);
   RenderResult& result = state.result;

@@ -34,6 +34,7 @@ struct RenderResult {
   InvalidSamples invalid;
   ClampedSamples clamped;
   uint32_t samples = 0;       // mean per pixel; 0 where the first pass was interrupted
+  bool isRepeated = false;    // all shards take these samples, and this is not the one to keep them
   bool adaptive = false;      // whether pixels took different numbers of samples
   size_t guidedRegions = 0;   // of the light guide; 0: light samples were not guided
   float causticFraction = 0;  // of bounces in caustics: guided (CausticGuide::fraction())

@@ -9,6 +9,7 @@
 
 #include "film/aov.h"
 #include "integrate/path_settings.h"
+#include "integrate/shard.h"
 
 namespace chromeball {
 
@@ -21,29 +22,12 @@ struct Crop {
   int x, y, width, height;
 };
 
-// One of `count` equal shares of the samples of a render, each of which is a render of its own. Its
-// samples are those of the whole render that the other shares do not take.
-struct Shard {
-  uint32_t index = 0, count = 1;
-  uint32_t samplesOfAll = 0;  // per pixel; 0 for a render that is not a shard
-
-  // The first sample of a pixel that is this shard's; even, so that both halves have equal shares.
-  uint32_t first() const { return firstOf(index); }
-  uint32_t samples() const {
-    return (index + 1 == count ? samplesOfAll : firstOf(index + 1)) - first();
-  }
-
- private:
-  uint32_t firstOf(uint32_t i) const {
-    return uint32_t(uint64_t(samplesOfAll) * i / count) & ~uint32_t(1);
-  }
-};
-
 struct RenderSettings {
   int width = 800, height = 600;  // of the whole image
   std::optional<Crop> crop;
   Shard shard;
-  uint32_t samples = 256;  // per pixel, of this shard, >= 1; the maximum where a limit below is set
+  // Per pixel, those that a shard repeats included; >= 1; the maximum where a limit below is set.
+  uint32_t samples = 256;
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
   // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).

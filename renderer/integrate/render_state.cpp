@@ -5,6 +5,7 @@ namespace chromeball {
 
 void RenderState::archive(Archive& a) {
   result.archive(a);
+  a(done);
   a(wanted);
   a(finished);
   const TileGrid tiles{result.film.width(), result.film.height()};

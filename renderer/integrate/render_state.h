@@ -16,7 +16,9 @@ namespace chromeball {
 
 struct RenderState {
   RenderResult result;
-  uint32_t wanted = 0;                         // samples per pixel after the pass in progress
+  // Samples per pixel that have been taken by the passes so far, and after the pass in progress;
+  // with those that a shard repeats.
+  uint32_t done = 0, wanted = 0;
   std::vector<uint8_t> finished;               // by tile: 1 if it has them; empty between passes
   std::optional<SampleAllocation> allocation;  // none: the same number of samples everywhere
   Schedule schedule;

@@ -11,13 +11,10 @@ constexpr uint64_t kAdaptive = 4;         // samples of a pixel relative to the 
 
 }  // namespace
 
-SampleSequence::SampleSequence(const RenderSettings& settings) {
-  const Shard& shard = settings.shard;
+SampleSequence::SampleSequence(const RenderSettings& settings) : shard_(settings.shard) {
   const uint64_t spread = settings.adaptive ? kAdaptive : 1,
                  half = (uint64_t(settings.samplesOfAll()) + 1) / 2;
   tableSize_ = uint32_t(std::bit_ceil(std::min(spread * half, kLargestTable)));
-  first_ = shard.first() / 2;
-  if (shard.count > 1 && settings.adaptive) first_ = shard.index, stride_ = shard.count;
 }
 
 }  // namespace chromeball

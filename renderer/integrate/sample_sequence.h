@@ -18,34 +18,43 @@ constexpr uint32_t samplesOf(int half, uint32_t samples) {
 // Each half of a pixel's samples is a sequence with its own randomisation. Where it is longer than
 // the table, the table is used again with another one.
 //
-// The samples of a shard are points of the whole render's sequence that no other shard has. Those
-// of a render with the same number of samples in all pixels are consecutive: well distributed on
-// their own, and all shards together are the whole render. In an adaptive render no shard knows how
-// many samples the others take in a pixel. There shard k of n has the points k, k + n, k + 2 n,
-// ..., so that the union is nearly the first points of the sequence.
+// The samples of a shard (shard.h) are points of the whole render's sequence.
 class SampleSequence {
  public:
   explicit SampleSequence(const RenderSettings& settings);
 
   uint32_t tableSize() const { return tableSize_; }
-  uint32_t stride() const { return stride_; }
 
-  // Calls visit(table, first, count) for samples [begin, end) of a half, in order: `count` points
-  // from `first` on, stride() apart, of the table with randomisation number `table`.
+  // Points of the table with randomisation number `table`.
+  struct Run {
+    uint64_t table;
+    uint32_t first, count, stride;
+  };
+
+  // Calls visit(run) for those of a half's samples [begin, end) that are this shard's, in order.
+  // The interval must not hold repeated samples and others.
   template <class Visit>
-  void forRuns(uint64_t begin, uint64_t end, const Visit& visit) const {
-    while (begin < end) {
-      const uint64_t position = first_ + begin * stride_, index = position % tableSize_;
-      const uint64_t inTable = (tableSize_ - index + stride_ - 1) / stride_;
-      const uint64_t count = std::min(end - begin, inTable);
-      visit(position / tableSize_, uint32_t(index), uint32_t(count));
-      begin += count;
+  void forRuns(int half, uint32_t begin, uint32_t end, const Visit& visit) const {
+    const uint64_t repeated = samplesOf(half, shard_.repeated);
+    uint64_t at = begin, last = end, stride = 1;
+    if (shard_.isConsecutive) {
+      at += shard_.first() / 2, last += shard_.first() / 2;
+    } else if (end > repeated) {
+      stride = shard_.count;
+      at += (shard_.index + stride - (begin - repeated) % stride) % stride;
+    }
+    while (at < last) {
+      const uint64_t index = at % tableSize_;
+      const uint64_t length = std::min(tableSize_ - index, last - at);
+      const uint64_t count = (length + stride - 1) / stride;
+      visit(Run{at / tableSize_, uint32_t(index), uint32_t(count), uint32_t(stride)});
+      at += count * stride;
     }
   }
 
  private:
-  uint32_t tableSize_, stride_ = 1;
-  uint64_t first_;
+  Shard shard_;
+  uint32_t tableSize_;
 };
 
 }  // namespace chromeball

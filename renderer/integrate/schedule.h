@@ -15,6 +15,10 @@ namespace chromeball {
 // limit is near.
 class Schedule {
  public:
+  // The samples per pixel of an adaptive render before they are allotted by its noise; 0 for
+  // others. The least number under a limit of time or noise.
+  static uint32_t pilotSamples(const RenderSettings& settings);
+
   // Starts the clock of the time limit. `settings` must outlive this.
   explicit Schedule(const RenderSettings& settings);
 

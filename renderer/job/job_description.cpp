@@ -146,13 +146,15 @@ std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
 std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   identity["layers"] = job.file.settings.get<std::vector<std::string>>("output.aovs");
+  if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
+    identity["samples"] = job.settings.samplesOfAll();
   return identity.dump();
 }
 
 std::string withoutParts(const std::string& identity) {
   Json whole = Json::parse(identity, nullptr, false);
   if (!whole.is_object()) return identity;
-  for (const char* name : {"shard", "crop"}) whole.erase(name);
+  for (const char* name : {"shard", "crop", "samples"}) whole.erase(name);
   return whole.dump();
 }
 

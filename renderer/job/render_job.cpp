@@ -109,18 +109,18 @@ std::vector<Aov> layersOf(const SceneFile& file) {
 }
 
 // "K/N": the K-th of N shards of all samples.
-Shard shardOf(const Settings& s, uint32_t samples) {
+RenderSettings withShard(const Settings& s, RenderSettings whole) {
   const auto text = s.getIfGiven<std::string>("shard");
-  if (!text) return {};
+  if (!text) return whole;
   const auto numbers = splitNumbers(*text, '/');
   if (!numbers || numbers->size() != 2 || (*numbers)[0] < 1 || (*numbers)[0] > (*numbers)[1])
     throwInput("{}: `{}` is not a shard; give K/N with K from 1 to N, such as 2/8",
                s.location("shard"), *text);
-  const Shard shard{(*numbers)[0] - 1, (*numbers)[1], samples};
-  if (samples / 2 < shard.count)
+  const uint32_t index = (*numbers)[0] - 1, count = (*numbers)[1];
+  if (whole.samples / 2 < count)
     throwInput("{}: {} samples per pixel are less than two for each of {} shards",
-               s.location("shard"), samples, shard.count);
-  return shard;
+               s.location("shard"), whole.samples, count);
+  return shardOf(std::move(whole), index, count);
 }
 
 std::optional<Crop> cropOf(const Settings& s) {
@@ -143,8 +143,6 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.samples = uint32_t(s.get<uint64_t>("render.samples"));
   if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
   r.crop = cropOf(s);
-  r.shard = shardOf(s, r.samples);
-  if (r.shard.count > 1) r.samples = r.shard.samples();
   r.adaptive = s.get<std::string>("render.adaptive") == "on";
   r.guiding = guidingNamed(s.get<std::string>("render.guide"));
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
@@ -158,7 +156,7 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.denoise = s.get<bool>("render.denoise");
   if (r.hideProbe && std::count(r.aovs.begin(), r.aovs.end(), Aov::Alpha) == 0)
     r.aovs.push_back(Aov::Alpha);
-  return r;
+  return withShard(s, std::move(r));
 }
 
 void checkTwoPass(const SceneFile& file) {
