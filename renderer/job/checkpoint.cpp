@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/checkpoint.h"
 
+#include <algorithm>
+
 #include "image/io/write_exr.h"
 #include "job/job_description.h"
 #include "job/job_report.h"
@@ -36,7 +38,18 @@ bool JobControl::restore(RenderState& state) {
     RenderPart().archive(a);  // has been compared
     state.archive(a);
   });
+  noteSamples(state);
   return true;
+}
+
+void JobControl::noteSamples(const RenderState& restored) {
+  const uint32_t pass = restored.finished.empty() ? 0 : restored.wanted;  // in progress
+  const uint32_t samples = std::max(restored.result.samples, pass), asked = job_.settings.samples;
+  if (samples > asked)
+    messages_.push_back({Message::Kind::Note,
+                         fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
+                                     "image keeps them",
+                                     *path_, samples, asked)});
 }
 
 void JobControl::endPass(const RenderState& state) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/file_lock.h"
+#include "base/message.h"
 #include "base/stopwatch.h"
 #include "integrate/render_state.h"
 #include "job/render_part.h"
@@ -45,7 +46,10 @@ class JobControl : public RenderControl {
   void pause(RenderState& state) override;
   void end(RenderState& state) override;
 
+  const Messages& messages() const { return messages_; }
+
  private:
+  void noteSamples(const RenderState& restored);
   OutputImage imageOf(RenderState& state);
   void writeCheckpoint(RenderState& state);
 
@@ -57,6 +61,7 @@ class JobControl : public RenderControl {
   RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded
   Interval images_, checkpoints_;
   Stopwatch rendering_;
+  Messages messages_;
 };
 
 }  // namespace chromeball

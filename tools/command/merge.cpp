@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
 #include <atomic>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "image/io/read_image.h"
@@ -9,6 +8,7 @@
 #include "image_noise_text.h"
 #include "job/id_manifest.h"
 #include "job/job_report.h"
+#include "job/json_text.h"
 #include "job/merge.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -35,7 +35,7 @@ Metadata wholeMetadata(const PartSet& parts) {
       names.merge(readManifest(readExrMetadata(part), layer));
     nlohmann::ordered_json manifest;
     for (const auto& [number, name] : names) manifest[std::to_string(number)] = name;
-    if (!names.empty()) metadata["manifest/" + layer] = manifest.dump();
+    if (!names.empty()) metadata["manifest/" + layer] = jsonText(manifest);
   }
   return metadata;
 }
@@ -56,9 +56,9 @@ void run(const Arguments& arguments) {
   addExcluded(whole.result, messages);
   print(messages, arguments.quiet);
   if (!arguments.quiet)
-    fmt::print("{} samples per pixel of {} parts, noise {}{}: {}\n", whole.result.samples,
-               parts.paths().size(), inWords(finished.noise), inWords(finished.denoised),
-               fmt::join(arguments.outputs, ", "));
+    fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samples,
+               parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
+               inWords(finished.denoised), fmt::join(arguments.outputs, ", "));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "job/job_description.h"
 #include "job/job_outputs.h"
 #include "job/job_report.h"
+#include "job/json_text.h"
 #include "job/output_file.h"
 #include "job/sequence.h"
 #include "lighting/methods.h"
@@ -111,6 +112,8 @@ class ImageRender {
         job_, loaded_, prepared, [&](double fraction) { bar_.update(fractionOfAll(fraction)); },
         interrupted, isReference ? nullptr : &control_);
     result.image.metadata = imageMetadata(job_, loaded_, result, result.render, result.seconds);
+    const Messages& more = control_.messages();
+    result.messages.insert(result.messages.end(), more.begin(), more.end());
     return result;
   }
 
@@ -129,7 +132,7 @@ void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResul
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))
-    writeText(*stats, statistics(job, loaded, result, seconds).dump(2) + "\n");
+    writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
 }
 
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
