@@ -4,7 +4,9 @@
 
 #include <set>
 
+#include "base/memory_archive.h"
 #include "integrate/sample_sequence.h"
+#include "job/finish.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
 #include "small_scenes.h"
@@ -145,6 +147,37 @@ TEST(Crop, HasThePixelsOfTheWhole) {
     for (const Aov aov : {Aov::Albedo, Aov::Depth, Aov::Node})
       EXPECT_EQ(sum.aovs.finished(aov).texels, whole.aovs.finished(aov).texels);
     EXPECT_EQ(sum.features.albedo().half.texels, whole.features.albedo().half.texels);
+  }
+}
+
+// A part whose header asks for layers that it does not have is refused before they are made.
+TEST(FinishPlan, IsReadOnlyIfItFitsTogether) {
+  const auto isRefused = [](FinishPlan plan) {
+    MemoryWriter writer;
+    plan.archive(writer);
+    MemoryReader reader(writer.contents);
+    FinishPlan read;
+    try {
+      read.archive(reader);
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  FinishPlan plan{fixedSettings(4), {}};
+  plan.settings.hideProbe = true;
+  EXPECT_FALSE(isRefused(plan));
+  plan.settings.aovs = {Aov::Albedo};
+  EXPECT_TRUE(isRefused(plan));
+  plan.settings.hideProbe = false;
+  plan.composite.emplace();
+  EXPECT_TRUE(isRefused(plan));  // without a plate
+  plan.composite->plate = Image(kWidth, kHeight, 3);
+  plan.composite->layers = {"l_obj", "albedo", "variance"};
+  EXPECT_FALSE(isRefused(plan));
+  for (const char* name : {"reflectance", "depth", "unknown"}) {
+    plan.composite->layers = {name};
+    EXPECT_TRUE(isRefused(plan)) << name;
   }
 }
 

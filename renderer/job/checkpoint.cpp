@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "image/io/exr_state.h"
 #include "image/io/write_exr.h"
 #include "job/job_description.h"
 #include "job/job_report.h"
@@ -35,7 +36,9 @@ JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded,
 bool JobControl::restore(RenderState& state) {
   if (!path_ || !std::filesystem::exists(*path_)) return false;
   readExrState(*path_, [&](Archive& a) {
-    RenderPart().archive(a);  // has been compared
+    RenderPart part;  // has been compared
+    part.archive(a);
+    part.plan.archiveImages(a);
     state.archive(a);
   });
   noteSamples(state);
@@ -89,6 +92,7 @@ void JobControl::writeCheckpoint(RenderState& state) {
   part_.plan = finishPlan(job_, loaded_);
   image.state = [&](Archive& a) {
     part_.archive(a);
+    part_.plan.archiveImages(a);
     state.archive(a);
   };
   writeExr(*path_, image);

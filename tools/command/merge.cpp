@@ -29,13 +29,15 @@ Metadata wholeMetadata(const PartSet& parts) {
   Metadata metadata = readExrMetadata(parts.paths().front());
   for (const char* name : {"shard", "crop", "seconds", "command", "clamp_light_removed"})
     metadata.erase(name);
-  for (const std::string layer : {"node", "material"}) {
-    std::map<int, std::string> names;
-    for (const std::string& part : parts.paths())
-      names.merge(readManifest(readExrMetadata(part), layer));
+  std::map<std::string, std::map<int, std::string>> names{{"node", {}}, {"material", {}}};
+  for (const std::string& path : parts.paths()) {
+    const Metadata part = readExrMetadata(path);
+    for (auto& [layer, ofLayer] : names) ofLayer.merge(readManifest(part, layer));
+  }
+  for (const auto& [layer, ofLayer] : names) {
     nlohmann::ordered_json manifest;
-    for (const auto& [number, name] : names) manifest[std::to_string(number)] = name;
-    if (!names.empty()) metadata["manifest/" + layer] = jsonText(manifest);
+    for (const auto& [number, name] : ofLayer) manifest[std::to_string(number)] = name;
+    if (!ofLayer.empty()) metadata["manifest/" + layer] = jsonText(manifest);
   }
   return metadata;
 }
@@ -46,7 +48,7 @@ void run(const Arguments& arguments) {
   const PartSet parts(arguments.parts);
   const std::atomic<bool> never = false;
   ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
-  StoredPart whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
+  MergedParts whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
   FinishedImage finished = finish(
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
