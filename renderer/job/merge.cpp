@@ -45,25 +45,25 @@ void checkSameRender(const std::vector<Header>& parts) {
 
 // All shards of one crop, in order.
 void checkShards(std::span<const Header> parts) {
-  const Shard& shard = parts[0].settings.shard;
-  std::vector<std::string> missing;
-  size_t next = 0;
-  for (uint32_t index = 0; index < shard.count; ++index) {
-    if (next == parts.size() || parts[next].settings.shard.index != index) {
-      missing.push_back(fmt::format("{}/{}", index + 1, shard.count));
-      continue;
-    }
-    if (++next < parts.size() && parts[next].settings.shard.index == index)
-      throwInput("{}: is the same part as {}", parts[next].path, parts[next - 1].path);
-  }
+  const auto indexOf = [&](size_t part) { return parts[part].settings.shard.index; };
+  for (size_t i = 1; i < parts.size(); ++i)
+    if (indexOf(i) == indexOf(i - 1))
+      throwInput("{}: is the same part as {}", parts[i].path, parts[i - 1].path);
+  const uint32_t count = parts[0].settings.shard.count;
+  const size_t missing = count - parts.size();
+  if (missing == 0) return;
   constexpr size_t kMostNamed = 20;
-  const size_t count = missing.size();
-  if (count > kMostNamed) missing.resize(kMostNamed);
-  if (count > 0)
-    throwInput(
-        "{}{} of {} shards missing: {}{}",
-        parts[0].settings.crop ? fmt::format("crop {}: ", nameOf(*parts[0].settings.crop)) : "",
-        count, shard.count, fmt::join(missing, ", "), count > kMostNamed ? ", ..." : "");
+  std::vector<std::string> names;
+  size_t next = 0;
+  for (uint32_t index = 0; names.size() < std::min(missing, kMostNamed); ++index)
+    if (next < parts.size() && indexOf(next) == index)
+      ++next;
+    else
+      names.push_back(fmt::format("{}/{}", index + 1, count));
+  throwInput(
+      "{}{} of {} shards missing: {}{}",
+      parts[0].settings.crop ? fmt::format("crop {}: ", nameOf(*parts[0].settings.crop)) : "",
+      missing, count, fmt::join(names, ", "), missing > kMostNamed ? ", ..." : "");
 }
 
 bool overlap(const Crop& a, const Crop& b) {
