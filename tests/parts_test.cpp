@@ -7,8 +7,10 @@
 #include "base/memory_archive.h"
 #include "integrate/sample_sequence.h"
 #include "job/finish.h"
+#include "job/merge.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
+#include "run_command.h"
 #include "small_scenes.h"
 #include "test_probes.h"
 
@@ -178,6 +180,30 @@ TEST(FinishPlan, IsReadOnlyIfItFitsTogether) {
   for (const char* name : {"reflectance", "depth", "unknown"}) {
     plan.composite->layers = {name};
     EXPECT_TRUE(isRefused(plan)) << name;
+  }
+}
+
+// Some of the missing ones are named, however many a header claims.
+TEST(PartSet, NamesSomeOfFourBillionShards) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "part.exr";
+  RenderPart part{"{}", {fixedSettings(4), {}}};
+  part.plan.settings.shard = {1, 4'000'000'000u, 4'000'000'000u};
+  RenderResult result(part.plan.settings, {});
+  OutputImage image{
+      .layers = {{"", "RGB", Image(1, 1, 3)}}, .metadata = {}, .placement = {}, .state = {}};
+  image.state = partState(part, result);
+  writeImage(path, image, {});
+  try {
+    const PartSet parts({path});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "3999999999 of 4000000000 shards missing: 1/4000000000, 3/4000000000, "
+                 "4/4000000000, 5/4000000000, 6/4000000000, 7/4000000000, 8/4000000000, "
+                 "9/4000000000, 10/4000000000, 11/4000000000, 12/4000000000, 13/4000000000, "
+                 "14/4000000000, 15/4000000000, 16/4000000000, 17/4000000000, 18/4000000000, "
+                 "19/4000000000, 20/4000000000, 21/4000000000, ...");
   }
 }
 
