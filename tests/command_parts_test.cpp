@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include "base/hash.h"
+#include "base/stopwatch.h"
 #include "image/io/read_image.h"
 #include "measure/image_error.h"
 #include "paths.h"
@@ -21,10 +23,10 @@ class Parts {
 
   Words words(const Words& more, const std::string& output) const {
     Words all{"render",      std::string(kSourceDir) + "/scenes/demo.toml",
-              "--size",      "48x32",
               "--max-depth", "4",
               "-o",          output,
               "--aov",       "albedo,samples,variance"};
+    if (!std::ranges::count(more, "--size")) all.insert(all.end(), {"--size", "48x32"});
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -49,6 +51,35 @@ class Parts {
     EXPECT_EQ(result.status, 0) << result.error;
     return out / name;
   }
+};
+
+// The command, which runs while the test goes on.
+class Child {
+ public:
+  explicit Child(const Words& words) {
+    std::vector<char*> argv{const_cast<char*>(kCommand)};
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    id_ = fork();
+    if (id_ != 0) return;
+    dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);
+    dup2(STDOUT_FILENO, STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  // Its exit status, once it has ended.
+  std::optional<int> status() const {
+    int status = 0;
+    if (waitpid(id_, &status, WNOHANG) != id_) return {};
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  void kill() const {
+    ::kill(id_, SIGKILL);
+    waitpid(id_, nullptr, 0);
+  }
+
+ private:
+  pid_t id_;
 };
 
 double relMse(const std::string& a, const std::string& b) {
@@ -112,6 +143,36 @@ TEST(Merge, OfCropsIsTheWholeImage) {
   expectError({"merge", left, "-o", parts.out / "o.exr"}, "896 of 1536 pixels");
   const std::string wide = part("wide.exr", {"--crop", "10,0,38,32"});
   expectError({"merge", left, wide, "-o", parts.out / "o.exr"}, "overlaps");
+}
+
+// Large parts are read in bands of rows, of which the last may be smaller.
+TEST(Merge, OfLargePartsIsTheWholeImage) {
+  const Parts parts;
+  const auto part = [&](const std::string& name, const Words& more) {
+    Words words{"--size", "150x230"};
+    words.insert(words.end(), more.begin(), more.end());
+    return parts.render(name, words);
+  };
+  const Words fixed{"--adaptive", "off", "--guide", "off", "--samples", "8"};
+  const auto fixedPart = [&](const std::string& name, Words words) {
+    words.insert(words.end(), fixed.begin(), fixed.end());
+    return part(name, words);
+  };
+  const std::string whole = fixedPart("whole.exr", {});
+  const std::string top = fixedPart("top.exr", {"--crop", "0,0,150,31"});
+  const std::string left = fixedPart("left.exr", {"--crop", "0,31,41,199"});
+  const std::string right = fixedPart("right.exr", {"--crop", "41,31,109,199"});
+  expectSameImage(parts.merge("crops.exr", {right, top, left}), whole);
+  const std::string a = fixedPart("a.exr", {"--shard", "1/2"});
+  const std::string b = fixedPart("b.exr", {"--shard", "2/2"});
+  EXPECT_LT(relMse(parts.merge("shards.exr", {b, a}), whole), 1e-12);
+
+  // With guides, the first samples of a pixel have another weight.
+  const std::string c = part("c.exr", {"--guide", "on", "--shard", "1/2", "--samples", "64"});
+  const std::string d = part("d.exr", {"--guide", "on", "--shard", "2/2", "--samples", "64"});
+  const std::string cd = parts.merge("cd.exr", {c, d});
+  expectSameImage(cd, parts.merge("dc.exr", {d, c}));
+  EXPECT_LT(relMse(cd, whole), relMse(c, whole));
 }
 
 // The layers' names and the clamped light of the whole are told as for one render.
@@ -243,63 +304,86 @@ TEST(Checkpoint, OfAShardKeepsItsNumberOfSamples) {
   parts.render("o.exr", shardOf("32"));
 }
 
-// Killed at any moment, a render goes on from its last checkpoint and ends with the same bits.
+// Killed 20 times at any moment, a render goes on from its last checkpoint and ends with the same
+// bits; and so does the next one, if the machine is so fast that it ends before.
 TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;
-  const std::string checkpoint = parts.out / "c.exr";
-  const Words job{"--samples", "2000"};
+  const std::string checkpoint = parts.out / "c.exr", image = parts.out / "image.exr";
+  const Words job{"--samples", "500", "--size", "24x16"};
+  const Stopwatch watch;
   const std::string whole = parts.render("whole.exr", job);
+  const double seconds = watch.seconds();
   Words resumed = job;
   resumed.insert(resumed.end(),
-                 {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.02"});
-  const Words words = parts.words(resumed, parts.out / "image.exr");
-  int kills = 0;
-  for (bool ended = false; !ended && kills < 60;) {
-    std::vector<char*> argv{const_cast<char*>(kCommand)};
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-      dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);
-      dup2(STDOUT_FILENO, STDERR_FILENO);
-      execv(argv[0], argv.data());
-      _exit(127);
-    }
-    usleep(useconds_t(150'000 + 37'000 * (kills * 7 % 11)));
-    int status = 0;
-    ended = waitpid(child, &status, WNOHANG) == child;
-    if (!ended) {
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      ++kills;
+                 {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.01"});
+  int kills = 0, writes = 0;
+  for (std::string before; kills < 20;) {
+    Child child(parts.words(resumed, image));
+    usleep(useconds_t(1e6 * seconds * (0.3 + toUnit(uint32_t(hash(kills) >> 32)))));
+    if (const auto status = child.status()) {
+      EXPECT_EQ(*status, 0);
+      expectSameImage(image, whole);
+      std::filesystem::remove(checkpoint);
     } else {
-      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+      child.kill();
+      ++kills;
+      writes += std::filesystem::exists(checkpoint) && fileContents(checkpoint) != before;
+      before = fileContents(checkpoint);
     }
   }
-  EXPECT_GE(kills, 5);
-  parts.render("image.exr", {resumed.begin(), resumed.end()});
-  expectSameImage(parts.out / "image.exr", whole);
+  EXPECT_GE(writes, 5);
+  parts.render("image.exr", resumed);
+  expectSameImage(image, whole);
+  EXPECT_EQ(parts.out.files(), (Words{"c.exr", "image.exr", "whole.exr"}));  // nothing is left
 }
 
 TEST(Checkpoint, IsOfOneProcess) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
-  const pid_t child = fork();
-  if (child == 0) {
-    Words words = parts.words({"--samples", "1000000", "--checkpoint", checkpoint, "--quiet"},
-                              parts.out / "first.exr");
-    std::vector<char*> argv{const_cast<char*>(kCommand)};
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    execv(argv[0], argv.data());
-    _exit(127);
-  }
+  Child child(parts.words({"--samples", "1000000", "--checkpoint", checkpoint, "--quiet"},
+                          parts.out / "first.exr"));
   while (!std::filesystem::exists(checkpoint + ".lock")) usleep(10'000);
   usleep(100'000);
   expectError(parts.words({"--checkpoint", checkpoint}, parts.out / "o.exr"), "another process");
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  child.kill();
   parts.render("o.exr", {"--samples", "4", "--checkpoint", checkpoint});  // the lock is free
+}
+
+TEST(Checkpoint, TellsThatItHasMoreSamplesThanAskedFor) {
+  const Parts parts;
+  const Words job{"--checkpoint", parts.out / "c.exr", "--resume", "--guide", "off", "--samples"};
+  const auto render = [&](const std::string& samples) {
+    Words words = job;
+    words.push_back(samples);
+    return runCommand(parts.words(words, parts.out / "o.exr"));
+  };
+  EXPECT_EQ(render("8").error.find("asked for"), std::string::npos);
+  const CommandResult fewer = render("4");
+  EXPECT_EQ(fewer.status, 0);
+  EXPECT_NE(fewer.error.find("c.exr has 8 samples per pixel, more than the 4 asked for"),
+            std::string::npos)
+      << fewer.error;
+  EXPECT_EQ(std::get<int>(readImageFile(parts.out / "o.exr").metadata.at("samples")), 8);
+  EXPECT_EQ(render("16").error.find("asked for"), std::string::npos);
+}
+
+// Names of files may hold any byte but 0 and /.
+TEST(Parts, MayHaveNamesThatAreNotUtf8) {
+  const Parts parts;
+  const std::string folder = parts.out / "caf\xe9";
+  std::filesystem::create_directory(folder);
+  const std::string model = folder + "/model.glb", probe = folder + "/probe.exr";
+  std::filesystem::copy(std::string(kSourceDir) + "/scenes/models/still-life.glb", model);
+  std::filesystem::copy(std::string(kSourceDir) + "/probes/dusk.exr", probe);
+  const std::string part = folder + "/part.exr", stats = folder + "/stats.json";
+  const CommandResult rendered =
+      runCommand({"render", model, "--probe", probe, "--size", "24x16", "--samples", "4", "--shard",
+                  "1/1", "--checkpoint", folder + "/c.exr", "--stats", stats, "-o", part});
+  EXPECT_EQ(rendered.status, 0) << rendered.error;
+  EXPECT_NE(fileContents(stats).find("caf\xef\xbf\xbd/model.glb"), std::string::npos);
+  const CommandResult merged = runCommand({"merge", part, "-o", folder + "/o.exr"});
+  EXPECT_EQ(merged.status, 0) << merged.error;
+  EXPECT_NE(merged.out.find("of 1 part,"), std::string::npos) << merged.out;
 }
 
 // A full disk while a checkpoint is written leaves the one before.
@@ -318,15 +402,7 @@ TEST(Checkpoint, StaysWhereTheDiskIsFull) {
 TEST(WriteEvery, WritesImagesThatGrow) {
   const Parts parts;
   const std::string path = parts.out / "growing.exr";
-  const pid_t child = fork();
-  if (child == 0) {
-    Words words = parts.words({"--samples", "1000000", "--write-every", "0.1", "--quiet"}, path);
-    std::vector<char*> argv{const_cast<char*>(kCommand)};
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    execv(argv[0], argv.data());
-    _exit(127);
-  }
+  Child child(parts.words({"--samples", "1000000", "--write-every", "0.1", "--quiet"}, path));
   const auto samples = [&] { return std::get<int>(readImageFile(path).metadata.at("samples")); };
   for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i) usleep(10'000);
   const int first = samples();
@@ -334,8 +410,7 @@ TEST(WriteEvery, WritesImagesThatGrow) {
   for (int i = 0; i < 1000 && last <= first; ++i) usleep(10'000), last = samples();
   EXPECT_GT(first, 0);
   EXPECT_GT(last, first);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  child.kill();
 }
 
 }  // namespace

@@ -147,6 +147,20 @@ TEST(House, IncludesFollowTheTable) {
   EXPECT_GT(files.size(), 10u) << "the source tree was not found";
 }
 
+// Intervals, limits of time and checkpoints are measured by a clock that nobody sets
+// (base/stopwatch.h); a date is written by comparisons alone.
+TEST(House, ClockThatCanBeSetIsForDatesAlone) {
+  static const std::regex kSettable(
+      R"(system_clock|high_resolution_clock|file_clock|last_write_time|gettimeofday|)"
+      R"(CLOCK_REALTIME|\btime\((nullptr|NULL|0|&))");
+  for (const fs::path& path : projectFiles({".h", ".cpp"}))
+    if (path.generic_string().starts_with("renderer/") && path != "renderer/job/machine.cpp") {
+      EXPECT_FALSE(std::regex_search(contents(kSourceDir / path), kSettable)) << path;
+    }
+  EXPECT_TRUE(
+      std::regex_search(contents(kSourceDir / fs::path("renderer/job/machine.cpp")), kSettable));
+}
+
 TEST(House, SourcesStartWithTheirLicence) {
   static const std::regex kSpdx(
       "(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n");

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 
+#include "base/memory_archive.h"
 #include "integrate/sample_sequence.h"
+#include "job/finish.h"
+#include "job/merge.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
+#include "run_command.h"
 #include "small_scenes.h"
 #include "test_probes.h"
 
@@ -146,6 +150,61 @@ TEST(Crop, HasThePixelsOfTheWhole) {
     for (const Aov aov : {Aov::Albedo, Aov::Depth, Aov::Node})
       EXPECT_EQ(sum.aovs.finished(aov).texels, whole.aovs.finished(aov).texels);
     EXPECT_EQ(sum.features.albedo().half.texels, whole.features.albedo().half.texels);
+  }
+}
+
+// A part whose header asks for layers that it does not have is refused before they are made.
+TEST(FinishPlan, IsReadOnlyIfItFitsTogether) {
+  const auto isRefused = [](FinishPlan plan) {
+    MemoryWriter writer;
+    plan.archive(writer);
+    MemoryReader reader(writer.contents);
+    FinishPlan read;
+    try {
+      read.archive(reader);
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  FinishPlan plan{fixedSettings(4), {}};
+  plan.settings.hideProbe = true;
+  EXPECT_FALSE(isRefused(plan));
+  plan.settings.aovs = {Aov::Albedo};
+  EXPECT_TRUE(isRefused(plan));
+  plan.settings.hideProbe = false;
+  plan.composite.emplace();
+  EXPECT_TRUE(isRefused(plan));  // without a plate
+  plan.composite->plate = Image(kWidth, kHeight, 3);
+  plan.composite->layers = {"l_obj", "albedo", "variance"};
+  EXPECT_FALSE(isRefused(plan));
+  for (const char* name : {"reflectance", "depth", "unknown"}) {
+    plan.composite->layers = {name};
+    EXPECT_TRUE(isRefused(plan)) << name;
+  }
+}
+
+// Some of the missing ones are named, however many a header claims.
+TEST(PartSet, NamesSomeOfFourBillionShards) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "part.exr";
+  RenderPart part{"{}", {fixedSettings(4), {}}};
+  part.plan.settings.shard = {1, 4'000'000'000u, 4'000'000'000u};
+  RenderResult result(part.plan.settings, {});
+  OutputImage image{
+      .layers = {{"", "RGB", Image(1, 1, 3)}}, .metadata = {}, .placement = {}, .state = {}};
+  image.state = partState(part, result);
+  writeImage(path, image, {});
+  try {
+    const PartSet parts({path});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "3999999999 of 4000000000 shards missing: 1/4000000000, 3/4000000000, "
+                 "4/4000000000, 5/4000000000, 6/4000000000, 7/4000000000, 8/4000000000, "
+                 "9/4000000000, 10/4000000000, 11/4000000000, 12/4000000000, 13/4000000000, "
+                 "14/4000000000, 15/4000000000, 16/4000000000, 17/4000000000, 18/4000000000, "
+                 "19/4000000000, 20/4000000000, 21/4000000000, ...");
   }
 }
 

@@ -2,8 +2,8 @@
 // Renders that stop between tiles and go on from what was stored.
 #include <gtest/gtest.h>
 
+#include "base/memory_archive.h"
 #include "integrate/render_state.h"
-#include "memory_archive.h"
 #include "small_scenes.h"
 
 namespace chromeball {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
+#include "base/atomic_file.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
@@ -169,8 +169,9 @@ TEST_F(SlowStarved, AKillDuringTheWriteLeavesTheOldFile) {
     EXPECT_TRUE(WIFSIGNALED(status));
     EXPECT_EQ(fileContents(path), "old");
   }
-  // The leftover temporary files do not prevent the next run.
+  // The next run takes what is left away.
   EXPECT_EQ(runCommand(words(path)).status, 0);
+  EXPECT_EQ(out.files(), Words{"a.pfm"});
   EXPECT_EQ(readImage(path).width, 64);
 }
 

@@ -5,13 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "base/hash.h"
 
 namespace chromeball {
 
@@ -29,7 +29,7 @@ class Archive {
 
   template <class T>
   requires(std::is_trivially_copyable_v<T> && !std::is_enum_v<T>) void operator()(T& value) {
-    transfer(&value, sizeof(value));
+    bytes(&value, sizeof(value));
   }
 
   template <class T>
@@ -41,7 +41,7 @@ class Archive {
       check(count <= left() / sizeof(T));  // before it is allocated
       items.resize(count);
     }
-    transfer(items.data(), count * sizeof(T));
+    bytes(items.data(), count * sizeof(T));
   }
 
   // Of objects with archive().
@@ -59,7 +59,7 @@ class Archive {
 
   void operator()(bool& flag) {
     uint8_t value = flag;
-    transfer(&value, sizeof(value));
+    bytes(&value, sizeof(value));
     check(value <= 1);
     flag = value == 1;
   }
@@ -81,7 +81,18 @@ class Archive {
       check(count <= left());
       text.resize(count);
     }
-    transfer(text.data(), count);
+    bytes(text.data(), count);
+  }
+
+  // The items alone, whose number is known before they are read.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void items(std::span<T> list) { itemBytes(list.data(), list.size(), sizeof(T)); }
+
+  // Blocks of a large object, which files store apart from the rest and in any order: `block` is
+  // called for each index below `count`, by several threads at once.
+  virtual void blocks(size_t count, const std::function<void(Archive&, size_t)>& block) {
+    for (size_t i = 0; i < count; ++i) block(*this, i);
   }
 
   // A list whose number of items is known before it is read.
@@ -92,27 +103,10 @@ class Archive {
     check(items.size() == count);
   }
 
-  // A checksum of what lies between these two calls.
-  void startSum() { sum_ = 1; }
-  void endSum() {
-    uint64_t sum = std::exchange(sum_, 0);
-    const uint64_t own = sum;
-    (*this)(sum);
-    if (sum != own) throwInput("{}: damaged: its checksum is wrong", name());
-  }
-
  protected:
   virtual void bytes(void* data, size_t count) = 0;
-
- private:
-  void transfer(void* data, size_t count) {
-    bytes(data, count);
-    if (sum_ == 0) return;
-    const auto* byte = static_cast<const unsigned char*>(data);
-    for (size_t i = 0; i < count; ++i) sum_ = hash(sum_ ^ byte[i]) | 1;
-  }
-
-  uint64_t sum_ = 0;  // 0: not wanted
+  // `count` items of `size` bytes each.
+  virtual void itemBytes(void* data, size_t count, size_t size) { bytes(data, count * size); }
 };
 
 }  // namespace chromeball

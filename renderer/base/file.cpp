@@ -11,8 +11,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <system_error>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 
 namespace chromeball {
@@ -68,24 +68,6 @@ void checkReplaceable(const fs::path& path) {
   if (fs::is_directory(path)) throwRun("{}: cannot be written: it is a folder", path.string());
   if (access(folder.c_str(), W_OK) != 0)
     throwRun("{}: cannot write into {}: {}", path.string(), folder.string(), std::strerror(errno));
-}
-
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
-  // The process id keeps two runs with the same target from writing to the same file.
-  temporary_.replace_filename(
-      fmt::format(".{}.{}.part", target_.filename().string(), static_cast<long>(getpid())));
-}
-
-AtomicFile::~AtomicFile() {
-  std::error_code ignored;
-  if (!temporary_.empty()) fs::remove(temporary_, ignored);
-}
-
-void AtomicFile::commit() {
-  std::error_code error;
-  fs::rename(temporary_, target_, error);
-  if (error) throwRun("{}: cannot be written: {}", target_.string(), error.message());
-  temporary_.clear();
 }
 
 void writeFile(const fs::path& path, std::span<const uint8_t> bytes) {

@@ -38,22 +38,6 @@ class FileBytes {
 // RunError if nothing can be written into it.
 void checkReplaceable(const std::filesystem::path& path);
 
-// A file that appears under its name only when complete. It is written under a temporary name in
-// the same folder and renamed by commit(). The destructor removes it if commit() was not called.
-class AtomicFile {
- public:
-  explicit AtomicFile(std::filesystem::path target);
-  ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
-
-  const std::filesystem::path& temporary() const { return temporary_; }  // write here
-  void commit();                                                         // throws RunError
-
- private:
-  std::filesystem::path target_, temporary_;
-};
-
 // Writes the bytes atomically. Throws RunError.
 void writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 

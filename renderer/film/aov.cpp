@@ -104,10 +104,11 @@ void AovFilm::add(const AovFilm& part, int left, int top) {
     }
 }
 
-void AovFilm::archive(Archive& a) {
-  for (Sum& sum : sums_) a.fixed(sum.sums);
-  a.fixed(samples_);
-  a.fixed(hits_);
+void AovFilm::archive(Archive& a, Rows rows) {
+  if (empty()) return;
+  for (Sum& sum : sums_) a.items(rows.of(sum.sums, size_t(width_ * sum.channels)));
+  a.items(rows.of(samples_, size_t(width_)));
+  a.items(rows.of(hits_, size_t(width_)));
 }
 
 Image AovFilm::finished(Aov aov) const {

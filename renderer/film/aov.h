@@ -8,6 +8,7 @@
 
 #include "base/archive.h"
 #include "film/invalid.h"
+#include "film/rows.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -74,7 +75,7 @@ class AovFilm {
 
   // As Film::add() and archive(). Of indices, this film's stay.
   void add(const AovFilm& part, int x, int y);
-  void archive(Archive& a);
+  void archive(Archive& a, Rows rows);
 
   Image finished(Aov aov) const;
 

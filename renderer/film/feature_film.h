@@ -25,7 +25,9 @@ class FeatureFilm {
   void weigh(double weight);
   // As Film::add() and archive().
   void add(const FeatureFilm& part, int x, int y);
-  void archive(Archive& a) { a.fixed(pixels_); }
+  void archive(Archive& a, Rows rows) {
+    if (!empty()) a.items(rows.of(pixels_, size_t(width_)));
+  }
 
   HalvedImage direct() const { return channels(0, 3); }
   HalvedImage albedo() const { return channels(3, 3); }

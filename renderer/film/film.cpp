@@ -43,7 +43,7 @@ void Film::Pixel::add(const Pixel& other) {
 
 void Film::add(const Film& part, int x, int y) {
   assert(x >= 0 && y >= 0 && x + part.width_ <= width_ && y + part.height_ <= height_);
-  if (!part.early_.empty()) early_.resize(pixels_.size());
+  if (part.isWeighed() && !isWeighed()) beWeighed();
   for (int row = 0; row < part.height_; ++row)
     for (int column = 0; column < part.width_; ++column) {
       const size_t from = size_t(row) * size_t(part.width_) + size_t(column);
@@ -56,10 +56,9 @@ void Film::add(const Film& part, int x, int y) {
     }
 }
 
-void Film::archive(Archive& a) {
-  a.fixed(pixels_);
-  a(early_);
-  a.check(early_.empty() || early_.size() == pixels_.size());
+void Film::archive(Archive& a, Rows rows) {
+  a.items(rows.of(pixels_, size_t(width_)));
+  if (isWeighed()) a.items(rows.of(early_, size_t(width_)));
 }
 
 void Film::weigh(double weight) {

@@ -8,6 +8,7 @@
 
 #include "base/archive.h"
 #include "film/noise.h"
+#include "film/rows.h"
 #include "image/image.h"
 #include "math/vec.h"
 
@@ -51,7 +52,11 @@ class Film {
   // Adds the samples of another film, whose first pixel is this one's pixel (x, y), and which must
   // lie within this one.
   void add(const Film& part, int x, int y);
-  void archive(Archive& a);
+  // Whether weigh() was called, of this film or of one that is added. Must be told to both films
+  // before parts of them are added or read by several threads.
+  bool isWeighed() const { return !early_.empty(); }
+  void beWeighed() { early_.resize(pixels_.size()); }
+  void archive(Archive& a, Rows rows);
 
   Image mean() const;            // RGB radiance
   Image halfDifference() const;  // half the difference of the means of the halves

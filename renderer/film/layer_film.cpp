@@ -46,9 +46,11 @@ void LayerFilm::add(const LayerFilm& part, int left, int top) {
       }
 }
 
-void LayerFilm::archive(Archive& a) {
-  a.fixed(counts_);
-  a.fixed(values_);
+void LayerFilm::archive(Archive& a, Rows rows) {
+  if (empty()) return;
+  const size_t perRow = size_t(width_) * size_t(halves_);
+  a.items(rows.of(counts_, perRow));
+  a.items(rows.of(values_, perRow * layers_.size()));
 }
 
 uint32_t LayerFilm::count(int x, int y) const {

@@ -33,7 +33,7 @@ class LayerFilm {
 
   // As Film::add() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);
-  void archive(Archive& a);
+  void archive(Archive& a, Rows rows);
 
   uint32_t count(int x, int y) const;  // samples
   glm::dvec3 value(int x, int y, int layer) const;

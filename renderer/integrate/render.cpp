@@ -185,11 +185,14 @@ RenderResult::RenderResult(const RenderSettings& settings, std::vector<Accumulat
              settings.wantsFeatures()),
       features(settings.window().width, settings.window().height, settings.wantsFeatures()) {}
 
-void RenderResult::add(const RenderResult& part, int x, int y) {
+void RenderResult::addPixels(const RenderResult& part, int x, int y) {
   film.add(part.film, x, y);
   aovs.add(part.aovs, x, y);
   layers.add(part.layers, x, y);
   features.add(part.features, x, y);
+}
+
+void RenderResult::addTotals(const RenderResult& part) {
   rays.add(part.rays);
   depthCut.add(part.depthCut);
   invalid.add(part.invalid);
@@ -201,10 +204,13 @@ void RenderResult::add(const RenderResult& part, int x, int y) {
 }
 
 void RenderResult::archive(Archive& a) {
-  film.archive(a);
-  aovs.archive(a);
-  layers.archive(a);
-  features.archive(a);
+  archiveTotals(a);
+  const Bands bands{film.width(), film.height()};
+  a.blocks(bands.count(),
+           [&](Archive& block, size_t band) { archivePixels(block, bands.rows(band)); });
+}
+
+void RenderResult::archiveTotals(Archive& a) {
   a(rays);
   a(depthCut);
   a(invalid);
@@ -214,6 +220,16 @@ void RenderResult::archive(Archive& a) {
   a(adaptive);
   a(guidedRegions);
   a(causticFraction);
+  bool isWeighed = film.isWeighed();
+  a(isWeighed);
+  if (isWeighed) film.beWeighed();
+}
+
+void RenderResult::archivePixels(Archive& a, Rows rows) {
+  film.archive(a, rows);
+  aovs.archive(a, rows);
+  layers.archive(a, rows);
+  features.archive(a, rows);
 }
 
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,

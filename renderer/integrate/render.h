@@ -22,8 +22,14 @@ struct RenderResult {
   // Empty films. `layers`: those of the integrator.
   RenderResult(const RenderSettings& settings, std::vector<Accumulation> layers);
   // Adds the samples of a part of the image, whose first pixel is this one's pixel (x, y).
-  void add(const RenderResult& part, int x, int y);
+  void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
+  void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
+  void addTotals(const RenderResult& part);                // what is not per pixel
+
+  // The totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);
+  void archiveTotals(Archive& a);
+  void archivePixels(Archive& a, Rows rows);
 
   Film film;
   AovFilm aovs;

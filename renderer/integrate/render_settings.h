@@ -46,7 +46,7 @@ struct RenderSettings {
   // Per pixel, of all shards together.
   uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
   // Whether the image is put together from several renders (job/merge.h).
-  bool isPart() const { return crop || shard.count > 1; }
+  bool isPart() const { return crop || shard.samplesOfAll > 0; }
   bool denoisesAtEnd() const { return denoise && !isPart(); }  // a part: when it is merged
   Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
 

@@ -13,6 +13,10 @@ constexpr uint32_t kLeastPilot = 8;  // samples per pixel; with 4, the union has
 
 }  // namespace
 
+void Shard::archive(Archive& a) {
+  a(index), a(count), a(samplesOfAll), a(repeated), a(isConsecutive);
+}
+
 uint32_t Shard::ofAll(uint32_t taken) const {
   if (isConsecutive || count == 1 || taken <= repeated) return taken;
   return uint32_t(std::min<uint64_t>(samplesOfAll, repeated + uint64_t(taken - repeated) * count));

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "base/archive.h"
+
 namespace chromeball {
 
 struct RenderSettings;
@@ -18,6 +20,8 @@ struct Shard {
   uint32_t samplesOfAll = 0;  // mean per pixel; 0 for a render that is not a shard
   uint32_t repeated = 0;      // samples per pixel that all shards take; 0: none
   bool isConsecutive = true;  // samples of a half; else every count-th
+
+  void archive(Archive& a);
 
   // Mean samples per pixel of all shards when this one has taken `taken`; where the samples are
   // consecutive, `taken`.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "image/io/exr_state.h"
 #include "image/io/write_exr.h"
 #include "job/job_description.h"
 #include "job/job_report.h"
@@ -36,10 +37,23 @@ JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded,
 bool JobControl::restore(RenderState& state) {
   if (!path_ || !std::filesystem::exists(*path_)) return false;
   readExrState(*path_, [&](Archive& a) {
-    RenderPart().archive(a);  // has been compared
+    RenderPart part;  // has been compared
+    part.archive(a);
+    part.plan.archiveImages(a);
     state.archive(a);
   });
+  noteSamples(state);
   return true;
+}
+
+void JobControl::noteSamples(const RenderState& restored) {
+  const uint32_t pass = restored.finished.empty() ? 0 : restored.wanted;  // in progress
+  const uint32_t samples = std::max(restored.done, pass), asked = job_.settings.samples;
+  if (samples > asked)
+    messages_.push_back({Message::Kind::Note,
+                         fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
+                                     "image keeps them",
+                                     *path_, samples, asked)});
 }
 
 void JobControl::endPass(const RenderState& state) {
@@ -111,6 +125,7 @@ void JobControl::writeCheckpoint(RenderState& state) {
   part_.plan = finishPlan(job_, loaded_);
   image.state = [&](Archive& a) {
     part_.archive(a);
+    part_.plan.archiveImages(a);
     state.archive(a);
   };
   writeExr(*path_, image);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/file_lock.h"
+#include "base/message.h"
 #include "base/stopwatch.h"
 #include "integrate/render_state.h"
 #include "job/render_part.h"
@@ -48,6 +49,8 @@ class JobControl : public RenderControl {
   void pause(RenderState& state) override;
   void end(RenderState& state) override;
 
+  const Messages& messages() const { return messages_; }
+
  private:
   bool filesAreDue() const;
   bool viewIsDue() const;
@@ -56,6 +59,7 @@ class JobControl : public RenderControl {
   FinishedImage imageOf(const RenderState& state) const;
   void writeFiles(const RenderState& state);
   void show(const RenderState& state);
+  void noteSamples(const RenderState& restored);
   void writeCheckpoint(RenderState& state);
 
   const RenderJob& job_;
@@ -67,6 +71,7 @@ class JobControl : public RenderControl {
   std::vector<Viewer*> viewers_;
   Interval images_, checkpoints_, views_{0};
   Stopwatch rendering_;
+  Messages messages_;
 };
 
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 
 #include "composite/denoise_composite.h"
 #include "composite/layers.h"
+#include "film/rows.h"
 
 namespace chromeball {
 namespace {
@@ -119,12 +120,21 @@ void archiveOptional(Archive& a, std::optional<T>& value) {
   if (has && !value) value.emplace();
 }
 
-void archiveImage(Archive& a, Image& image) {
-  a(image.width), a(image.height), a(image.channels), a(image.texels);
-  a.check(image.width >= 0 && image.height >= 0 && image.channels >= 0 &&
-          uint64_t(image.width) * uint64_t(image.height) <= image.texels.size() &&
-          uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.channels) ==
-              image.texels.size());
+// The pixels follow in archivePixels().
+void archiveChannels(Archive& a, Image& image) {
+  uint32_t channels = image.empty() ? 0 : uint32_t(image.channels);
+  a(channels);
+  a.check(channels <= 4);
+  if (a.reads()) image = Image(), image.channels = int(channels);
+}
+
+void archivePixels(Archive& a, const Crop& window, Image& image) {
+  if (a.reads() ? image.channels == 0 : image.empty()) return;
+  if (a.reads()) image = Image(window.width, window.height, image.channels);
+  const Bands bands{image.width, image.height};
+  a.blocks(bands.count(), [&](Archive& block, size_t band) {
+    block.items(bands.rows(band).of(image.texels, size_t(image.width * image.channels)));
+  });
 }
 
 }  // namespace
@@ -135,7 +145,8 @@ std::vector<Accumulation> FinishPlan::layers() const {
 
 void FinishPlan::archive(Archive& a) {
   RenderSettings& s = settings;
-  a(s.width), a(s.height), a(s.samples), a(s.shard), a(s.hideProbe), a(s.denoise);
+  a(s.width), a(s.height), a(s.samples), a(s.hideProbe), a(s.denoise);
+  s.shard.archive(a);
   archiveOptional(a, s.crop);
   if (s.crop) a(*s.crop);
   std::vector<uint32_t> aovs;
@@ -147,6 +158,7 @@ void FinishPlan::archive(Archive& a) {
     s.aovs.push_back(Aov(aov));
   }
   archiveOptional(a, composite);
+  a.check(composite || !s.hideProbe || std::ranges::count(s.aovs, Aov::Alpha) > 0);
   if (!composite) return;
   a.enumerator(composite->mode, CompositeMode::Ratio);
   uint64_t count = composite->layers.size();
@@ -155,8 +167,27 @@ void FinishPlan::archive(Archive& a) {
     if (a.reads()) composite->layers.emplace_back();
     a(composite->layers[i]);
   }
-  archiveImage(a, composite->plate);
-  archiveImage(a, composite->reflectance);
+  archiveChannels(a, composite->plate);
+  archiveChannels(a, composite->reflectance);
+  a.check(composite->plate.channels == 3 && composite->reflectance.channels % 3 == 0 &&
+          std::ranges::all_of(composite->layers,
+                              [&](const std::string& name) { return hasLayer(name); }));
+}
+
+bool FinishPlan::hasLayer(const std::string& name) const {
+  if (const CompositeLayerInfo* own = findCompositeLayer(name))
+    return own->layer != CompositeLayer::Reflectance || composite->reflectance.channels == 3;
+  return std::ranges::any_of(allAovs(), [&](const AovInfo& info) {
+    return info.name == name &&
+           (info.aov == Aov::Variance || info.aov == Aov::Samples ||
+            (info.aov != Aov::Denoise && std::ranges::count(settings.aovs, info.aov) > 0));
+  });
+}
+
+void FinishPlan::archiveImages(Archive& a) {
+  if (!composite) return;
+  archivePixels(a, settings.window(), composite->plate);
+  archivePixels(a, settings.window(), composite->reflectance);
 }
 
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,

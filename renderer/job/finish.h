@@ -42,7 +42,12 @@ struct FinishPlan {
   std::optional<CompositeFinish> composite;
 
   std::vector<Accumulation> layers() const;  // of the integrator
+  // All but the composite's images, which are of the size of settings.window() or empty.
   void archive(Archive& a);
+  void archiveImages(Archive& a);
+
+ private:
+  bool hasLayer(const std::string& name) const;  // whether there is what a composite's layer needs
 };
 
 struct FinishedImage {

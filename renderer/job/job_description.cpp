@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "job/file_hash.h"
+#include "job/json_text.h"
 
 namespace chromeball {
 namespace {
@@ -130,7 +131,7 @@ Metadata toMetadata(const Json& description) {
     else if (value.is_array() && value.size() == std::tuple_size_v<Matrix44>)
       metadata[name] = value.get<Matrix44>();
     else
-      metadata[name] = value.dump();
+      metadata[name] = jsonText(value);
   }
   return metadata;
 }
@@ -140,7 +141,7 @@ std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
   for (const char* name : kVariedByComparisons) identity.erase(name);
   identity["threads"] =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return identity.dump();
+  return jsonText(identity);
 }
 
 std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
@@ -148,19 +149,19 @@ std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
   identity["layers"] = job.file.settings.get<std::vector<std::string>>("output.aovs");
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
     identity["samples"] = job.settings.samplesOfAll();
-  return identity.dump();
+  return jsonText(identity);
 }
 
 std::string withoutParts(const std::string& identity) {
-  Json whole = Json::parse(identity, nullptr, false);
+  Json whole = readJson(identity);
   if (!whole.is_object()) return identity;
   for (const char* name : {"shard", "crop", "samples"}) whole.erase(name);
-  return whole.dump();
+  return jsonText(whole);
 }
 
 std::string differenceOf(const std::string& stored, const std::string& own) {
-  const Json was = Json::parse(stored, nullptr, false), is = Json::parse(own);
-  if (!was.is_object()) return "it was made by another version";
+  const Json was = readJson(stored), is = readJson(own);
+  if (!was.is_object() || !is.is_object()) return "it was made by another version";
   Json names = was;
   names.update(is);
   for (const auto& [name, ignored] : names.items()) {
@@ -169,7 +170,7 @@ std::string differenceOf(const std::string& stored, const std::string& own) {
     const auto text = [&name = name](const Json& identity) {
       if (!identity.contains(name)) return std::string("not given");
       const Json& value = identity.at(name);
-      return value.is_string() ? value.get<std::string>() : value.dump();
+      return value.is_string() ? value.get<std::string>() : jsonText(value);
     };
     return fmt::format("`{}` was {} and is {}", name, text(was), text(is));
   }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/merge.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 #include "base/error.h"
+#include "image/io/exr_state.h"
 #include "job/image_memory.h"
 #include "job/job_description.h"
 
@@ -41,25 +45,25 @@ void checkSameRender(const std::vector<Header>& parts) {
 
 // All shards of one crop, in order.
 void checkShards(std::span<const Header> parts) {
-  const Shard& shard = parts[0].settings.shard;
-  std::vector<std::string> missing;
-  size_t next = 0;
-  for (uint32_t index = 0; index < shard.count; ++index) {
-    if (next == parts.size() || parts[next].settings.shard.index != index) {
-      missing.push_back(fmt::format("{}/{}", index + 1, shard.count));
-      continue;
-    }
-    if (++next < parts.size() && parts[next].settings.shard.index == index)
-      throwInput("{}: is the same part as {}", parts[next].path, parts[next - 1].path);
-  }
+  const auto indexOf = [&](size_t part) { return parts[part].settings.shard.index; };
+  for (size_t i = 1; i < parts.size(); ++i)
+    if (indexOf(i) == indexOf(i - 1))
+      throwInput("{}: is the same part as {}", parts[i].path, parts[i - 1].path);
+  const uint32_t count = parts[0].settings.shard.count;
+  const size_t missing = count - parts.size();
+  if (missing == 0) return;
   constexpr size_t kMostNamed = 20;
-  const size_t count = missing.size();
-  if (count > kMostNamed) missing.resize(kMostNamed);
-  if (count > 0)
-    throwInput(
-        "{}{} of {} shards missing: {}{}",
-        parts[0].settings.crop ? fmt::format("crop {}: ", nameOf(*parts[0].settings.crop)) : "",
-        count, shard.count, fmt::join(missing, ", "), count > kMostNamed ? ", ..." : "");
+  std::vector<std::string> names;
+  size_t next = 0;
+  for (uint32_t index = 0; names.size() < std::min(missing, kMostNamed); ++index)
+    if (next < parts.size() && indexOf(next) == index)
+      ++next;
+    else
+      names.push_back(fmt::format("{}/{}", index + 1, count));
+  throwInput(
+      "{}{} of {} shards missing: {}{}",
+      parts[0].settings.crop ? fmt::format("crop {}: ", nameOf(*parts[0].settings.crop)) : "",
+      missing, count, fmt::join(names, ", "), missing > kMostNamed ? ", ..." : "");
 }
 
 bool overlap(const Crop& a, const Crop& b) {
@@ -87,16 +91,81 @@ void paste(const Image& part, const Crop& at, Image& whole) {
     std::copy_n(part.at(0, y), part.width * part.channels, whole.at(at.x, at.y + y));
 }
 
-// Of the whole image, with the plate and the reflectance still empty.
+// Of the whole image, without the plate and the reflectance.
 FinishPlan wholePlan(FinishPlan plan) {
   RenderSettings& s = plan.settings;
   s.crop.reset();
   s.samples = s.samplesOfAll();
   s.shard = {};
-  if (plan.composite)
-    for (Image* image : {&plan.composite->plate, &plan.composite->reflectance})
-      if (!image->empty()) *image = Image(s.width, s.height, image->channels);
   return plan;
+}
+
+// The images of a composite, and its layers, are not among what imageBytes() counts.
+double bytesOf(const FinishPlan& plan) {
+  const RenderSettings& s = plan.settings;
+  const size_t layers = plan.layers().size();
+  const double perPixel =
+      layers == 0
+          ? 0
+          : double(LayerFilm::bytesPerPixel(layers, s.wantsFeatures())) +
+                2 * sizeof(float) *
+                    double(plan.composite->plate.channels + plan.composite->reflectance.channels);
+  return imageBytes(s) + perPixel * s.width * s.height;
+}
+
+// Whether the films of a part can be added to those of the whole.
+bool fits(const FinishPlan& part, const FinishPlan& whole) {
+  const RenderSettings &a = part.settings, &b = whole.settings;
+  return a.width == b.width && a.height == b.height && a.aovs == b.aovs && a.denoise == b.denoise &&
+         part.composite.has_value() == whole.composite.has_value() &&
+         (!part.composite ||
+          (part.composite->plate.channels == whole.composite->plate.channels &&
+           part.composite->reflectance.channels == whole.composite->reflectance.channels));
+}
+
+void addImages(FinishPlan& part, Archive& a, CompositeFinish& whole) {
+  part.archiveImages(a);
+  const Crop window = part.settings.window();
+  paste(part.composite->plate, window, whole.plate);
+  paste(part.composite->reflectance, window, whole.reflectance);
+}
+
+// Adds a part band by band, so that it is never in memory as a whole. Each pixel gets the parts in
+// the order of the calls.
+void addPart(const std::string& path, MergedParts& whole) {
+  readExrState(path, [&](Archive& a) {
+    RenderPart part;
+    part.archive(a);
+    a.check(fits(part.plan, whole.part.plan));
+    const Crop window = part.plan.settings.window();
+    if (whole.part.plan.composite) addImages(part.plan, a, *whole.part.plan.composite);
+
+    const RenderSettings& settings = part.plan.settings;
+    const auto filmsOf = [&](Rows rows) {
+      RenderSettings band = settings;
+      band.crop = {window.x, window.y + rows.begin, window.width, rows.count};
+      return RenderResult(band, part.plan.layers());
+    };
+    RenderResult totals = filmsOf({0, 1});
+    totals.archiveTotals(a);
+    if (totals.isRepeated)
+      throwInput("{}: has no samples of its own yet; let its render go on", path);
+    const bool isWeighed = totals.film.isWeighed();
+    if (isWeighed) whole.result.film.beWeighed();
+    whole.result.addTotals(totals);
+    whole.addSamples(settings.shard, totals.samples);
+
+    const Bands bands{window.width, window.height};
+    tbb::enumerable_thread_specific<std::optional<RenderResult>> films;  // of one band each
+    a.blocks(bands.count(), [&](Archive& block, size_t index) {
+      const Rows rows = bands.rows(index);
+      std::optional<RenderResult>& band = films.local();
+      if (!band || band->film.height() != rows.count) band.emplace(filmsOf(rows));
+      if (isWeighed) band->film.beWeighed();
+      band->archivePixels(block, {0, rows.count});
+      whole.result.addPixels(*band, window.x, window.y + rows.begin);
+    });
+  });
 }
 
 }  // namespace
@@ -121,29 +190,29 @@ PartSet::PartSet(const std::vector<std::string>& paths) {
   for (const Header& part : parts) paths_.push_back(part.path);
 }
 
-StoredPart merge(const PartSet& parts, const Progress& progress) {
+MergedParts merge(const PartSet& parts, const Progress& progress) {
   const RenderPart first = readPartHeader(parts.paths().front());
-  RenderPart whole{withoutParts(first.identity), wholePlan(first.plan)};
-  if (const double needed = imageBytes(whole.plan.settings); needed > memoryBudget())
-    throwInput("{}: an image of {}x{} takes {:.3g} GB of memory", parts.paths().front(),
-               whole.plan.settings.width, whole.plan.settings.height, needed * 1e-9);
-  RenderResult result(whole.plan.settings, whole.plan.layers());
-  uint32_t samples = 0;  // of the shards of one crop
+  const FinishPlan plan = wholePlan(first.plan);
+  const RenderSettings& s = plan.settings;
+  if (const double needed = bytesOf(plan); needed > memoryBudget())
+    throwInput("{}: an image of {}x{} takes {:.3g} GB of memory", parts.paths().front(), s.width,
+               s.height, needed * 1e-9);
+  MergedParts whole{{withoutParts(first.identity), plan}, RenderResult(s, plan.layers())};
+  if (auto& composite = whole.part.plan.composite)
+    for (Image* image : {&composite->plate, &composite->reflectance})
+      if (image->channels > 0) *image = Image(s.width, s.height, image->channels);
   for (size_t i = 0; i < parts.paths().size(); ++i) {
-    StoredPart stored = readPart(parts.paths()[i]);
-    const RenderSettings& settings = stored.part.plan.settings;
-    const Crop window = settings.window();
-    result.add(stored.result, window.x, window.y);
-    samples = settings.shard.index == 0 ? stored.result.samples : samples + stored.result.samples;
-    if (settings.shard.index + 1 == settings.shard.count)
-      result.samples = result.samples == 0 ? samples : std::min(result.samples, samples);
-    if (whole.plan.composite) {
-      paste(stored.part.plan.composite->plate, window, whole.plan.composite->plate);
-      paste(stored.part.plan.composite->reflectance, window, whole.plan.composite->reflectance);
-    }
+    addPart(parts.paths()[i], whole);
     progress(double(i + 1) / double(parts.paths().size()));
   }
-  return {std::move(whole), std::move(result)};
+  return whole;
+}
+
+void MergedParts::addSamples(const Shard& shard, uint32_t samples) {
+  samplesOfCrop = shard.index == 0 ? samples : samplesOfCrop + samples;
+  if (shard.count > 1) samplesOfCrop = std::min(samplesOfCrop, shard.samplesOfAll);  // rounded up
+  if (shard.index + 1 == shard.count)
+    result.samples = result.samples == 0 ? samplesOfCrop : std::min(result.samples, samplesOfCrop);
 }
 
 }  // namespace chromeball

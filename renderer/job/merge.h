@@ -24,7 +24,17 @@ class PartSet {
   std::vector<std::string> paths_;
 };
 
-// The whole render: reads one part after the other. `progress` receives fractions.
-StoredPart merge(const PartSet& parts, const Progress& progress);
+// The whole render, or what there is of it so far.
+struct MergedParts {
+  RenderPart part;
+  RenderResult result;
+  uint32_t samplesOfCrop = 0;  // per pixel, of the shards of one crop
+
+  void addSamples(const Shard& shard, uint32_t samples);
+};
+
+// Reads one part after the other, each by all threads. Takes the memory of the whole result and of
+// some rows for each thread. `progress` receives fractions. Throws InputError.
+MergedParts merge(const PartSet& parts, const Progress& progress);
 
 }  // namespace chromeball

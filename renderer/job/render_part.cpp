@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/render_part.h"
 
-#include "image/io/write_exr.h"
+#include <algorithm>
+
+#include "image/io/exr_state.h"
 
 namespace chromeball {
+namespace {
+
+// Whether it can be shown in a message.
+bool isPlainText(const std::string& text) {
+  return text.size() < 32 && std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+}  // namespace
 
 void RenderPart::archive(Archive& a) {
-  std::string version = "chromeball " CHROMEBALL_VERSION " 1";
+  std::string version = "chromeball " CHROMEBALL_VERSION " 2";
   const std::string own = version;
   a(version);
   if (version != own)
-    throwInput("{}: was written by another version of chromeball; render it again", a.name());
-  a.startSum();
+    throwInput("{}: was written by another version of chromeball{}; render it again", a.name(),
+               isPlainText(version) ? fmt::format(" ({}; this is {})", version, own) : "");
   a(identity);
   plan.archive(a);
-  a.endSum();
   constexpr int kMaxSide = 65536;
   const auto& s = plan.settings;
   const Crop w = s.window();
@@ -26,29 +35,15 @@ void RenderPart::archive(Archive& a) {
 std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result) {
   return [&](Archive& a) {
     part.archive(a);
+    part.plan.archiveImages(a);
     result.archive(a);
   };
 }
 
 RenderPart readPartHeader(const std::filesystem::path& path) {
   RenderPart part;
-  readExrState(
-      path, [&](Archive& a) { part.archive(a); }, Checked::No);
+  readExrState(path, [&](Archive& a) { part.archive(a); });
   return part;
-}
-
-StoredPart readPart(const std::filesystem::path& path) {
-  RenderPart part;
-  std::optional<RenderResult> result;
-  readExrState(path, [&](Archive& a) {
-    part.archive(a);
-    const Crop window = part.plan.settings.window();
-    constexpr uint64_t kLeastPerPixel = 100;  // bytes; before the films are allocated
-    a.check(kLeastPerPixel * uint64_t(window.width) * uint64_t(window.height) <= a.left());
-    result.emplace(part.plan.settings, part.plan.layers());
-    result->archive(a);
-  });
-  return {std::move(part), std::move(*result)};
 }
 
 }  // namespace chromeball

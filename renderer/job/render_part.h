@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of renders that are not complete: checkpoints, shards and crops. Each is an .exr with the
-// image so far, which other programs read, and the sums of the samples in a second part.
+// image so far, which other programs read, and the sums of the samples behind it (exr_state.h).
 #pragma once
 
 #include <filesystem>
@@ -24,12 +24,7 @@ struct RenderPart {
 // For OutputImage::state. Both must outlive the writing.
 std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result);
 
-// Reads a file of a part with its result; skips what follows. Throws InputError.
-struct StoredPart {
-  RenderPart part;
-  RenderResult result;
-};
+// Without its images. Throws InputError.
 RenderPart readPartHeader(const std::filesystem::path& path);
-StoredPart readPart(const std::filesystem::path& path);
 
 }  // namespace chromeball

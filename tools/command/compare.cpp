@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "job/job.h"
 #include "job/job_description.h"
+#include "job/json_text.h"
 #include "job/machine.h"
 #include "job/output_file.h"
 #include "job/setting_table.h"
@@ -191,7 +192,7 @@ void compare(const Arguments& a) {
   const auto write = [&](const StudyResults& r) {
     const Machine machine = thisMachine();
     writeText(files.csv, resultsCsv(r));
-    writeText(files.json, resultsJson(study, r, machine).dump(2) + "\n");
+    writeText(files.json, jsonText(resultsJson(study, r, machine), 2) + "\n");
     writeText(files.samples, samplesPlot(r));
     writeText(files.seconds, secondsPlot(r));
     writeText(files.page, reportHtml(study, store, r, about, machine));

@@ -47,6 +47,8 @@ JobResult ImageRender::run(const PreparedScene& prepared,
   JobResult result =
       renderJob(job_, loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
   result.image.metadata = imageMetadata(job_, loaded_, result, result.render, result.seconds);
+  const Messages& more = control_.messages();
+  result.messages.insert(result.messages.end(), more.begin(), more.end());
   if (!viewers_.empty()) {
     auto last = std::make_shared<ImageSoFar>(imageSoFar(result, result.render));
     last->isLast = true;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
 #include <atomic>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "image/io/read_image.h"
@@ -9,6 +8,7 @@
 #include "image_noise_text.h"
 #include "job/id_manifest.h"
 #include "job/job_report.h"
+#include "job/json_text.h"
 #include "job/merge.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -29,13 +29,15 @@ Metadata wholeMetadata(const PartSet& parts) {
   Metadata metadata = readExrMetadata(parts.paths().front());
   for (const char* name : {"shard", "crop", "seconds", "command", "clamp_light_removed"})
     metadata.erase(name);
-  for (const std::string layer : {"node", "material"}) {
-    std::map<int, std::string> names;
-    for (const std::string& part : parts.paths())
-      names.merge(readManifest(readExrMetadata(part), layer));
+  std::map<std::string, std::map<int, std::string>> names{{"node", {}}, {"material", {}}};
+  for (const std::string& path : parts.paths()) {
+    const Metadata part = readExrMetadata(path);
+    for (auto& [layer, ofLayer] : names) ofLayer.merge(readManifest(part, layer));
+  }
+  for (const auto& [layer, ofLayer] : names) {
     nlohmann::ordered_json manifest;
-    for (const auto& [number, name] : names) manifest[std::to_string(number)] = name;
-    if (!names.empty()) metadata["manifest/" + layer] = manifest.dump();
+    for (const auto& [number, name] : ofLayer) manifest[std::to_string(number)] = name;
+    if (!ofLayer.empty()) metadata["manifest/" + layer] = jsonText(manifest);
   }
   return metadata;
 }
@@ -46,7 +48,7 @@ void run(const Arguments& arguments) {
   const PartSet parts(arguments.parts);
   const std::atomic<bool> never = false;
   ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
-  StoredPart whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
+  MergedParts whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
   FinishedImage finished = finish(
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
@@ -56,9 +58,9 @@ void run(const Arguments& arguments) {
   addExcluded(whole.result, messages);
   print(messages, arguments.quiet);
   if (!arguments.quiet)
-    fmt::print("{} samples per pixel of {} parts, noise {}{}: {}\n", whole.result.samples,
-               parts.paths().size(), inWords(finished.noise), inWords(finished.denoised),
-               fmt::join(arguments.outputs, ", "));
+    fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samples,
+               parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
+               inWords(finished.denoised), fmt::join(arguments.outputs, ", "));
 }
 
 }  // namespace

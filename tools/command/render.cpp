@@ -15,6 +15,7 @@
 #include "job/job_description.h"
 #include "job/job_outputs.h"
 #include "job/job_report.h"
+#include "job/json_text.h"
 #include "job/output_file.h"
 #include "job/sequence.h"
 #include "lighting/methods.h"
@@ -76,7 +77,7 @@ void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResul
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))
-    writeText(*stats, statistics(job, loaded, result, seconds).dump(2) + "\n");
+    writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
 }
 
 void renderStill(const SceneFile& scene, const SceneOptions& options) {

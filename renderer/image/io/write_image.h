@@ -34,7 +34,7 @@ struct OutputImage {
     int x, y, width, height;
   };
   std::optional<Placement> placement;   // of an .exr
-  std::function<void(Archive&)> state;  // what else an .exr holds (write_exr.h); may be empty
+  std::function<void(Archive&)> state;  // what else an .exr holds (exr_state.h); may be empty
 };
 
 // Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.

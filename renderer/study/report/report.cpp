@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "image/tonemap.h"
+#include "job/json_text.h"
 #include "probe/mapping.h"
 #include "probe/preview.h"
 #include "study/report/log_log_plot.h"
@@ -168,7 +169,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
        "of them. Seconds are render time alone. Every render has its own seed, and the reference "
        "shares none of them. All numbers are in <code>results.csv</code> and "
        "<code>results.json</code>, all renders in <code>renders/</code>.");
-  fill(page, "data", reportImages(store, results).dump());
+  fill(page, "data", jsonText(reportImages(store, results)));
   fill(page, "script", kReportScript);
   return page;
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstring>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "base/archive.h"
@@ -21,23 +23,27 @@ class MemoryWriter : public Archive {
   }
 };
 
+// `contents` must outlive it. `name`: of the file that they are from.
 class MemoryReader : public Archive {
  public:
-  explicit MemoryReader(const std::vector<char>& contents) : contents_(contents) {}
+  explicit MemoryReader(std::span<const char> contents, std::string name = "memory")
+      : contents_(contents), name_(std::move(name)) {}
   bool reads() const override { return true; }
-  std::string name() const override { return "memory"; }
-  uint64_t left() const override { return contents_.size() - at_; }
+  std::string name() const override { return name_; }
+  uint64_t left() const override { return contents_.size(); }
 
  protected:
   void bytes(void* data, size_t count) override {
     check(count <= left());
-    if (count > 0) std::memcpy(data, contents_.data() + at_, count);
-    at_ += count;
+    if (count > 0) std::memcpy(data, contents_.data(), count);
+    skip(count);
   }
+  std::span<const char> rest() const { return contents_; }
+  void skip(size_t count) { contents_ = contents_.subspan(count); }
 
  private:
-  const std::vector<char>& contents_;
-  size_t at_ = 0;
+  std::span<const char> contents_;  // that are not read yet
+  std::string name_;
 };
 
 }  // namespace chromeball

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <string>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A few letters, since the names of files are limited to 255.
+std::string machineName() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  uint64_t sum = 0;
+  for (const char letter : name) sum = hash(sum ^ static_cast<unsigned char>(letter));
+  return fmt::format("{:08x}", uint32_t(sum));
+}
+
+// Creates or empties a file that no other process has locked; -1 if that is not possible.
+int openLocked(const fs::path& path) {
+  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file < 0) return -1;
+  // The process that held the lock may have renamed the file after it was opened here.
+  struct stat locked {
+  }, named{};
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &locked) == 0 &&
+      stat(path.c_str(), &named) == 0 && locked.st_ino == named.st_ino &&
+      locked.st_dev == named.st_dev && ftruncate(file, 0) == 0)
+    return file;
+  close(file);
+  return -1;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
+  const std::string name = fmt::format(".{}.{}", target_.filename().string(), machineName());
+  temporary_.replace_filename(name + ".part");
+  lock_ = openLocked(temporary_);
+  if (lock_ >= 0) return;
+  // Another process writes the same file, or the file system has no locks.
+  temporary_.replace_filename(fmt::format("{}.{}.part", name, static_cast<long>(getpid())));
+}
+
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+void AtomicFile::commit() {
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) throwRun("{}: cannot be written: {}", target_.string(), error.message());
+  temporary_.clear();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file that is either as it was before or complete.
+#pragma once
+
+#include <filesystem>
+
+namespace chromeball {
+
+// A file that appears under its name only when complete. It is written under a temporary name in
+// the same folder and renamed by commit(). The destructor removes it if commit() was not called.
+//
+// The temporary name is that of the file and of this machine, and locked, so that what a killed
+// process left is overwritten by the next one that writes the file on the same machine. The files
+// of other machines are never touched: whether their process still exists is not known here.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::filesystem::path& temporary() const { return temporary_; }  // write here
+  void commit();                                                         // throws RunError
+
+ private:
+  std::filesystem::path target_, temporary_;
+  int lock_ = -1;  // descriptor of the temporary file; -1: none
+};
+
+}  // namespace chromeball

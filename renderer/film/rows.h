@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of an image, and its division into bands of some rows, which files store one by one.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+struct Rows {
+  int begin = 0, count = 0;
+
+  // What a list with `perRow` items for each row of the image has for these rows.
+  template <class T>
+  std::span<T> of(std::vector<T>& items, size_t perRow) const {
+    return std::span(items).subspan(size_t(begin) * perRow, size_t(count) * perRow);
+  }
+};
+
+// Some megabytes of sums each.
+struct Bands {
+  int width, height;
+
+  size_t count() const { return (size_t(height) + rowsOfEach() - 1) / rowsOfEach(); }
+  Rows rows(size_t band) const {
+    const int begin = int(band * rowsOfEach());
+    return {begin, std::min(int(rowsOfEach()), height - begin)};
+  }
+
+ private:
+  static constexpr int kPixels = 16384;
+  size_t rowsOfEach() const { return size_t(std::max(1, kPixels / width)); }
+};
+
+}  // namespace chromeball

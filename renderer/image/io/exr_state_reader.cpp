@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/byte_planes.h"
+#include "base/checksum.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory_archive.h"
+#include "image/io/exr_state.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Read by several threads at once.
+class SharedFile {
+ public:
+  explicit SharedFile(const fs::path& path)
+      : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) throwInput("{}: cannot be read", path.string());
+  }
+  ~SharedFile() { close(descriptor_); }
+  SharedFile(const SharedFile&) = delete;
+  SharedFile& operator=(const SharedFile&) = delete;
+
+  std::string name() const { return path_.string(); }
+  void read(uint64_t at, std::span<char> to) const {
+    while (!to.empty()) {
+      const ssize_t count = pread(descriptor_, to.data(), to.size(), off_t(at));
+      if (count <= 0) throwInput("{}: cannot read the whole file", name());
+      at += uint64_t(count);
+      to = to.subspan(size_t(count));
+    }
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_;
+};
+
+class BlockReader : public MemoryReader {
+ public:
+  using MemoryReader::MemoryReader;
+
+ protected:
+  void itemBytes(void* data, size_t count, size_t size) override {
+    const std::optional<size_t> taken = unpackPlanes(rest(), count, size, static_cast<char*>(data));
+    check(taken.has_value());
+    skip(*taken);
+  }
+};
+
+struct Layout {
+  std::vector<char> head;
+  std::vector<ExrStateBlock> table;
+  std::vector<uint64_t> places;  // of the blocks
+};
+
+Layout readLayout(const SharedFile& file, uint64_t length) {
+  ExrStateFooter footer;
+  if (length >= sizeof(footer))
+    file.read(length - sizeof(footer), {reinterpret_cast<char*>(&footer), sizeof(footer)});
+  if (length < sizeof(footer) || footer.magic != ExrStateFooter::kMagic)
+    throwInput("{}: is no checkpoint and no part of a render, or damaged", file.name());
+  const auto check = [&](bool holds) {
+    if (!holds) throwInput("{}: damaged: its checksum is wrong", file.name());
+  };
+  uint64_t left = length - sizeof(footer);  // bytes that are not accounted for
+  const auto take = [&](uint64_t bytes) {
+    check(bytes <= left);
+    left -= bytes;
+  };
+  check(footer.blocks <= left / sizeof(ExrStateBlock));
+  take(footer.blocks * sizeof(ExrStateBlock));
+  take(footer.headLength);
+  Layout layout;
+  layout.head.resize(footer.headLength + footer.blocks * sizeof(ExrStateBlock));
+  file.read(left, layout.head);
+  check(checksum(layout.head) == footer.checksum);
+  layout.table.resize(footer.blocks);
+  std::copy(layout.head.begin() + ptrdiff_t(footer.headLength), layout.head.end(),
+            reinterpret_cast<char*>(layout.table.data()));
+  layout.head.resize(footer.headLength);
+  uint64_t place = footer.imageLength;
+  take(footer.imageLength);
+  for (const ExrStateBlock& block : layout.table) {
+    layout.places.push_back(place);
+    place += block.length;
+    take(block.length);
+  }
+  return layout;
+}
+
+class StateReader : public MemoryReader {
+ public:
+  StateReader(const SharedFile& file, const Layout& layout)
+      : MemoryReader(layout.head, file.name()), file_(file), layout_(layout) {}
+
+  void blocks(size_t count, const std::function<void(Archive&, size_t)>& block) override {
+    check(count <= layout_.table.size() - next_);
+    tbb::parallel_for(size_t(0), count, [&](size_t i) { readBlock(next_ + i, i, block); });
+    next_ += count;
+  }
+
+ private:
+  void readBlock(size_t index, size_t i, const std::function<void(Archive&, size_t)>& block) const {
+    std::vector<char> bytes(layout_.table[index].length);
+    file_.read(layout_.places[index], bytes);
+    if (checksum(bytes) != layout_.table[index].checksum)
+      throwInput("{}: damaged: its checksum is wrong", file_.name());
+    BlockReader reader(bytes, file_.name());
+    block(reader, i);
+    check(reader.left() == 0);
+  }
+
+  const SharedFile& file_;
+  const Layout& layout_;
+  size_t next_ = 0;  // block
+};
+
+}  // namespace
+
+void readExrState(const fs::path& path, const std::function<void(Archive&)>& read) {
+  checkReadable(path);
+  const SharedFile file(path);
+  const Layout layout = readLayout(file, fs::file_size(path));
+  StateReader reader(file, layout);
+  read(reader);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that are complete or not there, and what killed processes leave.
+#include "base/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+using Names = std::vector<std::string>;
+
+void write(const AtomicFile& file, const std::string& text) {
+  std::ofstream(file.temporary()) << text;
+}
+
+TEST(AtomicFile, AppearsWhenComplete) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a";
+  {
+    AtomicFile file(path);
+    write(file, "text");
+    EXPECT_FALSE(std::filesystem::exists(path));
+    file.commit();
+  }
+  EXPECT_EQ(fileContents(path), "text");
+  { write(AtomicFile(path), "other"); }
+  EXPECT_EQ(fileContents(path), "text");
+  EXPECT_EQ(folder.files(), Names{"a"});
+}
+
+TEST(AtomicFile, TakesWhatAKilledProcessLeft) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a";
+  for (int i = 0; i < 3; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const AtomicFile file(path);
+      write(file, "a long text of which only a half is there");
+      raise(SIGKILL);
+    }
+    waitpid(child, nullptr, 0);
+    EXPECT_EQ(folder.files().size(), 1u);  // and no more for each kill
+  }
+  AtomicFile file(path);
+  EXPECT_EQ(fileContents(file.temporary()), "");
+  write(file, "text");
+  file.commit();
+  EXPECT_EQ(fileContents(path), "text");
+  EXPECT_EQ(folder.files(), Names{"a"});
+}
+
+// Two writers of one file do not mix; the last one wins.
+TEST(AtomicFile, IsOfOneWriter) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a";
+  AtomicFile first(path);
+  write(first, "first");
+  {
+    AtomicFile second(path);
+    EXPECT_NE(first.temporary(), second.temporary());
+    write(second, "second");
+    second.commit();
+    EXPECT_EQ(fileContents(path), "second");
+  }
+  EXPECT_EQ(fileContents(first.temporary()), "first");
+  first.commit();
+  EXPECT_EQ(fileContents(path), "first");
+  EXPECT_EQ(folder.files(), Names{"a"});
+}
+
+// Whether a process of another machine still exists is not known.
+TEST(AtomicFile, LeavesTheFilesOfOtherMachines) {
+  const TemporaryFolder folder;
+  const Names others{".a.00000000.17.part", ".a.00000000.part", ".b.00000000.part"};
+  for (const std::string& name : others) std::ofstream(folder / name) << "half";
+  AtomicFile file(folder / "a");
+  write(file, "text");
+  file.commit();
+  for (const std::string& name : others) EXPECT_EQ(fileContents(folder / name), "half");
+}
+
+}  // namespace
+}  // namespace chromeball
