@@ -168,7 +168,9 @@ TEST(BytePlanes, RoundTripAnyItems) {
         items[i] = char(i % size % 3 == 0 ? i % size : hash(i));
       std::vector<char> packed{'a', 'b'};
       packPlanes(items.data(), count, size, packed);
-      if (count == 1000 && size == 104) EXPECT_LT(packed.size(), items.size() * 7 / 10);
+      if (count == 1000 && size == 104) {
+        EXPECT_LT(packed.size(), items.size() * 7 / 10);
+      }
       const std::span<const char> planes = std::span(packed).subspan(2);
       EXPECT_EQ(unpackPlanes(planes, count, size, read.data()), planes.size());
       EXPECT_EQ(read, items);
