@@ -166,11 +166,23 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
 // For every option in the command's help: either it does not change the renders, or renders with
 // another value of it are not reused.
 TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison) {
-  const std::set<std::string> irrelevant = {
-      "help",           "output",    "strategies",        "samples",
-      "times",          "repeats",   "baseline",          "memory",
-      "progress",       "quiet",     "tonemap",           "exposure",
-      "allow-external", "reference", "reference-samples", "reference-strategy"};
+  const std::set<std::string> irrelevant = {"help",
+                                            "output",
+                                            "strategies",
+                                            "samples",
+                                            "times",
+                                            "repeats",
+                                            "baseline",
+                                            "memory",
+                                            "texture-memory",
+                                            "progress",
+                                            "quiet",
+                                            "tonemap",
+                                            "exposure",
+                                            "allow-external",
+                                            "reference",
+                                            "reference-samples",
+                                            "reference-strategy"};
   GltfWriter w;
   addTriangle(w);
   w.root["animations"] = {

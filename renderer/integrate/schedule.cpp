@@ -15,15 +15,11 @@ constexpr double kMinPilot = 1.0 / 8, kMaxPilot = 1.0 / 4;  // relative to the w
 constexpr uint32_t kMaxInTheDark = 4096;  // samples per pixel before a black image is final
 constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples before it
 
-double pilotOf(double samples) {
-  return std::floor(std::clamp(kPilot, kMinPilot * samples, kMaxPilot * samples));
-}
-
 }  // namespace
 
 uint32_t Schedule::pilotSamples(const RenderSettings& settings) {
   if (!settings.adaptive || settings.samples < kMinToAdapt) return 0;
-  return uint32_t(settings.timeLimit || settings.noiseLimit ? kPilot : pilotOf(settings.samples));
+  return uint32_t(std::min(kPilot, kMaxPilot * settings.samples));
 }
 
 Schedule::Schedule(const RenderSettings& settings)
@@ -34,7 +30,8 @@ uint32_t Schedule::next(uint32_t done, const Film& film) {
   const double goal = goalAfter(done, film);
   double wanted = std::min(2.0 * done, goal);
   const double repeated = settings_.shard.repeated;
-  const double pilot = repeated > 0 ? repeated : pilotOf(goal);
+  const double pilot =
+      repeated > 0 ? repeated : std::floor(std::clamp(kPilot, kMinPilot * goal, kMaxPilot * goal));
   endsPilot_ = pilot_ && done >= pilot && goal >= kMinToAdapt;
   pilot_ = pilot_ && !endsPilot_;
   if (pilot_ && pilot > done) wanted = std::min(wanted, pilot);

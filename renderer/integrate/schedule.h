@@ -15,8 +15,8 @@ namespace chromeball {
 // limit is near.
 class Schedule {
  public:
-  // The samples per pixel of an adaptive render before they are allotted by its noise; 0 for
-  // others. The least number under a limit of time or noise.
+  // The samples per pixel that an adaptive render takes at least before they are allotted by its
+  // noise; 0 for others.
   static uint32_t pilotSamples(const RenderSettings& settings);
 
   // Starts the clock of the time limit. `settings` must outlive this.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/watched_render.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace chromeball {
 namespace {
@@ -46,13 +46,15 @@ void WatchedRender::wroteFiles() {
 void WatchedRender::waitUntilSeen() {
   std::unique_lock lock(mutex_);
   const Stopwatch waiting;
-  while (isWatched() && lastSent_ < image_.number && waiting.seconds() < kMostWaiting)
+  while (isWatched() && std::min(lastSent_, lastTold_) < image_.number &&
+         waiting.seconds() < kMostWaiting)
     sent_.wait_for(lock, std::chrono::milliseconds(50));
 }
 
 nlohmann::json WatchedRender::status() {
   asked_ = Clock::now().time_since_epoch().count();
   const std::scoped_lock lock(mutex_);
+  lastTold_ = image_.number;
   const double fraction = fraction_, elapsed = watch_.seconds();
   nlohmann::json status{{"name", name_},
                         {"elapsed", elapsed},

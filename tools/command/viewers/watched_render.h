@@ -30,7 +30,7 @@ class WatchedRender {
   bool isWatched() const;  // whether a page has asked for the status in the last seconds
   bool wantsFiles() const { return wantsFiles_; }
   void wroteFiles();
-  // Until the image is sent, unless no page asks for it; a few seconds at most.
+  // Until the image is sent and the status told, unless no page asks; a few seconds at most.
   void waitUntilSeen();
 
   // Of the pages. They ask for the status again and again.
@@ -47,7 +47,7 @@ class WatchedRender {
   std::string name_;
   Stopwatch watch_;
   NumberedImage image_;
-  uint64_t lastSent_ = 0, filesWritten_ = 0;
+  uint64_t lastSent_ = 0, lastTold_ = 0, filesWritten_ = 0;
   std::atomic<double> fraction_ = 0;
   std::atomic<Clock::rep> asked_ = Clock::duration::min().count();  // since the clock's epoch
   std::atomic<bool> wantsFiles_ = false;
