@@ -2,6 +2,9 @@
 // chromeball render --preview: what the server answers.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "preview_render.h"
 
 namespace chromeball {
@@ -43,13 +46,45 @@ TEST(Preview, ShowsWhatImageViewShows) {
 TEST(Preview, SavesWhileItRenders) {
   PreviewRender preview;
   preview.start({"--samples", "1000000"});
-  preview.waitUntil([](const json& status) { return status.value("samples", 0) > 0; });
-  EXPECT_FALSE(std::filesystem::exists(preview.out()));
-  EXPECT_EQ(preview.post("/save").status, 200);
+  preview.waitUntil([](const json&) { return true; });
+  EXPECT_EQ(preview.post("/save").status, 200);  // perhaps before the end of the first pass
   preview.waitUntil([](const json& status) { return status["filesWritten"] == 1; });
   EXPECT_GT(std::get<int>(readImageFile(preview.out()).metadata.at("samples")), 0);
   preview.post("/stop");
   EXPECT_EQ(preview.result().status, 130);
+}
+
+TEST(Preview, GoesOnWhereItCannotSave) {
+  PreviewRender preview;
+  std::filesystem::create_directory(preview.folder / "sub");
+  preview.start({"--samples", "1000000"}, "sub/o.exr");
+  preview.waitForImage();
+  std::filesystem::remove(preview.folder / "sub");
+  preview.post("/save");
+  preview.waitUntil([](const json& status) { return status["filesWritten"] == 1; });
+  std::filesystem::create_directory(preview.folder / "sub");
+  preview.post("/stop");
+  const CommandResult result = preview.result();
+  EXPECT_EQ(result.status, 130);
+  EXPECT_NE(result.error.find("warning: while rendering: "), std::string::npos) << result.error;
+  EXPECT_TRUE(std::filesystem::exists(preview.out()));
+}
+
+// A request that never ends.
+TEST(Preview, EndsWithoutTheEndOfRequests) {
+  PreviewRender preview;
+  preview.start({"--samples", "1000000"});
+  preview.waitForImage();
+  const Socket socket = connectTo(preview.port());
+  socket.write("GET / HTTP/1.1\r\nX: ");
+  std::atomic<bool> ended = false;
+  std::thread dripping([&] {
+    for (; !ended; usleep(100'000)) socket.write("x");
+  });
+  preview.post("/stop");
+  EXPECT_EQ(preview.result().status, 130);
+  ended = true;
+  dripping.join();
 }
 
 TEST(Preview, ReducesWideImages) {
@@ -74,7 +109,7 @@ TEST(Preview, Refuses) {
   preview.start({"--samples", "1000000"});
   preview.waitForImage();
   EXPECT_EQ(preview.get("/status.json", "Host: example.com\r\n").status, 403);
-  EXPECT_EQ(preview.get("/status.json", "Host: localhost:1234\r\n").status, 200);
+  EXPECT_EQ(preview.get("/status.json", "Host: LocalHost:1234\r\n").status, 200);
   const std::string own = "Host: localhost\r\n";
   EXPECT_EQ(preview.post("/stop", own + "Origin: http://example.com\r\n").status, 403);
   EXPECT_EQ(preview.post("/stop", own + "Origin: null\r\n").status, 403);
@@ -110,6 +145,8 @@ TEST(Preview, WaitsForNobody) {
 TEST(Preview, ShowsOneFrameAfterTheOther) {
   PreviewRender preview;
   preview.start({"--samples", "20000", "--frames", "0:1", "--orbit", "90"}, "f.#.exr");
+  preview.waitForImage();
+  EXPECT_EQ(preview.post("/save").status, 409);  // a file that exists is a finished frame
   preview.waitUntil(
       [](const json& status) { return status["name"].dump().ends_with("f.1.exr\""); });
   preview.post("/stop");

@@ -128,10 +128,12 @@ struct TevRender {
       return probe;
     }());
   }
-  std::future<CommandResult> start(std::vector<std::string> more) const {
-    std::vector<std::string> words{
-        "render", folder / "m.gltf", "--probe",   folder / "probe.pfm",
-        "--size", "40x30",           "--display", fmt::format("tev=127.0.0.1:{}", listener.port())};
+  std::future<CommandResult> start(std::vector<std::string> more,
+                                   const std::string& size = "40x30") const {
+    std::vector<std::string> words{"render",    folder / "m.gltf",
+                                   "--probe",   folder / "probe.pfm",
+                                   "--size",    size,
+                                   "--display", fmt::format("tev=127.0.0.1:{}", listener.port())};
     words.insert(words.end(), more.begin(), more.end());
     return std::async(std::launch::async, [words] { return runCommand(words); });
   }
@@ -202,6 +204,18 @@ TEST(TevDisplay, MayEndWhileTheRenderGoesOn) {
   EXPECT_TRUE(std::filesystem::exists(out));
 }
 
+// An image that does not fit into the buffers of the connection.
+TEST(SlowTevDisplay, MayReadNothing) {
+  const TevRender tev;
+  const std::string out = tev.folder / "o.exr";
+  auto command = tev.start({"--samples", "2", "-o", out}, "1600x1200");
+  const Socket socket = tev.listener.accept();
+  const CommandResult result = command.get();
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.error.find("warning: tev has ended"), std::string::npos) << result.error;
+  EXPECT_TRUE(std::filesystem::exists(out));
+}
+
 TEST(TevDisplay, IsMissed) {
   const TemporaryFolder folder;
   writeSmallModel(folder / "m.gltf");
@@ -213,6 +227,7 @@ TEST(TevDisplay, IsMissed) {
   refused("tev=127.0.0.1", "is not HOST:PORT");
   refused("tev=:80", "is not HOST:PORT");
   refused("tev=127.0.0.1:8x", "is not HOST:PORT");
+  refused("tev=127.0.0.1:99999", "is not HOST:PORT");
   refused("lev", "is not tev");
 }
 

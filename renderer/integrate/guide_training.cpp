@@ -27,8 +27,8 @@ constexpr double kSamplesUnderNoiseLimit = 256;
 
 uint32_t GuideTraining::samplesOf(const RenderSettings& settings) {
   if (settings.guiding == Guiding::Off || settings.samples < kMinSamples) return 0;
-  if (settings.shard.repeated > 0) return settings.shard.repeated;
-  return std::clamp(settings.samples / 4, kMinTraining, kTraining);
+  const uint32_t samples = std::clamp(settings.samples / 4, kMinTraining, kTraining);
+  return settings.shard.repeated > 0 ? std::min(samples, settings.shard.repeated) : samples;
 }
 
 GuideTraining::GuideTraining(const World& world, const LightingStrategy& lighting,
@@ -56,7 +56,7 @@ void GuideTraining::tracePhotons(double raysPerSample) {
   // Less bounces find no caustic. (Those in glass are not counted.)
   const int minDepth = std::ranges::any_of(world_.scene.materials, &Material::isBody) ? 1 : 2;
   if (guiding_ == Guiding::Off || settings_.maxDepth < minDepth) return;
-  double samples = settings_.samplesOfAll();
+  double samples = settings_.samples;
   if (settings_.noiseLimit) samples = std::min(samples, kSamplesUnderNoiseLimit);
   double rays = raysPerSample * samples * tiles_.width * tiles_.height;
   if (settings_.timeLimit) rays = std::min(rays, kRaysPerSecond * *settings_.timeLimit);

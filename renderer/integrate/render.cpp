@@ -123,10 +123,11 @@ class Renderer {
     state_.result = std::move(own);
   }
 
-  // So that every pixel of a shard of a fixed number of samples has one of each half.
+  // So that every pixel of a shard has a sample of each half; under limits, after some passes.
   float leastRate() const {
     const Shard& shard = settings_.shard;
     if (shard.count == 1) return 0;
+    if (settings_.timeLimit || settings_.noiseLimit) return 1.0f / 16;
     return 2 * float(shard.count) / float(std::max(1u, shard.samplesOfAll - shard.repeated));
   }
 

@@ -12,14 +12,17 @@ constexpr uint32_t kMinForNoise = 16;  // samples per pixel before an estimate o
 constexpr uint32_t kMinToAdapt = 16;   // samples per pixel of an adaptive render
 constexpr double kPilot = 16;          // samples per pixel of the pilot of an adaptive render;
 constexpr double kMinPilot = 1.0 / 8, kMaxPilot = 1.0 / 4;  // relative to the whole render
-constexpr uint32_t kMaxInTheDark = 4096;  // samples per pixel before a black image is final
-constexpr double kMinGrowth = 1.0 / 16;   // of a pass, relative to the samples before it
+constexpr double kRepeatedPilot = 1.0 / 16;  // at least, of one that all shards repeat
+constexpr uint32_t kMaxInTheDark = 4096;     // samples per pixel before a black image is final
+constexpr double kMinGrowth = 1.0 / 16;      // of a pass, relative to the samples before it
 
 }  // namespace
 
 uint32_t Schedule::pilotSamples(const RenderSettings& settings) {
   if (!settings.adaptive || settings.samples < kMinToAdapt) return 0;
-  return uint32_t(std::min(kPilot, kMaxPilot * settings.samples));
+  const bool isOpen = settings.timeLimit || settings.noiseLimit;
+  const double samples = settings.samples, least = isOpen ? 0 : kRepeatedPilot * samples;
+  return uint32_t(std::clamp(kPilot, least, kMaxPilot * samples));
 }
 
 Schedule::Schedule(const RenderSettings& settings)

@@ -15,8 +15,8 @@ namespace chromeball {
 // limit is near.
 class Schedule {
  public:
-  // The samples per pixel that an adaptive render takes at least before they are allotted by its
-  // noise; 0 for others.
+  // The samples per pixel that each shard of an adaptive render takes before they are allotted by
+  // the noise of these; 0 for other renders. `settings.samples`: of a shard.
   static uint32_t pilotSamples(const RenderSettings& settings);
 
   // Starts the clock of the time limit. `settings` must outlive this.

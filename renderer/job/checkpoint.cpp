@@ -62,7 +62,7 @@ void JobControl::endPass(const RenderState& state) {
 }
 
 bool JobControl::wantsPause(const RenderState& state) const {
-  return filesAreDue() || viewIsDue() || checkpointIsDue(state);
+  return filesAreDue(state) || viewIsDue() || checkpointIsDue(state);
 }
 
 void JobControl::pause(RenderState& state) {
@@ -74,7 +74,8 @@ void JobControl::end(RenderState& state) {
   if (path_) writeCheckpoint(state);
 }
 
-bool JobControl::filesAreDue() const {
+bool JobControl::filesAreDue(const RenderState& state) const {
+  if (state.result.samples == 0) return false;  // some pixels may have none
   return images_.isDue() || std::ranges::any_of(viewers_, &Viewer::wantsFiles);
 }
 
@@ -87,14 +88,18 @@ bool JobControl::checkpointIsDue(const RenderState& state) const {
 }
 
 void JobControl::publish(const RenderState& state) {
-  if (filesAreDue()) writeFiles(state);
+  if (filesAreDue(state)) writeFiles(state);
   if (viewIsDue()) show(state);
 }
 
 void JobControl::writeFiles(const RenderState& state) {
-  if (state.result.samples > 0) {  // else some pixels may have none
-    const OutputImage image = imageOf(state).image;
+  const OutputImage image = imageOf(state).image;
+  try {
     for (const std::string& output : job_.outputs) writeImage(output, image, job_.display);
+  } catch (const std::runtime_error& error) {  // a long render does not end for want of a file
+    const std::string text = fmt::format("while rendering: {}", error.what());
+    if (messages_.empty() || messages_.back().text != text)
+      messages_.push_back({Message::Kind::Warning, text});
   }
   images_.restart();
   for (Viewer* viewer : viewers_) viewer->wroteFiles();

@@ -52,7 +52,7 @@ class JobControl : public RenderControl {
   const Messages& messages() const { return messages_; }
 
  private:
-  bool filesAreDue() const;
+  bool filesAreDue(const RenderState& state) const;
   bool viewIsDue() const;
   bool checkpointIsDue(const RenderState& state) const;
   void publish(const RenderState& state);

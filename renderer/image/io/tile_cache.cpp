@@ -46,6 +46,13 @@ class TileInput : public OIIO::ImageInput {
 
 OIIO::ImageInput* makeTileInput() { return new TileInput; }
 
+std::string temporaryFolder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) throwRun("TMPDIR: no folder for a temporary file for textures: {}", error.message());
+  return folder;
+}
+
 // A file without a name, in `folder`.
 int openTemporary(const std::string& folder) {
   std::string name = folder + "/chromeball-texels-XXXXXX";
@@ -56,8 +63,7 @@ int openTemporary(const std::string& folder) {
 
 }  // namespace
 
-TileCache::TileCache(size_t bytes)
-    : folder_(std::filesystem::temp_directory_path()), cacheBytes_(bytes) {
+TileCache::TileCache(size_t bytes) : folder_(temporaryFolder()), cacheBytes_(bytes) {
   file_ = openTemporary(folder_);
   if (file_ < 0)
     throwRun("{}: no temporary file for textures can be created: {}", folder_,

@@ -99,5 +99,9 @@ for (const id of ['layer', 'tonemap', 'exposure', 'zoom'])
     refresh().catch(() => {});
   });
 for (const id of ['save', 'stop'])
-  byId(id).addEventListener('click', () => fetch(id, {method: 'POST'}).catch(() => {}));
+  byId(id).addEventListener('click', () => fetch(id, {method: 'POST'}).then(async answer => {
+    if (answer.ok) return;
+    byId(id).disabled = true;
+    byId(id).title = await answer.text();
+  }).catch(() => {}));
 poll();

@@ -3,9 +3,9 @@
 
 #include <httplib.h>
 
+#include <cctype>
 #include <charconv>
-#include <condition_variable>
-#include <thread>
+#include <future>
 
 #include "base/error.h"
 #include "viewers/preview_image.h"
@@ -21,6 +21,7 @@ namespace {
 // A name of this machine. Other names could be those of a page that another server has sent, whose
 // address was changed to this machine afterwards (DNS rebinding).
 bool isLocal(std::string host) {
+  for (char& c : host) c = char(std::tolower(uint8_t(c)));
   if (const size_t scheme = host.find("://"); scheme != std::string::npos)
     host = host.substr(scheme + 3);
   host = host.substr(0, host.rfind(':'));
@@ -57,7 +58,7 @@ ImageView viewOf(const httplib::Request& request) {
 
 class PreviewServer::Server {
  public:
-  Server(int port, std::function<void()> stop) : stop_(std::move(stop)) {
+  Server(int port, bool saves, std::function<void()> stop) : stop_(std::move(stop)) {
     http_.new_task_queue = [] { return new httplib::ThreadPool(kConnections); };
     http_.set_payload_max_length(1024);
     // Not SO_REUSEPORT, the library's choice, with which two renders could share a port.
@@ -65,20 +66,27 @@ class PreviewServer::Server {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
-    addRoutes();
+    addRoutes(saves);
     if (port == 0)
       port_ = http_.bind_to_any_port(kHost);
     else
       port_ = http_.bind_to_port(kHost, port) ? port : -1;
     if (port_ < 0) throwInput("--preview: port {} is in use, or not allowed; give another", port);
-    thread_ = std::thread([this] { http_.listen_after_bind(); });
   }
 
-  ~Server() {
-    render.waitUntilSeen();
-    while (!http_.is_running()) std::this_thread::yield();  // stop() does nothing before
+  // On a thread, until stop().
+  void run() {
+    http_.listen_after_bind();
+    ended_.set_value();
+  }
+
+  // Returns whether run() ends in time: it waits for the ends of all requests, and a hostile client
+  // can make one last for ever.
+  bool stop() {
+    constexpr std::chrono::seconds kPatience{2};
+    while (!http_.is_running()) std::this_thread::yield();  // httplib's stop() does nothing before
     http_.stop();
-    thread_.join();
+    return ended_.get_future().wait_for(kPatience) == std::future_status::ready;
   }
 
   int port() const { return port_; }
@@ -110,7 +118,7 @@ class PreviewServer::Server {
     };
   }
 
-  void addRoutes() {
+  void addRoutes(bool saves) {
     http_.set_default_headers({{"Cache-Control", "no-store"}});
     http_.set_pre_routing_handler([](const auto& request, auto& response) {
       if (isAllowed(request)) return httplib::Server::HandlerResponse::Unhandled;
@@ -139,20 +147,30 @@ class PreviewServer::Server {
                 const int x = numberOf(request, "x", 0), y = numberOf(request, "y", 0);
                 response.set_content(valuesAt(image.image->image, x, y).dump(), "application/json");
               }));
-    http_.Post("/save", [this](const auto&, auto&) { render.askForFiles(); });
+    http_.Post("/save", [this, saves](const auto&, auto& response) {
+      if (!saves) return refuse(response, 409, "a frame is written when it is finished");
+      render.askForFiles();
+    });
     http_.Post("/stop", [this](const auto&, auto&) { stop_(); });
   }
 
   std::function<void()> stop_;
   httplib::Server http_;
   int port_ = -1;
-  std::thread thread_;
+  std::promise<void> ended_;
 };
 
-PreviewServer::PreviewServer(int port, std::function<void()> stop)
-    : server_(std::make_unique<Server>(port, std::move(stop))) {}
+PreviewServer::PreviewServer(int port, bool saves, std::function<void()> stop)
+    : server_(std::make_shared<Server>(port, saves, std::move(stop))),
+      thread_([server = server_] { server->run(); }) {}
 
-PreviewServer::~PreviewServer() = default;
+PreviewServer::~PreviewServer() {
+  server_->render.waitUntilSeen();
+  if (server_->stop())
+    thread_.join();
+  else
+    thread_.detach();  // has its own share of the server
+}
 
 std::string PreviewServer::address() const {
   return fmt::format("http://127.0.0.1:{}/", server_->port());

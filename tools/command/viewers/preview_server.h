@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "job/viewer.h"
 
@@ -21,9 +22,9 @@ namespace chromeball {
 //   POST /save, POST /stop       writes the output files now; ends the render as Ctrl-C does
 class PreviewServer : public Viewer {
  public:
-  // `port` 0: any that is free. Throws InputError if it cannot be opened. `stop` is called from
-  // another thread.
-  PreviewServer(int port, std::function<void()> stop);
+  // `port` 0: any that is free. Throws InputError if it cannot be opened. `saves`: whether the
+  // files may be written before the end. `stop` is called from another thread.
+  PreviewServer(int port, bool saves, std::function<void()> stop);
   // Lets pages that are open fetch the last image, for a few seconds at most.
   ~PreviewServer() override;
 
@@ -38,7 +39,8 @@ class PreviewServer : public Viewer {
 
  private:
   class Server;
-  std::unique_ptr<Server> server_;
+  std::shared_ptr<Server> server_;
+  std::thread thread_;
 };
 
 }  // namespace chromeball

@@ -15,13 +15,18 @@
 namespace chromeball {
 namespace {
 
+constexpr std::chrono::seconds kPatience{5};
+
 // A connected socket. Throws InputError.
 int connectTo(const std::string& address) {
   const size_t colon = address.rfind(':');
-  const std::string host = address.substr(0, colon);
+  std::string host = address.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
-  if (host.empty() || port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
-    throwInput("--display: `{}` is not HOST:PORT", address);
+  const bool isPort = !port.empty() && port.size() <= 5 &&
+                      port.find_first_not_of("0123456789") == std::string::npos &&
+                      std::stoi(port) <= 65535;
+  if (host.empty() || !isPort) throwInput("--display: `{}` is not HOST:PORT", address);
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
@@ -31,7 +36,7 @@ int connectTo(const std::string& address) {
   for (const addrinfo* one = found; one; one = one->ai_next) {
     const int socket = ::socket(one->ai_family, one->ai_socktype | SOCK_CLOEXEC, one->ai_protocol);
     if (socket < 0) continue;
-    const timeval patience{.tv_sec = 5, .tv_usec = 0};  // also for connect()
+    const timeval patience{.tv_sec = kPatience.count(), .tv_usec = 0};  // also for connect()
     setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     if (connect(socket, one->ai_addr, one->ai_addrlen) == 0) return socket;
     close(socket);
@@ -50,6 +55,11 @@ TevDisplay::~TevDisplay() {
     ends_ = true;
   }
   changed_.notify_all();
+  {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, kPatience, [&] { return hasEnded_; }))
+      shutdown(socket_, SHUT_RDWR);  // ends send()
+  }
   sender_.join();
   close(socket_);
 }
@@ -66,6 +76,12 @@ void TevDisplay::show(std::shared_ptr<const ImageSoFar> image) {
 
 void TevDisplay::run() {
   std::unique_lock lock(mutex_);
+  sendImages(lock);
+  hasEnded_ = true;
+  changed_.notify_all();
+}
+
+void TevDisplay::sendImages(std::unique_lock<std::mutex>& lock) {
   for (;;) {
     changed_.wait(lock, [&] { return waiting_ || ends_; });
     if (!waiting_) return;

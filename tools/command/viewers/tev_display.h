@@ -15,7 +15,7 @@ class TevDisplay : public Viewer {
  public:
   // `address`: "HOST:PORT". Throws InputError if no program accepts connections there.
   explicit TevDisplay(const std::string& address);
-  // Sends what has been shown, unless the viewer takes nothing for some seconds.
+  // Sends what has been shown, for some seconds at most.
   ~TevDisplay() override;
 
   void begin(const std::string& name) override { name_ = name; }
@@ -30,6 +30,7 @@ class TevDisplay : public Viewer {
     bool operator==(const Sent&) const = default;
   };
   void run();
+  void sendImages(std::unique_lock<std::mutex>& lock);
   bool send(const std::string& name, const OutputImage& image);
   bool send(const std::vector<char>& packet);
 
@@ -41,7 +42,7 @@ class TevDisplay : public Viewer {
   std::condition_variable changed_;
   std::shared_ptr<const ImageSoFar> waiting_;  // to be sent, under waitingName_
   std::string waitingName_;
-  bool ends_ = false;
+  bool ends_ = false, hasEnded_ = false;  // asked to end; the sender has
   std::atomic<bool> isIdle_ = true;
   std::thread sender_;
 };
