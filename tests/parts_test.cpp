@@ -110,6 +110,50 @@ TEST(Shard, UnionHasTheSamplesOfTheWhole) {
   }
 }
 
+// All shards allot samples alike: a pixel has the same number in each, give or take the last of each
+// half, and none without; the first keeps those that all begin with.
+TEST(Shard, LearnsFromTheSamplesOfAll) {
+  const NamedScene small = threeScenes()[2];
+  RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
+  whole.adaptive = true;
+  whole.guiding = Guiding::On;
+  constexpr uint32_t kShards = 4;
+  std::vector<Image> counts;
+  uint32_t common = 0;
+  for (uint32_t i = 0; i < kShards; ++i) {
+    const RenderSettings settings = shardOf(whole, i, kShards);
+    common = settings.shard.repeated;
+    const RenderResult result = renderSmall(small, settings);
+    EXPECT_FALSE(result.isRepeated);
+    counts.push_back(result.film.sampleCounts());
+  }
+  ASSERT_EQ(common, 16u);
+  const auto [least, most] = std::ranges::minmax(counts[1].texels);
+  EXPECT_GE(least, 2);
+  EXPECT_GT(most, 4 * least);  // or there would be nothing to allot alike
+  for (size_t i = 0; i < counts[0].texels.size(); ++i) {
+    for (uint32_t k = 2; k < kShards; ++k)
+      ASSERT_NEAR(counts[k].texels[i], counts[1].texels[i], 2) << i;
+    ASSERT_NEAR(counts[0].texels[i] - float(common), counts[1].texels[i], 2) << i;
+  }
+}
+
+// Before the samples of its own, a shard has nothing that can be merged.
+TEST(Shard, StoppedAtItsBeginningSaysSo) {
+  const NamedScene small = threeScenes()[0];
+  RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
+  whole.adaptive = true;
+  for (const uint32_t index : {0u, 1u}) {
+    const std::atomic<bool> stop = true;
+    const World world(small.scene);
+    const Probe probe(small.probe);
+    const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+    const RenderResult result =
+        render(world, kCamera, *lighting, shardOf(whole, index, 4), [](double) {}, stop);
+    EXPECT_EQ(result.isRepeated, index == 1);
+  }
+}
+
 // The variance of a union of adaptive shards is at most 10% above that of one render; the
 // differences to a reference of many images tell it to some percent.
 TEST(SlowShard, UnionOfAdaptiveShardsIsAsGoodAsOneRender) {
