@@ -110,8 +110,8 @@ TEST(Shard, UnionHasTheSamplesOfTheWhole) {
   }
 }
 
-// All shards allot samples alike: a pixel has the same number in each, give or take the last of each
-// half, and none without; the first keeps those that all begin with.
+// All shards allot samples alike: a pixel has the same number in each, give or take the last of
+// each half, and none without; the first keeps those that all begin with.
 TEST(Shard, LearnsFromTheSamplesOfAll) {
   const NamedScene small = threeScenes()[2];
   RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
@@ -148,8 +148,8 @@ TEST(Shard, StoppedAtItsBeginningSaysSo) {
     const World world(small.scene);
     const Probe probe(small.probe);
     const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
-    const RenderResult result =
-        render(world, kCamera, *lighting, shardOf(whole, index, 4), [](double) {}, stop);
+    const RenderResult result = render(
+        world, kCamera, *lighting, shardOf(whole, index, 4), [](double) {}, stop);
     EXPECT_EQ(result.isRepeated, index == 1);
   }
 }

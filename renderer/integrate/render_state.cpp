@@ -7,6 +7,7 @@ void RenderState::archive(Archive& a) {
   result.archive(a);
   a(done);
   a(wanted);
+  a.check(done <= wanted);
   a(finished);
   const TileGrid tiles{result.film.width(), result.film.height()};
   a.check(finished.empty() || finished.size() == tiles.count());

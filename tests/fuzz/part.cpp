@@ -50,11 +50,11 @@ class Restored : public RenderControl {
       part.plan.archiveImages(a);
       state.archive(a);
     });
-    stop_ = state.wanted > kMaxSamples || state.result.samples > kMaxSamples;
+    stop_ = state.wanted > kMaxSamples;
     return true;
   }
   void endPass(const RenderState&) override { stop_ = true; }
-  bool wantsPause() const override { return false; }
+  bool wantsPause(const RenderState&) const override { return false; }
   void pause(RenderState&) override {}
   void end(RenderState&) override {}
 
