@@ -18,14 +18,15 @@ inline std::string findChromium() {
 
 // The page's document after its scripts have run for a while. `folder` takes the browser's files.
 inline std::string dumpedPage(const std::string& chromium, const TemporaryFolder& folder,
-                              const std::string& address, const std::string& options = "") {
+                              const std::string& address, const std::string& options = "",
+                              int virtualSeconds = 20) {
   const std::string command =
       chromium +
       " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
       " --disable-background-networking --disable-component-update --disable-sync"
-      " --virtual-time-budget=20000 --user-data-dir=" +
-      folder / "profile" + ' ' + options + " --dump-dom " + address + " > " + folder / "dom.html" +
-      " 2> " + folder / "log";
+      " --virtual-time-budget=" +
+      std::to_string(1000 * virtualSeconds) + " --user-data-dir=" + folder / "profile" + ' ' +
+      options + " --dump-dom " + address + " > " + folder / "dom.html" + " 2> " + folder / "log";
   EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "log");
   return fileContents(folder / "dom.html");
 }

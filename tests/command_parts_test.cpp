@@ -317,7 +317,7 @@ TEST(SlowCheckpoint, SurvivesKills) {
   resumed.insert(resumed.end(),
                  {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.01"});
   int kills = 0, writes = 0;
-  for (std::string before; kills < 20;) {
+  for (std::string before; kills < 20 || (writes < 5 && kills < 200);) {
     Child child(parts.words(resumed, image));
     usleep(useconds_t(1e6 * seconds * (0.3 + toUnit(uint32_t(hash(kills) >> 32)))));
     if (const auto status = child.status()) {

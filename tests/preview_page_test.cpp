@@ -15,7 +15,10 @@ constexpr const char* kUse = R"(
   addEventListener('unhandledrejection', e => failures.push(String(e.reason)));
   const text = id => document.getElementById(id).textContent;
   const until = async holds => {
-    for (let i = 0; i < 200 && !holds(); ++i) await new Promise(done => setTimeout(done, 50));
+    for (let i = 0; i < 4000 && !holds(); ++i) {
+      await fetch('status.json').catch(() => {});  // takes real time, in which the render goes on
+      await new Promise(done => setTimeout(done, 50));
+    }
     return Boolean(holds());
   };
   const element = document.getElementById('picture');
@@ -88,8 +91,9 @@ TEST(SlowPreview, worksInABrowser) {
   preview.start({"--samples", "1000000", "--aov", "node"});
   preview.waitForImage();
   const TemporaryFolder folder;
-  const std::string dom = dumpedPage(
-      chromium, folder, fmt::format("http://127.0.0.1:{}/", preview.port()), extensionIn(folder));
+  const std::string dom =
+      dumpedPage(chromium, folder, fmt::format("http://127.0.0.1:{}/", preview.port()),
+                 extensionIn(folder), 600);
   preview.post("/stop");  // if the page has failed to
   EXPECT_EQ(preview.result().status, 130);
 
