@@ -317,9 +317,10 @@ TEST(SlowCheckpoint, SurvivesKills) {
   resumed.insert(resumed.end(),
                  {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.01"});
   int kills = 0, writes = 0;
-  for (std::string before; kills < 20 || (writes < 5 && kills < 200);) {
+  std::string before;
+  for (uint64_t start = 0; (kills < 20 || writes < 5) && start < 200; ++start) {
     Child child(parts.words(resumed, image));
-    usleep(useconds_t(1e6 * seconds * (0.3 + toUnit(uint32_t(hash(kills) >> 32)))));
+    usleep(useconds_t(1e6 * seconds * (0.3 + toUnit(uint32_t(hash(start) >> 32)))));
     if (const auto status = child.status()) {
       EXPECT_EQ(*status, 0);
       expectSameImage(image, whole);
@@ -331,6 +332,7 @@ TEST(SlowCheckpoint, SurvivesKills) {
       before = fileContents(checkpoint);
     }
   }
+  EXPECT_GE(kills, 20);
   EXPECT_GE(writes, 5);
   parts.render("image.exr", resumed);
   expectSameImage(image, whole);
