@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles of instances, at their places in the scene.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "scene/scene.h"
+
+namespace chromeball {
+
+using Corners = std::array<glm::dvec3, 3>;
+
+// Calls visit(corners) for the triangles of an instance from `begin` to `end`, with their corners
+// counter-clockwise from the front.
+template <class Visit>
+void forTriangles(const Scene& scene, const Instance& instance, size_t begin, size_t end,
+                  const Visit& visit) {
+  const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+  const bool mirrors = instance.toWorld && glm::determinant(instance.toWorld->linear) < 0;
+  for (size_t i = begin; i < end; ++i) {
+    const Triangle& triangle = mesh.triangles[i];
+    Corners c;
+    for (int k = 0; k < 3; ++k) c[size_t(k)] = instance.point(mesh.positions[triangle[k]]);
+    if (mirrors) std::swap(c[1], c[2]);
+    visit(c);
+  }
+}
+
+inline size_t triangleCount(const Scene& scene, const Instance& instance) {
+  return scene.meshes[size_t(instance.mesh)].triangles.size();
+}
+
+}  // namespace chromeball
