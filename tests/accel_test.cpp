@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray intersection: watertightness, instances compared with baked meshes, alpha, ray masks.
 #include "trace/accel.h"
+#include "scene/bounds.h"
 
 #include <gtest/gtest.h>
 

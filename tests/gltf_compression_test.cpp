@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "gltf_writer.h"
+#include "scene/bounds.h"
 #include "shared_data.h"
 
 namespace chromeball {

@@ -6,6 +6,7 @@
 
 #include "probe/synth.h"
 #include "sample_model.h"
+#include "scene/bounds.h"
 #include "test_scene.h"
 
 namespace chromeball {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/error.h"
+#include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/mesh_attributes.h"
 #include "shared_data.h"

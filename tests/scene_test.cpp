@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
+#include "scene/bounds.h"
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,14 @@ TEST(Scene, BoundsFollowInstances) {
   scene.instances.push_back({0, 0, 0, Transform{glm::mat3(-2), {0, 0, 5}}});
   EXPECT_EQ(bounds(scene).min, vec3(-2, -2, 0));
   EXPECT_EQ(bounds(scene).max, vec3(1, 1, 5));
+}
+
+TEST(Scene, BoundsOfManyPoints) {
+  std::vector<vec3> points(100'000, vec3(1));
+  points[70'001] = vec3(-3, 2, 1);
+  points.back() = vec3(1, 1, 9);
+  EXPECT_EQ(bounds(points).min, vec3(-3, 1, 1));
+  EXPECT_EQ(bounds(points).max, vec3(1, 2, 9));
 }
 
 TEST(Scene, AppendRenumbersEverything) {

@@ -14,6 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/long_array.h"
 
 namespace chromeball {
 
@@ -46,6 +47,7 @@ FileBytes::FileBytes(const fs::path& path) {
   checkReadable(path);
   size_ = size_t(fs::file_size(path));
   data_.reset(new uint8_t[size_]);
+  useLargePages(data_.get(), size_);
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   constexpr size_t kBlock = 8 << 20;
   std::atomic<bool> isWhole = file >= 0;

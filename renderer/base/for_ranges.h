@@ -4,6 +4,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <cstddef>
 
@@ -23,6 +24,29 @@ void forRanges(size_t count, size_t elements, const Body& body) {
 template <class Body>
 void forRanges(size_t count, const Body& body) {
   forRanges(count, 1, body);
+}
+
+// The value after body(begin, end, value) for parts of [0, count) that together cover it: the parts
+// start with `empty`, and join(value, later) adds what the next part found. The parts depend on the
+// machine, so the result must not depend on how the range is divided.
+template <class T, class Body, class Join>
+T joinRanges(size_t count, const T& empty, const Body& body, const Join& join) {
+  constexpr size_t kGrain = 1 << 14;
+  T value = empty;
+  if (count <= kGrain) {
+    body(size_t(0), count, value);
+    return value;
+  }
+  return tbb::parallel_reduce(
+      tbb::blocked_range<size_t>(0, count, kGrain), empty,
+      [&](const tbb::blocked_range<size_t>& r, T part) {
+        body(r.begin(), r.end(), part);
+        return part;
+      },
+      [&](T first, const T& later) {
+        join(first, later);
+        return first;
+      });
 }
 
 }  // namespace chromeball

@@ -10,6 +10,7 @@
 #include "integrate/media.h"
 #include "math/frame.h"
 #include "math/warp.h"
+#include "scene/bounds.h"
 #include "shading/bsdf.h"
 
 namespace chromeball {
@@ -30,19 +31,10 @@ struct Sphere {
   float radius = 0;
 };
 
-Bounds boundsOf(const std::vector<vec3>& positions) {
-  Bounds box;
-  for (const vec3& p : positions) {
-    box.min = glm::min(box.min, p);
-    box.max = glm::max(box.max, p);
-  }
-  return box;
-}
-
 // Spheres around the instances, from the corners of their meshes' boxes.
 std::vector<Sphere> spheresAround(const Scene& scene) {
   std::vector<Bounds> boxes;
-  for (const Mesh& mesh : scene.meshes) boxes.push_back(boundsOf(mesh.positions));
+  for (const Mesh& mesh : scene.meshes) boxes.push_back(bounds(mesh.positions));
   std::vector<Sphere> spheres;
   for (const Instance& instance : scene.instances) {
     const Bounds& box = boxes[size_t(instance.mesh)];
@@ -109,10 +101,7 @@ class PhotonTracer {
     const std::vector<Sphere> spheres = spheresAround(world.scene);
     targets_ = targetsOf(world.scene, spheres);
     Bounds box;
-    for (const Sphere& s : spheres) {
-      box.min = glm::min(box.min, s.center - s.radius);
-      box.max = glm::max(box.max, s.center + s.radius);
-    }
+    for (const Sphere& s : spheres) box.add(Bounds{s.center - s.radius, s.center + s.radius});
     sceneSize_ = glm::distance(box.min, box.max);
   }
 

@@ -9,6 +9,7 @@
 #include "job/load_messages.h"
 #include "job/memory_estimate.h"
 #include "lighting/finite_surroundings.h"
+#include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/texel_cache.h"
 #include "scene/thin_wall.h"
@@ -47,8 +48,7 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
     throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", file,
                maxComponent(reach), kMaxReach);
   const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
-  const double size = glm::length(glm::dvec3(box.max) - glm::dvec3(box.min));
-  return glm::length(centre) > kFar * size ? centre : glm::dvec3(0);
+  return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
 }
 
 // The probe as a lat-long map: the job's file, else the model's own environment, else black if the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/framing.h"
 
+#include "base/for_ranges.h"
+#include "scene/bounds.h"
 #include "scene/interior_view.h"
 
 namespace chromeball {
@@ -22,29 +24,17 @@ struct AxisFit {
     upper = std::max(upper, x + z * slope);
     lower = std::max(lower, -x + z * slope);
   }
+  void add(const AxisFit& other) {
+    upper = std::max(upper, other.upper);
+    lower = std::max(lower, other.lower);
+  }
   double position() const { return 0.5 * (upper - lower); }
   double distance() const { return 0.5 * (upper + lower) / slope; }
 };
 
-void extend(Bounds& box, const Bounds& other) {
-  box.min = glm::min(box.min, other.min);
-  box.max = glm::max(box.max, other.max);
-}
-
-Bounds boundsOf(const Scene& scene, const Instance& instance) {
-  Bounds box;
-  for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
-    const vec3 p = instance.point(position);
-    extend(box, {p, p});
-  }
-  return box;
-}
-
-Bounds boundsOf(const Scene& scene, const std::vector<int>& instances) {
-  Bounds box;
-  for (const int i : instances) extend(box, boundsOf(scene, scene.instances[size_t(i)]));
-  return box;
-}
+struct ImageFit {
+  AxisFit across, upwards;
+};
 
 bool isFlat(const Bounds& box) {
   constexpr float kFlat = 20;
@@ -64,8 +54,8 @@ std::vector<int> subjects(const Scene& scene) {
   std::vector<Bounds> boxes;
   Bounds upright;
   for (const Instance& instance : scene.instances) {
-    boxes.push_back(boundsOf(scene, instance));
-    if (!isFlat(boxes.back())) extend(upright, boxes.back());
+    boxes.push_back(bounds(scene, instance));
+    if (!isFlat(boxes.back())) upright.add(boxes.back());
   }
   std::vector<int> chosen;
   for (size_t i = 0; i < boxes.size(); ++i)
@@ -77,18 +67,18 @@ std::vector<int> subjects(const Scene& scene) {
 }  // namespace
 
 vec3 centreOf(const Scene& scene) {
-  const Bounds box = boundsOf(scene, subjects(scene));
+  const Bounds box = bounds(scene, subjects(scene));
   return box.empty() ? vec3(0) : 0.5f * box.min + 0.5f * box.max;
 }
 
 Camera framingCamera(const Scene& scene, float aspectRatio) {
   const std::vector<int> framed = subjects(scene);
   if (const auto inside = interiorView(scene, framed)) return *inside;
-  const Bounds box = boundsOf(scene, framed);
+  const Bounds box = bounds(scene, framed);
   glm::dvec3 centre(0), size(0);
   if (!box.empty()) {
     centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
-    size = glm::dvec3(box.max) - glm::dvec3(box.min);
+    size = box.size();
   }
   Camera camera = Camera::lookAt({0.45f, 0.35f, 1}, vec3(0), vec3(0, 1, 0), kFov);
   const glm::dvec3 right(camera.right), up(camera.up), back(camera.back);
@@ -101,19 +91,26 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
   }
 
   const double slope = std::tan(0.5 * kFov) / kMargin;
-  AxisFit across{slope * aspectRatio}, upwards{slope};
+  ImageFit fit{{slope * aspectRatio}, {slope}};
   for (const int i : framed) {
     const Instance& instance = scene.instances[size_t(i)];
-    for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
-      const glm::dvec3 p = glm::dvec3(instance.point(position)) - centre;
-      const double z = glm::dot(p, back);
-      across.add(glm::dot(p, right), z);
-      upwards.add(glm::dot(p, up), z);
-    }
+    const std::vector<vec3>& positions = scene.meshes[size_t(instance.mesh)].positions;
+    const auto addVertices = [&](size_t begin, size_t end, ImageFit& part) {
+      for (size_t k = begin; k < end; ++k) {
+        const glm::dvec3 p = glm::dvec3(instance.point(positions[k])) - centre;
+        const double z = glm::dot(p, back);
+        part.across.add(glm::dot(p, right), z);
+        part.upwards.add(glm::dot(p, up), z);
+      }
+    };
+    fit = joinRanges(positions.size(), fit, addVertices, [](ImageFit& to, const ImageFit& other) {
+      to.across.add(other.across);
+      to.upwards.add(other.upwards);
+    });
   }
-  const double distance = std::max(across.distance(), upwards.distance());
+  const double distance = std::max(fit.across.distance(), fit.upwards.distance());
   camera.position =
-      vec3(centre + across.position() * right + upwards.position() * up + distance * back);
+      vec3(centre + fit.across.position() * right + fit.upwards.position() * up + distance * back);
   return camera;
 }
 

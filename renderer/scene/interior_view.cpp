@@ -12,28 +12,15 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-Box boundsOf(const Scene& scene, const std::vector<int>& instances) {
-  Box box;
-  for (const int i : instances) {
-    const Instance& instance = scene.instances[size_t(i)];
-    for (const vec3& position : scene.meshes[size_t(instance.mesh)].positions) {
-      const dvec3 p = instance.point(position);
-      box.min = glm::min(box.min, p);
-      box.max = glm::max(box.max, p);
-    }
-  }
-  return box;
-}
-
 // A horizontal section through the scene, as a grid of square cells with the room in the middle.
 // Each cell holds the directions of the front faces that cross it at this height.
 class Section {
  public:
   static constexpr int kSide = 256;  // cells per side; walls are thicker than one cell
 
-  Section(const Scene& scene, const std::vector<int>& instances, const Box& box, double height)
+  Section(const Scene& scene, const std::vector<int>& instances, const Bounds& box, double height)
       : cell_(std::max(box.size().x, box.size().z) / kSide),
-        corner_(0.5 * dvec2(box.min.x + box.max.x, box.min.z + box.max.z) - 0.5 * kSide * cell_) {
+        corner_(middle(box) - 0.5 * kSide * cell_) {
     for (const int i : instances) {
       const Instance& instance = scene.instances[size_t(i)];
       forTriangles(scene, instance, 0, triangleCount(scene, instance),
@@ -98,6 +85,10 @@ class Section {
     }
   }
 
+  static dvec2 middle(const Bounds& box) {
+    return 0.5 * (dvec2(box.min.x, box.min.z) + dvec2(box.max.x, box.max.z));
+  }
+
   double cell_;
   dvec2 corner_;
   std::vector<uint16_t> fronts_ = std::vector<uint16_t>(size_t(kSide) * kSide);
@@ -115,7 +106,7 @@ dvec2 direction(int i) {
 using Panorama = std::array<double, kDirections>;
 
 // Whether size and number of instances are those of a furnished room.
-bool isFurnishedRoom(const Box& box, const std::vector<int>& instances) {
+bool isFurnishedRoom(const Bounds& box, const std::vector<int>& instances) {
   constexpr double kMinHeight = 2, kMaxHeight = 10, kMinWidth = 2.5;  // metres
   constexpr size_t kMinInstances = 5;
   const dvec3 size = box.size();
@@ -146,11 +137,11 @@ double viewArea(const Panorama& seen, int i) {
 std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
   constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
   constexpr float kFov = kPi / 3;
-  const Box box = boundsOf(scene, instances);
+  const Bounds box = bounds(scene, instances);
   if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
   if (!isFurnishedRoom(box, instances) && !facesInwards(scene, instances, box)) return std::nullopt;
 
-  const double height = glm::mix(box.min.y, box.max.y, kEyeHeight);
+  const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
   const Section section(scene, instances, box, height);
   double maxArea = 0;
   std::optional<Camera> best;

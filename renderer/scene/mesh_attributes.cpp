@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -13,8 +12,6 @@ namespace chromeball {
 namespace {
 
 using glm::dvec3;
-
-constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
 
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
@@ -44,6 +41,32 @@ dvec3 anyPerpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, axis));
 }
 
+// Transforms the normals and gives them unit length; those of no direction get that of the
+// triangles around them.
+void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
+  std::vector<uint32_t> bad;
+  std::mutex adding;
+  forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      dvec3 n = linear * dvec3(mesh.normals[i]);
+      if (normalize(n)) {
+        mesh.normals[i] = vec3(n);
+      } else {
+        const std::lock_guard lock(adding);
+        bad.push_back(uint32_t(i));
+      }
+    }
+  });
+  if (bad.empty()) return;
+
+  std::vector<dvec3> around(mesh.normals.size(), dvec3(0));
+  for (const Triangle& t : mesh.triangles) {
+    const dvec3 n = areaNormal(mesh, t);
+    for (int k = 0; k < 3; ++k) around[t[k]] += n;
+  }
+  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : vec3(0, 1, 0);
+}
+
 template <class T, class Change>
 void forEach(std::vector<T>& array, const Change& change) {
   forRanges(array.size(), [&](size_t begin, size_t end) {
@@ -70,15 +93,14 @@ void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
 }
 
 void dropUnusedVertices(Mesh& mesh) {
-  std::vector<uint32_t> newIndex(mesh.positions.size(), kUnused);
-  for (const Triangle& t : mesh.triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 0;
-  std::vector<uint32_t> source;
-  for (uint32_t i = 0; i < newIndex.size(); ++i) {
-    if (newIndex[i] == kUnused) continue;
+  std::vector<uint8_t> isUsed(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) isUsed[t.x] = isUsed[t.y] = isUsed[t.z] = 1;
+  if (std::ranges::find(isUsed, 0) == isUsed.end()) return;
+  std::vector<uint32_t> source, newIndex(isUsed.size());
+  for (uint32_t i = 0; i < isUsed.size(); ++i) {
     newIndex[i] = uint32_t(source.size());
-    source.push_back(i);
+    if (isUsed[i]) source.push_back(i);
   }
-  if (source.size() == mesh.positions.size()) return;
   gatherVertices(mesh, source);
   for (Triangle& t : mesh.triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
 }
@@ -96,29 +118,7 @@ void makeFlat(Mesh& mesh) {
   repairNormals(mesh);
 }
 
-void repairNormals(Mesh& mesh) {
-  std::vector<uint32_t> bad;
-  std::mutex adding;
-  forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      dvec3 n = mesh.normals[i];
-      if (normalize(n)) {
-        mesh.normals[i] = vec3(n);
-      } else {
-        const std::lock_guard lock(adding);
-        bad.push_back(uint32_t(i));
-      }
-    }
-  });
-  if (bad.empty()) return;
-
-  std::vector<dvec3> around(mesh.normals.size(), dvec3(0));
-  for (const Triangle& t : mesh.triangles) {
-    const dvec3 n = areaNormal(mesh, t);
-    for (int k = 0; k < 3; ++k) around[t[k]] += n;
-  }
-  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : vec3(0, 1, 0);
-}
+void repairNormals(Mesh& mesh) { placeNormals(mesh, glm::dmat3(1)); }
 
 void repairTangents(Mesh& mesh) {
   for (size_t i = 0; i < mesh.tangents.size(); ++i) {
@@ -134,11 +134,10 @@ void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   const glm::dmat3 inverseTranspose = glm::transpose(glm::inverse(linear));
   const bool mirrors = glm::determinant(linear) < 0;
   forEach(mesh.positions, [&](vec3& p) { p = vec3(transform * glm::dvec4(dvec3(p), 1)); });
-  forEach(mesh.normals, [&](vec3& n) { n = vec3(inverseTranspose * dvec3(n)); });
   for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), mirrors ? -t.w : t.w);
   if (mirrors)
     for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
-  repairNormals(mesh);
+  placeNormals(mesh, inverseTranspose);
   repairTangents(mesh);
 }
 

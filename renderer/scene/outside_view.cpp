@@ -21,16 +21,18 @@ double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 // A triangle, also in units of the cells of OutsideView's grids: of the axes' extents / kCells.
 struct GridTriangle {
-  GridTriangle(const Corners& c, const dvec3& origin, const dvec3& cellsPerMetre) : corners(c) {
-    for (size_t k = 0; k < 3; ++k) cells[k] = (c[k] - origin) * cellsPerMetre;
-    const dvec3 low = glm::min(cells[0], glm::min(cells[1], cells[2]));
-    high = glm::max(cells[0], glm::max(cells[1], cells[2]));
+  GridTriangle(const Corners& c, const dvec3& o, const dvec3& scale)
+      : corners(c), origin(o), cellsPerMetre(scale) {
+    const dvec3 low = toCells(glm::min(c[0], glm::min(c[1], c[2])));
+    high = toCells(glm::max(c[0], glm::max(c[1], c[2])));
     first = glm::clamp(glm::ceil(low - 0.5), dvec3(0), dvec3(kCells));
   }
 
+  dvec3 toCells(const dvec3& point) const { return (point - origin) * cellsPerMetre; }
   bool meetsCells(int axis) const { return first[axis] + 0.5 <= high[axis]; }
 
-  Corners corners, cells;
+  const Corners& corners;
+  const dvec3 &origin, &cellsPerMetre;
   dvec3 first, high;  // index of the first cell whose centre may be covered; the upper bound
 };
 
@@ -44,7 +46,10 @@ class OutsideView {
     const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
     if (!triangle.meetsCells(u) || !triangle.meetsCells(v)) return;
     std::array<dvec2, 3> p;  // u, v and the axis are right-handed
-    for (size_t k = 0; k < 3; ++k) p[k] = {triangle.cells[k][u], triangle.cells[k][v]};
+    for (size_t k = 0; k < 3; ++k) {
+      const dvec3 corner = triangle.toCells(triangle.corners[k]);
+      p[k] = {corner[u], corner[v]};
+    }
     const double area = cross(p[1] - p[0], p[2] - p[0]);  // > 0: faces the upper side
     if (area == 0) return;
     const Corners& corners = triangle.corners;
@@ -92,13 +97,13 @@ class OutsideView {
 
 using OutsideViews = std::array<OutsideView, 3>;
 
-void addInstance(const Scene& scene, const Instance& instance, const Box& box,
+void addInstance(const Scene& scene, const Instance& instance, const Bounds& box,
                  const OutsideViews& empty, OutsideViews& views) {
   constexpr size_t kGrain = 1 << 18;
-  const dvec3 cellsPerMetre = double(kCells) / box.size();
+  const dvec3 origin(box.min), cellsPerMetre = double(kCells) / box.size();
   const auto withTriangles = [&](const tbb::blocked_range<size_t>& range, OutsideViews to) {
     forTriangles(scene, instance, range.begin(), range.end(), [&](const Corners& c) {
-      const GridTriangle triangle(c, box.min, cellsPerMetre);
+      const GridTriangle triangle(c, origin, cellsPerMetre);
       for (OutsideView& view : to) view.add(triangle);
     });
     return to;
@@ -115,7 +120,7 @@ void addInstance(const Scene& scene, const Instance& instance, const Box& box,
 
 }  // namespace
 
-bool facesInwards(const Scene& scene, const std::vector<int>& instances, const Box& box) {
+bool facesInwards(const Scene& scene, const std::vector<int>& instances, const Bounds& box) {
   constexpr double kMinFraction = 0.6;
   const OutsideViews empty{OutsideView(0), OutsideView(1), OutsideView(2)};
   OutsideViews views = empty;

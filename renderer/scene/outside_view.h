@@ -2,21 +2,15 @@
 // What is seen of a building from outside.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/bounds.h"
 
 namespace chromeball {
-
-struct Box {
-  glm::dvec3 min{INFINITY}, max{-INFINITY};
-  glm::dvec3 size() const { return max - min; }
-};
 
 // Whether most surfaces of the instances (indices into scene.instances) that are seen from the six
 // sides of their bounding box are back faces: those of single-sided walls that face inwards. The
 // box has an extent along each axis. O(triangles), on all threads.
-bool facesInwards(const Scene& scene, const std::vector<int>& instances, const Box& box);
+bool facesInwards(const Scene& scene, const std::vector<int>& instances, const Bounds& box);
 
 }  // namespace chromeball

@@ -55,17 +55,6 @@ void Scene::checkTexels() const {
   if (texelFile) texelFile->check();
 }
 
-Bounds bounds(const Scene& scene) {
-  Bounds box;
-  for (const Instance& instance : scene.instances)
-    for (const vec3& position : scene.meshes[instance.mesh].positions) {
-      const vec3 p = instance.point(position);
-      box.min = glm::min(box.min, p);
-      box.max = glm::max(box.max, p);
-    }
-  return box;
-}
-
 void append(Scene& scene, Scene&& other) {
   const int meshes = int(scene.meshes.size()), materials = int(scene.materials.size());
   const int textures = int(scene.textures.size()), nodes = int(scene.nodeNames.size());

@@ -78,12 +78,6 @@ struct Scene {
   void checkTexels() const;
 };
 
-struct Bounds {
-  vec3 min{INFINITY}, max{-INFINITY};
-  bool empty() const { return !(min.x <= max.x); }
-};
-Bounds bounds(const Scene& scene);
-
 // Adds the contents of `other` to `scene` (a scene file may have several models).
 void append(Scene& scene, Scene&& other);
 

@@ -2,6 +2,7 @@
 // Surroundings given by a model of the room.
 #pragma once
 
+#include "scene/bounds.h"
 #include "scene/surroundings.h"
 #include "trace/accel.h"
 

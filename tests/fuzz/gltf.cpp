@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
 
 #include "fuzz.h"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/for_ranges.h"
+#include "base/long_array.h"
 
 namespace chromeball {
 namespace {
@@ -238,7 +239,7 @@ std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor,
                                             const std::string& where) {
   const Elements elements = readElements(file, accessor, where);
   checkComponents(file, elements, N, accessor, where);
-  std::vector<glm::vec<N, float>> vectors(elements.count);
+  auto vectors = longArray<glm::vec<N, float>>(elements.count);
   toFloats(elements, &vectors[0][0]);
   return vectors;
 }
@@ -251,7 +252,7 @@ template std::vector<vec4> readVectors<4>(GltfFile&, int, const std::string&);
 std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCount,
                                   const std::string& where) {
   const Elements elements = readIndexElements(file, accessor, where);
-  std::vector<uint32_t> indices(elements.count);
+  auto indices = longArray<uint32_t>(elements.count);
   copyIndices(file, elements, vertexCount, where, indices.data());
   return indices;
 }
@@ -259,7 +260,7 @@ std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCou
 std::vector<Triangle> readTriangles(GltfFile& file, int accessor, size_t vertexCount,
                                     const std::string& where) {
   const Elements elements = readIndexElements(file, accessor, where);
-  std::vector<Triangle> triangles((elements.count + 2) / 3);
+  auto triangles = longArray<Triangle>((elements.count + 2) / 3);
   copyIndices(file, elements, vertexCount, where, &triangles[0].x);
   triangles.resize(elements.count / 3);
   return triangles;

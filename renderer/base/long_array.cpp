@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/long_array.h"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+
+namespace chromeball {
+
+void useLargePages(void* data, size_t bytes) {
+  constexpr uintptr_t kLargePage = 2 << 20;
+  const uintptr_t begin = (uintptr_t(data) + kLargePage - 1) / kLargePage * kLargePage;
+  const uintptr_t end = (uintptr_t(data) + bytes) / kLargePage * kLargePage;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+}  // namespace chromeball

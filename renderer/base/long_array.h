@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory of long arrays, in large pages.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace chromeball {
+
+// Asks the system for pages of 2 MB in [data, data + bytes), memory that nothing was written to:
+// giving out, and clearing, many pages of 4 KB takes longer than copying a file into them. Without
+// effect where the system has no such pages.
+void useLargePages(void* data, size_t bytes);
+
+// `count` zeros.
+template <class T>
+std::vector<T> longArray(size_t count) {
+  std::vector<T> array;
+  array.reserve(count);
+  useLargePages(array.data(), count * sizeof(T));
+  array.resize(count);
+  return array;
+}
+
+}  // namespace chromeball
