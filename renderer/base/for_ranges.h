@@ -26,6 +26,19 @@ void forRanges(size_t count, const Body& body) {
   forRanges(count, 1, body);
 }
 
+// Calls row(y) for each row of an image; `work`: of a pixel, as a number of elements.
+template <class Row>
+void forRows(int width, int height, size_t work, const Row& row) {
+  forRanges(size_t(height), work * size_t(width), [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) row(int(y));
+  });
+}
+
+template <class Row>
+void forRows(int width, int height, const Row& row) {
+  forRows(width, height, 1, row);
+}
+
 // The value after body(begin, end, value) for parts of [0, count) that together cover it: the parts
 // start with `empty`, and join(value, later) adds what the next part found. The parts depend on the
 // machine, so the result must not depend on how the range is divided.

@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/for_ranges.h"
+#include "base/long_array.h"
 #include "base/suggest.h"
 
 namespace chromeball {
@@ -41,7 +43,7 @@ AovFilm::AovFilm(int width, int height, const std::vector<Aov>& wanted)
   for (Aov aov : wanted) {
     if (aov == Aov::Variance || aov == Aov::Samples || aov == Aov::Denoise) continue;
     const int channels = std::max<int>(1, int(std::strlen(aovInfo(aov).channels)));
-    sums_.push_back({aov, channels, std::vector<double>(pixels * channels)});
+    sums_.push_back({aov, channels, longArray<double>(pixels * size_t(channels))});
   }
   if (sums_.empty()) return;
   samples_.resize(pixels);
@@ -115,14 +117,16 @@ Image AovFilm::finished(Aov aov) const {
   for (const Sum& sum : sums_) {
     if (sum.aov != aov) continue;
     Image image(width_, height_, sum.channels);
-    for (size_t i = 0; i < image.texels.size(); ++i) {
-      const size_t index = i / sum.channels;
-      double divisor = 1;
-      if (aov == Aov::Depth) divisor = hits_[index];
-      if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
-        divisor = std::max(samples_[index], 1u);  // an interrupted render may have no samples
-      image.texels[i] = divisor > 0 ? float(sum.sums[i] / divisor) : kNoDepth;
-    }
+    forRanges(image.texels.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const size_t index = i / sum.channels;
+        double divisor = 1;
+        if (aov == Aov::Depth) divisor = hits_[index];
+        if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
+          divisor = std::max(samples_[index], 1u);  // an interrupted render may have no samples
+        image.texels[i] = divisor > 0 ? float(sum.sums[i] / divisor) : kNoDepth;
+      }
+    });
     return image;
   }
   return {};

@@ -5,6 +5,9 @@
 #include <cassert>
 #include <limits>
 
+#include "base/for_ranges.h"
+#include "base/long_array.h"
+
 namespace chromeball {
 namespace {
 
@@ -18,7 +21,7 @@ glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& s
 }  // namespace
 
 Film::Film(int width, int height)
-    : width_(width), height_(height), pixels_(size_t(width) * size_t(height)) {}
+    : width_(width), height_(height), pixels_(longArray<Pixel>(size_t(width) * size_t(height))) {}
 
 glm::dvec3 Film::Pixel::mean() const {
   return count() > 0 ? (sums[0] + sums[1]) / weight() : glm::dvec3(0);
@@ -89,9 +92,10 @@ glm::dvec4 Film::scatter(size_t pixel) const {
 
 Image Film::mean() const {
   Image image(width_, height_, 3);
-  for (int y = 0; y < height_; ++y)
+  forRows(width_, height_, [&](int y) {
     for (int x = 0; x < width_; ++x)
       image.setRgb(x, y, Rgb(pixels_[size_t(y) * size_t(width_) + size_t(x)].mean()));
+  });
   return image;
 }
 
@@ -114,22 +118,24 @@ Image Film::sampleCounts() const {
 
 PixelErrors Film::errors() const {
   const glm::dvec4 unknown(std::numeric_limits<double>::quiet_NaN());
-  PixelErrors errors{width_, height_, {}, {}, {}};
-  errors.luminances.reserve(pixels_.size());
-  errors.halves.assign(pixels_.size(), unknown);
-  errors.scatter.assign(pixels_.size(), unknown);
-  for (size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel& p = pixels_[i];
-    errors.luminances.push_back(luminance(p.mean()));
-    if (p.counts[0] == 0 || p.counts[1] == 0) continue;
-    const double w0 = p.weights[0], w1 = p.weights[1], w = w0 + w1;
-    const glm::dvec3 difference = p.sums[0] / w0 - p.sums[1] / w1;
-    const glm::dvec4 differences(difference, luminance(difference));
-    // Weights are inverse variances. Then
-    //   Var(mean of all samples) = w0 w1 / w^2 Var(difference of the means of the halves).
-    errors.halves[i] = differences * differences * (w0 * w1 / (w * w));
-    errors.scatter[i] = scatter(i);
-  }
+  const size_t count = pixels_.size();
+  PixelErrors errors{width_, height_, longArray<double>(count), longArray<glm::dvec4>(count),
+                     longArray<glm::dvec4>(count)};
+  forRanges(count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Pixel& p = pixels_[i];
+      errors.luminances[i] = luminance(p.mean());
+      errors.halves[i] = errors.scatter[i] = unknown;
+      if (p.counts[0] == 0 || p.counts[1] == 0) continue;
+      const double w0 = p.weights[0], w1 = p.weights[1], w = w0 + w1;
+      const glm::dvec3 difference = p.sums[0] / w0 - p.sums[1] / w1;
+      const glm::dvec4 differences(difference, luminance(difference));
+      // Weights are inverse variances. Then
+      //   Var(mean of all samples) = w0 w1 / w^2 Var(difference of the means of the halves).
+      errors.halves[i] = differences * differences * (w0 * w1 / (w * w));
+      errors.scatter[i] = scatter(i);
+    }
+  });
   return errors;
 }
 

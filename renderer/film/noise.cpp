@@ -5,13 +5,16 @@
 #include <cmath>
 #include <limits>
 
+#include "base/for_ranges.h"
+#include "base/long_array.h"
 #include "film/window.h"
 
 namespace chromeball {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kReach = 3;                   // windows are 7 x 7 pixels
+constexpr int kReach = 3;  // windows are 7 x 7 pixels
+constexpr size_t kWindow = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr double kMaxRelativeError = 0.25;  // of a luminance that is used as a reference
 
 double meanOf(const std::vector<double>& values) {
@@ -93,40 +96,51 @@ void PixelErrors::add(const PixelErrors& other) {
 }
 
 std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& e) {
-  std::vector<double> logScatter(e.scatter.size());
-  for (size_t i = 0; i < logScatter.size(); ++i) logScatter[i] = std::log2(e.scatter[i].w);
-
-  std::vector<glm::dvec4> squared(e.halves.size(), glm::dvec4(kNan));
-  for (int y = 0; y < e.height; ++y)
+  auto logScatter = longArray<double>(e.scatter.size());
+  forRanges(logScatter.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) logScatter[i] = std::log2(e.scatter[i].w);
+  });
+  auto squared = longArray<glm::dvec4>(e.halves.size());
+  forRows(e.width, e.height, kWindow, [&](int y) {
     for (int x = 0; x < e.width; ++x) {
       const size_t i = size_t(y) * size_t(e.width) + size_t(x);
-      if (!std::isnan(e.halves[i].w)) squared[i] = squaredStandardError(e, logScatter, x, y);
+      const bool isKnown = !std::isnan(e.halves[i].w);
+      squared[i] = isKnown ? squaredStandardError(e, logScatter, x, y) : glm::dvec4(kNan);
     }
+  });
   return squared;
 }
 
 Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int height) {
   Image image(width, height, 3);
-  for (int y = 0; y < height; ++y)
+  forRows(width, height, [&](int y) {
     for (int x = 0; x < width; ++x)
       image.setRgb(x, y, Rgb(squaredErrors[size_t(y) * size_t(width) + size_t(x)]));
+  });
   return image;
 }
 
 Noise estimateNoise(const PixelErrors& errors) {
   const double mean = meanOf(errors.luminances);
   if (!(mean > 0)) return {kNan, kNan};
-  double sum = 0, sumOfSquares = 0, count = 0;
-  for (int y = 0; y < errors.height; ++y)
+  struct Sums {
+    double first = 0, second = 0, count = 0;
+  };
+  std::vector<Sums> rows(size_t(errors.height));  // so that the result does not depend on threads
+  forRows(errors.width, errors.height, kWindow, [&](int y) {
+    Sums& row = rows[size_t(y)];
     for (int x = 0; x < errors.width; ++x) {
       const double squared = errors.halves[size_t(y) * size_t(errors.width) + size_t(x)].w;
       if (std::isnan(squared)) continue;
       const double reference = referenceLuminance(errors, x, y, mean);
       const double relative = squared / reference / reference;
-      sum += relative;
-      sumOfSquares += relative * relative;
-      ++count;
+      row.first += relative;
+      row.second += relative * relative;
+      ++row.count;
     }
+  });
+  double sum = 0, sumOfSquares = 0, count = 0;
+  for (const Sums& row : rows) sum += row.first, sumOfSquares += row.second, count += row.count;
   if (count == 0) return {kNan, kNan};
   const double average = sum / count;
   const double variance = std::max(sumOfSquares / count - average * average, 0.0);

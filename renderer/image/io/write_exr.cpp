@@ -48,17 +48,15 @@ OIIO::ImageSpec specOf(const OutputImage& output) {
   return spec;
 }
 
-Image interleaved(const OutputImage& output, int channels) {
-  const Image& color = output.layers.front().image;
-  Image all(color.width, color.height, channels);
+// All channels of the rows from `top` on, as many as `block` has.
+void interleave(const OutputImage& output, int top, Image& block) {
   int offset = 0;
   for (const Layer& layer : output.layers) {
-    for (int y = 0; y < all.height; ++y)
-      for (int x = 0; x < all.width; ++x)
-        std::copy_n(layer.image.at(x, y), layer.image.channels, all.at(x, y) + offset);
+    for (int y = 0; y < block.height; ++y)
+      for (int x = 0; x < block.width; ++x)
+        std::copy_n(layer.image.at(x, top + y), layer.image.channels, block.at(x, y) + offset);
     offset += layer.image.channels;
   }
-  return all;
 }
 
 }  // namespace
@@ -75,7 +73,13 @@ void writeExr(const fs::path& path, const OutputImage& output) {
   };
   const OIIO::ImageSpec spec = specOf(output);
   check(out->open(file.temporary().string(), spec));
-  check(out->write_image(OIIO::TypeDesc::FLOAT, interleaved(output, spec.nchannels).texels.data()));
+  constexpr int kRows = 256;  // enough for all threads: they compress 16 at a time
+  for (int top = 0; top < spec.height; top += kRows) {
+    Image block(spec.width, std::min(kRows, spec.height - top), spec.nchannels);
+    interleave(output, top, block);
+    check(out->write_scanlines(spec.y + top, spec.y + top + block.height, 0, OIIO::TypeDesc::FLOAT,
+                               block.texels.data()));
+  }
   check(out->close());
   if (output.state) appendExrState(file.temporary(), path, output.state);
   file.commit();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/for_ranges.h"
 #include "image/io/encode_png.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
@@ -31,15 +32,16 @@ Rgb unassociated(const Rgb& color, float alpha) { return alpha > 0 ? color / alp
 std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& transform) {
   const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
   const bool hasAlpha = color.channels == 4;
-  std::vector<uint8_t> bytes;
-  bytes.reserve(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
-  for (int y = 0; y < color.height; ++y)
+  std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
+  forRows(color.width, color.height, [&](int y) {
+    uint8_t* to = bytes.data() + bytes.size() / size_t(color.height) * size_t(y);
     for (int x = 0; x < color.width; ++x) {
       const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
       const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
-      for (int c = 0; c < 3; ++c) bytes.push_back(byte(linearToSrgb(shown[c])));
-      if (hasAlpha) bytes.push_back(byte(alpha));
+      for (int c = 0; c < 3; ++c) *to++ = byte(linearToSrgb(shown[c]));
+      if (hasAlpha) *to++ = byte(alpha);
     }
+  });
   return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
 }
 
