@@ -204,7 +204,7 @@ int addNormalMappedMaterial(Scene& scene) {
 Mesh tangentSphere() {
   Scene scene;
   addSphere(scene, 0, vec3(0.2f, 0, 0), 1, 24);
-  Mesh mesh = std::move(scene.meshes[0]);
+  Mesh mesh = scene.meshes[0];
   for (const vec3& n : mesh.normals) mesh.tangents.emplace_back(n.z, 0, -n.x, 1);
   repairTangents(mesh);
   return mesh;

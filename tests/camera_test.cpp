@@ -142,7 +142,7 @@ TEST(Camera, FramingShowsAllVerticesAndFillsTheImage) {
       for (const vec3 shape : {vec3(1, 1, 1), vec3(10, 1, 1), vec3(1, 10, 0), vec3(0, 1, 10)}) {
         Scene scene;
         addSphere(scene, addMaterial(scene, {}), vec3(0), 1);
-        for (vec3& p : scene.meshes[0].positions) p = size * (vec3(3, -2, 1) + shape * p);
+        for (vec3& p : scene.meshes.edit(0).positions) p = size * (vec3(3, -2, 1) + shape * p);
         const Camera camera = framingCamera(scene, aspect);
         EXPECT_GT(camera.back.z, 0.8f);  // from the front, above, from the right
         EXPECT_GT(camera.back.y, 0);
@@ -164,7 +164,7 @@ TEST(Camera, FramingOfAnEmptySceneOrAPointIsValid) {
     Scene scene;
     if (point.x > 0) {
       addMesh(scene, addMaterial(scene, {}), {});
-      scene.meshes[0].positions.assign(3, point);
+      scene.meshes.edit(0).positions.assign(3, point);
     }
     const Camera camera = framingCamera(scene, 1);
     EXPECT_TRUE(isFinite(camera.position));

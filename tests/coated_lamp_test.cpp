@@ -71,7 +71,7 @@ TEST(CoatedLamp, UsesTheCoatsTextureAndNormal) {
         addTexel(scene, {0.5f, 0.5f - 0.5f * std::sin(tilt), 0.5f + 0.5f * std::cos(tilt), 1});
     (tilted ? m.extended->clearcoatNormalTexture : m.normalTexture) = tiltedNormal;
     addTile(scene, addMaterial(scene, m));
-    Mesh& mesh = scene.meshes.back();
+    Mesh& mesh = scene.meshes.edit(scene.meshes.size() - 1);
     mesh.normals.assign(4, {0, 1, 0});
     mesh.tangents.assign(4, {1, 0, 0, 1});  // the bitangent points to -Z, away from the camera
     mesh.uvs.assign(1, std::vector<vec2>(4, vec2(0.5f)));

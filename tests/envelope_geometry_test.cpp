@@ -114,8 +114,8 @@ TEST(EnvelopeGeometry, InvalidNormals) {
   for (const auto& [name, corrupt] : corruptions) {
     Scene scene;
     addSphere(scene, addMaterial(scene, coated), vec3(0), 1, 16);
-    for (size_t i = 0; i < scene.meshes[0].normals.size(); ++i)
-      scene.meshes[0].normals[i] = corrupt(int(i), scene.meshes[0].normals[i]);
+    std::vector<vec3>& normals = scene.meshes.edit(0).normals;
+    for (size_t i = 0; i < normals.size(); ++i) normals[i] = corrupt(int(i), normals[i]);
     const RenderResult r =
         renderScene(scene, topCamera(5, 20), probe, "importance", smallRender(24, 24, 32, 6));
     const double mean = validMean(r);

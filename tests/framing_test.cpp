@@ -93,8 +93,8 @@ TEST(Framing, RoomsAreSeenFromInsideAlongTheirLength) {
     Scene hall = room(kHall, 3);
     addFloorAndCeiling(hall, vec2(0), vec2(8, 5), 3);
     addSphere(hall, 0, vec3(4, 0.5f, 2.5f), 0.5f);  // furniture, with front faces outside
-    for (Mesh& mesh : hall.meshes)
-      for (vec3& p : mesh.positions) p *= size;
+    for (size_t i = 0; i < hall.meshes.size(); ++i)
+      for (vec3& p : hall.meshes.edit(i).positions) p *= size;
     const Camera camera = framingCamera(hall, kAspect);
     const vec3 eye = camera.position / size;
     EXPECT_TRUE(eye.x > 0 && eye.x < 8 && eye.z > 0 && eye.z < 5) << eye.x << " " << eye.z;
@@ -146,11 +146,11 @@ Scene doubleWalls(int furniture, float scale) {
     shell.positions.insert(shell.positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const Triangle& t : mesh.triangles) shell.triangles.push_back(t + first);
   }
-  scene.meshes = {shell};
+  scene.meshes = MeshList(shell);
   scene.instances.resize(1);
   for (int i = 0; i < furniture; ++i) addSphere(scene, 0, vec3(1 + i, 0.4f, 4), 0.4f, 8);
-  for (Mesh& mesh : scene.meshes)
-    for (vec3& p : mesh.positions) p *= scale;
+  for (size_t i = 0; i < scene.meshes.size(); ++i)
+    for (vec3& p : scene.meshes.edit(i).positions) p *= scale;
   return scene;
 }
 

@@ -75,14 +75,14 @@ TEST(LampAlpha, MaskModeComparesAlphaWithTheCutoff) {
 
 TEST(LampAlpha, VertexColoursScaleAlpha) {
   Scene scene = floorUnder(lampMaterial(AlphaMode::Blend, 0.8f));
-  scene.meshes[1].colors.assign(4, vec4(1, 1, 1, 0.5f));
+  scene.meshes.edit(1).colors.assign(4, vec4(1, 1, 1, 0.5f));
   expectFraction(scene, opaqueLamp(), 0.4, "vertex colour");
 }
 
 // The texture's alpha is 0 on one half of the lamp, which must equal a lamp of half the size.
 TEST(LampAlpha, TexturesScaleAlpha) {
   Scene half = floorUnder(lampMaterial(AlphaMode::Opaque, 1));
-  half.meshes[1].positions = {{-1, 1, -1}, {0, 1, -1}, {0, 1, 1}, {-1, 1, 1}};
+  half.meshes.edit(1).positions = {{-1, 1, -1}, {0, 1, -1}, {0, 1, 1}, {-1, 1, 1}};
   for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend}) {
     Scene scene = floorUnder(lampMaterial(mode, 1));
     scene.grids.push_back(
@@ -92,7 +92,7 @@ TEST(LampAlpha, TexturesScaleAlpha) {
     texture.wrapS = texture.wrapT = Wrap::ClampToEdge;
     scene.textures.push_back(texture);
     scene.materials[1].baseColorTexture.texture = 0;
-    scene.meshes[1].uvs = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    scene.meshes.edit(1).uvs = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     expectFraction(scene, half, 1, "texture");
   }
 }

@@ -168,7 +168,7 @@ Scene checkerboard(bool filtered) {
   glow.emission = Rgb(1);
   glow.emissiveTexture.texture = 0;
   addQuad(scene, addMaterial(scene, glow), {-400, 0, 400}, {800, 0, 0}, {0, 0, -800});
-  scene.meshes[0].uvs = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}};
+  scene.meshes.edit(0).uvs = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}};
   return scene;
 }
 

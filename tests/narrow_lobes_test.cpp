@@ -47,7 +47,7 @@ constexpr const char* kLights[] = {"median-cut:16", "irradiance-fit-ambient:2"};
 Scene tile(const Material& material) {
   Scene scene;
   addQuad(scene, addMaterial(scene, material), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
-  Mesh& mesh = scene.meshes.back();
+  Mesh& mesh = scene.meshes.edit(scene.meshes.size() - 1);
   mesh.normals.assign(4, {0, 1, 0});
   mesh.tangents.assign(4, {1, 0, 0, 1});
   return scene;

@@ -38,7 +38,7 @@ TEST(Scene, ByteCountGrowsWithGeometryAndTexels) {
   const size_t before = scene.byteCount();
   scene.grids[0]->texels8.resize(1016);
   EXPECT_EQ(scene.byteCount(), before + 4000);
-  scene.meshes[0].uvs = {{}, {{0, 0}, {0, 0}, {0, 0}}};
+  scene.meshes.edit(0).uvs = {{}, {{0, 0}, {0, 0}, {0, 0}}};
   EXPECT_EQ(scene.byteCount(), before + 4000 + 24);
 }
 

@@ -8,6 +8,7 @@
 #include "job/sequence.h"
 #include "run_command.h"
 #include "shared_data.h"
+#include "trace/built_geometry.h"
 
 namespace chromeball {
 namespace {
@@ -214,11 +215,44 @@ TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
   EXPECT_EQ(scene.prepared().world.get(), world);
   EXPECT_NE(scene.loaded().camera.position, position);
   const vec3 moving = scene.loaded().scene.meshes.at(0).positions.at(0);
+  const MeshList::Shared still = scene.loaded().scene.meshes.shared(1);
+  const std::shared_ptr<BuiltGeometry> built = scene.prepared().world->accel.built();
+  EXPECT_EQ(built->builds(), 1);  // of the triangle that does not move
   scene.show(later);
   EXPECT_NE(scene.loaded().scene.meshes.at(0).positions.at(0), moving);
+  EXPECT_EQ(scene.loaded().scene.meshes.shared(1), still);
+  EXPECT_EQ(scene.prepared().world->accel.built(), built);
+  EXPECT_EQ(built->builds(), 1);
   EXPECT_EQ(scene.prepared().lighting.get(), lighting);
   EXPECT_EQ(scene.loaded().scene.grids.at(0).get(), texels);
   EXPECT_EQ(scene.loaded().scene.textures.at(0).mipLevels, chain);
+}
+
+// Two triangles of one mesh, of which one moves, and one that appears after a second: structures
+// over meshes are built once, and what does not move again when its indices change.
+TEST(Sequence, BuildsInstancesOnce) {
+  Moving model;
+  GltfWriter& w = model.w;
+  w.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 2, 0}}});
+  w.root["nodes"].push_back({{"mesh", 1}, {"scale", {0, 0, 0}}});
+  nlohmann::json& animation = w.root["animations"][0];
+  const std::vector<float> times{0, 1};
+  animation["samplers"].push_back({{"input", w.accessor(w.view(times), kFloat, "SCALAR", 2)},
+                                   {"output", w.vec3s({0, 0, 0, 1, 1, 1})},
+                                   {"interpolation", "STEP"}});
+  animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 3}, {"path", "scale"}}}});
+  w.save();
+  const std::string path = model.scene();
+  FrameScene scene;
+  std::vector<int> builds;
+  for (const double seconds : {0.0, 0.5, 1.0, 1.5}) {
+    RenderJob job = jobAt(path, seconds);
+    scene.show(job);
+    builds.push_back(scene.prepared().world->accel.built()->builds());
+  }
+  // The mesh of two instances, and the second triangle alone; from 1 s on its mesh has two as well.
+  EXPECT_EQ(builds, (std::vector<int>{2, 2, 3, 3}));
+  expectStills(path, {}, [](int) { return Words{}; });
 }
 
 TEST(Sequence, NamesFiles) {

@@ -6,9 +6,10 @@ namespace chromeball {
 World::World(const Scene& described, const std::vector<RayMask>& masks)
     : World(described, masks, BsdfTables(described.materials)) {}
 
-World::World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables)
+World::World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables,
+             std::shared_ptr<BuiltGeometry> earlier)
     : scene(described),
-      accel(described, masks),
+      accel(described, masks, std::move(earlier)),
       emitters(Emitters::make(described)),
       punctual(PunctualLights::make(described)),
       bsdfTables(tables) {}

@@ -20,7 +20,9 @@ struct World {
   // all instances. `described` must outlive this. Throws RunError.
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {});
   // Copies the BSDF tables of another world, which must include those that the materials need.
-  World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables);
+  // `earlier`: as Accel.
+  World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables,
+        std::shared_ptr<BuiltGeometry> earlier = nullptr);
 
   const Scene& scene;
   const Accel accel;

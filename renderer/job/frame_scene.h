@@ -3,24 +3,24 @@
 #pragma once
 
 #include "job/run_job.h"
-#include "scene/gltf/texel_cache.h"
+#include "scene/gltf/model_cache.h"
 
 namespace chromeball {
 
 class FrameScene {
  public:
   // Loads and builds the scene of a job, which becomes final as with loadScene(). All jobs must be
-  // alike but for their times and `orbit`. Images are decoded, and the probe and its tables made,
-  // with the first; geometry is read again where a model is animated, and its acceleration
-  // structure is built again if it moved. All is loaded again for composites, and where the probe
-  // has turned. Throws InputError.
+  // alike but for their times and `orbit`. Files are opened, images decoded, and the probe and its
+  // tables made with the first; meshes, and the acceleration structures over them, where they have
+  // moved or changed. The probe is loaded again where it has turned, and all for composites. Throws
+  // InputError.
   void show(RenderJob& job);
 
   const LoadedScene& loaded() const { return *loaded_; }
   const PreparedScene& prepared() const { return prepared_; }
 
  private:
-  TexelCache texels_;
+  ModelCache models_;
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_report.h"
 
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -15,12 +14,6 @@ namespace chromeball {
 namespace {
 
 using nlohmann::json;
-
-uint64_t peakMemoryBytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return uint64_t(usage.ru_maxrss) * 1024;
-}
 
 // What was stated before the render, and the peak since the process began.
 json describe(const MemoryEstimate& stated) {

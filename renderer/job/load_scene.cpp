@@ -11,13 +11,13 @@
 #include "lighting/finite_surroundings.h"
 #include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/gltf/texel_cache.h"
+#include "scene/gltf/model_cache.h"
 #include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {
 
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache& texels,
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
                  std::vector<std::string>& warnings) {
   Scene scene;
   warnings.clear();
@@ -25,7 +25,7 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin, TexelCache& te
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
-    choice.texels = &texels;
+    choice.cache = &cache;
     choice.environment = !file.settings.has("probe.file");
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
@@ -105,7 +105,7 @@ void chooseSize(RenderJob& job, const Scene& scene) {
 
 // Null unless the surroundings are a model.
 std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
-                                     TexelCache& texels, std::vector<std::string>& files) {
+                                     ModelCache& cache, std::vector<std::string>& files) {
   const auto& surroundings = job.file.surroundings;
   if (!surroundings || surroundings->shape != Surroundings::Shape::Model) return nullptr;
   GltfChoice choice = job.file.models.front().choice;
@@ -113,7 +113,7 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   choice.variant.reset();
   choice.environment = false;
   choice.origin = origin;
-  choice.texels = &texels;
+  choice.cache = &cache;
   Scene model = loadGltf(
       surroundings->model, {}, [](const std::string&) {}, choice);
   files.insert(files.end(), model.files.begin(), model.files.end());
@@ -135,24 +135,24 @@ void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
   if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
 }
 
-PlacedModels modelsAtOrigin(const SceneFile& file, TexelCache& texels) {
+PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {
   PlacedModels placed;
-  placed.scene = loadModels(file, placed.origin, texels, placed.warnings);
+  placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
   placed.origin = originFor(placed.scene, file.models.front().file);
   if (placed.origin != glm::dvec3(0))
-    placed.scene = loadModels(file, placed.origin, texels, placed.warnings);
+    placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
   return placed;
 }
 
 // That of time 0, also in the coordinates of that time: with the same rounding for all times.
-AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, TexelCache& texels) {
+AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCache& cache) {
   if (job.view) return *job.view;
   const AutomaticView view = automaticView(job, now.scene, now.origin);
   if (!now.scene.isAnimated || !(view.camera || job.file.settings.has("orbit"))) return view;
   SceneFile start = job.file;
   for (ModelEntry& model : start.models)
     if (model.choice.animation) model.choice.animation->seconds = 0;
-  const PlacedModels first = modelsAtOrigin(start, texels);
+  const PlacedModels first = modelsAtOrigin(start, cache);
   return automaticView(job, first.scene, first.origin);
 }
 
@@ -163,12 +163,12 @@ Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& v
       .turnedAround(here.centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
 }
 
-PlacedModels placeModels(RenderJob& job, TexelCache& texels) {
-  PlacedModels placed = modelsAtOrigin(job.file, texels);
+PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
+  PlacedModels placed = modelsAtOrigin(job.file, cache);
   if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
   chooseSize(job, scene);
-  placed.view = viewAtStart(job, placed, texels);
+  placed.view = viewAtStart(job, placed, cache);
   placed.camera = cameraOf(job, scene, placed.view, placed.origin);
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
@@ -192,19 +192,19 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 
 }  // namespace
 
-LoadedScene loadScene(RenderJob& job, TexelCache* shared) {
-  TexelCache own;
-  TexelCache& texels = shared ? *shared : own;
+LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
+  ModelCache own;
+  ModelCache& cache = shared ? *shared : own;
   if (const auto limit = job.file.settings.getIfGiven<double>("texture-memory"))
-    texels.memory = 1e9 * *limit;
-  texels.limit = memoryLimit(job);
-  PlacedModels models = placeModels(job, texels);
+    cache.texels.memory = 1e9 * *limit;
+  cache.texels.limit = memoryLimit(job);
+  PlacedModels models = placeModels(job, cache);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
   if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
-  std::unique_ptr<const Room> room = loadRoom(job, models.origin, texels, files);
+  std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
@@ -220,7 +220,7 @@ LoadedScene loadScene(RenderJob& job, TexelCache* shared) {
   return result;
 }
 
-bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
+bool loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
   if (!loaded.scene.isAnimated) {
     chooseSize(job, loaded.scene);
@@ -228,7 +228,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
     loaded.camera = cameraOf(job, loaded.scene, loaded.view, loaded.origin);
     return false;
   }
-  PlacedModels models = placeModels(job, texels);
+  PlacedModels models = placeModels(job, cache);
   if (job.file.surroundings && !loaded.room)
     checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
   loaded.view = models.view;
@@ -240,7 +240,7 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels) {
     loaded.origin = models.origin;
     loaded.surroundings = job.file.surroundings;
     std::vector<std::string> known;
-    loaded.room = loadRoom(job, loaded.origin, texels, known);
+    loaded.room = loadRoom(job, loaded.origin, cache, known);
   }
   return moved;
 }

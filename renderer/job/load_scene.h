@@ -31,12 +31,12 @@ struct LoadedScene {
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
-// camera. `shared`: texels of the models' other loads; may be null. Throws InputError.
-LoadedScene loadScene(RenderJob& job, TexelCache* shared = nullptr);
+// camera. `shared`: of the models' other loads; may be null. Throws InputError.
+LoadedScene loadScene(RenderJob& job, ModelCache* shared = nullptr);
 
 // Replaces the camera and, where a model is animated, what moves with it, for another frame of the
 // same job. Returns whether the scene's geometry or lights changed. Not for composites.
-bool loadFrame(RenderJob& job, LoadedScene& loaded, TexelCache& texels);
+bool loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
 
 // The strategy, with the probe mapped onto the scene's surroundings if it has any. `loaded`
 // must outlive it. Throws InputError for an unknown name.

@@ -5,6 +5,7 @@
 #include <sys/utsname.h>
 #include <tbb/global_control.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 
@@ -40,6 +41,11 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
 }  // namespace
+
+// (getrusage() would include what the process that started this one had.)
+uint64_t peakMemoryBytes() {
+  return 1024 * std::strtoull(lineIn("/proc/self/status", "VmHWM", ':').c_str(), nullptr, 10);
+}
 
 std::string commandLine() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);

@@ -2,6 +2,7 @@
 // The machine, the program and the date of a measurement.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace chromeball {
@@ -12,6 +13,8 @@ struct Machine {
   std::string command;                            // quoted for a shell
 };
 Machine thisMachine();
+
+uint64_t peakMemoryBytes();  // of this process so far; 0 if the system does not tell
 
 std::string commandLine();  // of this process, quoted for a shell
 

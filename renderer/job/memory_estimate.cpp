@@ -63,7 +63,8 @@ MemoryEstimate estimateMemory(const RenderJob& job, const LoadedScene& loaded) {
   e.textures = texels;
   if (const auto& file = scene.texelFile)
     e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
-  e.geometry = meshes + kBuiltTriangle * triangles;
+  const bool keepsFiles = job.file.settings.has("frames") && scene.isAnimated;
+  e.geometry = meshes + kBuiltTriangle * triangles + (keepsFiles ? bytesOfFiles(scene) : 0);
   e.probe = map + kTableTexel * mapTexels;
 
   const double always = e.process + e.textures + meshes;

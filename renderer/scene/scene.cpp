@@ -67,7 +67,7 @@ void append(Scene& scene, Scene&& other) {
     for (TextureSlot* slot : textureSlots(material))
       if (*slot) slot->texture += textures;
 
-  moveToEnd(scene.meshes, other.meshes);
+  scene.meshes.append(std::move(other.meshes));
   moveToEnd(scene.instances, other.instances);
   moveToEnd(scene.materials, other.materials);
   moveToEnd(scene.textures, other.textures);

@@ -11,24 +11,9 @@
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/mesh.h"
 
 namespace chromeball {
-
-using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the front
-
-// The geometry of a glTF primitive: indexed triangles.
-// Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
-// the bitangent in w (bitangent = w * cross(normal, tangent)).
-struct Mesh {
-  std::vector<Triangle> triangles;
-  std::vector<vec3> positions;
-  std::vector<vec3> normals;           // empty: flat, the triangle's own normal
-  std::vector<vec4> tangents;          // filled only where a material has a normal map
-  std::vector<vec4> colors;            // linear RGBA; empty: white
-  std::vector<std::vector<vec2>> uvs;  // by UV set; filled only for sets that the material uses
-
-  bool operator==(const Mesh&) const = default;
-};
 
 // Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
 struct Transform {
@@ -47,13 +32,14 @@ struct Instance {
   int material = 0;
   int node = 0;  // index into Scene::nodeNames
   std::optional<Transform> toWorld;
+  bool moves = false;  // at other times of the animation it may have another place or shape
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
   bool operator==(const Instance&) const = default;
 };
 
 struct Scene {
-  std::vector<Mesh> meshes;
+  MeshList meshes;
   std::vector<Instance> instances;
   std::vector<Material> materials;  // not empty if there is a mesh
   std::vector<Texture> textures;

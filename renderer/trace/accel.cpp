@@ -52,7 +52,10 @@ bool Accel::closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const 
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect(scene_, r, query.embree);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {instanceOf(r.hit.instID[0], r.hit.geomID), r.hit.primID, {r.hit.u, r.hit.v}, r.ray.tfar};
+  hit = {instanceOf(described_, r.hit.instID[0], r.hit.geomID),
+         r.hit.primID,
+         {r.hit.u, r.hit.v},
+         r.ray.tfar};
   return true;
 }
 
@@ -92,7 +95,7 @@ void Accel::intersectPacket(std::span<const Ray> rays, std::span<const uint32_t>
   for (size_t i = 0; i < rays.size(); ++i) {
     hits[i].reset();
     if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-    hits[i] = {instanceOf(r.hit.instID[0][i], r.hit.geomID[i]),
+    hits[i] = {instanceOf(described_, r.hit.instID[0][i], r.hit.geomID[i]),
                r.hit.primID[i],
                {r.hit.u[i], r.hit.v[i]},
                r.ray.tfar[i]};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,25 +12,29 @@
 #include "scene/scene.h"
 #include "trace/ray.h"
 
-struct RTCDeviceTy;
-struct RTCGeometryTy;
 struct RTCSceneTy;
 
 namespace chromeball {
+
+class BuiltGeometry;
+struct FilterUse;
 
 // Embree's BVH over a scene's instances. A mesh with several instances is built once. Filter
 // functions handle alpha (masked and blended surfaces), so that the path loop need not, and let
 // shadow rays pass smooth thin walls; scenes without such surfaces have no filter functions.
 class Accel {
  public:
-  // `masks`: by instance; empty: kAllInstances for each. The scene must outlive this. Throws
-  // RunError.
-  explicit Accel(const Scene& scene, const std::vector<RayMask>& masks = {});
+  // `masks`: by instance; empty: kAllInstances for each. The scene must outlive this. `earlier`: of
+  // a structure over the same Scene before it changed, from which what did not change is taken;
+  // that structure must not be used any more. Throws RunError.
+  explicit Accel(const Scene& scene, const std::vector<RayMask>& masks = {},
+                 std::shared_ptr<BuiltGeometry> earlier = nullptr);
   ~Accel();
   Accel(const Accel&) = delete;
   Accel& operator=(const Accel&) = delete;
 
   const Scene& scene() const { return described_; }
+  const std::shared_ptr<BuiltGeometry>& built() const { return built_; }
   RayMask mask(uint32_t instance) const {
     return masks_.empty() ? kAllInstances : masks_[instance];
   }
@@ -60,22 +65,18 @@ class Accel {
                      RayMask mask = kAllInstances) const;
 
  private:
-  void build(const Scene& scene);
+  void build();
+  FilterUse filterUse();
   void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
   void occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances, RayMask mask) const;
   bool closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const;
   void resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
-  void release();
-  RTCGeometryTy* meshGeometry(const Scene& scene, int mesh) const;
-  RTCSceneTy* meshScene(const Scene& scene, int mesh);
 
   const Scene& described_;
-  RTCDeviceTy* device_ = nullptr;
+  std::vector<RayMask> masks_;  // by instance; empty: all
+  std::shared_ptr<BuiltGeometry> built_;
   RTCSceneTy* scene_ = nullptr;
-  std::vector<RayMask> masks_;           // by instance; empty: all
-  std::vector<RTCSceneTy*> meshScenes_;  // by mesh; null for a mesh of one instance
-  std::vector<bool> needsFilter_;        // by mesh: whether any instance lets light pass
   bool hasFilter_ = false, hasAlpha_ = false, hasStraightBodies_ = false;
 };
 

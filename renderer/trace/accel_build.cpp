@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Building the acceleration structure.
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
 #include "base/error.h"
 #include "scene/thin_wall.h"
 #include "trace/accel.h"
+#include "trace/built_geometry.h"
 #include "trace/filter.h"
 
 namespace chromeball {
 namespace {
-
-RTCScene newScene(RTCDevice device, bool hasFilter) {
-  RTCScene scene = rtcNewScene(device);
-  // Robust: no ray passes between two triangles that share an edge.
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  // The spatial splits of HIGH may report a hit to the shadow filter twice, which would apply its
-  // transmittance twice.
-  rtcSetSceneBuildQuality(scene, hasFilter ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
-  return scene;
-}
-
-void attach(RTCScene scene, RTCGeometry geometry, uint32_t id, RayMask mask) {
-  rtcSetGeometryMask(geometry, mask);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
 
 void throwOnError(RTCDevice device) {
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
@@ -35,93 +20,90 @@ void throwOnError(RTCDevice device) {
                                                       : fmt::format("error {}", int(error)));
 }
 
+RTCGeometry newInstance(RTCDevice device, RTCScene scene, const Transform& toWorld) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, scene);
+  float columns[12];
+  std::memcpy(columns, &toWorld.linear, sizeof toWorld.linear);
+  std::memcpy(columns + 9, &toWorld.translation, sizeof toWorld.translation);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  return geometry;
+}
+
+// The instances in world space that do not move, if others move; else none.
+std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>& uses) {
+  std::vector<uint32_t> still;
+  if (std::ranges::none_of(scene.instances, &Instance::moves)) return still;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (!instance.moves && !instance.toWorld && uses[size_t(instance.mesh)] == 1)
+      still.push_back(uint32_t(i));
+  }
+  return still;
+}
+
 }  // namespace
 
-Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks)
-    : described_(scene), masks_(masks) {
+Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks,
+             std::shared_ptr<BuiltGeometry> earlier)
+    : described_(scene),
+      masks_(masks),
+      built_(earlier ? std::move(earlier) : std::make_shared<BuiltGeometry>(scene)) {
   assert(masks.empty() || masks.size() == scene.instances.size());
-  device_ = rtcNewDevice(nullptr);
-  if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
+  assert(&built_->scene() == &scene);
+  RTCDevice device = built_->device();
+  if (!masks.empty() && !rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED))
+    throwRun("this build of Embree has no ray masks (EMBREE_RAY_MASK), which composites need");
   try {
-    if (!masks.empty() && !rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED))
-      throwRun("this build of Embree has no ray masks (EMBREE_RAY_MASK), which composites need");
-    build(scene);
+    build();
+    throwOnError(device);
   } catch (...) {
-    release();
+    if (scene_) rtcReleaseScene(scene_);
     throw;
   }
 }
 
-Accel::~Accel() { release(); }
+Accel::~Accel() { rtcReleaseScene(scene_); }
 
-void Accel::release() {
-  if (scene_) rtcReleaseScene(scene_);
-  for (RTCScene meshScene : meshScenes_)
-    if (meshScene) rtcReleaseScene(meshScene);
-  rtcReleaseDevice(device_);
-}
-
-RTCGeometryTy* Accel::meshGeometry(const Scene& scene, int index) const {
-  const Mesh& mesh = scene.meshes[index];
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Copied, because Embree reads 16 bytes per vertex, past the end of an array of vec3.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(vec3), mesh.positions.size());
-  if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                             mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
-  if (needsFilter_[index]) {
-    rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
-    if (hasAlpha_) rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
-    rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
-  }
-  return geometry;
-}
-
-RTCSceneTy* Accel::meshScene(const Scene& scene, int mesh) {
-  if (!meshScenes_[mesh]) {
-    meshScenes_[mesh] = newScene(device_, hasFilter_);
-    attach(meshScenes_[mesh], meshGeometry(scene, mesh), 0, kAllInstances);
-    rtcCommitScene(meshScenes_[mesh]);
-  }
-  return meshScenes_[mesh];
-}
-
-void Accel::build(const Scene& scene) {
-  std::vector<int> uses(scene.meshes.size());
-  needsFilter_.resize(scene.meshes.size());
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    ++uses[instance.mesh];
-    const Material& material = scene.materials[instance.material];
+FilterUse Accel::filterUse() {
+  FilterUse use{std::vector<bool>(described_.meshes.size())};
+  for (const Instance& instance : described_.instances) {
+    const Material& material = described_.materials[size_t(instance.material)];
     const bool alpha = material.alphaMode != AlphaMode::Opaque;
     if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
-    needsFilter_[instance.mesh] = hasFilter_ = true;
-    hasAlpha_ = hasAlpha_ || alpha;
+    use.ofMesh[size_t(instance.mesh)] = use.any = true;
+    use.hasAlpha = use.hasAlpha || alpha;
     hasStraightBodies_ = hasStraightBodies_ || material.straightShadows;
   }
+  hasFilter_ = use.any;
+  hasAlpha_ = use.hasAlpha;
+  return use;
+}
 
-  meshScenes_.resize(scene.meshes.size());
-  scene_ = newScene(device_, hasFilter_);
-  // Geometry i of the top scene is instance i of ours.
+// Geometry i of the top scene is instance i of ours; what does not move is one more geometry, so
+// that it is built once.
+void Accel::build() {
+  const Scene& scene = described_;
+  built_->begin(filterUse());
+  std::vector<int> uses(scene.meshes.size());
+  for (const Instance& instance : scene.instances) ++uses[size_t(instance.mesh)];
+  const std::vector<uint32_t> still = staticInstances(scene, uses);
+
+  scene_ = built_->newScene();
   for (size_t i = 0; i < scene.instances.size(); ++i) {
+    if (std::ranges::binary_search(still, uint32_t(i))) continue;
     const Instance& instance = scene.instances[i];
-    RTCGeometry geometry;
-    if (uses[instance.mesh] == 1 && !instance.toWorld) {
-      geometry = meshGeometry(scene, instance.mesh);
-    } else {
-      geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(geometry, meshScene(scene, instance.mesh));
-      const Transform t = instance.toWorld.value_or(Transform{});
-      float columns[12];
-      std::memcpy(columns, &t.linear, sizeof t.linear);
-      std::memcpy(columns + 9, &t.translation, sizeof t.translation);
-      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-    }
-    attach(scene_, geometry, uint32_t(i), mask(uint32_t(i)));
+    RTCGeometry geometry = uses[size_t(instance.mesh)] == 1 && !instance.toWorld
+                               ? built_->newGeometry(instance.mesh)
+                               : newInstance(built_->device(), built_->meshScene(instance.mesh),
+                                             instance.toWorld.value_or(Transform{}));
+    BuiltGeometry::attach(scene_, geometry, uint32_t(i), mask(uint32_t(i)));
   }
+  if (!still.empty())
+    BuiltGeometry::attach(
+        scene_, newInstance(built_->device(), built_->staticScene(still, masks_), Transform{}),
+        uint32_t(scene.instances.size()), kAllInstances);
   rtcCommitScene(scene_);
-  throwOnError(device_);
 }
 
 }  // namespace chromeball

@@ -11,9 +11,13 @@
 namespace chromeball {
 namespace {
 
+const Scene& sceneOf(const RTCFilterFunctionNArguments* arguments) {
+  return *static_cast<const Scene*>(arguments->geometryUserPtr);
+}
+
 Hit hitOf(const RTCFilterFunctionNArguments* arguments) {
   RTCHitN* hit = arguments->hit;
-  return {instanceOf(RTCHitN_instID(hit, 1, 0, 0), RTCHitN_geomID(hit, 1, 0)),
+  return {instanceOf(sceneOf(arguments), RTCHitN_instID(hit, 1, 0, 0), RTCHitN_geomID(hit, 1, 0)),
           RTCHitN_primID(hit, 1, 0),
           {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)},
           RTCRayN_tfar(arguments->ray, 1, 0)};
@@ -30,7 +34,7 @@ void absorb(Query& query, const Material& body, bool enters, float distance) {
 }
 
 float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
-  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  const Scene& scene = sceneOf(arguments);
   return surfaceAlpha(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric);
 }
 
@@ -46,7 +50,7 @@ void filterClosest(const RTCFilterFunctionNArguments* arguments) {
 
 void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   auto& query = *reinterpret_cast<Query*>(arguments->context);
-  const auto& scene = *static_cast<const Scene*>(arguments->geometryUserPtr);
+  const Scene& scene = sceneOf(arguments);
   const Hit hit = hitOf(arguments);
   const Instance& instance = scene.instances[hit.instance];
   if (scene.materials[instance.material].backLetsLightThrough() &&

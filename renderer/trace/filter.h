@@ -3,6 +3,7 @@
 #pragma once
 
 #include "math/vec.h"
+#include "scene/scene.h"
 #include "trace/embree.h"
 
 namespace chromeball {
@@ -20,9 +21,10 @@ struct Query {
   Rgb largestAttenuation{0};  // of the bodies so far, to judge rounding errors
 };
 
-// Index into Scene::instances, since geometry i of the top scene is instance i.
-inline uint32_t instanceOf(uint32_t topInstance, uint32_t geometry) {
-  return topInstance != RTC_INVALID_GEOMETRY_ID ? topInstance : geometry;
+// Index into Scene::instances. Geometry i of the top scene is instance i; one more geometry has the
+// instances that do not move, under their own indices.
+inline uint32_t instanceOf(const Scene& scene, uint32_t topInstance, uint32_t geometry) {
+  return topInstance < scene.instances.size() ? topInstance : geometry;
 }
 
 // Ignores the hit with probability 1 - alpha.

@@ -147,6 +147,7 @@ std::string animationNames(const GltfFile& file) {
 void applyAnimation(GltfFile& file, const AnimationTime& when) {
   const size_t index = findAnimation(file, when);
   const Animation& animation = file.model.animations[index];
+  file.animated.assign(file.model.nodes.size(), false);
   for (size_t c = 0; c < animation.channels.size(); ++c) {
     const tinygltf::AnimationChannel& channel = animation.channels[c];
     const std::string where = fmt::format("animations[{}].channels[{}]", index, c);
@@ -173,6 +174,7 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
                                   : isRotation      ? node.rotation
                                   : path == "scale" ? node.scale
                                                     : node.translation;
+    file.animated[size_t(channel.target_node)] = true;
     target = valueAt(file, track, when.seconds, isRotation, at);
   }
 }

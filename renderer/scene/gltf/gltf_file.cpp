@@ -142,8 +142,8 @@ std::string oneLine(std::string text) {
   return text;
 }
 
-GltfFile::GltfFile(const std::string& path, Warn warn, ExternalFiles external)
-    : path_(path), files_{path}, warn_(std::move(warn)), external_(external) {
+GltfFile::GltfFile(const std::string& path, ExternalFiles external)
+    : path_(path), files_{path}, external_(external) {
   try {
     file_ = FileBytes(path);
     const GltfChunks chunks = splitContainer(file_.bytes());
@@ -283,7 +283,15 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
 }
 
 void GltfFile::warnOnce(const std::string& what) {
-  if (emittedWarnings_.insert(what).second && warn_) warn_(path_ + ": " + oneLine(what));
+  std::string line = path_ + ": " + oneLine(what);
+  if (known_.insert(line).second) warnings_.push_back(std::move(line));
+}
+
+void GltfFile::beginLoad() {
+  if (!opened_) opened_ = Opened{warnings_.size(), spent_};
+  warnings_.resize(opened_->warnings);
+  known_ = {warnings_.begin(), warnings_.end()};
+  spent_ = opened_->spent;
 }
 
 void GltfFile::spend(uint64_t bytes) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -32,10 +33,11 @@ class GltfFile {
  public:
   // Reads the file and its buffers. Throws InputError if it is not glTF 2.0, requires an
   // unsupported extension, or refers to a buffer file that is missing or that `external` forbids.
-  GltfFile(const std::string& path, Warn warn, ExternalFiles external);
+  GltfFile(const std::string& path, ExternalFiles external);
 
   tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
+  std::vector<bool> animated;  // by node: whether the chosen animation sets it; empty: none
 
   // The paths of the file itself and of the files of its buffers and images.
   const std::vector<std::string>& files() const { return files_; }
@@ -71,13 +73,18 @@ class GltfFile {
     throw InputError(path_ + ": " + oneLine(fmt::format(format, std::forward<Args>(args)...)));
   }
 
-  // Emits a warning; the same one only once per file.
+  // Adds a warning, "FILE: what"; the same one only once.
   void warnOnce(const std::string& what);
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   // Records memory that is about to be allocated for the file's contents. Because of references, a
   // small file can require much memory: throws InputError if the sum is out of proportion to the
   // length of the file.
   void spend(uint64_t bytes);
+
+  // A file can be loaded several times: the first call keeps what has been recorded and warned of
+  // since the file was opened, later ones go back to it.
+  void beginLoad();
 
  private:
   void checkExtensions(const nlohmann::json& root);
@@ -88,13 +95,18 @@ class GltfFile {
 
   std::string path_;
   std::vector<std::string> files_;
-  Warn warn_;
   ExternalFiles external_;
-  std::set<std::string> emittedWarnings_;
-  FileBytes file_;              // includes the GLB's buffer
-  std::vector<Bytes> storage_;  // the other buffers
+  std::vector<std::string> warnings_;
+  std::set<std::string> known_;  // of them
+  FileBytes file_;               // includes the GLB's buffer
+  std::vector<Bytes> storage_;   // the other buffers
   std::vector<std::span<const uint8_t>> buffers_;
   uint64_t spent_ = 0, budget_ = 0;
+  struct Opened {
+    size_t warnings;
+    uint64_t spent;
+  };
+  std::optional<Opened> opened_;
 };
 
 }  // namespace chromeball

@@ -19,12 +19,16 @@ Transform roundToFloat(const dmat4& m) { return {glm::mat3(glm::dmat3(m)), vec3(
 
 class InstanceReader {
  public:
-  InstanceReader(GltfFile& file, const NodeTree& tree, TexelCache* cache)
-      : file_(file), tree_(tree), materials_(file, cache) {}
+  InstanceReader(GltfFile& file, const NodeTree& tree, ModelCache* cache)
+      : file_(file),
+        tree_(tree),
+        cache_(cache ? &cache->meshes : nullptr),
+        materials_(file, cache ? &cache->texels : nullptr) {}
 
   Scene read() {
     for (int node : tree_.inScene) planNode(node);
     for (const Plan& plan : plans_) addInstance(plan);
+    if (cache_) cache_->forgetUnused();
     materials_.moveInto(scene_);
     return std::move(scene_);
   }
@@ -75,14 +79,27 @@ class InstanceReader {
     if (mesh == -1) return;
     if (shared) plan.geometry->mesh = mesh;
     scene_.instances.push_back({mesh, plan.material, plan.node,
-                                shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt});
+                                shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt,
+                                moves(plan)});
   }
 
-  // Adds a mesh to the scene, transformed by `transform` unless that is null. Returns its index, or
-  // -1 if it has no triangles.
+  bool moves(const Plan& plan) const {
+    const auto moves = [&](int node) { return bool(tree_.moves[size_t(node)]); };
+    const int skin = file_.model.nodes[size_t(plan.node)].skin;
+    return moves(plan.node) ||
+           (!plan.geometry && std::ranges::any_of(file_.model.skins[size_t(skin)].joints, moves));
+  }
+
+  // Adds a mesh, of an earlier load if there is one, to the scene, transformed by `transform`
+  // unless that is null. Returns its index, or -1 if it has no triangles.
   int readMesh(const Plan& plan, const dmat4* transform) {
     const auto& primitive =
         file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
+    MeshKey key;
+    if (cache_) {
+      key = keyOf(plan, primitive, transform);
+      if (auto known = cache_->find(key)) return add(std::move(known));
+    }
     const std::string where = describe(plan.mesh, size_t(plan.primitive));
     std::optional<Mesh> mesh =
         readPrimitive(file_, primitive, poseOf(plan.node), where, materials_[plan.material]);
@@ -90,8 +107,29 @@ class InstanceReader {
     if (transform) transformMesh(*mesh, *transform);
     if (!areFinite(mesh->positions))
       file_.fail("{}: its node's transform exceeds the range of float", where);
-    scene_.meshes.push_back(std::move(*mesh));
+    auto shared = std::make_shared<const Mesh>(std::move(*mesh));
+    if (cache_) cache_->add(std::move(key), shared);
+    return add(std::move(shared));
+  }
+
+  int add(std::shared_ptr<const Mesh> mesh) {
+    scene_.meshes.push_back(std::move(mesh));
     return int(scene_.meshes.size()) - 1;
+  }
+
+  MeshKey keyOf(const Plan& plan, const tinygltf::Primitive& primitive,
+                const dmat4* transform) const {
+    const Pose pose = poseOf(plan.node);
+    MeshKey key{file_.files().front(),
+                recipeOf(primitive, pose, materials_[plan.material]),
+                !plan.geometry,
+                {}};
+    const auto append = [&](const dmat4& m) {
+      key.placement.insert(key.placement.end(), &m[0][0], &m[0][0] + 16);
+    };
+    if (!plan.geometry) std::ranges::for_each(pose.joints, append);
+    if (transform) append(*transform);
+    return key;
   }
 
   static std::string describe(int mesh, size_t primitive) {
@@ -139,6 +177,7 @@ class InstanceReader {
 
   GltfFile& file_;
   const NodeTree& tree_;
+  MeshCache* cache_;  // null: none
   MaterialReader materials_;
   Scene scene_;
   std::vector<Plan> plans_;
@@ -148,7 +187,7 @@ class InstanceReader {
 
 }  // namespace
 
-Scene readInstances(GltfFile& file, const NodeTree& tree, TexelCache* cache) {
+Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache) {
   return InstanceReader(file, tree, cache).read();
 }
 

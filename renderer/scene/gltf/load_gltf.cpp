@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/load_gltf.h"
 
+#include <algorithm>
+
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
 #include "scene/gltf/environment.h"
@@ -8,6 +10,7 @@
 #include "scene/gltf/instances.h"
 #include "scene/gltf/lights.h"
 #include "scene/gltf/meshopt.h"
+#include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/gltf/variants.h"
 
@@ -69,20 +72,36 @@ void addMissingNodes(tinygltf::Model& model) {
   for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
 }
 
+// With its variant; that of an earlier load if the cache keeps files.
+std::shared_ptr<GltfFile> openedFile(const std::string& path, const GltfChoice& choice) {
+  const std::string key =
+      fmt::format("{}\n{}\n{}", path, choice.animation ? "=" + choice.animation->name : "",
+                  choice.variant ? "=" + choice.variant->name : "");
+  ModelCache* cache = choice.cache && choice.cache->keepsFiles ? choice.cache : nullptr;
+  if (cache)
+    if (const auto found = cache->files.find(key); found != cache->files.end())
+      return found->second;
+  auto file = std::make_shared<GltfFile>(path, choice.external);
+  decodeMeshopt(*file);
+  decodeDraco(*file);
+  if (choice.variant) applyVariant(*file, *choice.variant);
+  if (cache) cache->files[key] = file;
+  return file;
+}
+
 }  // namespace
 
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice) {
-  GltfFile file(path, warn, choice.external);
-  decodeMeshopt(file);
-  decodeDraco(file);
-  if (choice.variant) applyVariant(file, *choice.variant);
+  const std::shared_ptr<GltfFile> opened = openedFile(path, choice);
+  GltfFile& file = *opened;
+  file.beginLoad();
   const bool isAnimated =
       choice.animation && !(choice.animation->ifAny && file.model.animations.empty());
   if (isAnimated) applyAnimation(file, *choice.animation);
   addMissingNodes(file.model);
   const NodeTree tree = readNodes(file, placement, choice.origin);
-  Scene scene = readInstances(file, tree, choice.texels);
+  Scene scene = readInstances(file, tree, choice.cache);
   readCameras(file, tree, scene);
   scaleMedia(placement, scene);
   scene.lights = readLights(file, tree, choice.lightUnits);
@@ -96,6 +115,7 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
         fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS selects "
                     "an animation: {}",
                     path, animationNames(file)));
+  if (warn) std::ranges::for_each(file.warnings(), warn);
   return scene;
 }
 

@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-struct TexelCache;
+struct ModelCache;
 
 // Receives one line per warning ("FILE: what was ignored"), the same one only once per file.
 using Warn = std::function<void(const std::string&)>;
@@ -40,7 +40,7 @@ struct GltfChoice {
   ExternalFiles external = ExternalFiles::Refuse;
   LightUnits lightUnits = LightUnits::Photometric;  // of KHR_lights_punctual
   bool environment = true;                          // whether to read the file's own light probe
-  TexelCache* texels = nullptr;                     // of earlier loads; outlives this one
+  ModelCache* cache = nullptr;                      // of earlier loads; outlives this one
   glm::dvec3 origin{0};  // scene origin in world space, subtracted in double precision
 };
 

@@ -2,14 +2,13 @@
 // Converts glTF mesh primitives to meshes.
 #pragma once
 
-#include <compare>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scene/gltf/gltf_file.h"
+#include "scene/gltf/mesh_recipe.h"
 #include "scene/gltf/pose.h"
 #include "scene/scene.h"
 
@@ -21,18 +20,6 @@ bool isSkinned(const tinygltf::Primitive& primitive, const Pose& pose);
 // Whether the primitive's mode and attributes define triangles. Warns if not.
 bool hasTriangles(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where);
 
-// Everything that determines an unskinned mesh: primitives with equal recipes have equal meshes.
-struct MeshRecipe {
-  int mode, indices;
-  std::map<std::string, int> attributes;
-  std::vector<std::map<std::string, int>> targets;
-  std::vector<double> weights;
-  std::vector<int> uvSets;             // those that the material reads
-  std::vector<uint32_t> tangentSpace;  // UV set and the bits of its transform; empty: no tangents
-  bool hasAlpha;                       // kept apart: tracing is faster if no mesh mixes the two
-
-  auto operator<=>(const MeshRecipe&) const = default;
-};
 MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
                     const Material& material);
 

@@ -109,8 +109,11 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
   dmat4 rootTransform{glm::dmat3(placement.linear)};
   rootTransform[3] = glm::dvec4(glm::dvec3(placement.translation) - origin, 1);
   tree.toWorld.assign(nodes.size(), dmat4(0));
+  tree.moves = file.animated;
+  tree.moves.resize(nodes.size());
   for (int i : order) {
     const int parent = parents[size_t(i)];
+    if (parent != -1 && tree.moves[size_t(parent)]) tree.moves[size_t(i)] = true;
     tree.toWorld[size_t(i)] = (parent == -1 ? rootTransform : tree.toWorld[size_t(parent)]) *
                               localMatrix(file, nodes[size_t(i)], fmt::format("nodes[{}]", i));
   }

@@ -14,6 +14,7 @@ struct NodeTree {
   std::vector<int> inScene;         // the nodes of the default scene, parents before children
   std::vector<std::string> names;   // of every node in the file; never empty
   std::vector<int> parents;         // of every node in the file; -1: a root
+  std::vector<bool> moves;          // of every node: the animation moves it or changes its weights
 };
 
 // Composes the transforms of all nodes: the parents', then `placement`, then a translation by

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Indexed triangles, and lists of them that scenes share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace chromeball {
+
+using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the front
+
+// The geometry of a glTF primitive.
+// Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
+// the bitangent in w (bitangent = w * cross(normal, tangent)).
+struct Mesh {
+  std::vector<Triangle> triangles;
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;           // empty: flat, the triangle's own normal
+  std::vector<vec4> tangents;          // filled only where a material has a normal map
+  std::vector<vec4> colors;            // linear RGBA; empty: white
+  std::vector<std::vector<vec2>> uvs;  // by UV set; filled only for sets that the material uses
+
+  bool operator==(const Mesh&) const = default;
+};
+
+// Copies of a list share its meshes.
+class MeshList {
+ public:
+  using Shared = std::shared_ptr<const Mesh>;
+
+  MeshList() = default;
+  explicit MeshList(Mesh mesh) { push_back(std::move(mesh)); }
+
+  size_t size() const { return meshes_.size(); }
+  bool empty() const { return meshes_.empty(); }
+  const Mesh& operator[](size_t i) const { return *meshes_[i]; }
+  const Mesh& at(size_t i) const { return *meshes_.at(i); }
+  const Mesh& back() const { return *meshes_.back(); }
+  const Shared& shared(size_t i) const { return meshes_[i]; }
+
+  // For changes; another list that has the mesh keeps it as it was.
+  Mesh& edit(size_t i) {
+    const auto own = std::make_shared<Mesh>(*meshes_.at(i));
+    meshes_[i] = own;
+    return *own;
+  }
+
+  void push_back(Mesh mesh) { meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh))); }
+  void push_back(Shared mesh) { meshes_.push_back(std::move(mesh)); }
+  void pop_back() { meshes_.pop_back(); }
+  void append(MeshList other) {
+    meshes_.insert(meshes_.end(), other.meshes_.begin(), other.meshes_.end());
+  }
+
+  class Iterator {
+   public:
+    explicit Iterator(const Shared* at) : at_(at) {}
+    const Mesh& operator*() const { return **at_; }
+    Iterator& operator++() { return ++at_, *this; }
+    bool operator==(const Iterator&) const = default;
+
+   private:
+    const Shared* at_;
+  };
+  Iterator begin() const { return Iterator(meshes_.data()); }
+  Iterator end() const { return Iterator(meshes_.data() + meshes_.size()); }
+
+  bool operator==(const MeshList& other) const {
+    if (size() != other.size()) return false;
+    for (size_t i = 0; i < size(); ++i)
+      if (meshes_[i] != other.meshes_[i] && *meshes_[i] != *other.meshes_[i]) return false;
+    return true;
+  }
+
+ private:
+  std::vector<Shared> meshes_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/built_geometry.h"
+
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "base/error.h"
+#include "trace/filter.h"
+
+namespace chromeball {
+
+BuiltGeometry::BuiltGeometry(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr)) {
+  if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
+}
+
+BuiltGeometry::~BuiltGeometry() {
+  releaseStatic();
+  for (const auto& entry : meshScenes_) rtcReleaseScene(entry.second.scene);
+  rtcReleaseDevice(device_);
+}
+
+void BuiltGeometry::releaseStatic() {
+  if (static_) rtcReleaseScene(static_);
+  static_ = nullptr;
+  members_.clear();
+}
+
+void BuiltGeometry::begin(FilterUse filters) {
+  const bool isOther = filters.any != filters_.any || filters.hasAlpha != filters_.hasAlpha;
+  filters_ = std::move(filters);
+  std::map<const Mesh*, bool> hasFilter;
+  for (size_t i = 0; i < scene_.meshes.size(); ++i)
+    hasFilter[&scene_.meshes[i]] = filters_.ofMesh[i];
+  std::erase_if(meshScenes_, [&](const auto& entry) {
+    const auto now = hasFilter.find(entry.first);
+    if (!isOther && now != hasFilter.end() && now->second == entry.second.hasFilter) return false;
+    rtcReleaseScene(entry.second.scene);
+    return true;
+  });
+  if (isOther) releaseStatic();
+}
+
+RTCSceneTy* BuiltGeometry::newScene() const {
+  RTCScene scene = rtcNewScene(device_);
+  // Robust: no ray passes between two triangles that share an edge.
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  // The spatial splits of HIGH may report a hit to the shadow filter twice, which would apply its
+  // transmittance twice.
+  rtcSetSceneBuildQuality(scene, filters_.any ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+void BuiltGeometry::attach(RTCSceneTy* scene, RTCGeometryTy* geometry, uint32_t id, RayMask mask) {
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+RTCGeometryTy* BuiltGeometry::newGeometry(int index) const {
+  const Mesh& mesh = scene_.meshes[size_t(index)];
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Copied, because Embree reads 16 bytes per vertex, past the end of an array of vec3.
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(vec3), mesh.positions.size());
+  if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
+  if (filters_.ofMesh[size_t(index)]) {
+    rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene_));
+    if (filters_.hasAlpha) rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
+  }
+  return geometry;
+}
+
+RTCSceneTy* BuiltGeometry::meshScene(int index) {
+  const MeshList::Shared& mesh = scene_.meshes.shared(size_t(index));
+  MeshScene& entry = meshScenes_[mesh.get()];
+  if (!entry.scene) {
+    entry = {mesh, filters_.ofMesh[size_t(index)], newScene()};
+    attach(entry.scene, newGeometry(index), 0, kAllInstances);
+    rtcCommitScene(entry.scene);
+    ++builds_;
+  }
+  return entry.scene;
+}
+
+RTCSceneTy* BuiltGeometry::staticScene(const std::vector<uint32_t>& instances,
+                                       const std::vector<RayMask>& masks) {
+  std::vector<Member> members;
+  for (const uint32_t i : instances) {
+    const size_t mesh = size_t(scene_.instances[i].mesh);
+    members.push_back({i, scene_.meshes.shared(mesh), filters_.ofMesh[mesh],
+                       masks.empty() ? kAllInstances : masks[i]});
+  }
+  if (static_ && members == members_) return static_;
+  releaseStatic();
+  static_ = newScene();
+  for (const Member& m : members)
+    attach(static_, newGeometry(scene_.instances[m.instance].mesh), m.instance, m.mask);
+  rtcCommitScene(static_);
+  ++builds_;
+  members_ = std::move(members);
+  return static_;
+}
+
+}  // namespace chromeball
