@@ -29,7 +29,7 @@ TEST(Farm, MergesShardsOneOfWhichWasKilled) {
       0);
   bool killed = false;
   for (int tenths = 0; tenths < 2400 && !std::filesystem::exists(merged); ++tenths) {
-    if (!killed && std::filesystem::exists(folder / "merged.parts/part-2.checkpoint.exr"))
+    if (!killed && std::filesystem::exists(folder / "merged.parts/task-1.checkpoint.exr"))
       killed =
           shell("pkill -9 -f 'shard[ ]2/4 .*" + merged.substr(0, merged.size() - 4) + "'") == 0;
     usleep(100'000);
@@ -69,6 +69,34 @@ TEST(Farm, RendersFrames) {
             0);
   for (const int number : {2, 4, 6})
     EXPECT_EQ(readImage(frame("farm", number)).texels, readImage(frame("own", number)).texels);
+}
+
+TEST(Farm, RendersShardsOfFrames) {
+  if (!hasCluster()) GTEST_SKIP() << kNoCluster;
+  const TemporaryFolder folder;
+  const std::string source = kSourceDir, demo = source + "/scenes/demo.toml";
+  const std::string options = " --size 48x32 --samples 16 --adaptive off --guide off --orbit 360";
+  ASSERT_EQ(shell("CHROMEBALL=" + std::string(kCommand) + " " + source +
+                  "/tools/scripts/farm_slurm.sh " + demo + " --frames 9:10 --shards 2 -o " +
+                  folder / "farm.##.exr -o " + folder / "farm.##.png --" + options),
+            0);
+  const auto frame = [&](const std::string& name) { return folder / name; };
+  for (int tenths = 0; tenths < 1200; ++tenths) {
+    if (std::filesystem::exists(frame("farm.09.png")) &&
+        std::filesystem::exists(frame("farm.10.png")))
+      break;
+    usleep(100'000);
+  }
+  ASSERT_EQ(shell(std::string(kCommand) + " render " + demo + " --frames 9:10" + options + " -o " +
+                  folder / "own.##.exr"),
+            0);
+  for (const std::string number : {"09", "10"}) {
+    const Image a = readImage(frame("farm." + number + ".exr"));
+    const Image b = readImage(frame("own." + number + ".exr"));
+    ASSERT_EQ(a.texels.size(), b.texels.size());
+    for (size_t i = 0; i < a.texels.size(); ++i)
+      ASSERT_NEAR(a.texels[i], b.texels[i], 1e-6f * std::max(1.0f, b.texels[i]));
+  }
 }
 
 }  // namespace

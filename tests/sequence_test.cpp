@@ -192,6 +192,37 @@ TEST(SlowSequence, SurvivesInterruption) {
   EXPECT_TRUE(std::filesystem::exists(out / "frame.1.exr"));
 }
 
+TEST(Sequence, PartsOfFramesMerge) {
+  const Moving model;
+  const TemporaryFolder out;
+  const Words fixed{"--frames", "0:2:2", "--adaptive", "off", "--guide", "off"};
+  const auto render = [&](Words more, const std::string& name) {
+    more.insert(more.end(), fixed.begin(), fixed.end());
+    run(words(model.scene(), more, out / (name + ".#.exr"), "8"));
+  };
+  render({}, "whole");
+  render({"--shard", "1/2"}, "first");
+  render({"--shard", "2/2"}, "second");
+  render({"--crop", "0,0,32,10"}, "upper");
+  render({"--crop", "0,10,32,14"}, "lower");
+  const auto merged = [&](const std::string& a, const std::string& b) {
+    run({"merge", out / a, out / b, "-o", out / "merged.exr", "--quiet"});
+    return texelsOf(out / "merged.exr");
+  };
+  for (const std::string number : {"0", "2"}) {
+    const std::vector<float> whole = texelsOf(out / ("whole." + number + ".exr"));
+    const std::string end = "." + number + ".exr";
+    EXPECT_EQ(merged("upper" + end, "lower" + end), whole);
+    const std::vector<float> shards = merged("second" + end, "first" + end);
+    ASSERT_EQ(shards.size(), whole.size());
+    for (size_t i = 0; i < whole.size(); ++i)
+      ASSERT_NEAR(shards[i], whole[i], 1e-6f * std::max(1.0f, whole[i]));
+  }
+  EXPECT_NE(texelsOf(out / "whole.0.exr"), texelsOf(out / "whole.2.exr"));
+  expectError({"merge", out / "first.0.exr", out / "second.2.exr", "-o", out / "merged.exr"},
+              "animation-time");
+}
+
 RenderJob jobAt(const std::string& scene, double seconds, double degrees = 0) {
   Settings given;
   given.set("frames", std::string("0:9"));
@@ -280,7 +311,6 @@ TEST(Sequence, RefusesWhatItCannotRender) {
   expectError({"render", terrace, "--orbit", "9", "-o", out / "t.exr"}, "does not turn");
   refused({"--frames", "0:4:2", "--frame", "3"}, "not one of the frames");
   refused({"--frames", "0:1", "--animation-time", "2"}, "times of their own");
-  refused({"--frames", "0:1", "--shard", "1/2"}, "not for frames");
   refused({"--frames", "0:1", "--write-every", "2"}, "finished");
   refused({"--frames", "0:1"}, "no #", "frame.exr");
   refused({"--frames", "0:1", "--checkpoint", out / "c.exr"}, "no #");

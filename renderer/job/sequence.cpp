@@ -60,8 +60,6 @@ void check(const Settings& given) {
   }
   refuse("model.time", "frames have times of their own; leave one of the two out");
   refuse("write-every", "a frame is written when it is finished");
-  refuse("crop", "not for frames; render a still with --animation-time");
-  refuse("shard", "not for frames; render a still with --animation-time");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "base/error.h"
@@ -80,6 +81,13 @@ void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResul
     writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
 }
 
+// What a part of a render stores besides its image; empty for a whole one. (Before the render,
+// since it identifies the files that were loaded.)
+std::optional<RenderPart> partOf(const RenderJob& job, const LoadedScene& loaded) {
+  if (!job.settings.isPart()) return {};
+  return RenderPart{renderIdentity(job, loaded), finishPlan(job, loaded)};
+}
+
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderJob job = planJob(scene, options.settings);
   const Messages outputMessages = checkOutputs(job);
@@ -94,8 +102,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
-  RenderPart part;
-  if (job.settings.isPart()) part.identity = renderIdentity(job, loaded);  // of the files loaded
+  std::optional<RenderPart> part = partOf(job, loaded);
   JobResult result = [&] {
     ImageRender render(job, loaded, options.showsProgress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
@@ -105,10 +112,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
-  if (job.settings.isPart()) {
-    part.plan = finishPlan(job, loaded);
-    result.image.state = partState(part, result.render);
-  }
+  if (part) result.image.state = partState(*part, result.render);
   if (result.render.samples == 0) nameAsPartial(job.outputs);
   writeImages(job, loaded, result, seconds);
 
@@ -149,8 +153,9 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     scene.show(job);
     const PhaseSeconds seconds{.load = watch.lap()};
     prepareOutputs(job, scene.loaded().files);
+    std::optional<RenderPart> part = partOf(job, scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
-    const JobResult result = [&] {
+    JobResult result = [&] {
       ImageRender render(job, scene.loaded(), options.showsProgress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
@@ -160,6 +165,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
           interrupted);
     }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
+    if (part) result.image.state = partState(*part, result.render);
     writeImages(job, scene.loaded(), result, seconds);
     printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,
              options.quiet());

@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders a scene on a Slurm cluster: a job array of shards, and a job that merges them; or a job
-# array of frames.
+# Renders a scene on a Slurm cluster: a job array of shards, and a job that merges them; a job array
+# of frames; or of shards of frames, and an array that merges each frame.
 #
 #   tools/scripts/farm_slurm.sh SCENE --shards N -o OUT.exr [-o OUT.png] [--sbatch OPTIONS] [-- RENDER OPTIONS]
-#   tools/scripts/farm_slurm.sh SCENE --frames A:B[:STEP] -o frame.####.exr ...
+#   tools/scripts/farm_slurm.sh SCENE --frames A:B[:STEP] [--shards N] -o frame.####.exr ...
 #
 # The parts go to the folder OUT.parts, which all machines must share with the scene and the program.
 # A task that is preempted, killed or requeued goes on from its checkpoint there; one that fails is
 # tried three times. The last job merges what there is, or says what is missing: then call this
-# again with the same arguments, which renders only that. Of frames, the folder has only checkpoints
-# and logs.
+# again with the same arguments, which renders only that. Of whole frames, the folder has only
+# checkpoints and logs.
 #   --sbatch "..."    options for each task: "--cpus-per-task=32 --time=8:00:00 --partition=preempt"
 # Prints the ids of the jobs. $CHROMEBALL names the program (default: this build's).
 set -euo pipefail
 
-usage() { sed -n '6,16s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+usage() { sed -n '7,17s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 fail() { echo "farm_slurm.sh: $*" >&2; exit 2; }
 
 chromeball=${CHROMEBALL:-$(cd "$(dirname "$0")/../.." && pwd)/build/chromeball}
@@ -32,15 +32,17 @@ while (($#)); do
   esac
 done
 [[ -n $scene && ${#outputs[@]} -gt 0 ]] || usage
-[[ -z $shards || -z $frames ]] || fail "give --shards or --frames"
+[[ -n $shards || -n $frames ]] || usage
+[[ -z $shards || $shards =~ ^[1-9][0-9]*$ ]] || fail "--shards: give the number of parts"
+first=0 step=1 count=1
 if [[ -n $frames ]]; then
   [[ $frames =~ ^([0-9]+):([0-9]+)(:([1-9][0-9]*))?$ ]] || fail "--frames: give FIRST:LAST[:STEP]"
   first=$((10#${BASH_REMATCH[1]})) last=$((10#${BASH_REMATCH[2]})) step=${BASH_REMATCH[4]:-1}
   ((first <= last)) || fail "--frames: give FIRST:LAST[:STEP]"
-  tasks=0-$(((last - first) / step))
-else
-  [[ $shards =~ ^[1-9][0-9]*$ ]] || fail "--shards: give the number of parts"
-  tasks=1-$shards
+  count=$(((last - first) / step + 1))
+  for output in "${outputs[@]}"; do
+    [[ $output == *\#* ]] || fail "$output has no # for the number of the frame, as in frame.####.exr"
+  done
 fi
 [[ -x $chromeball ]] || fail "$chromeball: not found; build it, or set CHROMEBALL"
 command -v sbatch >/dev/null || fail "sbatch: not found; this needs Slurm"
@@ -51,35 +53,54 @@ quoted() { printf '%q ' "$@"; }
 
 results=()
 for output in "${outputs[@]}"; do results+=(-o "$output"); done
-if [[ -n $frames ]]; then
-  choice="what=(--frames $frames --frame \$(($first + SLURM_ARRAY_TASK_ID * $step)) $(quoted "${results[@]}"))
-number=.#"
-else
-  choice="part=\$folder/part-\$SLURM_ARRAY_TASK_ID.exr number=
-[[ -e \$part ]] && exit 0
-what=(--shard \$SLURM_ARRAY_TASK_ID/$shards -o \"\$part\")"
-fi
-# Exit status 2 is an error of the input, which another attempt does not mend.
-task="#!/usr/bin/env bash
+
+# For both scripts: the number of the frame, and the outputs, numbered.
+common="#!/usr/bin/env bash
 folder=$(quoted "$parts")
-checkpoint=\$folder/part-\$SLURM_ARRAY_TASK_ID.checkpoint
+outputs=($(quoted "${outputs[@]}"))
+setFrame() {
+  frame=\$(($first + \$1 * $step))
+  for i in \"\${!outputs[@]}\"; do
+    if [[ -n '$frames' && \${outputs[i]} =~ ^(|.*[^#])(#+)([^#]*)$ ]]; then
+      printf -v outputs[i] '%s%0*d%s' \"\${BASH_REMATCH[1]}\" \${#BASH_REMATCH[2]} \$frame \"\${BASH_REMATCH[3]}\"
+    fi
+  done
+}"
+# Which image a task renders. It leaves one that is complete alone.
+if [[ -z $shards ]]; then
+  choice="setFrame \$SLURM_ARRAY_TASK_ID
+what=($(quoted "${results[@]}"))"
+else
+  choice="setFrame \$((SLURM_ARRAY_TASK_ID / $shards))
+shard=\$((SLURM_ARRAY_TASK_ID % $shards + 1))
+part=\$folder/part-\$shard
+[[ -e \$part${frames:+.\$frame}.exr ]] && exit 0
+what=(--shard \$shard/$shards -o \"\$part${frames:+.#}.exr\")"
+fi
+# A frame that exists is left alone, as by the program.
+[[ -z $frames ]] || choice+="
+[[ -e \${outputs[0]} ]] && exit 0
+what+=(--frames $frames --frame \$frame)"
+# Exit status 2 is an error of the input, which another attempt does not mend.
+task="$common
 $choice
+checkpoint=\$folder/task-\$SLURM_ARRAY_TASK_ID.checkpoint
 for attempt in 1 2 3; do
   status=0
-  $(quoted "$chromeball" render "$scene") \"\${what[@]}\" --checkpoint \"\$checkpoint\$number.exr\" \\
+  $(quoted "$chromeball" render "$scene") \"\${what[@]}\" --checkpoint \"\$checkpoint${frames:+.#}.exr\" \\
     --resume --threads \${SLURM_CPUS_PER_TASK:-0} $(quoted "${options[@]}") || status=\$?
   ((status == 0)) && { rm -f \"\$checkpoint\"*.exr; exit 0; }
   ((status == 2)) && break
 done
 exit \$status"
-merge="#!/usr/bin/env bash
+merge="$common
 shopt -s nullglob extglob
-folder=$(quoted "$parts")
-exec $(quoted "$chromeball" merge) \"\$folder\"/part-+([0-9]).exr $(quoted "${results[@]}")"
+setFrame \${SLURM_ARRAY_TASK_ID:-0}
+exec $(quoted "$chromeball" merge) \"\$folder\"/part-+([0-9])${frames:+.\$frame}.exr \"\${outputs[@]/#/-o}\""
 
-array=$(sbatch --parsable --job-name=chromeball --array="$tasks" --requeue \
-  --output="$parts/part-%a.log" "${sbatch[@]}" <<< "$task")
-[[ -z $frames ]] || { echo "$array"; exit; }
+array=$(sbatch --parsable --job-name=chromeball --array="0-$((count * ${shards:-1} - 1))" --requeue \
+  --output="$parts/task-%a.log" "${sbatch[@]}" <<< "$task")
+[[ -n $shards ]] || { echo "$array"; exit; }
 merging=$(sbatch --parsable --job-name=chromeball-merge --dependency=afterany:"$array" \
-  --output="$parts/merge.log" <<< "$merge")
+  ${frames:+--array=0-$((count - 1))} --output="$parts/merge${frames:+-%a}.log" <<< "$merge")
 echo "$array $merging"
