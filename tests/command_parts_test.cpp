@@ -309,7 +309,7 @@ TEST(Checkpoint, OfAShardKeepsItsNumberOfSamples) {
 TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr", image = parts.out / "image.exr";
-  const Words job{"--samples", "500", "--size", "24x16"};
+  const Words job{"--samples", "250", "--size", "24x16"};
   const Stopwatch watch;
   const std::string whole = parts.render("whole.exr", job);
   const double seconds = watch.seconds();

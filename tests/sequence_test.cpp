@@ -259,6 +259,19 @@ TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
   EXPECT_EQ(scene.loaded().scene.textures.at(0).mipLevels, chain);
 }
 
+TEST(Sequence, BuildsNothingTwiceWhereTheProbeTurns) {
+  const Moving model;
+  const std::string path = model.scene("rotation_keys = [[0, 20], [1, 10]]\n");
+  FrameScene scene;
+  RenderJob first = jobAt(path, 0), later = jobAt(path, 1);
+  scene.show(first);
+  const std::shared_ptr<BuiltGeometry> built = scene.prepared().world->accel.built();
+  scene.show(later);
+  EXPECT_EQ(scene.loaded().probe.rotationDegrees(), 10);
+  EXPECT_EQ(scene.prepared().world->accel.built(), built);
+  EXPECT_EQ(built->builds(), 1);
+}
+
 // Two triangles of one mesh, of which one moves, and one that appears after a second: structures
 // over meshes are built once, and what does not move again when its indices change.
 TEST(Sequence, BuildsInstancesOnce) {

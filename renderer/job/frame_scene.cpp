@@ -4,21 +4,25 @@
 namespace chromeball {
 
 void FrameScene::show(RenderJob& job) {
-  const float rotation = float(job.file.settings.get<double>("probe.rotation"));
-  if (loaded_) job.view = loaded_->view;
-  if (loaded_ && !job.composite && loaded_->probe.rotationDegrees() == rotation) {
-    LoadedScene& loaded = *loaded_;
-    const glm::dvec3 origin = loaded.origin;
-    if (!loadFrame(job, loaded, models_)) return;
+  if (!loaded_ || job.composite) return load(job);
+  const Settings& settings = job.file.settings;
+  const float rotation = float(settings.get<double>("probe.rotation"));
+  const bool turns = rotation != loaded_->probe.rotationDegrees();
+  if (turns && !settings.has("probe.file")) return load(job);  // the model's own environment
+  job.view = loaded_->view;
+  const FrameChange change = loadFrame(job, *loaded_, models_);
+  if (change.geometry) {
     const BsdfTables tables = prepared_.world->bsdfTables;
     const std::shared_ptr<BuiltGeometry> built = prepared_.world->accel.built();
     prepared_.world.reset();
     prepared_.world =
-        std::make_unique<const World>(loaded.scene, std::vector<RayMask>(), tables, built);
-    if (loaded.origin != origin)
-      prepared_.lighting = makeLighting(job.strategy, job.settings.mis, loaded);
-    return;
+        std::make_unique<const World>(loaded_->scene, std::vector<RayMask>(), tables, built);
   }
+  if (change.lighting) prepared_.lighting = makeLighting(job.strategy, job.settings.mis, *loaded_);
+}
+
+void FrameScene::load(RenderJob& job) {
+  if (loaded_) job.view = loaded_->view;
   prepared_ = {};
   models_.keepsFiles = true;
   loaded_ = std::make_unique<LoadedScene>(loadScene(job, &models_));

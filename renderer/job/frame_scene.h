@@ -10,16 +10,18 @@ namespace chromeball {
 class FrameScene {
  public:
   // Loads and builds the scene of a job, which becomes final as with loadScene(). All jobs must be
-  // alike but for their times and `orbit`. Files are opened, images decoded, and the probe and its
-  // tables made with the first; meshes, and the acceleration structures over them, where they have
-  // moved or changed. The probe is loaded again where it has turned, and all for composites. Throws
-  // InputError.
+  // alike but for their times, `orbit` and the rotation of the probe. Files are opened, images
+  // decoded, and the tables of the probe made with the first; meshes, and the acceleration
+  // structures over them, are made again where they have moved or changed, the probe where it has
+  // turned, and all for composites. Throws InputError.
   void show(RenderJob& job);
 
   const LoadedScene& loaded() const { return *loaded_; }
   const PreparedScene& prepared() const { return prepared_; }
 
  private:
+  void load(RenderJob& job);
+
   ModelCache models_;
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;

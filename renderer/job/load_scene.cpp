@@ -103,6 +103,14 @@ void chooseSize(RenderJob& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
+Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
+  const Settings& settings = job.file.settings;
+  Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
+              float(settings.get<double>("probe.scale")));
+  loaded.latLong = {};
+  return probe;
+}
+
 // Null unless the surroundings are a model.
 std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
                                      ModelCache& cache, std::vector<std::string>& files) {
@@ -208,9 +216,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
-  Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
-              float(settings.get<double>("probe.scale")));
-  loaded.latLong = {};
+  Probe probe = probeOf(job, loaded);
   LoadedScene result{std::move(scene),  models.camera,    models.view,
                      std::move(loaded), std::move(probe), job.file.surroundings,
                      std::move(room),   models.origin,    std::move(files)};
@@ -220,13 +226,19 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   return result;
 }
 
-bool loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
+FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
+  FrameChange change;
+  if (loaded.probe.rotationDegrees() != float(job.file.settings.get<double>("probe.rotation"))) {
+    loaded.loadedProbe = loadProbeOf(job, loaded.scene);
+    loaded.probe = probeOf(job, loaded.loadedProbe);
+    change.lighting = true;
+  }
   if (!loaded.scene.isAnimated) {
     chooseSize(job, loaded.scene);
     moveToOrigin(job, loaded.origin);
     loaded.camera = cameraOf(job, loaded.scene, loaded.view, loaded.origin);
-    return false;
+    return change;
   }
   PlacedModels models = placeModels(job, cache);
   if (job.file.surroundings && !loaded.room)
@@ -234,15 +246,16 @@ bool loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.messages = loadMessages(job, loaded, models.warnings);
-  const bool moved = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
-  if (moved) loaded.scene = std::move(models.scene);
+  change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
+  if (change.geometry) loaded.scene = std::move(models.scene);
   if (models.origin != loaded.origin) {
+    change.lighting = true;
     loaded.origin = models.origin;
     loaded.surroundings = job.file.surroundings;
     std::vector<std::string> known;
     loaded.room = loadRoom(job, loaded.origin, cache, known);
   }
-  return moved;
+  return change;
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,

@@ -34,9 +34,14 @@ struct LoadedScene {
 // camera. `shared`: of the models' other loads; may be null. Throws InputError.
 LoadedScene loadScene(RenderJob& job, ModelCache* shared = nullptr);
 
-// Replaces the camera and, where a model is animated, what moves with it, for another frame of the
-// same job. Returns whether the scene's geometry or lights changed. Not for composites.
-bool loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
+struct FrameChange {
+  bool geometry = false;  // or lights of the scene
+  bool lighting = false;  // the probe, or its surroundings
+};
+
+// Replaces the camera, the probe if it has turned and, where a model is animated, what moves with
+// it, for another frame of the same job. Not for composites; a probe that turns must have a file.
+FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
 
 // The strategy, with the probe mapped onto the scene's surroundings if it has any. `loaded`
 // must outlive it. Throws InputError for an unknown name.

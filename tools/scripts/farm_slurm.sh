@@ -62,7 +62,7 @@ setFrame() {
   frame=\$(($first + \$1 * $step))
   for i in \"\${!outputs[@]}\"; do
     if [[ -n '$frames' && \${outputs[i]} =~ ^(|.*[^#])(#+)([^#]*)$ ]]; then
-      printf -v outputs[i] '%s%0*d%s' \"\${BASH_REMATCH[1]}\" \${#BASH_REMATCH[2]} \$frame \"\${BASH_REMATCH[3]}\"
+      printf -v \"outputs[i]\" '%s%0*d%s' \"\${BASH_REMATCH[1]}\" \${#BASH_REMATCH[2]} \$frame \"\${BASH_REMATCH[3]}\"
     fi
   done
 }"

@@ -20,9 +20,9 @@ bool isDecoded(const TexelGrid& grid) { return grid.width > 0; }
 
 struct Source {
   const ImageToDecode* image;
-  bool isRead = false;  // whether the texels are taken from the file
-  Bytes storage;
-  std::span<const uint8_t> bytes;
+  bool isRead = false;    // whether the texels are taken from the file
+  size_t length = 0;      // of it, bytes
+  double texelBytes = 0;  // of the image, by the header of its file
 };
 
 std::vector<Source> sourcesOf(const GltfFile& file, const std::vector<ImageToDecode>& images) {
@@ -32,20 +32,22 @@ std::vector<Source> sourcesOf(const GltfFile& file, const std::vector<ImageToDec
     Source& source = sources.emplace_back();
     source.image = &image;
     source.isRead = !isDecoded(*image.grid) || image.grid->file;
-    if (source.isRead) source.bytes = file.image(image.image, source.storage);
+    source.texelBytes = double(image.grid->byteCount());
+    if (!source.isRead) continue;
+    Bytes storage;  // freed at once: all files of a model may not fit into memory
+    const std::span<const uint8_t> bytes = file.image(image.image, storage);
+    source.length = bytes.size();
+    source.texelBytes = double(decodedBytes(bytes));
   }
   return sources;
 }
 
-// Bytes of the texels to decode and of the mip levels to make, by the headers of the files.
+// Bytes of the texels to decode and of the mip levels to make.
 double bytesOf(const std::vector<Source>& sources) {
   double bytes = 0;
-  for (const Source& source : sources) {
-    const TexelGrid& grid = *source.image->grid;
-    const double texels =
-        double(source.isRead ? decodedBytes(source.bytes) : uint64_t(grid.byteCount()));
-    bytes += texels * ((isDecoded(grid) ? 0 : 1) + double(source.image->chains.size()) / 3);
-  }
+  for (const Source& s : sources)
+    bytes +=
+        s.texelBytes * ((isDecoded(*s.image->grid) ? 0 : 1) + double(s.image->chains.size()) / 3);
   return bytes;
 }
 
@@ -62,7 +64,9 @@ void decode(const Source& source, const GltfFile& file, TexelFile* texelFile) {
   TexelGrid& grid = *source.image->grid;
   TexelGrid decoded;
   if (source.isRead) {
-    DecodedImage d = decodeImage(source.bytes, file.describeImage(source.image->image));
+    Bytes storage;
+    DecodedImage d = decodeImage(file.image(source.image->image, storage),
+                                 file.describeImage(source.image->image));
     decoded = {d.width, d.height, std::move(d.texels8), std::move(d.texelsFloat)};
   }
   const TexelGrid& from = source.isRead ? decoded : grid;
@@ -77,7 +81,7 @@ void decode(const Source& source, const GltfFile& file, TexelFile* texelFile) {
 // Long files come first, so that no thread works on one alone at the end.
 void decodeInParallel(std::vector<Source>& sources, const GltfFile& file) {
   std::sort(sources.begin(), sources.end(),
-            [](const Source& a, const Source& b) { return a.bytes.size() > b.bytes.size(); });
+            [](const Source& a, const Source& b) { return a.length > b.length; });
   std::atomic<size_t> next = 0;
   tbb::parallel_for(size_t(0), sources.size(),
                     [&](size_t) { decode(sources[next++], file, nullptr); });
@@ -100,10 +104,7 @@ void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images
           Remedy{"memory", {}});
     return decodeInParallel(sources, file);
   }
-  for (Source& source : sources) {
-    decode(source, file, cache.file.get());
-    source.storage = {};
-  }
+  for (const Source& source : sources) decode(source, file, cache.file.get());
 }
 
 }  // namespace chromeball
