@@ -9,6 +9,7 @@
 #include "job/load_messages.h"
 #include "job/memory_estimate.h"
 #include "lighting/finite_surroundings.h"
+#include "lighting/scene_suns.h"
 #include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
@@ -62,9 +63,9 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
     return own;
   }
   if (!path) {
-    const bool lit =
-        !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(),
-                                             [](const Material& m) { return m.emits(); });
+    const bool lit = !scene.lights.empty() || !sunsOf(file.lamps).empty() ||
+                     std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const Material& m) { return m.emits(); });
     if (!lit)
       throw InputError(
           fmt::format("{}: nothing lights the scene; it needs a probe", file.models.front().file),
@@ -217,9 +218,17 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
-  LoadedScene result{std::move(scene),  models.camera,    models.view,
-                     std::move(loaded), std::move(probe), job.file.surroundings,
-                     std::move(room),   models.origin,    std::move(files)};
+  LoadedScene result{std::move(scene),
+                     models.camera,
+                     models.view,
+                     std::move(loaded),
+                     std::move(probe),
+                     job.file.surroundings,
+                     std::move(room),
+                     models.origin,
+                     sunsOf(job.file.lamps),
+                     settings.getIfGiven<double>("lighting.sun_angle"),
+                     std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
   checkMemory(job, result);
   result.messages = loadMessages(job, result, models.warnings);
@@ -260,10 +269,13 @@ FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded) {
-  auto lighting = makeStrategy(strategy.name, loaded.probe, mis, strategy.location);
-  if (!loaded.surroundings) return lighting;
-  return std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                              *loaded.surroundings, loaded.room.get());
+  auto lighting =
+      makeStrategy(strategy.name, loaded.probe, {mis, loaded.sunAngle}, strategy.location);
+  if (loaded.surroundings)
+    lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
+                                                    *loaded.surroundings, loaded.room.get());
+  if (loaded.suns.empty()) return lighting;
+  return std::make_unique<SceneSuns>(std::move(lighting), loaded.suns);
 }
 
 }  // namespace chromeball

@@ -22,6 +22,8 @@ struct LoadedScene {
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
+  std::vector<SunLamp> suns;                 // of the scene file, besides the probe
+  std::optional<double> sunAngle;            // StrategyOptions::sunAngle
   std::vector<std::string> files;            // all that were read; no output may replace one
   Messages messages;  // of the job's settings, of the models and of the probe
 
@@ -43,7 +45,8 @@ struct FrameChange {
 // it, for another frame of the same job. Not for composites; a probe that turns must have a file.
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
 
-// The strategy, with the probe mapped onto the scene's surroundings if it has any. `loaded`
+// The strategy, with the probe mapped onto the scene's surroundings and with the scene file's suns,
+// if it has any. `loaded`
 // must outlive it. Throws InputError for an unknown name.
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded);

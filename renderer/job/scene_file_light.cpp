@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_light.h"
 
+#include "probe/sky.h"
+
 namespace chromeball {
 namespace {
 
@@ -9,6 +11,7 @@ struct LampType {
   std::vector<std::string_view> keys;
 };
 const std::vector<LampType> kTypes = {
+    {"sun", {"type", "name", "direction", "angle", "radiance", "irradiance", "visible"}},
     {"point", {"type", "name", "position", "intensity", "power", "range"}},
     {"spot",
      {"type", "name", "position", "direction", "intensity", "power", "range", "inner_angle",
@@ -17,9 +20,10 @@ const std::vector<LampType> kTypes = {
 };
 
 const LampType& typeOf(const Section& light) {
-  const std::string name = light.required("type").choice();
+  const Entry type = light["type"];
+  const std::string name = type ? type.choice() : "sun";
   return *std::find_if(kTypes.begin(), kTypes.end(),
-                       [&](const LampType& type) { return type.name == name; });
+                       [&](const LampType& t) { return t.name == name; });
 }
 
 // A number for grey, or three.
@@ -67,6 +71,22 @@ DiscLamp readDisc(const Section& light) {
   return disc;
 }
 
+SunLamp readSun(const Section& light) {
+  const Entry radiance = light["radiance"], irradiance = light["irradiance"];
+  if (!radiance == !irradiance)
+    failAt((radiance ? irradiance.location() : light.location()),
+           "[[light]] of type sun needs either `radiance` or `irradiance`");
+  SunLamp lamp{{glm::dvec3(readDirection(light)), {}, kSunDiameter}, true};
+  if (const Entry e = light["angle"]) lamp.sun.angle = e.number();
+  if (const Entry e = light["visible"]) lamp.isVisible = e.flag();
+  lamp.sun.direction = glm::normalize(lamp.sun.direction);
+  lamp.sun.irradiance = glm::dvec3(1);
+  const glm::dvec3 ofOne = lamp.sun.radiance();
+  lamp.sun.irradiance =
+      irradiance ? glm::dvec3(readColor(irradiance)) : glm::dvec3(readColor(radiance)) / ofOne;
+  return lamp;
+}
+
 }  // namespace
 
 Lamp readLamp(const Entry& entry) {
@@ -74,8 +94,12 @@ Lamp readLamp(const Entry& entry) {
   const Section light(entry.file, "light", *entry.node->as_table());
   const LampType& type = typeOf(light);
   light.allowOnly(type.keys, fmt::format("a {} light", type.name));
+  Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}, {}};
+  if (type.name == "sun") {
+    lamp.sun = readSun(light);
+    return lamp;
+  }
   const vec3 position = light.required("position").vector();
-  Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}};
   if (type.name == "disc")
     (lamp.disc = readDisc(light))->position = position;
   else

@@ -14,5 +14,6 @@ std::vector<Setting> commandRows();    // options without a key
 
 inline constexpr Range kPositive{.min = 0, .excludesMin = true};
 inline constexpr Range kNotNegative{.min = 0};
+inline constexpr Range kSunAngle{.min = 0.01, .max = 90};
 
 }  // namespace chromeball

@@ -13,12 +13,12 @@ std::vector<Setting> lightRows() {
   const std::string_view color = "a number (grey), or three";
   add({.key = "type",
        .type = Choice,
-       .absent = "required",
+       .fallback = "sun",
        .choices =
            [] {
-             return std::vector<std::string_view>{"point", "spot", "disc"};
+             return std::vector<std::string_view>{"sun", "point", "spot", "disc"};
            },
-       .help = "The kind of lamp."});
+       .help = "The kind of lamp. A sun is a distant disc besides those in the probe."});
   add({.key = "name",
        .type = Name,
        .fallback = "light",
@@ -27,13 +27,14 @@ std::vector<Setting> lightRows() {
        .type = Compound,
        .form = "three numbers",
        .unit = "metres",
-       .absent = "required",
+       .absent = "required, but for a sun",
        .help = "Position of the lamp."});
   add({.key = "direction",
        .type = Compound,
        .form = "three numbers",
-       .absent = "required for a spot or disc",
-       .help = "Direction in which a spot or disc emits; of any length except 0."});
+       .absent = "required, but for a point light",
+       .help = "Direction in which a spot or disc emits, or from the scene to a sun; of any length "
+               "except 0."});
   add({.key = "intensity",
        .type = Compound,
        .form = color,
@@ -47,7 +48,25 @@ std::vector<Setting> lightRows() {
        .range = kNotNegative,
        .unit = "W/(m^2 sr)",
        .absent = "from `power`",
-       .help = "Radiance of a disc."});
+       .help = "Radiance of a disc or sun."});
+  add({.key = "irradiance",
+       .type = Compound,
+       .form = color,
+       .range = kNotNegative,
+       .unit = "W/m^2",
+       .absent = "from `radiance`",
+       .help = "Irradiance of a sun on a surface that faces it, in place of `radiance`."});
+  add({.key = "angle",
+       .type = Compound,
+       .form = "a number",
+       .range = kSunAngle,
+       .unit = "degrees",
+       .absent = "0.5323, of the Sun",
+       .help = "Angular diameter of a sun."});
+  add({.key = "visible",
+       .type = Flag,
+       .fallback = "true",
+       .help = "Whether the camera and mirrors see a sun."});
   add({.key = "power",
        .type = Compound,
        .form = color,

@@ -183,6 +183,15 @@ void addLighting(std::vector<Setting>& rows) {
              return Names{"off", "balance", "power"};
            },
        .help = "Heuristic of multiple importance sampling."});
+  add({.key = "sun_angle",
+       .option = "sun-angle",
+       .argument = "DEGREES",
+       .type = Number,
+       .range = kSunAngle,
+       .unit = "degrees",
+       .absent = "as measured in the probe",
+       .help = "Diameter of the discs of the strategy `suns`; their irradiance stays. The Sun's is "
+               "0.5323."});
   add({.key = "lights",
        .option = "lights",
        .argument = "FACTOR",

@@ -32,23 +32,28 @@ using Strategy = std::unique_ptr<LightingStrategy>;
 constexpr int kUnlimited = std::numeric_limits<int>::max();
 
 template <class Sampler>
-Strategy sampling(const Probe& probe, Mis, int) {
+Strategy sampling(const Probe& probe, const StrategyOptions&, int) {
   return std::make_unique<Sampler>(probe);
 }
 
 // With MIS compensation if MIS is on.
 template <class Sampler>
-Strategy compensated(const Probe& probe, Mis mis, int) {
-  return std::make_unique<Sampler>(probe, mis != Mis::Off);
+Strategy compensated(const Probe& probe, const StrategyOptions& options, int) {
+  return std::make_unique<Sampler>(probe, options.mis != Mis::Off);
 }
 
-Strategy strata(const Probe& probe, Mis, int count) {
+Strategy suns(const Probe& probe, const StrategyOptions& options, int) {
+  return std::make_unique<Suns>(probe, options.mis != Mis::Off, options.sunAngle);
+}
+
+Strategy strata(const Probe& probe, const StrategyOptions&, int count) {
   return std::make_unique<Strata>(probe, count);
 }
 
 // A method whose strategy replaces the probe by its lights, made with seed 0.
 LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights) {
-  const auto makeStrategy = [make = lights.make](const Probe& probe, Mis, int count) {
+  const auto makeStrategy = [make = lights.make](const Probe& probe, const StrategyOptions&,
+                                                 int count) {
     const MadeLights made = make(probe.latLong(), {.count = count});
     return std::make_unique<DeltaLights>(probe, made.lights, made.ambient.value_or(Rgb(0)));
   };
@@ -129,7 +134,7 @@ const std::vector<LightingMethod>& lightingMethods() {
       {"uniform", "samples uniform over the hemisphere", {}, sampling<Uniform>},
       {"importance", "samples proportional to luminance", {}, compensated<Importance>},
       {"product", "samples proportional to luminance x cosine", {}, sampling<Product>},
-      {"suns", "each sun in the probe as a disc of its own", {}, compensated<Suns>, sunLights()},
+      {"suns", "each sun in the probe as a disc of its own", {}, suns, sunLights()},
       replacing("median-cut", "a light for each region of equal energy",
                 constellation(kRegions, medianCut)),
       replacing("variance-cut", "a light for each region of small variance",

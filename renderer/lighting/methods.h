@@ -44,7 +44,8 @@ struct LightingMethod {
 
   // As a strategy for rendering: NAME, or NAME:COUNT.
   CountRange counts;
-  std::function<std::unique_ptr<LightingStrategy>(const Probe&, Mis, int count)> makeStrategy;
+  std::function<std::unique_ptr<LightingStrategy>(const Probe&, const StrategyOptions&, int count)>
+      makeStrategy;
 
   // As directional lights that replace a lat-long map.
   struct Lights {

@@ -53,7 +53,8 @@ std::string resolveStrategy(const std::string& name) {
   return method && method->counts.max > 0 ? fmt::format("{}:{}", name, method->counts.usual) : name;
 }
 
-std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
+std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
+                                               const StrategyOptions& options,
                                                const std::string& location) {
   const std::string resolved = resolveStrategy(name);
   const size_t colon = resolved.find(':');
@@ -64,7 +65,7 @@ std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Pr
   int count = 0;
   if (colon != std::string::npos)
     count = parseCount(std::string_view(resolved).substr(colon + 1), *method, location);
-  return method->makeStrategy(probe, mis, count);
+  return method->makeStrategy(probe, options, count);
 }
 
 }  // namespace chromeball

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -87,11 +88,20 @@ class LightingStrategy {
 // The heuristic that weights light samples and BSDF samples (Veach 1997).
 enum class Mis { Off, Balance, Power };
 
+struct StrategyOptions {
+  Mis mis;
+  std::optional<double> sunAngle;  // diameter of the strategy suns' discs, degrees; else measured
+
+  StrategyOptions(Mis m = Mis::Balance, std::optional<double> angle = {})
+      : mis(m), sunAngle(angle) {}
+};
+
 // Makes a strategy from its name on the command line, "NAME" or "NAME:COUNT"; "auto" is the
 // unbiased strategy that is best for most scenes. The probe must outlive the strategy. Throws
 // InputError for an unknown name, with a message that begins with `location` (an option, or
 // FILE:LINE).
-std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe, Mis mis,
+std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
+                                               const StrategyOptions& options,
                                                const std::string& location);
 
 // Replaces "auto" by a strategy, and appends the default count if none is given.

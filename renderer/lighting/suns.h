@@ -6,15 +6,13 @@
 #include <optional>
 
 #include "lighting/importance.h"
-#include "math/cdf.h"
-#include "math/frame.h"
+#include "lighting/sky_discs.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {
 
-// Takes one stratified sample of each sun and one of the remainder. If there are more than two
-// suns, chooses one of them with probability proportional to power: with four suns this needs 45%
-// fewer rays for the same noise. All rays, including those of the camera and mirrors, see the
+// Takes one stratified sample of each sun, or of one of many (sky_discs.h), and one of the
+// remainder. All rays, including those of the camera and mirrors, see the
 // remainder plus the discs, so energy is counted once. The only bias is the shape of the suns,
 // visible in highlights and penumbras: a disc with the irradiance and the spread of the source that
 // it replaces (probe/sun_extraction.h). (At a pole the interpolation of the last row adds light to
@@ -38,27 +36,12 @@ class Suns : public LightingStrategy {
   bool unbiased() const override { return discs_.empty(); }
 
  private:
-  // Discs are measured by chords. The chord from the centre to wi is accurate for discs of any
-  // size, and its square is uniform over the disc's solid angle, pi chord^2.
-  struct Disc {
-    Frame frame;  // z: towards the centre
-    float squaredChord;
-    Rgb radiance;
-    float pdf;  // over solid angle, inside this disc, of all disc samples together
-
-    bool contains(const vec3& wi) const {
-      const vec3 to = wi - frame.z;
-      return glm::dot(to, to) <= squaredChord;
-    }
-    vec3 direction(float u, float v) const;
-  };
-  Suns(const SunExtraction& extraction, float rotationDegrees, bool compensated,
+  Suns(SunExtraction extraction, float rotationDegrees, bool compensated,
        std::optional<double> angle);
 
   Probe remainder_;
   Importance importance_;
-  std::vector<Disc> discs_;
-  std::optional<CdfRows> choice_;  // of one sun by power; empty if all are sampled
+  SkyDiscs discs_;
 };
 
 }  // namespace chromeball

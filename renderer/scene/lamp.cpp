@@ -45,7 +45,15 @@ float PunctualLight::intensityOfOneWatt() const {
   return 1 / (2 * kPi * ((1 - cosInner) + (cosInner - cosOuter) / 3));
 }
 
+std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps) {
+  std::vector<SunLamp> suns;
+  for (const Lamp& lamp : lamps)
+    if (lamp.sun) suns.push_back(*lamp.sun);
+  return suns;
+}
+
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
+  if (lamp.sun) return;
   if (lamp.punctual) {
     scene.lights.push_back(*lamp.punctual);
     scene.lights.back().position = moved(lamp.punctual->position, origin);

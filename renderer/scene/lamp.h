@@ -2,19 +2,30 @@
 // Lamps that a scene file adds to the models ([[light]]).
 #pragma once
 
+#include "probe/sun.h"
 #include "scene/scene.h"
 
 namespace chromeball {
 
-// Exactly one of `punctual` and `disc` is set.
+// A distant disc.
+struct SunLamp {
+  Sun sun;
+  bool isVisible = true;  // to the camera and mirrors
+};
+
+// Exactly one of `punctual`, `disc` and `sun` is set.
 struct Lamp {
   std::string name;  // of its node
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;
+  std::optional<SunLamp> sun;
 };
 
-// Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
-// single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
+std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps);
+
+// Adds the lamp, unless it is a sun, to the scene, whose origin is at `origin` in world space. A
+// disc becomes a single-sided emitting polygon of kDiscSides sides with exactly the area of the
+// disc.
 inline constexpr int kDiscSides = 128;
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 
