@@ -11,6 +11,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeConvertCommand(*probe);
   addProbeSynthCommand(*probe);
   addProbeIrradianceCommand(*probe);
+  addProbeRaysCommand(*probe);
 }
 
 }  // namespace chromeball

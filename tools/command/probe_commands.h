@@ -10,5 +10,6 @@ void addProbeInfoCommand(CLI::App& probe);
 void addProbeConvertCommand(CLI::App& probe);
 void addProbeSynthCommand(CLI::App& probe);
 void addProbeIrradianceCommand(CLI::App& probe);
+void addProbeRaysCommand(CLI::App& probe);
 
 }  // namespace chromeball
