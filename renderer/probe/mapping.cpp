@@ -166,6 +166,11 @@ std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {
   }
 }
 
+dvec3 directionAt(double azimuth, double elevation) {
+  const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
+  return {-std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
+}
+
 dvec3 texelDirection(const ImageSize& latLong, int x, int y) {
   return *uvToDirection(Mapping::LatLong, {(x + 0.5) / latLong.width, (y + 0.5) / latLong.height});
 }

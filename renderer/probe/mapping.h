@@ -39,6 +39,10 @@ std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv);
 // Whether `uv` is inside the disc or the faces.
 bool showsDirection(Mapping mapping, const dvec2& uv);
 
+// The unit direction at `azimuth` degrees from -Z, counter-clockwise seen from above, and
+// `elevation` degrees above the horizon.
+dvec3 directionAt(double azimuth, double elevation);
+
 // The unit direction at the centre of texel (x, y) of a lat-long map.
 dvec3 texelDirection(const ImageSize& latLong, int x, int y);
 

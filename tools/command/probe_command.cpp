@@ -10,6 +10,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
   addProbeSynthCommand(*probe);
+  addProbeEditCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
 }

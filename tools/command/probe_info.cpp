@@ -39,6 +39,13 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"max", toJson(info.max)},
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
+          {"max_over_mean", info.maxOverMean},
+          {"robust_range", info.robustRange},
+          {"plateau",
+           {{"texels", info.plateau.texels},
+            {"solid_angle", info.plateau.solidAngle},
+            {"looks_clipped", info.plateau.looksClipped}}},
+          {"lost_if_clipped_at_white", info.lostIfClippedAtWhite},
           {"invalid_texels",
            {{"nan", probe.repair.nan},
             {"infinite", probe.repair.infinite},
@@ -70,6 +77,15 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
              triple(info.mean), triple(info.max));
   fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.fractionAtMaximum);
   fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
+  fmt::print("max / mean       {:.4g} of the luminance\n", info.maxOverMean);
+  fmt::print("robust range     {:.3g} : 1, without 1% of the sphere at either end\n",
+             info.robustRange);
+  fmt::print(
+      "plateau          {} texel{}, {:.3g} sr, within 0.2% of the maximum{}\n", info.plateau.texels,
+      info.plateau.texels == 1 ? "" : "s", info.plateau.solidAngle,
+      info.plateau.looksClipped ? ": looks clipped, unless it is a lamp of even radiance" : "");
+  fmt::print("clipped at white {:.3g}% of the irradiance lost, exposed for a mean of 0.18\n",
+             100 * info.lostIfClippedAtWhite);
   fmt::print("invalid texels   {}\n",
              probe.repair.total() > 0 ? describe(probe.repair) + ", repaired" : "none");
   fmt::print("mean radiance    {} over the sphere\n", triple(info.meanRadiance));
