@@ -13,6 +13,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeEditCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
+  addProbePlotCommand(*probe);
 }
 
 }  // namespace chromeball

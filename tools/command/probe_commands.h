@@ -12,5 +12,6 @@ void addProbeSynthCommand(CLI::App& probe);
 void addProbeEditCommand(CLI::App& probe);
 void addProbeIrradianceCommand(CLI::App& probe);
 void addProbeRaysCommand(CLI::App& probe);
+void addProbePlotCommand(CLI::App& probe);
 
 }  // namespace chromeball
