@@ -83,6 +83,7 @@ TEST(RowDistribution, ThrowsWhereNothingIsSampled) {
   EXPECT_THROW(distributionOf(constantProbe({8, 4}, Rgb(0)), 2, {}, 4), InputError);
   EXPECT_THROW(distributionOf(spot(8, 4, 1, 0, 1, 0), 3, {}, 4), InputError);
   EXPECT_THROW(distributionOf(spot(64, 32, 1, 16, 1, 0), 16, {10, -10}, 4), InputError);
+  EXPECT_THROW(distributionOf(constantProbe({8, 4}, Rgb(3.3e38f)), 2, {}, 4), InputError);
 }
 
 // HDRI book, figure 9.36: most samples fall on a few texels of the row, its windows.

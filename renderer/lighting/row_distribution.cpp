@@ -74,6 +74,8 @@ RowDistribution rowDistribution(const Probe& probe, const Importance& importance
     const double number = (i + 0.5) / count, u = begin + number * found.share;
     const vec3 d = importance.sampleDirection(u - std::floor(u), v).wi;
     const double azimuth = std::atan2(double(-d.x), double(-d.z)) * 180 / kPiD;
+    if (!std::isfinite(azimuth))
+      throwInput("{}: radiance near the largest float cannot be sampled; scale it down", location);
     // The same azimuth to the right of the left edge, but for rounding.
     const double turns = std::floor((found.azimuths.front() - azimuth) / 360 + 1e-6);
     found.samples.push_back({number, azimuth + 360 * turns});

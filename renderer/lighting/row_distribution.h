@@ -37,7 +37,7 @@ struct RowDistribution {
 };
 
 // The cells that cover the range, and `count` samples, of the numbers (i + 1/2) / count. Throws
-// InputError, begun by `location`, if no light is sampled there.
+// InputError, begun by `location`, if no light is sampled there, or it is near the largest float.
 RowDistribution rowDistribution(const Probe& probe, const Importance& importance, int row,
                                 const AzimuthRange& range, int count, std::string_view location);
 

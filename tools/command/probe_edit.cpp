@@ -112,9 +112,9 @@ float clipLevel(const Edits& edits, const Image& latLong) {
 void apply(const Edits& edits, const std::string& file, Image& latLong) {
   if (edits.nadirRadius > 0 && fillNadir(latLong, edits.nadirRadius) == 0)
     throwInput(
-        "--fill-nadir: no texel's centre is within {} degrees of straight down: the {} rows "
+        "--fill-nadir: no texel's centre is within {} degrees of straight down: the rows "
         "of {} are {:.3g} degrees high",
-        edits.nadirRadius, latLong.height, file, 180. / latLong.height);
+        edits.nadirRadius, file, 180. / latLong.height);
   if (edits.isMirrored) mirrorAtHorizon(latLong);
   if (edits.ground) replaceBelowHorizon(latLong, *edits.ground);
   for (const Region& region : edits.regions)

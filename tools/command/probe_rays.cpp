@@ -62,12 +62,18 @@ struct Normals {
   }
 };
 
+// A whole number in JSON where that has one.
+Json countOf(double rays) {
+  constexpr double kLargest = 9e18;
+  return rays < kLargest ? Json(uint64_t(rays)) : Json(rays);
+}
+
 Json toJson(const Arguments& arguments, const Normals& normals) {
   Json rays, variances;
   for (const Sampling& sampling : kSamplings) {
     Json raysHere, variancesHere;
     const auto add = [&](const char* normal, double variance, bool isLit) {
-      raysHere[normal] = isLit ? Json(raysForError(variance, arguments.error)) : Json();
+      raysHere[normal] = isLit ? countOf(raysForError(variance, arguments.error)) : Json();
       variancesHere[normal] = isLit ? Json(variance) : Json();
     };
     const bool isLit = !normals.lit.empty();
