@@ -99,7 +99,8 @@ TEST(SlowCommandProbe, EveryKindAndFormat) {
 TEST(SlowCommandProbe, ConvertRoundTrip) {
   const TemporaryFolder folder;
   run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
-  for (const char* to : {"angular", "mirror-ball", "cube-cross", "cube-strip", "lat-long"}) {
+  for (const char* to :
+       {"angular", "mirror-ball", "cube-cross", "cube-strip", "cube-3x2", "lat-long"}) {
     run({"probe", "convert", folder / "a.exr", folder / "b.exr", "--to", to});
     run({"probe", "convert", folder / "b.exr", folder / "c.exr", "--from", to, "--to", "lat-long",
          "--size", "64x32"});
@@ -113,6 +114,29 @@ TEST(SlowCommandProbe, ConvertRoundTrip) {
   run({"probe", "convert", folder / "a.exr", folder / "w.exr", "--to", "cube-cross", "--size",
        "64x48"});
   EXPECT_EQ(readImage(folder / "w.exr").width, 64);
+}
+
+TEST(SlowCommandProbe, AGridOfFacesIsDetectedWithANote) {
+  const TemporaryFolder folder;
+  run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
+  run({"probe", "convert", folder / "a.exr", folder / "grid.exr", "--to", "cube-3x2"});
+  const CommandResult back =
+      run({"probe", "convert", folder / "grid.exr", folder / "b.exr", "--to", "lat-long"});
+  EXPECT_NE(back.error.find("detected as cube-3x2"), std::string::npos) << back.error;
+  const json info =
+      json::parse(run({"probe", "info", folder / "grid.exr", "--json", "--mapping-report"}).out);
+  EXPECT_EQ(info["mapping"], "cube-3x2");
+  EXPECT_EQ(info["width"], 48);
+  EXPECT_EQ(info["height"], 32);
+  EXPECT_EQ(info["mapping_report"]["texels"], 48 * 32);
+  EXPECT_NEAR(info["mapping_report"]["max_over_min"].get<double>(), 4.506,
+              0.001);  // 3 sqrt(3) for many texels
+  EXPECT_NE(run({"probe", "info", folder / "a.exr", "--mapping-report"}).out.find("solid angle"),
+            std::string::npos);
+  expectError({"probe", "convert", folder / "a.exr", folder / "c.exr", "--to", "cube-3x2", "--size",
+               "64x64"},
+              "3:2, of square faces");
+  expectError({"probe", "info", folder / "a.exr", "--mapping", "cube-3x2"}, "3:2");
 }
 
 TEST(SlowCommandProbe, BadInputIsRejected) {

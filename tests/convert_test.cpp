@@ -18,7 +18,7 @@ namespace {
 constexpr std::array kMappings = {Mapping::LatLong,         Mapping::AngularMap,
                                   Mapping::MirrorBall,      Mapping::VerticalCross,
                                   Mapping::HorizontalCross, Mapping::HorizontalStrip,
-                                  Mapping::VerticalStrip};
+                                  Mapping::VerticalStrip,   Mapping::CubeGrid};
 
 Image onlyFilledWhereValid(Mapping mapping, const ImageSize& size, float inside, float outside) {
   Image image(size.width, size.height, 3);
@@ -71,6 +71,17 @@ TEST(Convert, PreservesTheFirstMomentOfAGradient) {
     // The mean of 2 (1 + slope . D) D is 2 slope / 3.
     EXPECT_LT(glm::distance(firstMoment(back), 2.0 / 3 * slope), 4e-3) << mappingName(through);
   }
+}
+
+// The mirror ball's texels have equal solid angles, so the mean over its square is the probe's mean
+// times the disc's share of the square.
+TEST(Convert, TheMeanOfAMirrorBallIsTheMeanRadiance) {
+  const Image probe = gradientProbe({256, 128}, Rgb(2), {0.5, -0.3, 0.6});
+  const Image ball = convert(probe, Mapping::LatLong, Mapping::MirrorBall, {1000, 1000});
+  double sum = 0;
+  for (const float channel : ball.texels) sum += double(channel);
+  // Texels that the rim cuts have the mean of the part inside.
+  EXPECT_NEAR(sum / double(ball.texels.size()) * 4 / kPiD / meanRadiance(probe).x, 1, 0.003);
 }
 
 TEST(Convert, SameSizeIsACopy) {

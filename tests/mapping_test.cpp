@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kMappings = {Mapping::LatLong,         Mapping::AngularMap,
                                   Mapping::MirrorBall,      Mapping::VerticalCross,
                                   Mapping::HorizontalCross, Mapping::HorizontalStrip,
-                                  Mapping::VerticalStrip};
+                                  Mapping::VerticalStrip,   Mapping::CubeGrid};
 
 // Directions over the whole sphere and special cases: axes, edges and corners of the cube, both
 // sides of the seam, close to the poles and to the view axis.
@@ -96,6 +96,15 @@ TEST(Mapping, CentresAreForwardAndTopsAreUp) {
   expectUv(Mapping::VerticalCross, {1, 0, 0}, 5.0 / 6, 3.0 / 8);
   expectUv(Mapping::HorizontalCross, {0, 0, 1}, 7.0 / 8, 0.5);
   expectUv(Mapping::VerticalStrip, {0, 0, -1}, 0.5, 11.0 / 12);
+  // +X -X +Y / -Y +Z -Z
+  expectUv(Mapping::CubeGrid, {1, 0, 0}, 1.0 / 6, 1.0 / 4);
+  expectUv(Mapping::CubeGrid, {-1, 0, 0}, 3.0 / 6, 1.0 / 4);
+  expectUv(Mapping::CubeGrid, {0, 1, 0}, 5.0 / 6, 1.0 / 4);
+  expectUv(Mapping::CubeGrid, {0, -1, 0}, 1.0 / 6, 3.0 / 4);
+  expectUv(Mapping::CubeGrid, {0, 0, 1}, 3.0 / 6, 3.0 / 4);
+  expectUv(Mapping::CubeGrid, {0, 0, -1}, 5.0 / 6, 3.0 / 4);
+  expectUv(Mapping::CubeGrid, {0, 0.5, -1}, 5.0 / 6, 5.0 / 8);  // up is up, +X is right of -Z
+  expectUv(Mapping::CubeGrid, {0.5, 0, -1}, 11.0 / 12, 3.0 / 4);
   // The whole rim is the direction opposite to the view axis.
   EXPECT_NEAR(glm::distance(directionToUv(Mapping::AngularMap, {0, 0, 1}), dvec2(0.5)), 0.5, 1e-12);
   EXPECT_FALSE(uvToDirection(Mapping::AngularMap, {0.02, 0.02}));
@@ -139,10 +148,87 @@ TEST(Mapping, SolidAnglesSumToTheSphere) {
   }
 }
 
+// The solid angle of a small square of the map around uv, over its area, from directions alone.
+double measuredJacobian(Mapping mapping, const dvec2& uv) {
+  constexpr double kStep = 1e-5;
+  const auto derivative = [&](const dvec2& step) {
+    return (*uvToDirection(mapping, uv + step) - *uvToDirection(mapping, uv - step)) / (2 * kStep);
+  };
+  return glm::length(glm::cross(derivative({kStep, 0}), derivative({0, kStep})));
+}
+
+// The ideal mirror ball has equal areas: 4 pi over the disc's pi / 4.
+TEST(Mapping, TheMirrorBallIsOfEqualArea) {
+  for (int i = 1; i < 20; ++i)
+    for (const double angle : {0.1, 1.3, 2.2, 4.0, 5.9}) {
+      const double radius = 0.5 * i / 20;
+      const dvec2 uv = 0.5 + radius * dvec2(std::cos(angle), std::sin(angle));
+      EXPECT_NEAR(measuredJacobian(Mapping::MirrorBall, uv) / 16, 1, 1e-6) << radius;
+    }
+  // Also close to the rim, where a step in the image is a large one in direction: the solid angle
+  // of a ring is 2 pi times the difference of -z.
+  double before = -1;
+  for (int i = 1; i <= 1000; ++i) {
+    const double radius = 0.5 * i / 1000;
+    const double z = uvToDirection(Mapping::MirrorBall, {0.5 + radius, 0.5})->z;
+    const double area = kPiD * (radius * radius - 0.25 * std::pow((i - 1) / 1000., 2));
+    EXPECT_NEAR(2 * kPiD * (z - before) / area / 16, 1, 1e-6) << radius;
+    before = z;
+  }
+}
+
+// HDRI book, section 9.4: the map's radius is proportional to the angle from its centre, and
+// lengths along circles about the centre are stretched by angle / sin(angle).
+TEST(Mapping, TheAngularMapIsEvenAlongItsRadius) {
+  for (int i = 1; i < 20; ++i) {
+    const double theta = kPiD * i / 20, radius = 0.5 * i / 20, step = 1e-6;
+    const auto at = [&](double x, double y) {
+      return *uvToDirection(Mapping::AngularMap, {0.5 + x, 0.5 + y});
+    };
+    const double radial = glm::distance(at(radius + step, 0), at(radius - step, 0)) / (2 * step);
+    const double tangential = glm::distance(at(radius, step), at(radius, -step)) / (2 * step);
+    EXPECT_NEAR(radial / (2 * kPiD), 1, 1e-6);
+    EXPECT_NEAR(radial / tangential, theta / std::sin(theta), 1e-5 * theta / std::sin(theta));
+    EXPECT_NEAR(measuredJacobian(Mapping::AngularMap, {0.5 + radius, 0.5}) /
+                    solidAngleJacobian(Mapping::AngularMap, {0.5 + radius, 0.5}),
+                1, 1e-6);
+  }
+}
+
+// Texels in the centre of a face cover 3 sqrt(3) times the solid angle of those in its corners.
+TEST(Mapping, CubeTexelsDifferByAFactorOfFive) {
+  for (const Mapping mapping : kMappings) {
+    const auto [columns, rows] = faceLayout(mapping);
+    if (columns * rows == 1) continue;
+    const TexelSolidAngles angles = texelSolidAngles(mapping, {512 * columns, 512 * rows});
+    EXPECT_NEAR(angles.max / angles.min, 3 * std::sqrt(3.), 0.021) << mappingName(mapping);
+    EXPECT_EQ(angles.texels, 6u * 512 * 512);
+    // A texel on the axis has the area of its square at distance 1, but for its slant.
+    EXPECT_NEAR(angles.max * 256 * 256, 1, 1e-4);
+    const TexelSolidAngles single = texelSolidAngles(mapping, {columns, rows});
+    EXPECT_NEAR(single.max, 4 * kPiD / 6, 1e-12);
+    EXPECT_EQ(single.min, single.max);
+  }
+}
+
+TEST(Mapping, SolidAnglesOfTexels) {
+  const TexelSolidAngles ball = texelSolidAngles(Mapping::MirrorBall, {100, 100});
+  EXPECT_EQ(ball.min, ball.max);
+  EXPECT_NEAR(ball.min, 16 / 1e4, 1e-15);
+  EXPECT_NEAR(double(ball.texels) / 1e4, kPiD / 4, 0.005);
+  const TexelSolidAngles latLong = texelSolidAngles(Mapping::LatLong, {64, 32});
+  EXPECT_NEAR(latLong.min, texelSolidAngle(0, 64, 32), 1e-17);
+  EXPECT_EQ(latLong.max, texelSolidAngle(15, 64, 32));
+  const TexelSolidAngles angular = texelSolidAngles(Mapping::AngularMap, {101, 101});
+  EXPECT_NEAR(angular.max * 101 * 101 / (4 * kPiD * kPiD), 1, 1e-12);
+  EXPECT_LT(angular.min, 0.02 * angular.max);
+}
+
 TEST(Mapping, NamesAndShapes) {
   EXPECT_EQ(parseMapping("cube-cross", 30, 40, "x"), Mapping::VerticalCross);
   EXPECT_EQ(parseMapping("cube-cross", 40, 30, "x"), Mapping::HorizontalCross);
   EXPECT_EQ(parseMapping("cube-strip", 60, 10, "x"), Mapping::HorizontalStrip);
+  EXPECT_EQ(parseMapping("cube-3x2", 30, 20, "x"), Mapping::CubeGrid);
   EXPECT_EQ(parseMapping("lat-long", 7, 5, "x"), Mapping::LatLong);
   EXPECT_EQ(parseMapping("auto", 7, 5, "x"), std::nullopt);
   EXPECT_THROW(parseMapping("angular", 7, 5, "x"), InputError);
@@ -167,6 +253,8 @@ TEST(Mapping, IsDetected) {
   EXPECT_EQ(detect(64, 48, 1).mapping, Mapping::HorizontalCross);
   EXPECT_EQ(detect(96, 16, 1).mapping, Mapping::HorizontalStrip);
   EXPECT_EQ(detect(16, 96, 1).mapping, Mapping::VerticalStrip);
+  EXPECT_EQ(detect(48, 32, 1).mapping, Mapping::CubeGrid);
+  EXPECT_FALSE(detect(48, 32, 1).certain);  // photographs have this shape
   for (const auto& [w, h] : {std::pair{1, 1}, {3, 2}, {2, 3}, {100, 70}})
     EXPECT_EQ(detect(w, h, 1).mapping, Mapping::LatLong) << w << " x " << h;
   EXPECT_FALSE(detect(100, 70, 1).certain);

@@ -290,6 +290,7 @@ TEST(Settings, EveryMappingNameIsParsed) {
   for (const std::string_view name : settingNamed("probe.mapping").choices()) {
     const ImageSize size = name == "cube-strip"   ? ImageSize{6, 1}
                            : name == "cube-cross" ? ImageSize{4, 3}
+                           : name == "cube-3x2"   ? ImageSize{3, 2}
                            : name == "lat-long"   ? ImageSize{4, 2}
                                                   : ImageSize{4, 4};
     EXPECT_EQ(parseMapping(name, size.width, size.height, "").has_value(), name != "auto") << name;

@@ -9,7 +9,7 @@ using Names = std::vector<std::string_view>;
 using enum SettingType;
 
 Names mappings() {
-  return {"auto", "lat-long", "angular", "mirror-ball", "cube-cross", "cube-strip"};
+  return {"auto", "lat-long", "angular", "mirror-ball", "cube-cross", "cube-strip", "cube-3x2"};
 }
 
 Names strategies() {

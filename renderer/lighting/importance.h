@@ -35,6 +35,10 @@ class Importance : public LightingStrategy {
   DirectionSample sampleDirection(double u, double v) const;
   float pdf(const vec3& wi) const;
 
+  // The tables: of the rows of cells by `v`, and of the cells in each row by `u`.
+  const CdfRows& rows() const { return rows_; }
+  const CdfRows& columns() const { return columns_; }
+
  private:
   double tabulate();
   DirectionSample sampleOf(int column, int row, double u, double v) const;

@@ -19,6 +19,11 @@ class CdfRows {
   // sampled. Different rows may be set concurrently.
   double setRow(int row, std::span<const double> weights);
 
+  // The distribution of a row: columns + 1 numbers, from 0 to 1; all 0 for a row of zeros.
+  std::span<const double> row(int row) const {
+    return std::span(cdf_).subspan(size_t(row) * (columns_ + 1), size_t(columns_) + 1);
+  }
+
   // Fetch into the cache what sample() reads: first its range of columns, then the cdf there.
   void prefetchGuide(int row, double u) const { __builtin_prefetch(guide(row, u)); }
   void prefetchCdf(int row, double u) const {

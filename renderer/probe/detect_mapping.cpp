@@ -37,7 +37,7 @@ DetectedMapping detectMapping(const Image& image) {
   if (w == 2 * h) return {Mapping::LatLong, "its shape is 2:1", true};
   if (w == 6 * h) return {Mapping::HorizontalStrip, "its shape is 6:1", true};
   if (h == 6 * w) return {Mapping::VerticalStrip, "its shape is 1:6", true};
-  // Smaller images are too coarse to detect a disc or a cross.
+  // Smaller images are too coarse to detect a disc, a cross or a grid of faces.
   constexpr int kMin = 12;
   if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)
@@ -51,6 +51,8 @@ DetectedMapping detectMapping(const Image& image) {
   if (h >= kMin && h % 3 == 0 && 4 * h == 3 * w)
     return {Mapping::HorizontalCross, "its shape is 4:3",
             isBlackOutside(image, Mapping::HorizontalCross)};
+  if (h >= kMin && w % 3 == 0 && 2 * w == 3 * h)
+    return {Mapping::CubeGrid, "its shape is 3:2", false};
   return {Mapping::LatLong, "no other mapping has its shape", false};
 }
 

@@ -72,6 +72,11 @@ ProbeInfo probeInfo(const Image& image) {
   info.mean /= double(image.width) * image.height;
   info.meanRadiance = meanRadiance(image);
   info.dynamicRange = brightest > 0 ? double(brightest) / darkest : 0;
+  const double mean = luminance(info.meanRadiance);
+  info.maxOverMean = mean > 0 ? double(brightest) / mean : 0;
+  info.robustRange = robustRange(image);
+  info.plateau = plateau(image);
+  info.lostIfClippedAtWhite = lostIfClippedAtWhite(image);
   info.suns = extractSuns(image).suns;
   info.brightestTexels = brightestTexels(image);
   return info;

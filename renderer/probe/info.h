@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "probe/clipping.h"
 #include "probe/mapping.h"
 #include "probe/sun.h"
 
@@ -22,6 +23,10 @@ struct ProbeInfo {
   double dynamicRange = 0;  // largest luminance over the smallest positive one; 0 for a black probe
   dvec3 brightestDirection{0};
   Rgb brightest{0};
+  double maxOverMean = 0;  // largest luminance over the mean over the sphere; 0 for a black probe
+  double robustRange = 0;  // clipping.h, as the following
+  Plateau plateau;
+  double lostIfClippedAtWhite = 0;
   std::vector<Sun> suns;  // sun_extraction.h: in order of decreasing irradiance
   std::vector<BrightestTexels> brightestTexels;  // of 1, 10 and 100 texels, and of 1% of all
 };

@@ -47,6 +47,13 @@ const std::array<Face, 6> kVerticalStrip{{{0, 0, kX, kY},
                                           {0, 4, kZ, kY},
                                           {0, 5, -kZ, kY}}};
 
+const std::array<Face, 6> kGrid{{{0, 0, kX, kY},
+                                 {1, 0, -kX, kY},
+                                 {2, 0, kY, kZ},
+                                 {0, 1, -kY, -kZ},
+                                 {1, 1, kZ, kY},
+                                 {2, 1, -kZ, kY}}};
+
 const std::array<Face, 6>& facesOf(Mapping mapping) {
   switch (mapping) {
     case Mapping::VerticalCross:
@@ -55,6 +62,8 @@ const std::array<Face, 6>& facesOf(Mapping mapping) {
       return kHorizontalCross;
     case Mapping::HorizontalStrip:
       return kHorizontalStrip;
+    case Mapping::CubeGrid:
+      return kGrid;
     default:
       return kVerticalStrip;
   }
@@ -123,6 +132,8 @@ Layout faceLayout(Mapping mapping) {
       return {6, 1};
     case Mapping::VerticalStrip:
       return {1, 6};
+    case Mapping::CubeGrid:
+      return {3, 2};
     default:
       return {1, 1};
   }
@@ -166,6 +177,11 @@ std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {
   }
 }
 
+dvec3 directionAt(double azimuth, double elevation) {
+  const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
+  return {-std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
+}
+
 dvec3 texelDirection(const ImageSize& latLong, int x, int y) {
   return *uvToDirection(Mapping::LatLong, {(x + 0.5) / latLong.width, (y + 0.5) / latLong.height});
 }
@@ -181,6 +197,8 @@ std::string_view mappingName(Mapping mapping) {
     case Mapping::VerticalCross:
     case Mapping::HorizontalCross:
       return "cube-cross";
+    case Mapping::CubeGrid:
+      return "cube-3x2";
     default:
       return "cube-strip";
   }
@@ -200,7 +218,8 @@ std::optional<Mapping> parseMapping(std::string_view name, int width, int height
                                           {Mapping::VerticalCross, Mapping::HorizontalCross}},
                                          {"cube-strip",
                                           "6:1 or 1:6, of square faces",
-                                          {Mapping::HorizontalStrip, Mapping::VerticalStrip}}};
+                                          {Mapping::HorizontalStrip, Mapping::VerticalStrip}},
+                                         {"cube-3x2", "3:2, of square faces", {Mapping::CubeGrid}}};
   if (name == "auto") return std::nullopt;
 
   std::vector<std::string_view> known{"auto"};

@@ -23,6 +23,7 @@ enum class Mapping {
   HorizontalCross,  // 4 x 3 faces: +Y / -X -Z +X +Z / -Y
   HorizontalStrip,  // 6 x 1 faces: +X -X +Y -Y +Z -Z, each as OpenEXR stores it: seen from inside
   VerticalStrip,    // 1 x 6 faces, the same
+  CubeGrid,         // 3 x 2 faces, the same: +X -X +Y / -Y +Z -Z
 };
 
 struct ImageSize {
@@ -39,6 +40,10 @@ std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv);
 // Whether `uv` is inside the disc or the faces.
 bool showsDirection(Mapping mapping, const dvec2& uv);
 
+// The unit direction at `azimuth` degrees from -Z, counter-clockwise seen from above, and
+// `elevation` degrees above the horizon.
+dvec3 directionAt(double azimuth, double elevation);
+
 // The unit direction at the centre of texel (x, y) of a lat-long map.
 dvec3 texelDirection(const ImageSize& latLong, int x, int y);
 
@@ -51,9 +56,9 @@ Layout faceLayout(Mapping mapping);
 // "lat-long", "angular", "mirror-ball", "vertical cube-cross", ...: for messages.
 std::string_view mappingName(Mapping mapping);
 
-// The mapping with this name for an image of this size: lat-long, angular, mirror-ball, cube-cross
-// or cube-strip (the shape decides which cross or strip). nullopt for auto. Throws InputError,
-// which starts with `location`, if the name is unknown or does not fit the size.
+// The mapping with this name for an image of this size: lat-long, angular, mirror-ball, cube-cross,
+// cube-strip (the shape decides which cross or strip) or cube-3x2. nullopt for auto. Throws
+// InputError, which starts with `location`, if the name is unknown or does not fit the size.
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
                                     std::string_view location);
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/preview.h"
 
-#include "image/tonemap.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
-namespace {
 
-// Maps the geometric mean of the luminance, which suns hardly change, to middle grey.
-DisplayTransform transformFor(const Image& latLong) {
+DisplayTransform previewTransform(const Image& latLong) {
   constexpr float kMiddleGrey = 0.18f;
   const float mean = luminance(Rgb(meanRadiance(latLong)));
   if (mean == 0) return {};
@@ -20,10 +17,8 @@ DisplayTransform transformFor(const Image& latLong) {
   return {ToneOperator::Reinhard, std::log2(kMiddleGrey) - float(logarithms / texels)};
 }
 
-}  // namespace
-
 Image probePreview(const Probe& probe, int width) {
-  const DisplayTransform transform = transformFor(probe.latLong());
+  const DisplayTransform transform = previewTransform(probe.latLong());
   const ImageSize size{width, width / 2};
   Image preview(size.width, size.height, 3);
   for (int y = 0; y < size.height; ++y)

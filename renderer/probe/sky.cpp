@@ -50,10 +50,7 @@ dvec3 skyIrradiance(const SkyRadiance& radiance) {
 
 }  // namespace
 
-dvec3 sunDirection(const ClearSky& sky) {
-  const double a = radians(sky.sunAzimuth), e = radians(sky.sunElevation);
-  return {-std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
-}
+dvec3 sunDirection(const ClearSky& sky) { return directionAt(sky.sunAzimuth, sky.sunElevation); }
 
 SkyRadiance::SkyRadiance(const ClearSky& sky) : sun_(sunDirection(sky)) {
   const double t = sky.turbidity, s = radians(90 - sky.sunElevation);

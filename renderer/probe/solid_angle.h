@@ -2,6 +2,8 @@
 // Solid angles of texels, in steradians.
 #pragma once
 
+#include <cstddef>
+
 #include "image/image.h"
 #include "probe/mapping.h"
 
@@ -13,6 +15,16 @@ double texelSolidAngle(int row, int width, int height);
 
 // d(solid angle) / d(u v) at a valid position of a mapping.
 double solidAngleJacobian(Mapping mapping, const dvec2& uv);
+
+// Of the texels of an image whose centres show a direction.
+struct TexelSolidAngles {
+  double min, max;
+  size_t texels;
+};
+
+// Exact but for the angular map, where the texel's centre stands for all of it; texels on the rim
+// of a disc count as if they were inside.
+TexelSolidAngles texelSolidAngles(Mapping mapping, const ImageSize& image);
 
 // The mean over the sphere of a lat-long map, constant over each texel: sum of radiance x solid
 // angle / (4 pi).

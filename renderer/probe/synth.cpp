@@ -19,9 +19,11 @@ struct SoftBox {
 
   // Azimuth in degrees, counter-clockwise from -Z seen from above; elevation in degrees.
   SoftBox(double azimuth, double elevation, double width, double height, const dvec3& light)
-      : halfWidth(0.5 * width), halfHeight(0.5 * height), radiance(light) {
-    const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
-    centre = {-std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
+      : centre(directionAt(azimuth, elevation)),
+        halfWidth(0.5 * width),
+        halfHeight(0.5 * height),
+        radiance(light) {
+    const double a = azimuth * kPiD / 180;
     right = {std::cos(a), 0, -std::sin(a)};
     up = glm::cross(right, centre);
   }

@@ -10,7 +10,10 @@ void addProbeCommand(CLI::App& app) {
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
   addProbeSynthCommand(*probe);
+  addProbeEditCommand(*probe);
   addProbeIrradianceCommand(*probe);
+  addProbeRaysCommand(*probe);
+  addProbePlotCommand(*probe);
 }
 
 }  // namespace chromeball

@@ -9,6 +9,9 @@ namespace chromeball {
 void addProbeInfoCommand(CLI::App& probe);
 void addProbeConvertCommand(CLI::App& probe);
 void addProbeSynthCommand(CLI::App& probe);
+void addProbeEditCommand(CLI::App& probe);
 void addProbeIrradianceCommand(CLI::App& probe);
+void addProbeRaysCommand(CLI::App& probe);
+void addProbePlotCommand(CLI::App& probe);
 
 }  // namespace chromeball

@@ -27,11 +27,12 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
       return {*mapping, size};
   }
   for (const Mapping mapping : {Mapping::LatLong, Mapping::AngularMap, Mapping::MirrorBall,
-                                Mapping::VerticalCross, Mapping::VerticalStrip})
+                                Mapping::VerticalCross, Mapping::VerticalStrip, Mapping::CubeGrid})
     if (mappingName(mapping) == arguments.to)
       return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
-  throwInput("--to: `{}` should be lat-long, angular, mirror-ball, cube-cross or cube-strip",
-             arguments.to);
+  throwInput(
+      "--to: `{}` should be lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2",
+      arguments.to);
 }
 
 void run(const Arguments& arguments) {
@@ -55,7 +56,8 @@ void addProbeConvertCommand(CLI::App& probe) {
   command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
       ->required();
   command
-      ->add_option("--to", arguments->to, "lat-long, angular, mirror-ball, cube-cross, cube-strip")
+      ->add_option("--to", arguments->to,
+                   "lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2")
       ->required();
   command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
   command->add_option("--size", arguments->size,

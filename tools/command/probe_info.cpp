@@ -2,10 +2,12 @@
 // chromeball probe info FILE
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "probe/info.h"
 #include "probe/load.h"
+#include "probe/solid_angle.h"
 #include "probe_commands.h"
 
 namespace chromeball {
@@ -39,6 +41,13 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"max", toJson(info.max)},
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
+          {"max_over_mean", info.maxOverMean},
+          {"robust_range", info.robustRange},
+          {"plateau",
+           {{"texels", info.plateau.texels},
+            {"solid_angle", info.plateau.solidAngle},
+            {"looks_clipped", info.plateau.looksClipped}}},
+          {"lost_if_clipped_at_white", info.lostIfClippedAtWhite},
           {"invalid_texels",
            {{"nan", probe.repair.nan},
             {"infinite", probe.repair.infinite},
@@ -57,6 +66,21 @@ std::string triple(const Vector& v) {
   return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z);
 }
 
+Json toJson(const TexelSolidAngles& angles) {
+  return {{"min_solid_angle", angles.min},
+          {"max_solid_angle", angles.max},
+          {"max_over_min", angles.max / angles.min},
+          {"texels", angles.texels}};
+}
+
+void print(const LoadedProbe& probe, const TexelSolidAngles& angles) {
+  const double all = double(probe.fileWidth) * probe.fileHeight;
+  fmt::print("solid angle      {:.5g} to {:.5g} sr per texel of the file, {:.4g} : 1\n", angles.min,
+             angles.max, angles.max / angles.min);
+  fmt::print("texels in use    {} of {}, {:.4g}%\n", angles.texels, all,
+             100 * double(angles.texels) / all);
+}
+
 void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("resolution       {} x {}\n", probe.fileWidth, probe.fileHeight);
   fmt::print("mapping          {} ({})\n", mappingName(probe.mapping),
@@ -70,6 +94,15 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
              triple(info.mean), triple(info.max));
   fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.fractionAtMaximum);
   fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
+  fmt::print("max / mean       {:.4g} of the luminance\n", info.maxOverMean);
+  fmt::print("robust range     {:.3g} : 1, without 1% of the sphere at either end\n",
+             info.robustRange);
+  fmt::print(
+      "plateau          {} texel{}, {:.3g} sr, within 0.2% of the maximum{}\n", info.plateau.texels,
+      info.plateau.texels == 1 ? "" : "s", info.plateau.solidAngle,
+      info.plateau.looksClipped ? ": looks clipped, unless it is a lamp of even radiance" : "");
+  fmt::print("clipped at white {:.3g}% of the irradiance lost, exposed for a mean of 0.18\n",
+             100 * info.lostIfClippedAtWhite);
   fmt::print("invalid texels   {}\n",
              probe.repair.total() > 0 ? describe(probe.repair) + ", repaired" : "none");
   fmt::print("mean radiance    {} over the sphere\n", triple(info.meanRadiance));
@@ -88,26 +121,34 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
 void addProbeInfoCommand(CLI::App& probeCommand) {
   struct Arguments {
     std::string file, mapping = "auto";
-    bool json = false;
+    bool json = false, mappingReport = false;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       probeCommand.add_subcommand("info", "Show the mapping and the statistics of a probe.");
   command->add_option("FILE", arguments->file, "the probe's image")->required();
   command->add_option("--mapping", arguments->mapping,
-                      "auto, lat-long, angular, mirror-ball, cube-cross or cube-strip");
+                      "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
   command->add_flag("--json", arguments->json, "print JSON");
+  command->add_flag("--mapping-report", arguments->mappingReport,
+                    "also show the solid angles of the file's texels");
   command->callback([arguments] {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
     for (const std::string& warning : lightWarnings(probe, arguments->file))
       fmt::print(stderr, "chromeball: warning: {}\n", warning);
     const ProbeInfo info = probeInfo(probe.latLong);
-    if (arguments->json)
-      fmt::print(
-          "{}\n",
-          toJson(probe, info, arguments->file).dump(2, ' ', false, Json::error_handler_t::replace));
-    else
+    const auto angles =
+        arguments->mappingReport
+            ? std::optional(texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight}))
+            : std::nullopt;
+    if (arguments->json) {
+      Json json = toJson(probe, info, arguments->file);
+      if (angles) json["mapping_report"] = toJson(*angles);
+      fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    } else {
       print(probe, info);
+      if (angles) print(probe, *angles);
+    }
   });
 }
 

@@ -18,16 +18,22 @@ _chromeball() {
     'compare')
       options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
-      words='info convert synth irradiance'
+      words='info convert synth edit irradiance rays plot'
       options='--help' ;;
     'probe info')
-      options='--help --mapping --json' ;;
+      options='--help --mapping --json --mapping-report' ;;
     'probe convert')
       options='--help --to --from --size --rotation' ;;
     'probe synth')
       options='--help --size --radiance --texel --direction --slope --sun-elevation --sun-azimuth --turbidity --ground-albedo --no-sun' ;;
+    'probe edit')
+      options='--help --fill-nadir --below-horizon --region --gain --scale --clip --clip-stops --mapping' ;;
     'probe irradiance')
       options='--help --size --method --mapping' ;;
+    'probe rays')
+      options='--help --error --size --mapping --json' ;;
+    'probe plot')
+      options='--help --row --elevation --azimuth --samples --compensated --mapping' ;;
     'image')
       words='denoise error view'
       options='--help' ;;

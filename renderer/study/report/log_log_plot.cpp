@@ -77,11 +77,6 @@ struct Axis {
   }
 };
 
-std::string textAt(double x, double y, const char* anchor, const std::string& text) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
-                     escaped(text));
-}
-
 std::string mark(const Style& style, double x, double y) {
   static constexpr std::array<const char*, kMarks> kPaths = {
       "m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z", "m-3.5 -3.5h7v7h-7z", "m0 -4.5l4.5 8h-9z",
@@ -100,11 +95,11 @@ std::string frameOf(const Axis& x, Ticks xTicks, const Axis& y, const std::strin
   svg += fmt::format("</g>\n<rect width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#333\"/>\n",
                      kPanelWidth, kPanelHeight);
   for (const double tick : x.ticks(xTicks))
-    svg += textAt(x(tick), kPanelHeight + 18, "middle", fmt::format("{:g}", tick));
+    svg += svgText(x(tick), kPanelHeight + 18, "middle", fmt::format("{:g}", tick));
   if (labelY)
     for (const double tick : y.decimalTicks())
-      svg += textAt(-8, kPanelHeight - y(tick) + 4, "end", fmt::format("{:g}", tick));
-  return svg + textAt(kPanelWidth / 2, -10, "middle", title);
+      svg += svgText(-8, kPanelHeight - y(tick) + 4, "end", fmt::format("{:g}", tick));
+  return svg + svgText(kPanelWidth / 2, -10, "middle", title);
 }
 
 std::string lineOf(const PlotSeries& series, const Style& style, const Axis& x, const Axis& y) {
@@ -136,7 +131,7 @@ std::string legendOf(const std::vector<PlotSeries>& series) {
         "<path d=\"M0 {0}h40\" stroke=\"{1}\" stroke-width=\"1.6\" "
         "stroke-dasharray=\"{2}\"/>\n",
         y, style.color, style.dash);
-    svg += mark(style, 20, y) + textAt(48, y + 4, "start", series[i].name);
+    svg += mark(style, 20, y) + svgText(48, y + 4, "start", series[i].name);
   }
   return svg;
 }
@@ -161,10 +156,10 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
       "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\">\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       width, height);
-  svg += textAt(plots / 2, 22, "middle", title);
-  svg += textAt(plots / 2, height - 14, "middle", xLabel);
+  svg += svgText(plots / 2, 22, "middle", title);
+  svg += svgText(plots / 2, height - 14, "middle", xLabel);
   svg += fmt::format("<g transform=\"translate(16 {}) rotate(-90)\">\n", kTop + kPanelHeight / 2) +
-         textAt(0, 0, "middle", yLabel) + "</g>\n";
+         svgText(0, 0, "middle", yLabel) + "</g>\n";
   for (size_t i = 0; i < panels.size(); ++i) {
     svg += fmt::format("<g transform=\"translate({} {})\">\n",
                        kLeft + double(i) * (kPanelWidth + kGap), kTop);

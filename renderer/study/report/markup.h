@@ -9,4 +9,7 @@ namespace chromeball {
 // Escapes & < and ", and drops control characters.
 std::string escaped(const std::string& text);
 
+// An SVG text element, in pixels; `anchor` is start, middle or end.
+std::string svgText(double x, double y, const char* anchor, const std::string& text);
+
 }  // namespace chromeball

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe edit IN OUT
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <optional>
+
+#include "base/error.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/edit.h"
+#include "probe/load.h"
+#include "probe/solid_angle.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string in, out, mapping = "auto", belowHorizon, scale, clip, clipStops, fillNadir;
+  std::vector<std::string> regions, gains;
+};
+
+struct Region {
+  std::string text;
+  dvec3 centre;
+  double radius;  // degrees
+  Rgb gain;
+};
+
+// What to do, in the order in which it is done.
+struct Edits {
+  double nadirRadius = 0;  // degrees; 0: nothing
+  bool isMirrored = false;
+  std::optional<Rgb> ground;
+  std::vector<Region> regions;
+  std::optional<Rgb> scale;
+  std::optional<double> clip, clipStops;
+};
+
+// "X" or "R,G,B".
+Rgb parseColor(const std::string& text, std::string_view option) {
+  const std::vector<double> c =
+      parseNumbers(text, text.find(',') == std::string::npos ? 1 : 3, option);
+  const Rgb color = c.size() == 1 ? Rgb(float(c[0])) : Rgb(dvec3(c[0], c[1], c[2]));
+  if (!isFinite(color) || std::min({color.x, color.y, color.z}) < 0)
+    throwInput("{}: {} should be finite and not negative", option, text);
+  return color;
+}
+
+double parseNumber(const std::string& text, std::string_view option) {
+  return parseNumbers(text, 1, option).front();
+}
+
+Region parseRegion(const std::string& text, const std::string& gain) {
+  const std::vector<double> region = parseNumbers(text, 3, "--region");
+  if (std::fabs(region[1]) > 90)
+    throwInput("--region: the elevation {} should be -90 to 90 degrees", region[1]);
+  if (!(region[2] > 0 && region[2] <= 180))
+    throwInput("--region: the radius {} should be above 0, up to 180 degrees", region[2]);
+  return {text, directionAt(region[0], region[1]), region[2], parseColor(gain, "--gain")};
+}
+
+void parseGround(const std::string& text, Edits& edits) {
+  edits.isMirrored = text == "mirror";
+  if (text == "black")
+    edits.ground = Rgb(0);
+  else if (!text.empty() && (std::isalpha(static_cast<unsigned char>(text[0])) == 0))
+    edits.ground = parseColor(text, "--below-horizon");
+  else if (!text.empty() && !edits.isMirrored)
+    throwInput("--below-horizon: `{}` should be black, mirror or a radiance R,G,B", text);
+}
+
+Edits parse(const Arguments& arguments) {
+  Edits edits;
+  if (!arguments.fillNadir.empty()) {
+    edits.nadirRadius = parseNumber(arguments.fillNadir, "--fill-nadir");
+    if (!(edits.nadirRadius > 0 && edits.nadirRadius <= 90))
+      throwInput("--fill-nadir: {} should be above 0, up to 90 degrees", edits.nadirRadius);
+  }
+  parseGround(arguments.belowHorizon, edits);
+  if (arguments.regions.size() != arguments.gains.size())
+    throwInput("--region: each needs a --gain, and each --gain a region; there are {} and {}",
+               arguments.regions.size(), arguments.gains.size());
+  for (size_t i = 0; i < arguments.regions.size(); ++i)
+    edits.regions.push_back(parseRegion(arguments.regions[i], arguments.gains[i]));
+  if (!arguments.scale.empty()) edits.scale = parseColor(arguments.scale, "--scale");
+  if (!arguments.clip.empty()) {
+    edits.clip = parseNumber(arguments.clip, "--clip");
+    if (!(*edits.clip > 0)) throwInput("--clip: {} should be above 0", *edits.clip);
+  }
+  if (!arguments.clipStops.empty())
+    edits.clipStops = parseNumber(arguments.clipStops, "--clip-stops");
+  const bool isEmpty = edits.nadirRadius == 0 && !edits.isMirrored && !edits.ground &&
+                       edits.regions.empty() && !edits.scale && !edits.clip && !edits.clipStops;
+  if (isEmpty)
+    throwInput(
+        "probe edit: nothing to do; give --fill-nadir, --below-horizon, --region, --scale, --clip "
+        "or --clip-stops");
+  return edits;
+}
+
+// The largest float where the level is beyond it: then nothing is clipped.
+float clipLevel(const Edits& edits, const Image& latLong) {
+  const double level =
+      edits.clip ? *edits.clip : luminance(meanRadiance(latLong)) * std::exp2(*edits.clipStops);
+  return float(std::min(level, double(std::numeric_limits<float>::max())));
+}
+
+void apply(const Edits& edits, const std::string& file, Image& latLong) {
+  if (edits.nadirRadius > 0 && fillNadir(latLong, edits.nadirRadius) == 0)
+    throwInput(
+        "--fill-nadir: no texel's centre is within {} degrees of straight down: the rows "
+        "of {} are {:.3g} degrees high",
+        edits.nadirRadius, file, 180. / latLong.height);
+  if (edits.isMirrored) mirrorAtHorizon(latLong);
+  if (edits.ground) replaceBelowHorizon(latLong, *edits.ground);
+  for (const Region& region : edits.regions)
+    if (multiplyRegion(latLong, region.centre, region.radius, region.gain) == 0)
+      throwInput(
+          "--region: no texel's centre is within {}: the texels of {} are {:.3g} degrees "
+          "high",
+          region.text, file, 180. / latLong.height);
+  if (edits.scale) multiply(latLong, *edits.scale);
+  if (!std::all_of(latLong.texels.begin(), latLong.texels.end(),
+                   [](float channel) { return std::isfinite(channel); }))
+    throwInput("{}: a texel times the gain and scale exceeds the range of a float", file);
+  if (edits.clip || edits.clipStops) clip(latLong, clipLevel(edits, latLong));
+}
+
+void run(const Arguments& arguments) {
+  const Edits edits = parse(arguments);
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
+  LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  apply(edits, arguments.in, probe.latLong);
+  writeImage(arguments.out, probe.latLong);
+}
+
+}  // namespace
+
+void addProbeEditCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "edit",
+      "Change the light of a probe, and write it as a lat-long map. Edits are done in the order of "
+      "the options below; angles are in degrees.");
+  command->add_option("IN", arguments->in, "the probe's image")->required();
+  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--fill-nadir", arguments->fillNadir,
+                      "RADIUS: fill the disc straight below smoothly from its rim (a tripod)");
+  command->add_option(
+      "--below-horizon", arguments->belowHorizon,
+      "replace the lower half: black, mirror (the upper half's), or radiance R,G,B");
+  command
+      ->add_option("--region", arguments->regions,
+                   "AZIMUTH,ELEVATION,RADIUS: a disc to multiply by --gain; may be given several "
+                   "times. Azimuth is from -Z, the map's centre, counter-clockwise seen from above")
+      ->allow_extra_args(false);
+  command->add_option("--gain", arguments->gains, "X or R,G,B, one for each --region, in order")
+      ->allow_extra_args(false);
+  command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
+  command->add_option("--clip", arguments->clip, "X: lower the channels above X to X");
+  command
+      ->add_option("--clip-stops", arguments->clipStops,
+                   "N: the same at 2^N times the mean luminance over the sphere")
+      ->excludes("--clip");
+  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe plot PROBE OUT.svg
+#include <filesystem>
+#include <optional>
+
+#include "base/error.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "lighting/row_distribution.h"
+#include "messages.h"
+#include "probe/load.h"
+#include "probe_commands.h"
+#include "study/report/row_plot.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string file, out, mapping = "auto", azimuth;
+  std::optional<int> row;
+  std::optional<double> elevation;
+  int samples = 16;
+  bool compensated = false;
+};
+
+AzimuthRange parseRange(const std::string& text) {
+  if (text.empty()) return {};
+  const std::vector<double> ends = parseNumbers(text, 2, "--azimuth");
+  const AzimuthRange range{std::max(ends[0], ends[1]), std::min(ends[0], ends[1])};
+  constexpr double kLargest = 3600;
+  if (range.left == range.right || range.left - range.right > 360 ||
+      std::max(range.left, -range.right) > kLargest)
+    throwInput("--azimuth: {} should be two different azimuths, at most 360 degrees apart", text);
+  return range;
+}
+
+// The most probable row of cells.
+int brightestRow(const Importance& importance) {
+  const std::span<const double> cdf = importance.rows().row(0);
+  int best = 0;
+  for (int row = 1; row + 1 < int(cdf.size()); ++row)
+    if (cdf[size_t(row) + 1] - cdf[size_t(row)] > cdf[size_t(best) + 1] - cdf[size_t(best)])
+      best = row;
+  return best;
+}
+
+int chosenRow(const Arguments& arguments, const Probe& probe, const Importance& importance) {
+  if (arguments.elevation) return cellRowAt(probe, *arguments.elevation);
+  if (!arguments.row) return brightestRow(importance);
+  if (*arguments.row < 0 || *arguments.row >= probe.height())
+    throwInput("--row: {} should be 0 to {}, a row of texels of the lat-long map", *arguments.row,
+               probe.height() - 1);
+  return cellRowBelow(*arguments.row);
+}
+
+void run(const Arguments& arguments) {
+  checkOutputFile(arguments.out, {".svg"});
+  checkDistinct({arguments.out}, {arguments.file});
+  constexpr int kMaxSamples = 10000;
+  if (arguments.samples < 0 || arguments.samples > kMaxSamples)
+    throwInput("--samples: {} should be 0 to {}", arguments.samples, kMaxSamples);
+  if (arguments.elevation && !(std::fabs(*arguments.elevation) <= 90))
+    throwInput("--elevation: {} should be -90 to 90 degrees", *arguments.elevation);
+  const AzimuthRange range = parseRange(arguments.azimuth);
+  const LoadedProbe loaded = loadProbe(arguments.file, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(loaded, arguments.file)) warn(warning);
+  const Probe probe(loaded.latLong);
+  const Importance importance(probe, arguments.compensated);
+  const RowDistribution row =
+      rowDistribution(probe, importance, chosenRow(arguments, probe, importance), range,
+                      arguments.samples, arguments.file);
+  const std::string title =
+      fmt::format("{}: elevation {:.3g} degrees, {} sample{}",
+                  std::filesystem::path(arguments.file).filename().string(), row.elevation,
+                  row.samples.size(), row.samples.size() == 1 ? "" : "s");
+  writeText(arguments.out, rowPlot(probe, row, title));
+}
+
+}  // namespace
+
+void addProbePlotCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "plot", "Plot how importance sampling draws directions from one row of a probe.");
+  command->add_option("PROBE", arguments->file, "the probe's image")->required();
+  command->add_option("OUT", arguments->out, "the plot to write: .svg")->required();
+  command->add_option("--row", arguments->row,
+                      "row of texels of the lat-long map, from 0 at the top; else the brightest");
+  command->add_option("--elevation", arguments->elevation, "or the row at this elevation, degrees")
+      ->excludes("--row");
+  command->add_option("--azimuth", arguments->azimuth,
+                      "A,B: the part to plot, in degrees from -Z, the map's centre, "
+                      "counter-clockwise seen from above; else all of the row");
+  command->add_option("--samples", arguments->samples, "number of samples to draw")
+      ->capture_default_str();
+  command->add_flag("--compensated", arguments->compensated,
+                    "sample what is brighter than the mean, as renders with MIS do");
+  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
