@@ -170,6 +170,29 @@ Aimed aimAtEdges(const Scene& scene, float radius, int rayCount) {
   return aimed;
 }
 
+// Two entries of a scene may share a mesh, as those of one file with two variants do.
+TEST(Accel, EntriesOfOneMeshHaveTheirOwnFilters) {
+  Scene scene;
+  scene.nodeNames = {"node"};
+  Material veil = lambert(Rgb(0.5f));
+  veil.alphaMode = AlphaMode::Blend;
+  veil.baseColor.w = 0.25f;
+  const int solid = addMaterial(scene, lambert(Rgb(0.5f))), thin = addMaterial(scene, veil);
+  addQuad(scene, solid, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  scene.instances.clear();
+  scene.meshes.push_back(scene.meshes.shared(0));
+  for (const int mesh : {0, 1})
+    for (const float x : {0.0f, 2.0f}) {
+      const vec3 at(x + 4 * float(mesh), 0, 0);
+      scene.instances.push_back({mesh, mesh == 0 ? solid : thin, 0, Transform{glm::mat3(1), at}});
+    }
+  const Accel accel(scene);
+  for (const float x : {0.5f, 2.5f}) {
+    EXPECT_EQ(accel.transmittance(Ray{{x, 0.3f, 5}, {0, 0, -1}}), Rgb(0));
+    EXPECT_NEAR(accel.transmittance(Ray{{x + 4, 0.3f, 5}, {0, 0, -1}}).x, 0.75f, 1e-6);
+  }
+}
+
 // From outside, a ray cannot hit a back face of a closed body, even if every ray is aimed at an
 // edge. The exception is triangles seen exactly edge-on: one ray in a million. Without trace/edge.h
 // it is one in 300.

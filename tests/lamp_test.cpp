@@ -132,8 +132,10 @@ TEST(Lamps, ErrorsNameTheLineInTheFile) {
   const std::string point = "type = 'point'\nposition = [0, 2, 0]\n";
   const std::string disc = "type = 'disc'\nposition = [0, 2, 0]\nradius = 1\n";
   EXPECT_EQ(errorMessage(point + "intensity = 1"), "");
-  EXPECT_EQ(errorMessage("position = [0, 2, 0]"),
-            "a.toml:2: [[light]] has no `type`: one of point, spot, disc");
+  EXPECT_EQ(
+      errorMessage("position = [0, 2, 0]"),
+      "a.toml:3: a sun light has no `position`; it has type, name, direction, angle, radiance, "
+      "irradiance, visible");
   EXPECT_EQ(errorMessage("type = 'disk'"),
             "a.toml:3: `type`: `disk` is not known; did you mean `disc`?");
   EXPECT_EQ(errorMessage(point + "intensty = 1"),

@@ -299,6 +299,47 @@ TEST(Sequence, BuildsInstancesOnce) {
   expectStills(path, {}, [](int) { return Words{}; });
 }
 
+// A material whose tables no frame before needed.
+TEST(Sequence, MaterialsMayAppear) {
+  Moving model;
+  GltfWriter& w = model.w;
+  const int sheen =
+      w.add("materials", {{"extensions",
+                           {{"KHR_materials_sheen",
+                             {{"sheenColorFactor", {1, 1, 1}}, {"sheenRoughnessFactor", 0.5}}}}}});
+  addTriangle(w, {{"material", sheen}}, {{"translation", {0, 0, 1}}});
+  nlohmann::json& animation = w.root["animations"][0];
+  const std::vector<float> times{0, 1};
+  animation["samplers"].push_back({{"input", w.accessor(w.view(times), kFloat, "SCALAR", 2)},
+                                   {"output", w.vec3s({0, 0, 0, 1, 1, 1})},
+                                   {"interpolation", "STEP"}});
+  animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 2}, {"path", "scale"}}}});
+  w.save();
+  expectStills(model.scene(), {}, [](int) { return Words{}; });
+}
+
+TEST(Sequence, LampsAreBuiltOnce) {
+  const Moving model;
+  const std::string path = model.scene(
+      "[[light]]\ntype = \"disc\"\nposition = [0, 5, 0]\ndirection = [0, -1, 0]\nradius = 1\n"
+      "radiance = 5\n");
+  FrameScene scene;
+  for (const double seconds : {0.0, 0.5, 1.0}) {
+    RenderJob job = jobAt(path, seconds);
+    scene.show(job);
+    EXPECT_EQ(scene.prepared().world->accel.built()->builds(), 1) << seconds;
+  }
+}
+
+TEST(Sequence, FramesAreCheckedLikeStills) {
+  const Moving model;
+  const TemporaryFolder out;
+  const CommandResult result =
+      runCommand(words(model.scene(), {"--frames", "0:1", "--memory", "0.1"}, out / "f.#.exr"));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.error.find("GB of memory"), std::string::npos) << result.error;
+}
+
 TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.####.exr", 7), "a.0007.exr");
   EXPECT_EQ(withNumber("a.#.exr", 12345), "a.12345.exr");

@@ -12,7 +12,8 @@ void FrameScene::show(RenderJob& job) {
   job.view = loaded_->view;
   const FrameChange change = loadFrame(job, *loaded_, models_);
   if (change.geometry) {
-    const BsdfTables tables = prepared_.world->bsdfTables;
+    BsdfTables tables = prepared_.world->bsdfTables;
+    tables.complete(loaded_->scene.materials, job.settings.regularize);
     const std::shared_ptr<BuiltGeometry> built = prepared_.world->accel.built();
     prepared_.world.reset();
     prepared_.world =

@@ -21,8 +21,9 @@ namespace {
 Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
                  std::vector<std::string>& warnings) {
   Scene scene;
-  warnings.clear();
-  const auto add = [&](const std::string& line) { warnings.push_back(line); };
+  const auto add = [&](const std::string& line) {
+    if (std::ranges::find(warnings, line) == warnings.end()) warnings.push_back(line);
+  };
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
     choice.origin = origin;
@@ -52,6 +53,17 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
 }
 
+// For a scene without a probe.
+void checkLit(const RenderJob& job, const Scene& scene) {
+  const bool lit = !scene.lights.empty() || !sunsOf(job.file.lamps).empty() ||
+                   std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& m) { return m.emits(); });
+  if (!lit)
+    throw InputError(
+        fmt::format("{}: nothing lights the scene; it needs a probe", job.file.models.front().file),
+        Remedy{"probe.file", {}});
+}
+
 // The probe as a lat-long map: the job's file, else the model's own environment, else black if the
 // scene has lights of its own.
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
@@ -63,13 +75,7 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
     return own;
   }
   if (!path) {
-    const bool lit = !scene.lights.empty() || !sunsOf(file.lamps).empty() ||
-                     std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const Material& m) { return m.emits(); });
-    if (!lit)
-      throw InputError(
-          fmt::format("{}: nothing lights the scene; it needs a probe", file.models.front().file),
-          Remedy{"probe.file", {}});
+    checkLit(job, scene);
     LoadedProbe black;
     black.latLong = Image(2, 1, 3);
     return black;
@@ -185,7 +191,17 @@ PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
   return placed;
 }
 
-// Whether rays see the same: materials and textures are not animated.
+// Gives `scene` the meshes of an earlier one where they are equal and do not move: lamps.
+void shareMeshes(const Scene& earlier, Scene& scene) {
+  for (const Instance& instance : scene.instances) {
+    const size_t i = size_t(instance.mesh);
+    if (!instance.moves && i < earlier.meshes.size() &&
+        scene.meshes.shared(i) != earlier.meshes.shared(i) && scene.meshes[i] == earlier.meshes[i])
+      scene.meshes.share(i, earlier.meshes.shared(i));
+  }
+}
+
+// Whether rays see the same: materials are not animated, and new ones come with their instances.
 bool isSameWorld(const Scene& a, const Scene& b) {
   return a.instances == b.instances && a.lights == b.lights && a.meshes == b.meshes;
 }
@@ -254,7 +270,9 @@ FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
     checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
   loaded.view = models.view;
   loaded.camera = models.camera;
-  loaded.messages = loadMessages(job, loaded, models.warnings);
+  if (!job.file.settings.has("probe.file") && !models.scene.environment)
+    checkLit(job, models.scene);
+  shareMeshes(loaded.scene, models.scene);
   change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (change.geometry) loaded.scene = std::move(models.scene);
   if (models.origin != loaded.origin) {
@@ -264,6 +282,8 @@ FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
     std::vector<std::string> known;
     loaded.room = loadRoom(job, loaded.origin, cache, known);
   }
+  checkMemory(job, loaded);
+  loaded.messages = loadMessages(job, loaded, models.warnings);
   return change;
 }
 

@@ -48,6 +48,8 @@ class MeshList {
     return *own;
   }
 
+  void share(size_t i, const Shared& mesh) { meshes_[i] = mesh; }
+
   void push_back(Mesh mesh) { meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh))); }
   void push_back(Shared mesh) { meshes_.push_back(std::move(mesh)); }
   void pop_back() { meshes_.pop_back(); }

@@ -2,6 +2,7 @@
 #include "shading/bsdf_tables.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace chromeball {
 namespace {
@@ -16,12 +17,18 @@ bool isBody(const Material& m) { return m.isBody(); }
 }  // namespace
 
 BsdfTables::BsdfTables(std::span<const Material> materials, bool widened) {
-  if (std::ranges::any_of(materials, needsEnergy)) energy = std::make_shared<EnergyTable>();
-  if (std::ranges::any_of(materials, needsAnisotropic))
-    anisotropic = std::make_shared<AnisotropicTable>();
-  if (std::ranges::any_of(materials, needsSheen)) sheen = std::make_shared<SheenTable>();
-  if (std::ranges::any_of(materials, widened ? isBody : needsGlass))
-    glass = std::make_shared<GlassTable>();
+  complete(materials, widened);
+}
+
+void BsdfTables::complete(std::span<const Material> materials, bool widened) {
+  const auto make = [&](auto& table, bool (*needs)(const Material&)) {
+    using Table = typename std::remove_reference_t<decltype(table)>::element_type;
+    if (!table && std::ranges::any_of(materials, needs)) table = std::make_shared<Table>();
+  };
+  make(energy, needsEnergy);
+  make(anisotropic, needsAnisotropic);
+  make(sheen, needsSheen);
+  make(glass, widened ? isBody : needsGlass);
 }
 
 }  // namespace chromeball

@@ -18,6 +18,8 @@ namespace chromeball {
 struct BsdfTables {
   // `widened`: smooth materials may become rough (integrate/regularization.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
+  // Makes those that are missing.
+  void complete(std::span<const Material> materials, bool widened = false);
 
   std::shared_ptr<const EnergyTable> energy;
   std::shared_ptr<const AnisotropicTable> anisotropic;

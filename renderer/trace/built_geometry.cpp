@@ -29,12 +29,11 @@ void BuiltGeometry::releaseStatic() {
 void BuiltGeometry::begin(FilterUse filters) {
   const bool isOther = filters.any != filters_.any || filters.hasAlpha != filters_.hasAlpha;
   filters_ = std::move(filters);
-  std::map<const Mesh*, bool> hasFilter;
+  std::set<std::pair<const Mesh*, bool>> present;
   for (size_t i = 0; i < scene_.meshes.size(); ++i)
-    hasFilter[&scene_.meshes[i]] = filters_.ofMesh[i];
+    present.insert({&scene_.meshes[i], filters_.ofMesh[i]});
   std::erase_if(meshScenes_, [&](const auto& entry) {
-    const auto now = hasFilter.find(entry.first);
-    if (!isOther && now != hasFilter.end() && now->second == entry.second.hasFilter) return false;
+    if (!isOther && present.contains(entry.first)) return false;
     rtcReleaseScene(entry.second.scene);
     return true;
   });
@@ -77,9 +76,9 @@ RTCGeometryTy* BuiltGeometry::newGeometry(int index) const {
 
 RTCSceneTy* BuiltGeometry::meshScene(int index) {
   const MeshList::Shared& mesh = scene_.meshes.shared(size_t(index));
-  MeshScene& entry = meshScenes_[mesh.get()];
+  MeshScene& entry = meshScenes_[{mesh.get(), filters_.ofMesh[size_t(index)]}];
   if (!entry.scene) {
-    entry = {mesh, filters_.ofMesh[size_t(index)], newScene()};
+    entry = {mesh, newScene()};
     attach(entry.scene, newGeometry(index), 0, kAllInstances);
     rtcCommitScene(entry.scene);
     ++builds_;

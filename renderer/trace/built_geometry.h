@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -50,8 +51,7 @@ class BuiltGeometry {
  private:
   struct MeshScene {
     MeshList::Shared mesh;  // the structure refers to its triangles
-    bool hasFilter;
-    RTCSceneTy* scene;
+    RTCSceneTy* scene = nullptr;
   };
   struct Member {
     uint32_t instance;
@@ -65,8 +65,8 @@ class BuiltGeometry {
   const Scene& scene_;
   RTCDeviceTy* device_;
   FilterUse filters_;
-  std::map<const Mesh*, MeshScene> meshScenes_;
-  std::vector<Member> members_;  // of the static scene
+  std::map<std::pair<const Mesh*, bool>, MeshScene> meshScenes_;  // by mesh and FilterUse::ofMesh
+  std::vector<Member> members_;                                   // of the static scene
   RTCSceneTy* static_ = nullptr;
   int builds_ = 0;
 };

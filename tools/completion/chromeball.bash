@@ -12,11 +12,11 @@ _chromeball() {
       words='render merge compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
-      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
       words='info convert synth edit irradiance rays plot'
       options='--help' ;;
