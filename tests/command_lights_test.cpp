@@ -62,6 +62,28 @@ TEST(CommandLights, EveryFormatAndThePreview) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 9);
 }
 
+TEST(CommandLights, RegionsAndLevels) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr", out = folder / "a.json";
+  writeImage(probe, studioProbe({64, 32}));
+  run({"lights", probe, "--method", "median-cut-centre", "--recursion", "3", "-o", out, "--preview",
+       folder / "a.png", "--regions"});
+  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 8u);
+  const Image preview = readImage(folder / "a.png");
+  int red = 0, white = 0;
+  for (int y = 0; y < preview.height; ++y)
+    for (int x = 0; x < preview.width; ++x) {
+      red += preview.rgb(x, y) == Rgb(1, 0, 0);
+      white += preview.rgb(x, y) == Rgb(1);
+    }
+  EXPECT_GE(red, 8 * 9);
+  EXPECT_GE(white, 512);  // at least the seam
+  const std::string table = run({"lights-error", probe, "--methods", "median-cut,median-cut-flat",
+                                 "--recursion", "1,3", "--normals", "80"})
+                                .out;
+  EXPECT_NE(table.find("median-cut-flat             8       8"), std::string::npos) << table;
+}
+
 TEST(CommandLights, SunsHaveTheirAngle) {
   const TemporaryFolder folder;
   const std::string probe = folder / "two.exr", out = folder / "a.json";
@@ -156,6 +178,13 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(lights, {"irradiance-fit", "--max-error", "five"}),
               "--max-error: `five` is not a number");
   expectError(with(lights, {"median-cut", "--preview", folder / "a.jpg"}), ".png");
+  expectError(with(lights, {"median-cut", "--regions"}), "--preview");
+  expectError(with(lights, {"irradiance-fit", "--preview", folder / "a.png", "--regions"}),
+              "--regions: irradiance-fit");
+  expectError(with(lights, {"median-cut", "--recursion", "3"}), "--recursion: excludes --count");
+  expectError({"lights", in, "--method", "penrose", "--recursion", "3", "-o", out},
+              "--recursion: penrose");
+  expectError({"lights", in, "--method", "median-cut", "--recursion", "13", "-o", out}, "1 to 12");
   expectError({"lights", in, "--method", "median-cut", "-o", out}, "--count");
   expectError({"lights", in, "--method", "median-cut", "--count", "4", "-o", folder / "a.txt"},
               ".json");
@@ -172,6 +201,10 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(errors, {"2", "--normals", "1000"}), "1280");
   expectError(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
   expectError(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
+  expectError({"lights-error", in, "--methods", "median-cut"}, "--counts");
+  expectError(with(errors, {"2", "--recursion", "2"}), "either --counts or --recursion");
+  expectError({"lights-error", in, "--methods", "lightgen", "--recursion", "2"}, "lightgen");
+  expectError({"lights-error", in, "--methods", "median-cut", "--recursion", "0"}, "1 to 12");
   expectError({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},
               "suns-cut");
   // All counts are checked before the first row.

@@ -326,8 +326,9 @@ TEST(StrategyTable, resolvedNamesIncludeTheCount) {
   const Probe probe(gradientProbe({16, 8}, Rgb(1), {0.3, 0.5, 0}));
   for (const char* name : {"bsdf", "uniform", "importance", "kollig-keller-strata"})
     EXPECT_TRUE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
-  for (const char* name : {"median-cut", "variance-cut", "lightgen", "kollig-keller", "cube-grid",
-                           "penrose", "irradiance-fit", "irradiance-fit-ambient"})
+  for (const char* name :
+       {"median-cut", "median-cut-centre", "median-cut-flat", "variance-cut", "lightgen",
+        "kollig-keller", "cube-grid", "penrose", "irradiance-fit", "irradiance-fit-ambient"})
     EXPECT_FALSE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
 }
 

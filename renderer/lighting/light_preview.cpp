@@ -8,24 +8,66 @@ namespace {
 
 constexpr int kWidth = 1024, kHeight = 512;
 
-// A white dot with a black rim; it wraps at the seam.
-void drawDot(Image& image, dvec2 uv) {
-  constexpr double kRadius = 3, kRim = 5;
+// Sizes in pixels.
+struct Dot {
+  Rgb color;
+  double radius, rim;
+};
+
+// A dot with a black rim; it wraps at the seam.
+void drawDot(Image& image, dvec2 uv, const Dot& dot) {
   const dvec2 centre = uv * dvec2(kWidth, kHeight);
-  for (int y = int(centre.y - kRim); y <= int(centre.y + kRim); ++y)
-    for (int x = int(centre.x - kRim - 1); x <= int(centre.x + kRim); ++x) {
+  for (int y = int(centre.y - dot.rim); y <= int(centre.y + dot.rim); ++y)
+    for (int x = int(centre.x - dot.rim - 1); x <= int(centre.x + dot.rim); ++x) {
       const double distance = glm::distance(centre, dvec2(x + 0.5, y + 0.5));
-      if (y < 0 || y >= kHeight || distance > kRim) continue;
-      image.setRgb((x + kWidth) % kWidth, y, Rgb(distance < kRadius ? 1 : 0));
+      if (y < 0 || y >= kHeight || distance > dot.rim) continue;
+      image.setRgb((x + kWidth) % kWidth, y, distance < dot.radius ? dot.color : Rgb(0));
     }
+}
+
+void drawDots(Image& image, const Constellation& lights, const Dot& dot) {
+  for (const DirectionalLight& light : lights)
+    drawDot(image, directionToUv(Mapping::LatLong, dvec3(light.direction)), dot);
+}
+
+// The pixels whose right or lower neighbour is in another region.
+void drawOutlines(Image& image, const Image& latLong, const Partition& partition) {
+  const auto region = [&](int x, int y) {
+    const int64_t column = int64_t(x % kWidth) * latLong.width / kWidth;
+    const int64_t row = int64_t(std::min(y, kHeight - 1)) * latLong.height / kHeight;
+    return partition.label[size_t(row) * latLong.width + size_t(column)];
+  };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (region(x, y) != region(x + 1, y) || region(x, y) != region(x, y + 1))
+        image.setRgb(x, y, Rgb(1));
+}
+
+// Where the line is inside the image.
+void drawLine(Image& image, const MapLine& line) {
+  const dvec2 size(kWidth, kHeight), from = line.from * size, to = line.to * size;
+  const dvec2 length = abs(to - from);
+  const int steps = int(std::max(length.x, length.y)) + 1;
+  for (int i = 0; i <= steps; ++i) {
+    const dvec2 p = floor(mix(from, to, double(i) / steps));
+    if (p.x >= 0 && p.x < kWidth && p.y >= 0 && p.y < kHeight)
+      image.setRgb(int(p.x), int(p.y), Rgb(1));
+  }
 }
 
 }  // namespace
 
 Image lightPreview(const Image& latLong, const Constellation& lights) {
   Image preview = probePreview(Probe(latLong), kWidth);
-  for (const DirectionalLight& light : lights)
-    drawDot(preview, directionToUv(Mapping::LatLong, dvec3(light.direction)));
+  drawDots(preview, lights, {Rgb(1), 3, 5});
+  return preview;
+}
+
+Image lightPreview(const Image& latLong, const Constellation& lights, const LightRegions& regions) {
+  Image preview = probePreview(Probe(latLong), kWidth);
+  if (regions.partition.regions > 0) drawOutlines(preview, latLong, regions.partition);
+  for (const MapLine& line : regions.tiling) drawLine(preview, line);
+  drawDots(preview, lights, {Rgb(1, 0, 0), 2, 3});
   return preview;
 }
 

@@ -8,12 +8,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "lighting/bsdf_only.h"
-#include "lighting/constellation/cube_grid.h"
-#include "lighting/constellation/kollig_keller.h"
-#include "lighting/constellation/lightgen.h"
-#include "lighting/constellation/median_cut.h"
-#include "lighting/constellation/penrose.h"
-#include "lighting/constellation/variance_cut.h"
+#include "lighting/constellation_lights.h"
 #include "lighting/delta_lights.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"
@@ -29,6 +24,7 @@ namespace {
 using Lights = LightingMethod::Lights;
 using Strategy = std::unique_ptr<LightingStrategy>;
 
+constexpr int kMaxLevels = 12;  // of median cut: 4096 regions
 constexpr int kUnlimited = std::numeric_limits<int>::max();
 
 template <class Sampler>
@@ -58,28 +54,6 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
     return std::make_unique<DeltaLights>(probe, made.lights, made.ambient.value_or(Rgb(0)));
   };
   return {name, summary, lights.counts, makeStrategy, lights};
-}
-
-// Deterministic methods.
-Lights constellation(CountRange counts, Constellation (*make)(const Image& latLong, int count)) {
-  return {.make =
-              [make](const Image& latLong, const LightRequest& request) {
-                return MadeLights{make(latLong, *request.count)};
-              },
-          .counts = counts,
-          .keepsEnergy = true};
-}
-
-// Stochastic methods.
-Lights constellation(CountRange counts,
-                     Constellation (*make)(const Image& latLong, int count, uint64_t seed)) {
-  return {.make =
-              [make](const Image& latLong, const LightRequest& request) {
-                return MadeLights{make(latLong, *request.count, request.seed)};
-              },
-          .counts = counts,
-          .isStochastic = true,
-          .keepsEnergy = true};
 }
 
 MadeLights fitLights(const Image& latLong, const LightRequest& request) {
@@ -135,20 +109,20 @@ const std::vector<LightingMethod>& lightingMethods() {
       {"importance", "samples proportional to luminance", {}, compensated<Importance>},
       {"product", "samples proportional to luminance x cosine", {}, sampling<Product>},
       {"suns", "each sun in the probe as a disc of its own", {}, suns, sunLights()},
-      replacing("median-cut", "a light for each region of equal energy",
-                constellation(kRegions, medianCut)),
+      replacing("median-cut", "a light for each region of equal energy", medianCutLights(kRegions)),
+      replacing("median-cut-centre", "the same, with lights at the centres of the regions",
+                centreCutLights(kRegions)),
+      replacing("median-cut-flat", "the same, with the map cut as if it were a flat picture",
+                flatCutLights(kRegions)),
       replacing("variance-cut", "a light for each region of small variance",
-                constellation(kRegions, varianceCut)),
-      replacing("lightgen", "K-means on the sphere, from random starts",
-                constellation(kRegions, lightGen)),
+                varianceCutLights(kRegions)),
+      replacing("lightgen", "K-means on the sphere, from random starts", lightGenLights(kRegions)),
       replacing("kollig-keller", "K-means on the sphere, adding one light at a time",
-                constellation(kRegions, kolligKeller)),
+                kolligKellerLights(kRegions)),
       {"kollig-keller-strata", "a random direction in each region of kollig-keller", kStrata,
-       strata, constellation(kStrata, kolligKellerStrata)},
-      replacing("cube-grid", "6 N^2 lights on the faces of a cube",
-                constellation({1, 26, 10}, cubeGrid)),
-      replacing("penrose", "blue-noise points on a Penrose tiling",
-                constellation({2, 4096, 300}, penrose)),
+       strata, strataLights(kStrata)},
+      replacing("cube-grid", "6 N^2 lights on the faces of a cube", cubeGridLights({1, 26, 10})),
+      replacing("penrose", "blue-noise points on a Penrose tiling", penroseLights({2, 4096, 300})),
       replacing("irradiance-fit", "the lights that minimise the error of irradiance",
                 fit(fitLights)),
       replacing("irradiance-fit-ambient", "the same, with constant light from all directions",
@@ -169,8 +143,14 @@ const LightingMethod& lightMethod(std::string_view name, std::string_view locati
 
 void checkLightCount(std::string_view method, const LightRequest& request) {
   const Lights& lights = lightMethod(method, "lights").lights;
+  if (request.levels) {
+    if (!lights.takesLevels) throwInput("{}: does not cut regions by levels", method);
+    if (*request.levels < 1 || *request.levels > kMaxLevels)
+      throwInput("{}: {} levels are out of range; give 1 to {}", method, *request.levels,
+                 kMaxLevels);
+  }
   if (!request.count) {
-    if (!lights.countIsOptional && !request.maxErrorPercent)
+    if (!lights.countIsOptional && !request.maxErrorPercent && !request.levels)
       throwInput("{}: needs a count", method);
     return;
   }

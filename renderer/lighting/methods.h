@@ -13,6 +13,7 @@
 
 #include "image/image.h"
 #include "lighting/constellation/directional_light.h"
+#include "lighting/light_preview.h"
 #include "lighting/strategy.h"
 
 namespace chromeball {
@@ -30,6 +31,7 @@ struct LightRequest {
   // lights (at most `count`) whose mean error in percent does not exceed maxErrorPercent.
   bool ambient = false;
   std::optional<double> maxErrorPercent;
+  std::optional<int> levels;  // for median cut, in place of the count: at most 2^levels regions
 };
 
 struct MadeLights {
@@ -53,9 +55,11 @@ struct LightingMethod {
     CountRange counts;
     bool countIsOptional = false;
     bool isStochastic = false;  // the seed changes the lights
-    bool fitsAmbient = false, takesMaxError = false;
+    bool fitsAmbient = false, takesMaxError = false, takesLevels = false;
     // The irradiances sum to the map's radiance x solid angle, channel by channel.
     bool keepsEnergy = false;
+    // The regions that the same request's lights stand for; empty: it has none.
+    std::function<LightRegions(const Image& latLong, const LightRequest&)> regions;
   } lights;
 };
 
@@ -67,11 +71,10 @@ const LightingMethod& lightMethod(std::string_view name, std::string_view locati
 // The lights that replace `latLong` (at least three channels). Directions are unit; the result is
 // deterministic. Methods that keep energy make no black or negative lights. Their number is
 // min(count, number of lit cells), where a cell is a texel, or a block of texels of a large map; a
-// black map gives none. Exceptions: cube-grid makes up to 6 count^2 lights, one for each lit
-// square; penrose makes `count` lights unless the map is black; suns makes one for each sun that it
-// finds, at most `count`.
-// Throws InputError for an unknown method, a count that is missing or out of range, or a texel that
-// is negative or not finite.
+// black map gives none; `levels` gives at most 2^levels. Exceptions: cube-grid makes up to 6
+// count^2 lights, one for each lit square; penrose makes `count` lights unless the map is black;
+// suns makes one for each sun that it finds, at most `count`. Throws InputError for an unknown
+// method, a count that is missing or out of range, or a texel that is negative or not finite.
 MadeLights makeLights(std::string_view method, const Image& latLong, const LightRequest& request);
 
 // Throws InputError for an unknown method, or a count that is missing or out of range.

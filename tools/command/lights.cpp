@@ -18,6 +18,7 @@ namespace {
 
 struct Arguments {
   std::string probe, mapping = "auto", method, output, preview, maxError, units = "photometric";
+  bool regions = false;
   LightRequest request;
 };
 
@@ -32,7 +33,10 @@ double parsePercent(std::string text, std::string_view option) {
 // Throws InputError for options that the method does not support, and for a missing count.
 void checkOptions(const LightingMethod& method, const LightRequest& request) {
   const LightingMethod::Lights& lights = method.lights;
-  if (!request.count && !request.maxErrorPercent && !lights.countIsOptional)
+  if (request.levels && request.count) throwInput("--recursion: excludes --count; give one");
+  if (request.levels && !lights.takesLevels)
+    throwInput("--recursion: {} does not cut regions by levels; use median-cut", method.name);
+  if (!request.count && !request.levels && !request.maxErrorPercent && !lights.countIsOptional)
     throwInput("--count: the number of lights is missing");
   if (request.ambient && !lights.fitsAmbient)
     throwInput("--ambient: {} fits no ambient light; use irradiance-fit", method.name);
@@ -47,6 +51,10 @@ void run(Arguments arguments) {
   if (!arguments.maxError.empty())
     request.maxErrorPercent = parsePercent(arguments.maxError, "--max-error");
   checkOptions(method, request);
+  if (arguments.regions && arguments.preview.empty())
+    throwInput("--regions: are drawn in the image of --preview, which is missing");
+  if (arguments.regions && !method.lights.regions)
+    throwInput("--regions: {} divides the probe into no regions", method.name);
   const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
   checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
@@ -61,7 +69,10 @@ void run(Arguments arguments) {
                                  .lights = lights,
                                  .units = units});
   if (!arguments.preview.empty())
-    writeImage(arguments.preview, lightPreview(probe.latLong, lights));
+    writeImage(arguments.preview, arguments.regions
+                                      ? lightPreview(probe.latLong, lights,
+                                                     method.lights.regions(probe.latLong, request))
+                                      : lightPreview(probe.latLong, lights));
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
@@ -91,6 +102,11 @@ void addLightsCommand(CLI::App& app) {
                       "radiometric (1 lux)");
   command->add_option("--preview", arguments->preview,
                       "write an image of the probe with a dot at each light");
+  command->add_flag("--regions", arguments->regions,
+                    "in the preview: outline the region of each light, of penrose the tiling");
+  command->add_option("--recursion", arguments->request.levels,
+                      "median-cut: in place of --count, cut all regions this many times: 8 lights "
+                      "of 3");
   command->add_option("--max-error", arguments->maxError,
                       "irradiance-fit: find the smallest number of lights, up to --count, whose "
                       "mean error is no greater; percent of the mean irradiance");

@@ -21,14 +21,14 @@ namespace {
 struct Arguments {
   std::string probe, mapping = "auto", csv, plot;
   std::vector<std::string> methods;
-  std::vector<int> counts;
+  std::vector<int> counts, levels;
   int normals = 20480;
   uint64_t seed = 0;
 };
 
 struct Row {
   std::string method;
-  int count;  // as requested
+  int count;  // as requested; of levels, the maximum
   size_t lights;
   LightError error;
   double seconds;  // to make the lights
@@ -48,7 +48,8 @@ Row measure(const std::string& method, const Image& latLong, const LightRequest&
   const MadeLights made = makeLights(method, latLong, request);
   const double seconds = watch.seconds();
   const auto lit = irradianceOf(made.lights, made.ambient.value_or(Rgb(0)), normals);
-  return {method, *request.count, made.lights.size(), lightError(lit, irradiance), seconds};
+  const int count = request.levels ? 1 << *request.levels : *request.count;
+  return {method, count, made.lights.size(), lightError(lit, irradiance), seconds};
 }
 
 std::string formatCsv(const std::vector<Row>& rows) {
@@ -75,10 +76,22 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
                     {mean, max});
 }
 
+std::vector<LightRequest> requestsOf(const Arguments& arguments) {
+  if (arguments.counts.empty() == arguments.levels.empty())
+    throwInput("--counts: the numbers of lights are missing; give either --counts or --recursion");
+  std::vector<LightRequest> requests;
+  for (const int count : arguments.counts)
+    requests.push_back({.count = count, .seed = arguments.seed});
+  for (const int levels : arguments.levels)
+    requests.push_back({.seed = arguments.seed, .levels = levels});
+  return requests;
+}
+
 void run(const Arguments& arguments) {
+  const std::vector<LightRequest> requests = requestsOf(arguments);
   for (const std::string& method : arguments.methods) lightMethod(method, "--methods");
   for (const std::string& method : arguments.methods)
-    for (const int count : arguments.counts) checkLightCount(method, {.count = count});
+    for (const LightRequest& request : requests) checkLightCount(method, request);
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
   checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
@@ -91,8 +104,7 @@ void run(const Arguments& arguments) {
   fmt::print("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %",
              "max %", "seconds");
   for (const std::string& method : arguments.methods)
-    for (const int count : arguments.counts) {
-      const LightRequest request{.count = count, .seed = arguments.seed};
+    for (const LightRequest& request : requests) {
       const Row& row =
           rows.emplace_back(measure(method, probe.latLong, request, normals, irradiance));
       fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
@@ -115,7 +127,10 @@ void addLightsErrorCommand(CLI::App& app) {
       ->required()
       ->delimiter(',');
   command->add_option("--counts", arguments->counts, "numbers of lights: 2,4,8,...")
-      ->required()
+      ->delimiter(',');
+  command
+      ->add_option("--recursion", arguments->levels,
+                   "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
       ->delimiter(',');
   command
       ->add_option("--normals", arguments->normals,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "probe/mapping.h"
+
 namespace chromeball {
 namespace {
 
@@ -40,6 +42,16 @@ Constellation cubeGrid(const TexelTable& table, int n) {
 
 Constellation cubeGrid(const Image& latLong, int n) {
   return cubeGrid(TexelTable(latLong, kFineCells), n);
+}
+
+Partition cubeGridRegions(const Image& latLong, int n) {
+  Partition partition{6 * n * n, {}};
+  partition.label.reserve(size_t(latLong.width) * latLong.height);
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      partition.label.push_back(
+          uint16_t(squareOf(texelDirection({latLong.width, latLong.height}, x, y), n)));
+  return partition;
 }
 
 }  // namespace chromeball

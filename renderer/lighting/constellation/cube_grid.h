@@ -3,6 +3,7 @@
 // faces of a cube.
 #pragma once
 
+#include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -11,5 +12,8 @@ namespace chromeball {
 // with the energy of all cells whose centroid projects into the square.
 Constellation cubeGrid(const TexelTable& table, int n);
 Constellation cubeGrid(const Image& latLong, int n);
+
+// The square of each texel's centre; 6 n^2 regions, lit or not.
+Partition cubeGridRegions(const Image& latLong, int n);
 
 }  // namespace chromeball

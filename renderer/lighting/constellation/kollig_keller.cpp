@@ -58,15 +58,7 @@ Constellation kolligKeller(const Image& latLong, int count) {
 
 Partition kolligKellerRegions(const Image& latLong, int count) {
   const TexelTable table(latLong, kCoarseCells);
-  const SphericalKMeans kMeans = cluster(table, count);
-  Partition partition{kMeans.centres(), {}};
-  if (partition.regions == 0) return partition;
-  const std::vector<int> cellLabels = kMeans.labels();
-  partition.label.reserve(size_t(latLong.width) * latLong.height);
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      partition.label.push_back(uint16_t(cellLabels[table.cellOfTexel(x, y)]));
-  return partition;
+  return cluster(table, count).partition(latLong);
 }
 
 Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed) {

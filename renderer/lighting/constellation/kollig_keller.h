@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "image/image.h"
+#include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -19,12 +19,7 @@ namespace chromeball {
 Constellation kolligKeller(const TexelTable& table, int count);
 Constellation kolligKeller(const Image& latLong, int count);
 
-// The regions of those lights: for each texel of the map, row by row, the index of its region, from
-// 0 to regions - 1. Black cells belong to the nearest light; a black map has no region.
-struct Partition {
-  int regions = 0;
-  std::vector<uint16_t> label;
-};
+// The regions of those lights. Black cells belong to the nearest light; a black map has no region.
 Partition kolligKellerRegions(const Image& latLong, int count);
 
 // `kollig-keller-strata` (the same paper, against aliasing): each light has a random direction in

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/hash.h"
 #include "lighting/constellation/spherical_kmeans.h"
@@ -28,11 +29,10 @@ std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t ke
   return cells;
 }
 
-}  // namespace
-
-Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
+// The clusters with the smallest objective.
+SphericalKMeans cluster(const TexelTable& table, int count, uint64_t seed) {
   const SphericalKMeans empty(table);
-  Constellation best;
+  std::optional<SphericalKMeans> best;
   double minimum = std::numeric_limits<double>::infinity();
   for (int start = 0; start < kStarts; ++start) {
     SphericalKMeans kMeans = empty;
@@ -41,13 +41,24 @@ Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
     kMeans.converge(0);
     if (kMeans.objective() >= minimum) continue;
     minimum = kMeans.objective();
-    best = kMeans.lights();
+    best.emplace(std::move(kMeans));
   }
-  return best;
+  return *best;
+}
+
+}  // namespace
+
+Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
+  return cluster(table, count, seed).lights();
 }
 
 Constellation lightGen(const Image& latLong, int count, uint64_t seed) {
   return lightGen(TexelTable(latLong, kCoarseCells), count, seed);
+}
+
+Partition lightGenRegions(const Image& latLong, int count, uint64_t seed) {
+  const TexelTable table(latLong, kCoarseCells);
+  return cluster(table, count, seed).partition(latLong);
 }
 
 }  // namespace chromeball

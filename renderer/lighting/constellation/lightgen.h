@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -14,5 +15,8 @@ namespace chromeball {
 // (spherical_kmeans.h) out of four starts.
 Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
 Constellation lightGen(const Image& latLong, int count, uint64_t seed);
+
+// The regions of those lights. Black cells belong to the nearest light; a black map has no region.
+Partition lightGenRegions(const Image& latLong, int count, uint64_t seed);
 
 }  // namespace chromeball

@@ -17,16 +17,19 @@ int halfway(int low, int high, double whole, WeightBelow weightBelow) {
   return half - weightBelow(before) <= weightBelow(after) - half ? before : after;
 }
 
-bool isWide(const TexelTable& texels, const Region& r) {
+bool isWide(const RegionTable& table, const Region& r) {
   if (r.x1 - r.x0 < 2 || r.y1 - r.y0 < 2) return r.x1 - r.x0 >= 2;
-  const dvec2 first = texels.uv(r.x0, r.y0), last = texels.uv(r.x1, r.y1);
-  const double cosLatitude = std::sin(kPiD * 0.5 * (first.y + last.y));
-  return 2 * (last.x - first.x) * cosLatitude > last.y - first.y;
+  const dvec2 first = table.texels().uv(r.x0, r.y0), last = table.texels().uv(r.x1, r.y1);
+  const double shrinking =
+      table.measure() == RegionMeasure::SolidAngle ? std::sin(kPiD * 0.5 * (first.y + last.y)) : 1;
+  return 2 * (last.x - first.x) * shrinking > last.y - first.y;
 }
 
-std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
+}  // namespace
+
+std::pair<Region, Region> cutInHalf(const RegionTable& table, const Region& r) {
   const double whole = table.moment(r).w;
-  if (isWide(table.texels(), r))
+  if (isWide(table, r))
     return cutAtColumn(r, halfway(r.x0, r.x1, whole, [&](int x) {
                          return table.moment({r.x0, r.y0, x, r.y1}).w;
                        }));
@@ -35,12 +38,10 @@ std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
                   }));
 }
 
-}  // namespace
-
 std::vector<Region> medianCutRegions(const RegionTable& table, int count) {
   return subdivide(
       table, count, [&](const Region& r) { return table.moment(r).w; },
-      [&](const Region& r) { return cut(table, r); });
+      [&](const Region& r) { return cutInHalf(table, r); });
 }
 
 Constellation medianCut(const RegionTable& table, int count) {
@@ -49,6 +50,11 @@ Constellation medianCut(const RegionTable& table, int count) {
 
 Constellation medianCut(const Image& latLong, int count) {
   return medianCut(RegionTable(latLong), count);
+}
+
+Partition medianCutPartition(const Image& latLong, int count) {
+  const RegionTable table(latLong);
+  return table.partition(latLong, medianCutRegions(table, count));
 }
 
 }  // namespace chromeball

@@ -106,6 +106,17 @@ class Search {
     return position;
   }
 
+  // The sides ab and ac of each triangle: bc is the diagonal of a rhomb.
+  std::vector<MapLine> takeSides() {
+    std::vector<MapLine> sides;
+    for (; !triangles_.empty(); triangles_.pop()) {
+      const Triangle& t = triangles_.top().item;
+      sides.push_back({toUv(t.a), toUv(t.b)});
+      sides.push_back({toUv(t.a), toUv(t.c)});
+    }
+    return sides;
+  }
+
  private:
   template <class Item>
   struct Entry {
@@ -187,6 +198,14 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
 
 Constellation penrose(const Image& latLong, int count, uint64_t seed) {
   return penrose(ImportanceTable(latLong), count, seed);
+}
+
+std::vector<MapLine> penroseTiling(const Image& latLong, int count, uint64_t seed) {
+  const ImportanceTable table(latLong);
+  if (!(table.texels().total().weight > 0)) return {};
+  Search search(table, seed);
+  for (int i = 0; i < count; ++i) search.next();
+  return search.takeSides();
 }
 
 }  // namespace chromeball

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/region_table.h"
 
+#include <algorithm>
 #include <queue>
+
+#include "probe/mapping.h"
 
 namespace chromeball {
 namespace {
@@ -22,16 +25,22 @@ int firstWhere(int low, int high, Predicate holds) {
 
 }  // namespace
 
-RegionTable::RegionTable(const Image& latLong)
+RegionTable::RegionTable(const Image& latLong, RegionMeasure measure)
     : texels_(latLong, kFineCells),
+      measure_(measure),
       moments_(size_t(texels_.width() + 1) * (texels_.height() + 1), dvec4(0)),
       lit_(moments_.size()) {
   for (int y = 0; y < texels_.height(); ++y) {
+    const double top = texels_.uv(0, y).y, bottom = texels_.uv(0, y + 1).y;
+    // The cells of a row have the same solid angle per area of the map.
+    const double factor = measure == RegionMeasure::MapArea
+                              ? (bottom - top) / (std::cos(kPiD * top) - std::cos(kPiD * bottom))
+                              : 1;
     dvec4 rowMoment(0);
     int32_t rowLit = 0;
     for (int x = 0; x < texels_.width(); ++x) {
       const TexelSum& cell = texels_.at(x, y);
-      rowMoment += dvec4(cell.moment, cell.weight);
+      rowMoment += factor * dvec4(cell.moment, cell.weight);
       rowLit += cell.weight > 0;
       moments_[corner(x + 1, y + 1)] = moments_[corner(x + 1, y)] + rowMoment;
       lit_[corner(x + 1, y + 1)] = lit_[corner(x + 1, y)] + rowLit;
@@ -59,16 +68,32 @@ Region RegionTable::trimmed(const Region& r) const {
   return t;
 }
 
-Constellation RegionTable::lights(const std::vector<Region>& regions) const {
+Constellation RegionTable::lights(const std::vector<Region>& regions, LightPlace place) const {
   Constellation lights;
   lights.reserve(regions.size());
   for (const Region& r : regions) {
     TexelSum sum;
     for (int y = r.y0; y < r.y1; ++y)
       for (int x = r.x0; x < r.x1; ++x) sum += texels_.at(x, y);
-    lights.push_back(lightAt(sum, texels_.direction(0.5 * (r.x0 + r.x1), 0.5 * (r.y0 + r.y1))));
+    const dvec3 middle =
+        *uvToDirection(Mapping::LatLong, 0.5 * (texels_.uv(r.x0, r.y0) + texels_.uv(r.x1, r.y1)));
+    lights.push_back(place == LightPlace::Centre ? makeLight(middle, sum.power)
+                                                 : lightAt(sum, middle));
   }
   return lights;
+}
+
+Partition RegionTable::partition(const Image& latLong, const std::vector<Region>& regions) const {
+  Partition partition{int(regions.size()), {}};
+  partition.label.assign(size_t(latLong.width) * latLong.height, kNoRegion);
+  const int block = texels_.block();
+  for (size_t i = 0; i < regions.size(); ++i) {
+    const Region& r = regions[i];
+    for (int y = r.y0 * block; y < std::min(r.y1 * block, latLong.height); ++y)
+      for (int x = r.x0 * block; x < std::min(r.x1 * block, latLong.width); ++x)
+        partition.label[size_t(y) * latLong.width + x] = uint16_t(i);
+  }
+  return partition;
 }
 
 std::pair<Region, Region> cutAtColumn(const Region& r, int x) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -17,15 +18,25 @@ struct Region {
   int x0, y0, x1, y1;
 };
 
+// What the weight of a cell, and the size of a region, are measured by: solid angles on the sphere,
+// or areas in the map, as if it were a flat picture.
+enum class RegionMeasure { SolidAngle, MapArea };
+
+// Where the light of a region is: at the energy centroid of its directions, or at the direction
+// that the middle of the rectangle shows.
+enum class LightPlace { Centroid, Centre };
+
 // Summed-area tables (Crow 1984) over the cells of a TexelTable.
 class RegionTable {
  public:
-  explicit RegionTable(const Image& latLong);
+  explicit RegionTable(const Image& latLong, RegionMeasure measure = RegionMeasure::SolidAngle);
 
   const TexelTable& texels() const { return texels_; }
+  RegionMeasure measure() const { return measure_; }
 
-  // Sum of (direction x weight, weight). As a difference of sums over the map it has an error of
-  // about 1e-15 of the map's total, so a black region may have a small weight.
+  // Sum of (direction x weight, weight); a cell's weight is luminance x its measure. As a
+  // difference of sums over the map it has an error of about 1e-15 of the map's total, so a black
+  // region may have a small weight.
   dvec4 moment(const Region& r) const;
   int litCells(const Region& r) const;  // exact
 
@@ -34,12 +45,17 @@ class RegionTable {
   Region trimmed(const Region& r) const;
 
   // One light for each region. Sums its cells, not table entries, so energy is kept.
-  Constellation lights(const std::vector<Region>& regions) const;
+  Constellation lights(const std::vector<Region>& regions,
+                       LightPlace place = LightPlace::Centroid) const;
+
+  // The regions as labels of the texels of the table's map.
+  Partition partition(const Image& latLong, const std::vector<Region>& regions) const;
 
  private:
   size_t corner(int x, int y) const { return size_t(y) * (texels_.width() + 1) + x; }
 
   TexelTable texels_;
+  RegionMeasure measure_;
   std::vector<dvec4> moments_;  // (width + 1) x (height + 1)
   std::vector<int32_t> lit_;
 };

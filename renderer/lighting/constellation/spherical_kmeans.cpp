@@ -166,6 +166,17 @@ std::vector<int> SphericalKMeans::labels() const {
   return labels;
 }
 
+Partition SphericalKMeans::partition(const Image& latLong) const {
+  Partition partition{centres(), {}};
+  if (centres() == 0) return partition;
+  const std::vector<int> cellLabels = labels();
+  partition.label.reserve(size_t(latLong.width) * latLong.height);
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      partition.label.push_back(uint16_t(cellLabels[table_.cellOfTexel(x, y)]));
+  return partition;
+}
+
 Constellation SphericalKMeans::lights() const {
   std::vector<TexelSum> sums(centres_.size());
   for (int i = 0; i < litCells(); ++i) sums[label_[i]] += table_.cells()[points_[i].cell];

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -37,6 +38,9 @@ class SphericalKMeans {
   int centres() const { return int(centres_.size()); }
   Constellation lights() const;     // one for each centre
   std::vector<int> labels() const;  // the centre of each cell of the table, lit or not
+
+  // The nearest centre of each texel of the table's map; no region without centres.
+  Partition partition(const Image& latLong) const;
 
  private:
   struct Point {

@@ -41,4 +41,9 @@ Constellation varianceCut(const Image& latLong, int count) {
   return varianceCut(RegionTable(latLong), count);
 }
 
+Partition varianceCutPartition(const Image& latLong, int count) {
+  const RegionTable table(latLong);
+  return table.partition(latLong, varianceCutRegions(table, count));
+}
+
 }  // namespace chromeball

@@ -14,5 +14,6 @@ namespace chromeball {
 std::vector<Region> varianceCutRegions(const RegionTable& table, int count);
 Constellation varianceCut(const RegionTable& table, int count);
 Constellation varianceCut(const Image& latLong, int count);
+Partition varianceCutPartition(const Image& latLong, int count);
 
 }  // namespace chromeball
