@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/frame_scene.h"
 
+#include "job/scene_lighting.h"
+
 namespace chromeball {
 
 void FrameScene::show(RenderJob& job) {

@@ -8,8 +8,7 @@
 #include "job/choose_camera.h"
 #include "job/load_messages.h"
 #include "job/memory_estimate.h"
-#include "lighting/finite_surroundings.h"
-#include "lighting/scene_suns.h"
+#include "job/scene_lighting.h"
 #include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
@@ -53,37 +52,6 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
 }
 
-// For a scene without a probe.
-void checkLit(const RenderJob& job, const Scene& scene) {
-  const bool lit = !scene.lights.empty() || !sunsOf(job.file.lamps).empty() ||
-                   std::any_of(scene.materials.begin(), scene.materials.end(),
-                               [](const Material& m) { return m.emits(); });
-  if (!lit)
-    throw InputError(
-        fmt::format("{}: nothing lights the scene; it needs a probe", job.file.models.front().file),
-        Remedy{"probe.file", {}});
-}
-
-// The probe as a lat-long map: the job's file, else the model's own environment, else black if the
-// scene has lights of its own.
-LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
-  const SceneFile& file = job.file;
-  const auto path = file.settings.getIfGiven<std::string>("probe.file");
-  if (!path && scene.environment) {
-    LoadedProbe own;
-    own.latLong = std::move(*scene.environment);
-    return own;
-  }
-  if (!path) {
-    checkLit(job, scene);
-    LoadedProbe black;
-    black.latLong = Image(2, 1, 3);
-    return black;
-  }
-  return loadProbe(*path, file.settings.get<std::string>("probe.mapping"),
-                   file.settings.location("probe.mapping"));
-}
-
 // The job's size; else the default height, with the aspect ratio of the model's camera. Throws
 // InputError if the image does not fit into the job's memory.
 void chooseSize(RenderJob& job, const Scene& scene) {
@@ -108,14 +76,6 @@ void chooseSize(RenderJob& job, const Scene& scene) {
                     given.has("render.size") ? given.location("render.size") + ": " : "",
                     settings.width, settings.height, needed * 1e-9, budget * 1e-9),
         Remedy{"memory", {}});
-}
-
-Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
-  const Settings& settings = job.file.settings;
-  Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
-              float(settings.get<double>("probe.scale")));
-  loaded.latLong = {};
-  return probe;
 }
 
 // Null unless the surroundings are a model.
@@ -285,17 +245,6 @@ FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   checkMemory(job, loaded);
   loaded.messages = loadMessages(job, loaded, models.warnings);
   return change;
-}
-
-std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded) {
-  auto lighting =
-      makeStrategy(strategy.name, loaded.probe, {mis, loaded.sunAngle}, strategy.location);
-  if (loaded.surroundings)
-    lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                                    *loaded.surroundings, loaded.room.get());
-  if (loaded.suns.empty()) return lighting;
-  return std::make_unique<SceneSuns>(std::move(lighting), loaded.suns);
 }
 
 }  // namespace chromeball

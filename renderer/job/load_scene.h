@@ -45,10 +45,4 @@ struct FrameChange {
 // it, for another frame of the same job. Not for composites; a probe that turns must have a file.
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
 
-// The strategy, with the probe mapped onto the scene's surroundings and with the scene file's suns,
-// if it has any. `loaded`
-// must outlive it. Throws InputError for an unknown name.
-std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded);
-
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 
 #include "base/stopwatch.h"
 #include "job/run_composite.h"
+#include "job/scene_lighting.h"
 
 namespace chromeball {
 namespace {

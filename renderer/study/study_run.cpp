@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "job/denoised_image.h"
+#include "job/scene_lighting.h"
 #include "scene/thin_wall.h"
 
 namespace chromeball {

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "scene/gltf/glb.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/uri.h"
 
 namespace chromeball {
@@ -14,125 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> kSupportedExtensions = {
-    "EXT_lights_image_based",
-    "EXT_mesh_gpu_instancing",
-    "EXT_meshopt_compression",
-    "EXT_texture_webp",
-    "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-    "KHR_materials_variants",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-};
-
-// How the user can avoid an unsupported extension.
-const char* adviceFor(const std::string& extension) {
-  if (extension == "KHR_texture_basisu")
-    return "convert its KTX2 textures to PNG, JPEG or WebP (`ktx extract` of KTX-Software can)";
-  if (extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
-    return "export it again with PNG, JPEG or WebP textures";
-  if (extension == "KHR_materials_pbrSpecularGlossiness")
-    return "convert it to metallic-roughness materials";
-  return "export it again without it";
-}
-
-std::string join(const std::set<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
-std::set<std::string> namesIn(const json& root, const char* key) {
-  std::set<std::string> names;
-  if (const auto list = root.find(key); list != root.end() && list->is_array())
-    for (const json& name : *list)
-      if (name.is_string()) names.insert(name.get<std::string>());
-  return names;
-}
-
-json takeArray(json& root, const char* key) {
-  const auto found = root.find(key);
-  json array = found != root.end() && found->is_array() ? std::move(*found) : json::array();
-  root.erase(key);
-  return array;
-}
-
-uint64_t unsignedMember(const json& object, const char* key, const std::string& where) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number_unsigned())
-    throw std::runtime_error(fmt::format("{}.{} is missing or not a whole number", where, key));
-  return found->get<uint64_t>();
-}
-
-std::string stringMember(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-void checkVersion(const json& root) {
-  const auto asset = root.find("asset");
-  const std::string version = asset == root.end() ? "" : stringMember(*asset, "version");
-  if (version.starts_with("1") || version.empty())
-    throw std::runtime_error(version.empty()
-                                 ? "has no asset.version; it must be \"2.0\""
-                                 : "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
-  const std::string minimum = stringMember(*asset, "minVersion");
-  if (!version.starts_with("2.") || (!minimum.empty() && minimum != "2.0"))
-    throw std::runtime_error(fmt::format("requires glTF {}; only 2.0 is supported",
-                                         minimum.empty() ? version : minimum));
-}
-
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-// tinygltf rejects three things that the specification allows: a skin without inverse bind
-// matrices, an animation channel without a node (an extension may define its target), and indices
-// whose accessor has no buffer view. The first two get the index -1, tinygltf's "none". Accessors
-// without a buffer view get an additional dummy view, whose index is returned.
-int fillGaps(json& root) {
-  for (json& skin : root["skins"])
-    if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
-  for (json& animation : root["animations"])
-    if (animation.is_object() && animation.contains("channels"))
-      for (json& channel : animation["channels"])
-        if (channel.is_object() && channel.contains("target") && channel["target"].is_object() &&
-            !channel["target"].contains("node"))
-          channel["target"]["node"] = -1;
-  json& views = root["bufferViews"];
-  const int none = int(views.size());
-  for (json& accessor : root["accessors"])
-    if (accessor.is_object() && !accessor.contains("bufferView")) accessor["bufferView"] = none;
-  views.push_back({{"buffer", 0}, {"byteLength", 1}});
-  return none;
-}
-
-// tinygltf rejects these skins without giving a reason.
-void checkSkins(const json& root) {
-  const auto skins = root.find("skins");
-  if (skins == root.end() || !skins->is_array()) return;
-  for (size_t i = 0; i < skins->size(); ++i) {
-    const json& skin = (*skins)[i];
-    if (!skin.is_object()) continue;
-    const auto joints = skin.find("joints");
-    const bool areNodes = joints != skin.end() && joints->is_array() &&
-                          std::all_of(joints->begin(), joints->end(),
-                                      [](const json& joint) { return joint.is_number_integer(); });
-    if (!areNodes)
-      throw std::runtime_error(
-          fmt::format("skins[{}].joints: is missing or not a list of node indices", i));
-  }
-}
 
 }  // namespace
 
@@ -149,7 +32,8 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
     const GltfChunks chunks = splitContainer(file_.bytes());
     json root = parseJson(chunks.json);
     checkVersion(root);
-    checkExtensions(root);
+    if (const auto ignored = checkExtensions(root); !ignored.empty())
+      warnOnce(fmt::format("ignored extensions: {}", fmt::join(ignored, ", ")));
     readBuffers(takeArray(root, "buffers"), chunks.binary);
     for (const json& image : takeArray(root, "images")) {
       const auto view = image.find("bufferView");
@@ -163,15 +47,6 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
   } catch (const std::exception& e) {  // from JSON and glb.h
     fail("{}", firstLine(e.what()));
   }
-}
-
-void GltfFile::checkExtensions(const json& root) {
-  for (const std::string& name : namesIn(root, "extensionsRequired"))
-    if (!kSupportedExtensions.contains(name))
-      fail("requires the extension {}, which is not supported; {}", name, adviceFor(name));
-  std::set<std::string> ignored = namesIn(root, "extensionsUsed");
-  for (const std::string& name : kSupportedExtensions) ignored.erase(name);
-  if (!ignored.empty()) warnOnce("ignored extensions: " + join(ignored));
 }
 
 // We open the files and not tinygltf, because it would also search the working directory, and

@@ -87,7 +87,6 @@ class GltfFile {
   void beginLoad();
 
  private:
-  void checkExtensions(const nlohmann::json& root);
   void readBuffers(const nlohmann::json& buffers, std::span<const uint8_t> binaryChunk);
   void readModel(nlohmann::json& root);
   void addToFiles(const std::string& uri);

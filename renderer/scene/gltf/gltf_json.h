@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is checked and mended in a glTF file's JSON before tinygltf reads it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+namespace chromeball {
+
+// All that throw do so with std::runtime_error, a reason to be preceded by the name of the file.
+
+// Throws unless the file is glTF 2.0.
+void checkVersion(const nlohmann::json& root);
+
+// Throws for an extension that the file requires and that is not supported, with advice. Returns
+// the extensions that it uses and that are ignored.
+std::set<std::string> checkExtensions(const nlohmann::json& root);
+
+// Throws for skins that tinygltf rejects without giving a reason.
+void checkSkins(const nlohmann::json& root);
+
+// tinygltf rejects three things that the specification allows: a skin without inverse bind
+// matrices, an animation channel without a node (an extension may define its target), and indices
+// whose accessor has no buffer view. The first two get the index -1, tinygltf's "none". Accessors
+// without a buffer view get an additional dummy view, whose index is returned.
+int fillGaps(nlohmann::json& root);
+
+// Removes an array from the file and returns it; empty if there is none.
+nlohmann::json takeArray(nlohmann::json& root, const char* key);
+
+// Throws unless the object has such a member.
+uint64_t unsignedMember(const nlohmann::json& object, const char* key, const std::string& where);
+
+// Empty if the object has no such string.
+std::string stringMember(const nlohmann::json& object, const char* key);
+
+}  // namespace chromeball
