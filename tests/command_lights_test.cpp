@@ -84,6 +84,48 @@ TEST(CommandLights, RegionsAndLevels) {
   EXPECT_NE(table.find("median-cut-flat             8       8"), std::string::npos) << table;
 }
 
+// The numbers below the picture are those of lights-error.
+TEST(CommandLights, SpheresAndTheTableAgree) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr", out = folder / "a.txt";
+  writeImage(probe, studioProbe({64, 32}));
+  const std::string text = run({"lights", probe, "--method", "irradiance-fit-ambient", "--count",
+                                "2", "-o", out, "--format", "opengl", "--sphere", folder / "s.png",
+                                "--normals", "320", "--probe-mask", "below-horizon"})
+                               .out;
+  EXPECT_NE(fileContents(out).find("kProbeLights = 2"), std::string::npos);
+  EXPECT_EQ(readImage(folder / "s.png").width, 1080);
+  double mean = 0, max = 0;
+  const size_t line = text.find("sphere ");
+  ASSERT_NE(line, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + line, "sphere mean error %lf%%, maximum %lf%%", &mean, &max),
+            2)
+      << text;
+  EXPECT_NE(text.find("; ambient radiance "), std::string::npos);
+  run({"lights-error", probe, "--methods", "irradiance-fit-ambient", "--counts", "2", "--normals",
+       "320", "--probe-mask", "below-horizon", "--csv", folder / "e.csv"});
+  double tableMean = 0, tableMax = 0;
+  const std::string csv = fileContents(folder / "e.csv");
+  ASSERT_EQ(std::sscanf(csv.c_str() + csv.find('\n') + 1, "irradiance-fit-ambient,2,2,%lf,%lf",
+                        &tableMean, &tableMax),
+            2)
+      << csv;
+  EXPECT_NEAR(mean / tableMean, 1, 1e-3);
+  EXPECT_NEAR(max / tableMax, 1, 1e-3);
+}
+
+TEST(CommandLights, AnAngleGivesARadiance) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr", out = folder / "a.json";
+  writeImage(probe, studioProbe({64, 32}));
+  run({"lights", probe, "--method", "median-cut", "--count", "3", "-o", out, "--angle", "1"});
+  for (const json& light : json::parse(fileContents(out))["lights"]) {
+    EXPECT_EQ(light["angle"], 1);
+    const double irradiance = light["irradiance"][1];
+    EXPECT_NEAR(light["radiance"][1].get<double>() * 2.3925e-4 / irradiance, 1, 1e-4);
+  }
+}
+
 TEST(CommandLights, SunsHaveTheirAngle) {
   const TemporaryFolder folder;
   const std::string probe = folder / "two.exr", out = folder / "a.json";
@@ -181,6 +223,14 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(lights, {"median-cut", "--regions"}), "--preview");
   expectError(with(lights, {"irradiance-fit", "--preview", folder / "a.png", "--regions"}),
               "--regions: irradiance-fit");
+  for (const char* angle : {"0", "-1", "10.5", "nan"})
+    expectError(with(lights, {"median-cut", "--angle", angle}), "--angle");
+  expectError(with(lights, {"median-cut", "--format", "opengles"}), "`opengl`");
+  expectError(with(lights, {"median-cut", "--normals", "320"}), "--sphere");
+  expectError(with(lights, {"median-cut", "--sphere", folder / "s.png", "--normals", "321"}),
+              "--normals: 321");
+  expectError(with(lights, {"median-cut", "--sphere", folder / "s.jpg"}), ".png");
+  expectError(with(lights, {"median-cut", "--probe-mask", "below-horizn"}), "`below-horizon`");
   expectError(with(lights, {"median-cut", "--recursion", "3"}), "--recursion: excludes --count");
   expectError({"lights", in, "--method", "penrose", "--recursion", "3", "-o", out},
               "--recursion: penrose");
@@ -199,6 +249,7 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   const std::vector<std::string> errors{"lights-error", in, "--methods", "median-cut", "--counts"};
   expectError(with(errors, {"two"}), "--counts");
   expectError(with(errors, {"2", "--normals", "1000"}), "1280");
+  expectError(with(errors, {"2", "--probe-mask", "sky"}), "--probe-mask");
   expectError(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
   expectError(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
   expectError({"lights-error", in, "--methods", "median-cut"}, "--counts");

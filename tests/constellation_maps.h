@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "lighting/methods.h"
+#include "probe/convert.h"
 #include "probe/load.h"
 #include "shared_data.h"
 
@@ -50,6 +51,13 @@ inline std::vector<Image> realProbes(int maximum) {
     if (const auto path = sharedData(file); path && int(maps.size()) < maximum)
       maps.push_back(loadProbe(*path).latLong);
   return maps;
+}
+
+// A shared probe as a map of 256 x 128 texels; nullopt if it is absent.
+inline std::optional<Image> smallProbe(const std::string& file) {
+  const auto path = sharedData("probes/" + file);
+  if (!path) return std::nullopt;
+  return convert(loadProbe(*path).latLong, Mapping::LatLong, Mapping::LatLong, {256, 128});
 }
 
 }  // namespace chromeball

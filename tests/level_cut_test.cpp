@@ -11,19 +11,12 @@
 #include "lighting/fit/light_error.h"
 #include "lighting/light_preview.h"
 #include "math/icosphere.h"
-#include "probe/convert.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
 namespace chromeball {
 namespace {
-
-std::optional<Image> smallProbe(const std::string& file) {
-  const auto path = sharedData("probes/" + file);
-  if (!path) return std::nullopt;
-  return convert(loadProbe(*path).latLong, Mapping::LatLong, Mapping::LatLong, {256, 128});
-}
 
 // Mean and maximum error after 1 to 7 levels, in percent.
 using Errors = std::array<LightError, 7>;
@@ -119,7 +112,7 @@ TEST(LevelCut, EachLevelDoublesTheRegions) {
       const auto regions = levelCutRegions(table, {.levels = levels, .count = 4096});
       ASSERT_EQ(int(regions.size()), 1 << levels);
       for (const Region& r : regions)
-        EXPECT_NEAR(table.moment(r).w / whole * (1 << levels), 1, 0.15);
+        EXPECT_NEAR(table.moment(r).w / whole * (1 << levels), 1, 0.2);
     }
   }
 }

@@ -122,6 +122,81 @@ TEST(LightFile, CsvHasALinePerLight) {
             "x,y,z,r,g,b,angle\n0,1,0,5,2,1,0\n0,0,-1,0,0.25,0.33333334,0.53\n");
 }
 
+// 1 degree: 2.392e-4 steradians (Madsen and Laursen 2007, eq. 5).
+TEST(LightFile, RadianceOfLightsWithAnAngle) {
+  EXPECT_NEAR(discSolidAngle(1), 2.3925e-4, 5e-9);
+  const TemporaryFolder folder;
+  LightRig rig = exampleRig();
+  rig.lights[0].angle = 1;
+  writeLights(folder / "a.json", rig);
+  const json lights = json::parse(fileContents(folder / "a.json"))["lights"];
+  EXPECT_NEAR(lights[0]["radiance"][0].get<double>() * discSolidAngle(1), 5, 1e-5);
+  EXPECT_TRUE(lights[1].contains("radiance"));
+  EXPECT_FALSE(lights[2].contains("radiance"));
+  // A radiance beyond a float.
+  rig.lights[0].irradiance.x = 3e37f;
+  EXPECT_THROW(writeLights(folder / "b.json", rig), RunError);
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.json"}));
+}
+
+// The numbers of an array `name` in C, four to a row.
+std::vector<vec4> rowsOf(const std::string& source, const std::string& name) {
+  std::vector<vec4> rows;
+  const size_t begin = source.find(name + "[");
+  if (begin == std::string::npos) return rows;
+  std::string body = source.substr(begin, source.find(';', begin) - begin);
+  for (size_t at = body.find('=');;) {
+    at = body.find_first_of("-0123456789", at);
+    if (at == std::string::npos) return rows;
+    vec4 row(0);
+    int length = 0;
+    if (std::sscanf(body.c_str() + at, "%f, %f, %f, %f%n", &row.x, &row.y, &row.z, &row.w,
+                    &length) != 4)
+      return rows;
+    rows.push_back(row);
+    at += length;
+  }
+}
+
+// Equation 4 of Madsen et al. (2003), with kd = ka = 1 and a white surface, evaluated with the
+// written numbers, is the radiance of a white Lambertian surface: irradiance / pi.
+TEST(LightFile, OpenGlLightsAWhiteSurface) {
+  const TemporaryFolder folder;
+  LightRig rig = exampleRig();
+  rig.lights.pop_back();
+  rig.probe = "a */ #error\n.hdr";
+  writeLights(folder / "a.h", rig);
+  const std::string source = fileContents(folder / "a.h");
+  EXPECT_EQ(source.find("*/"), source.rfind("*/")) << "the name ends the comment";
+  const auto directions = rowsOf(source, "kProbeDirection"),
+             colors = rowsOf(source, "kProbeDiffuse"), ambient = rowsOf(source, "kProbeAmbient");
+  ASSERT_EQ(directions.size(), 3u);
+  ASSERT_EQ(colors.size(), 3u);
+  ASSERT_EQ(ambient.size(), 1u);
+  const std::vector<vec3> normals = icosphereNormals(2);
+  const std::vector<dvec3> expected = irradianceOf(rig.lights, *rig.ambient, normals);
+  for (size_t i = 0; i < normals.size(); ++i) {
+    vec3 radiance(ambient[0]);
+    for (size_t j = 0; j < 3; ++j) {
+      EXPECT_EQ(directions[j].w, 0);
+      radiance += vec3(colors[j]) * std::max(0.0f, dot(normals[i], vec3(directions[j])));
+    }
+    EXPECT_LT(glm::distance(dvec3(radiance), expected[i] / kPiD), 1e-5);
+  }
+  // Without lights there are no empty arrays, which C lacks.
+  writeLights(folder / "b.h", {"p", "m", {}, {}});
+  EXPECT_EQ(fileContents(folder / "b.h").find("[][4]"), std::string::npos);
+}
+
+TEST(LightFile, FormatsByNameAndByExtension) {
+  EXPECT_EQ(lightFormat("a.json", "", ""), LightFormat::Json);
+  EXPECT_EQ(lightFormat("a.h", "", ""), LightFormat::OpenGl);
+  EXPECT_EQ(lightFormat("a.json", "opengl", "--format"), LightFormat::OpenGl);
+  for (const char* name : {"a.opengl", "a", "a.", "json"})
+    EXPECT_THROW(lightFormat(name, "", ""), InputError) << name;
+  EXPECT_THROW(lightFormat("a.json", "opengles", "--format"), InputError);
+}
+
 TEST(LightFile, RejectsLightsThatAreNotFiniteAndUnknownExtensions) {
   const TemporaryFolder folder;
   LightRig rig = exampleRig();

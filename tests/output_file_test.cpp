@@ -109,6 +109,7 @@ TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
   };
   expectErrorWithoutChanges(with(lights, {"-o", in("a.json")}), kInput);
   expectErrorWithoutChanges(with(lights, {"-o", in("b.json"), "--preview", probe}), kInput);
+  expectErrorWithoutChanges(with(lights, {"-o", in("b.json"), "--sphere", probe}), kInput);
   const Words errors = {"lights-error", probe, "--methods", "median-cut", "--counts", "2"};
   expectErrorWithoutChanges(with(errors, {"--csv", in("a.csv")}), kInput);
   expectErrorWithoutChanges(with(errors, {"--plot", in("a.svg")}), kInput);

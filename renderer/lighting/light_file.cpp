@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/suggest.h"
+#include "lighting/opengl_lights.h"
 
 namespace chromeball {
 namespace {
@@ -22,6 +24,10 @@ std::string text(const Json& json, int indent = -1) {
 
 Json toJson(const vec3& v) { return {v.x, v.y, v.z}; }
 
+Rgb radianceOf(const DirectionalLight& light) {
+  return Rgb(dvec3(light.irradiance) / discSolidAngle(light.angle));
+}
+
 // One line per light.
 std::string formatJson(const LightRig& rig) {
   std::string result =
@@ -30,9 +36,10 @@ std::string formatJson(const LightRig& rig) {
   result += "  \"lights\": [";
   const char* separator = "\n";
   for (const DirectionalLight& light : rig.lights) {
-    const Json json{{"direction", toJson(light.direction)},
-                    {"irradiance", toJson(light.irradiance)},
-                    {"angle", light.angle}};
+    Json json{{"direction", toJson(light.direction)},
+              {"irradiance", toJson(light.irradiance)},
+              {"angle", light.angle}};
+    if (light.angle > 0) json["radiance"] = toJson(radianceOf(light));
     result += fmt::format("{}    {}", separator, text(json));
     separator = ",\n";
   }
@@ -90,18 +97,55 @@ std::string formatCsv(const LightRig& rig) {
 
 }  // namespace
 
-void writeLights(const std::filesystem::path& path, const LightRig& rig) {
+double discSolidAngle(double degrees) {
+  const double radius = degrees / 2 * kPiD / 180;
+  return kPiD * radius * radius;
+}
+
+LightFormat lightFormat(const std::filesystem::path& path, std::string_view name,
+                        std::string_view location) {
+  static const std::map<std::string_view, LightFormat> kNames{{"json", LightFormat::Json},
+                                                              {"gltf", LightFormat::Gltf},
+                                                              {"csv", LightFormat::Csv},
+                                                              {"opengl", LightFormat::OpenGl}};
+  if (!name.empty()) {
+    const auto format = kNames.find(name);
+    if (format != kNames.end()) return format->second;
+    throwInput("{}: unknown format `{}`; {}", location, name,
+               didYouMean(name, {"json", "gltf", "csv", "opengl"}));
+  }
+  const std::string extension = path.extension().string();
+  if (extension == ".h") return LightFormat::OpenGl;
+  const auto format = kNames.find(std::string_view(extension).substr(extension.empty() ? 0 : 1));
+  if (format == kNames.end() || format->second == LightFormat::OpenGl)
+    throwInput("{}: the name should end in .json, .gltf, .csv or .h", path.string());
+  return format->second;
+}
+
+void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFormat format) {
   for (const DirectionalLight& light : rig.lights)
-    if (!isFinite(light.irradiance) || !isFinite(light.direction))
+    if (!isFinite(light.irradiance) || !isFinite(light.direction) ||
+        (light.angle > 0 && !isFinite(radianceOf(light))))
       throwRun("{}: a light of `{}` is not finite: the probe is too bright", path.string(),
                rig.method);
-  static const std::map<std::string, std::string (*)(const LightRig&)> kFormats{
-      {".json", formatJson}, {".gltf", formatGltf}, {".csv", formatCsv}};
-  const auto format = kFormats.find(path.extension().string());
-  if (format == kFormats.end())
-    throwInput("{}: the name should end in .json, .gltf or .csv", path.string());
-  const std::string contents = format->second(rig);
+  const auto contents = [&] {
+    switch (format) {
+      case LightFormat::Json:
+        return formatJson(rig);
+      case LightFormat::Gltf:
+        return formatGltf(rig);
+      case LightFormat::Csv:
+        return formatCsv(rig);
+      case LightFormat::OpenGl:
+        break;
+    }
+    return formatOpenGl(rig);
+  }();
   writeFile(path, {reinterpret_cast<const uint8_t*>(contents.data()), contents.size()});
+}
+
+void writeLights(const std::filesystem::path& path, const LightRig& rig) {
+  writeLights(path, rig, lightFormat(path, "", ""));
 }
 
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "lighting/constellation/directional_light.h"
 #include "scene/light.h"
@@ -19,15 +20,33 @@ struct LightRig {
   LightUnits units = LightUnits::Photometric;  // in .gltf
 };
 
-// Writes atomically; the extension decides the format. Throws InputError for another extension,
-// RunError if a light is not finite or writing fails.
-//   .json  {"probe", "method", "ambient": [r, g, b] if any, "lights": [{"direction": [x, y, z],
-//          "irradiance": [r, g, b], "angle": degrees}, ...]}
-//   .gltf  KHR_lights_punctual: for each light a directional light and a node whose -Z points along
-//          its rays. Intensity x colour is the irradiance (x 683 lux per W/m^2 for photometric
-//          units); the colour's largest component is 1. Ambient light and angles, which the
-//          extension lacks, are in extras.
-//   .csv   header x,y,z,r,g,b,angle, then a line per light; without the ambient light
+// The solid angle of a disc light, a of diameter, as Madsen and Laursen (2007, eq. 5) have it: A =
+// pi (a / 2)^2 steradians, 2.392e-4 for 1 degree; a light's radiance is its irradiance / A. The
+// approximation for small discs: at 10 degrees the cosine-weighted solid angle pi sin^2(a / 2), the
+// exact ratio of irradiance to radiance, is 0.25% less.
+double discSolidAngle(double degrees);
+
+enum class LightFormat { Json, Gltf, Csv, OpenGl };
+
+// json, gltf, csv or opengl; if `name` is empty, by the extension of `path`: .json, .gltf, .csv or
+// .h. Throws InputError, which starts with `location` if there is a name.
+LightFormat lightFormat(const std::filesystem::path& path, std::string_view name,
+                        std::string_view location);
+
+// Writes atomically. Throws RunError if a light is not finite or writing fails.
+//   Json    {"probe", "method", "ambient": [r, g, b] if any, "lights": [{"direction": [x, y, z],
+//           "irradiance": [r, g, b], "angle": degrees}, ...]}; lights with an angle also have
+//           "radiance": [r, g, b] (discSolidAngle)
+//   Gltf    KHR_lights_punctual: for each light a directional light and a node whose -Z points
+//   along
+//           its rays. Intensity x colour is the irradiance (x 683 lux per W/m^2 for photometric
+//           units); the colour's largest component is 1. Ambient light and angles, which the
+//           extension lacks, are in extras.
+//   Csv     header x,y,z,r,g,b,angle, then a line per light; without the ambient light
+//   OpenGl  a C header (opengl_lights.h)
+void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFormat format);
+
+// In the format of the extension. Throws InputError for another extension.
 void writeLights(const std::filesystem::path& path, const LightRig& rig);
 
 }  // namespace chromeball

@@ -67,7 +67,7 @@ Image lightPreview(const Image& latLong, const Constellation& lights, const Ligh
   Image preview = probePreview(Probe(latLong), kWidth);
   if (regions.partition.regions > 0) drawOutlines(preview, latLong, regions.partition);
   for (const MapLine& line : regions.tiling) drawLine(preview, line);
-  drawDots(preview, lights, {Rgb(1, 0, 0), 2, 3});
+  drawDots(preview, lights, {Rgb(1, 0, 0), 2.5, 3.5});
   return preview;
 }
 

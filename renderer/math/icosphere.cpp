@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/icosphere.h"
 
+#include <algorithm>
 #include <array>
 
 namespace chromeball {
@@ -28,14 +29,37 @@ std::vector<Triangle> icosahedron() {
   return faces;
 }
 
+std::array<Triangle, 4> quarters(const Triangle& face) {
+  const auto& [a, b, c] = face;
+  const dvec3 ab = normalize(a + b), bc = normalize(b + c), ca = normalize(c + a);
+  return {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}};
+}
+
 std::vector<Triangle> subdivide(const std::vector<Triangle>& faces) {
   std::vector<Triangle> smaller;
   smaller.reserve(4 * faces.size());
-  for (const auto& [a, b, c] : faces) {
-    const dvec3 ab = normalize(a + b), bc = normalize(b + c), ca = normalize(c + a);
-    smaller.insert(smaller.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
+  for (const Triangle& face : faces)
+    for (const Triangle& quarter : quarters(face)) smaller.push_back(quarter);
   return smaller;
+}
+
+// Positive inside the cone of the face, 0 on its sides.
+double depthIn(const Triangle& face, const dvec3& direction) {
+  const auto& [a, b, c] = face;
+  const double turn = dot(cross(a, b), c) < 0 ? -1 : 1;
+  const auto side = [&](const dvec3& from, const dvec3& to) {
+    return turn * dot(normalize(cross(from, to)), direction);
+  };
+  return std::min({side(a, b), side(b, c), side(c, a)});
+}
+
+template <class Faces>
+int deepest(const Faces& faces, const dvec3& direction) {
+  int best = 0;
+  double depth = -2;
+  for (int i = 0; i < int(faces.size()); ++i)
+    if (const double d = depthIn(faces[i], direction); d > depth) depth = d, best = i;
+  return best;
 }
 
 }  // namespace
@@ -50,6 +74,20 @@ std::vector<vec3> icosphereNormals(int subdivisions) {
     normals.emplace_back(dot(normal, a) < 0 ? -normal : normal);
   }
   return normals;
+}
+
+int icosphereFace(const vec3& direction, int subdivisions) {
+  static const std::vector<Triangle> kFaces = icosahedron();
+  const dvec3 d = normalize(dvec3(direction));
+  int index = deepest(kFaces, d);
+  Triangle face = kFaces[index];
+  for (int i = 0; i < subdivisions; ++i) {
+    const std::array<Triangle, 4> parts = quarters(face);
+    const int part = deepest(parts, d);
+    face = parts[part];
+    index = 4 * index + part;
+  }
+  return index;
 }
 
 }  // namespace chromeball

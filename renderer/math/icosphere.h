@@ -14,4 +14,8 @@ namespace chromeball {
 // opposite.
 std::vector<vec3> icosphereNormals(int subdivisions);
 
+// The index in icosphereNormals() of the face that `direction` (of any length but 0) goes through;
+// on an edge, of one beside it.
+int icosphereFace(const vec3& direction, int subdivisions);
+
 }  // namespace chromeball

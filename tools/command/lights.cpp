@@ -1,23 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights PROBE --method NAME --count N -o FILE
 #include <cstdio>
+#include <numeric>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "light_options.h"
+#include "lighting/fit/light_error.h"
+#include "lighting/irradiance_spheres.h"
 #include "lighting/light_file.h"
 #include "lighting/light_preview.h"
 #include "lighting/methods.h"
+#include "math/icosphere.h"
 #include "messages.h"
+#include "probe/irradiance.h"
 #include "probe/load.h"
+#include "probe/mask.h"
 
 namespace chromeball {
 namespace {
 
+constexpr double kMaxAngle = 10;  // degrees; the approximation of discSolidAngle() errs by 0.25%
+
 struct Arguments {
-  std::string probe, mapping = "auto", method, output, preview, maxError, units = "photometric";
+  std::string probe, mapping = "auto", mask = "none", method, output, format, preview, sphere,
+                     maxError, units = "photometric";
+  std::optional<int> normals;  // of the sphere
+  std::optional<double> angle;
   bool regions = false;
   LightRequest request;
 };
@@ -45,29 +58,71 @@ void checkOptions(const LightingMethod& method, const LightRequest& request) {
                method.name);
 }
 
+// Also of options that say nothing without another.
+void checkPictures(const LightingMethod& method, const Arguments& arguments) {
+  if (arguments.regions && arguments.preview.empty())
+    throwInput("--regions: are drawn in the image of --preview, which is missing");
+  if (arguments.regions && !method.lights.regions)
+    throwInput("--regions: {} divides the probe into no regions", method.name);
+  if (arguments.normals && arguments.sphere.empty())
+    throwInput("--normals: are those of --sphere, which is missing");
+  if (!arguments.preview.empty()) checkWritable(arguments.preview);
+  if (!arguments.sphere.empty()) checkWritable(arguments.sphere);
+  checkDistinct({arguments.output, arguments.preview, arguments.sphere}, {arguments.probe});
+}
+
+std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
+
+// Writes the picture, and says what it shows in one line.
+void writeSphere(const std::string& file, const Image& latLong, const MadeLights& made,
+                 int subdivisions) {
+  const std::vector<vec3> normals = icosphereNormals(subdivisions);
+  const Rgb ambient = made.ambient.value_or(Rgb(0));
+  const IrradianceSpheres spheres{subdivisions, exactIrradiance(latLong, normals),
+                                  irradianceOf(made.lights, ambient, normals), made.ambient};
+  writeImage(file, irradianceSpheres(spheres));
+  const LightError error = lightError(spheres.lights, spheres.probe);
+  const auto mean = [](const std::vector<dvec3>& all) {
+    return std::accumulate(all.begin(), all.end(), dvec3(0)) / double(all.size());
+  };
+  fmt::print(
+      "sphere      mean error {:.4g}%, maximum {:.4g}% over {} normals; mean irradiance of "
+      "the probe {}, of the lights {}",
+      error.mean, error.max, normals.size(), rgbText(mean(spheres.probe)),
+      rgbText(mean(spheres.lights)));
+  if (made.ambient) fmt::print("; ambient radiance {}", rgbText(dvec3(ambient)));
+  fmt::print("\n");
+}
+
 void run(Arguments arguments) {
   LightRequest& request = arguments.request;
   const LightingMethod& method = lightMethod(arguments.method, "--method");
   if (!arguments.maxError.empty())
     request.maxErrorPercent = parsePercent(arguments.maxError, "--max-error");
   checkOptions(method, request);
-  if (arguments.regions && arguments.preview.empty())
-    throwInput("--regions: are drawn in the image of --preview, which is missing");
-  if (arguments.regions && !method.lights.regions)
-    throwInput("--regions: {} divides the probe into no regions", method.name);
+  if (arguments.angle && !(*arguments.angle > 0 && *arguments.angle <= kMaxAngle))
+    throwInput("--angle: should be above 0 and at most {} degrees", kMaxAngle);
+  const int subdivisions = subdivisionsFor(arguments.normals.value_or(20480));
+  const ProbeMask mask = parseProbeMask(arguments.mask, "--probe-mask");
   const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
-  checkOutputFile(arguments.output, {".json", ".gltf", ".csv"});
-  if (!arguments.preview.empty()) checkWritable(arguments.preview);
-  checkDistinct({arguments.output, arguments.preview}, {arguments.probe});
+  const LightFormat format = lightFormat(arguments.output, arguments.format, "--format");
+  checkReplaceable(arguments.output);
+  checkPictures(method, arguments);
 
-  const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
-  const auto [lights, ambient, meanError] = makeLights(arguments.method, probe.latLong, request);
-  writeLights(arguments.output, {.probe = arguments.probe,
-                                 .method = arguments.method,
-                                 .ambient = ambient,
-                                 .lights = lights,
-                                 .units = units});
+  applyMask(mask, probe.latLong);
+  MadeLights made = makeLights(arguments.method, probe.latLong, request);
+  if (arguments.angle)
+    for (DirectionalLight& light : made.lights) light.angle = float(*arguments.angle);
+  const auto& [lights, ambient, meanError] = made;
+  writeLights(arguments.output,
+              {.probe = arguments.probe,
+               .method = arguments.method,
+               .ambient = ambient,
+               .lights = lights,
+               .units = units},
+              format);
   if (!arguments.preview.empty())
     writeImage(arguments.preview, arguments.regions
                                       ? lightPreview(probe.latLong, lights,
@@ -75,6 +130,7 @@ void run(Arguments arguments) {
                                       : lightPreview(probe.latLong, lights));
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
+  if (!arguments.sphere.empty()) writeSphere(arguments.sphere, probe.latLong, made, subdivisions);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
     warn(fmt::format("--max-error: {} lights do not reach {}%", lights.size(),
                      *request.maxErrorPercent));
@@ -95,8 +151,14 @@ void addLightsCommand(CLI::App& app) {
                       "maximum");
   command
       ->add_option("-o,--output", arguments->output,
-                   "the lights to write: .json, .gltf (KHR_lights_punctual) or .csv")
+                   "the lights to write: .json, .gltf (KHR_lights_punctual), .csv or .h (OpenGL)")
       ->required();
+  command->add_option("--format", arguments->format,
+                      "of the output, whatever its name: json, gltf, csv or opengl (a C header of "
+                      "values for glLightfv)");
+  command->add_option("--angle", arguments->angle,
+                      "angular diameter of the written lights in degrees, up to 10; a .json then "
+                      "has their radiance too");
   command->add_option("--light-units", arguments->units,
                       "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them), or "
                       "radiometric (1 lux)");
@@ -104,6 +166,11 @@ void addLightsCommand(CLI::App& app) {
                       "write an image of the probe with a dot at each light");
   command->add_flag("--regions", arguments->regions,
                     "in the preview: outline the region of each light, of penrose the tiling");
+  command->add_option("--sphere", arguments->sphere,
+                      "write an image of white spheres, front and back: lit by the probe, by the "
+                      "lights, and their difference; at the right the ambient light");
+  command->add_option("--normals", arguments->normals,
+                      "number of faces of these spheres: 20 times a power of 4; 20480 by default");
   command->add_option("--recursion", arguments->request.levels,
                       "median-cut: in place of --count, cut all regions this many times: 8 lights "
                       "of 3");
@@ -113,6 +180,7 @@ void addLightsCommand(CLI::App& app) {
   command->add_flag("--ambient", arguments->request.ambient,
                     "irradiance-fit: also fit a constant radiance from all directions");
   command->add_option("--seed", arguments->request.seed, "of stochastic methods");
+  command->add_option("--probe-mask", arguments->mask, kMaskHelp);
   command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }

@@ -7,19 +7,21 @@
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "job/output_file.h"
+#include "light_options.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/methods.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
+#include "probe/mask.h"
 #include "study/report/log_log_plot.h"
 
 namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string probe, mapping = "auto", csv, plot;
+  std::string probe, mapping = "auto", mask = "none", csv, plot;
   std::vector<std::string> methods;
   std::vector<int> counts, levels;
   int normals = 20480;
@@ -33,14 +35,6 @@ struct Row {
   LightError error;
   double seconds;  // to make the lights
 };
-
-int subdivisionsFor(int normals) {
-  constexpr int kMax = 8;
-  for (int i = 0, faces = 20; i <= kMax; ++i, faces *= 4)
-    if (faces == normals) return i;
-  throwInput("--normals: {} should be 20 times a power of 4: 20, 80, 320, 1280, 5120, 20480, ...",
-             normals);
-}
 
 Row measure(const std::string& method, const Image& latLong, const LightRequest& request,
             std::span<const vec3> normals, std::span<const dvec3> irradiance) {
@@ -96,8 +90,10 @@ void run(const Arguments& arguments) {
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
   checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
   const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
-  const LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  const ProbeMask mask = parseProbeMask(arguments.mask, "--probe-mask");
+  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
+  applyMask(mask, probe.latLong);
   const std::vector<dvec3> irradiance = exactIrradiance(probe.latLong, normals);
 
   std::vector<Row> rows;
@@ -132,13 +128,11 @@ void addLightsErrorCommand(CLI::App& app) {
       ->add_option("--recursion", arguments->levels,
                    "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
       ->delimiter(',');
-  command
-      ->add_option("--normals", arguments->normals,
-                   "number of surface orientations to compare: 20 times a power of 4")
-      ->capture_default_str();
+  command->add_option("--normals", arguments->normals, kNormalsHelp)->capture_default_str();
   command->add_option("--csv", arguments->csv, "write the table to this file");
   command->add_option("--plot", arguments->plot, "write a plot of the table to this .svg");
   command->add_option("--seed", arguments->seed, "of stochastic methods");
+  command->add_option("--probe-mask", arguments->mask, kMaskHelp);
   command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }

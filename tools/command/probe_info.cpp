@@ -137,17 +137,16 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
     for (const std::string& warning : lightWarnings(probe, arguments->file))
       fmt::print(stderr, "chromeball: warning: {}\n", warning);
     const ProbeInfo info = probeInfo(probe.latLong);
-    const auto angles =
-        arguments->mappingReport
-            ? std::optional(texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight}))
-            : std::nullopt;
+    const auto angles = [&] {
+      return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});
+    };
     if (arguments->json) {
       Json json = toJson(probe, info, arguments->file);
-      if (angles) json["mapping_report"] = toJson(*angles);
+      if (arguments->mappingReport) json["mapping_report"] = toJson(angles());
       fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
       print(probe, info);
-      if (angles) print(probe, *angles);
+      if (arguments->mappingReport) print(probe, angles());
     }
   });
 }

@@ -44,9 +44,9 @@ _chromeball() {
     'image view')
       options='--help --exposure --tonemap --layer' ;;
     'lights')
-      options='--help --method --count --output --light-units --preview --regions --recursion --max-error --ambient --seed --mapping' ;;
+      options='--help --method --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --probe-mask --mapping' ;;
     'lights-error')
-      options='--help --methods --counts --recursion --normals --csv --plot --seed --mapping' ;;
+      options='--help --methods --counts --recursion --normals --csv --plot --seed --probe-mask --mapping' ;;
   esac
   case "$command $previous" in
   esac

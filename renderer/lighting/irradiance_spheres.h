@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture of the irradiance of a probe and of the lights that replace it, for `lights --sphere`.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "image/image.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// Irradiance, W/m^2, on the faces of an icosphere, in the order of icosphereNormals().
+struct IrradianceSpheres {
+  int subdivisions = 5;
+  std::vector<dvec3> probe, lights;
+  std::optional<Rgb> ambient;  // radiance from all directions, part of `lights`
+};
+
+// White Lambertian spheres in display-linear colours (Madsen et al. 2003, Figs. 2, 3 and 5 to 7;
+// Madsen and Laursen 2007, Fig. 2): from left to right in the light of the probe (radiance E / pi),
+// in that of the lights, and their difference. Above from the front, looking along -Z; below from
+// the back. Faces are flat. All have one exposure, which makes the brightest channel of any face
+// white. In the difference, middle grey (sRGB 0.5) is 0; a positive difference d, lights - probe,
+// adds half of d's sRGB code value to the code value, a negative one subtracts it. A square on the
+// right has the colour of the ambient light, if there is any.
+Image irradianceSpheres(const IrradianceSpheres& spheres);
+
+}  // namespace chromeball

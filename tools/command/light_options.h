@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that commands about lights share: how many faces an icosphere has, and what part of the
+// probe gives no light.
+#pragma once
+
+#include "base/error.h"
+
+namespace chromeball {
+
+inline constexpr const char* kNormalsHelp =
+    "number of surface orientations to compare: 20 times a power of 4";
+
+inline constexpr const char* kMaskHelp = "directions that give no light: none or below-horizon";
+
+// Throws InputError.
+inline int subdivisionsFor(int normals) {
+  constexpr int kMax = 8;
+  for (int i = 0, faces = 20; i <= kMax; ++i, faces *= 4)
+    if (faces == normals) return i;
+  throwInput("--normals: {} should be 20 times a power of 4: 20, 80, 320, 1280, 5120, 20480, ...",
+             normals);
+}
+
+}  // namespace chromeball
