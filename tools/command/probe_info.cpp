@@ -2,7 +2,6 @@
 // chromeball probe info FILE
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "base/error.h"
 #include "probe/info.h"

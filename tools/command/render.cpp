@@ -81,11 +81,19 @@ void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResul
     writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
 }
 
-// What a part of a render stores besides its image; empty for a whole one. (Before the render,
-// since it identifies the files that were loaded.)
-std::optional<RenderPart> partOf(const RenderJob& job, const LoadedScene& loaded) {
+// Of a part of a render, of the files that were loaded; empty for a whole one.
+std::optional<RenderPart> identified(const RenderJob& job, const LoadedScene& loaded) {
   if (!job.settings.isPart()) return {};
-  return RenderPart{renderIdentity(job, loaded), finishPlan(job, loaded)};
+  return RenderPart{renderIdentity(job, loaded), {}};
+}
+
+// Adds the state of a part to its image. After the render, which solves the reflectance of a local
+// scene.
+void addState(const RenderJob& job, const LoadedScene& loaded, std::optional<RenderPart>& part,
+              JobResult& result) {
+  if (!part) return;
+  part->plan = finishPlan(job, loaded);
+  result.image.state = partState(*part, result.render);
 }
 
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
@@ -102,7 +110,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
-  std::optional<RenderPart> part = partOf(job, loaded);
+  std::optional<RenderPart> part = identified(job, loaded);
   JobResult result = [&] {
     ImageRender render(job, loaded, options.showsProgress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
@@ -112,7 +120,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
-  if (part) result.image.state = partState(*part, result.render);
+  addState(job, loaded, part, result);
   if (result.render.samples == 0) nameAsPartial(job.outputs);
   writeImages(job, loaded, result, seconds);
 
@@ -153,7 +161,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     scene.show(job);
     const PhaseSeconds seconds{.load = watch.lap()};
     prepareOutputs(job, scene.loaded().files);
-    std::optional<RenderPart> part = partOf(job, scene.loaded());
+    std::optional<RenderPart> part = identified(job, scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
     JobResult result = [&] {
       ImageRender render(job, scene.loaded(), options.showsProgress(), viewers.all());
@@ -165,7 +173,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
           interrupted);
     }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
-    if (part) result.image.state = partState(*part, result.render);
+    addState(job, scene.loaded(), part, result);
     writeImages(job, scene.loaded(), result, seconds);
     printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,
              options.quiet());
