@@ -206,6 +206,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                                 {"max-transmission-depth", {"3"}},
                                                 {"single-sided", {"off"}},
                                                 {"lights", {"2"}},
+                                                {"sun-angle", {"2"}},
                                                 {"light-units", {"radiometric"}},
                                                 {"camera", {"Far"}},
                                                 {"animation", {"Still"}},

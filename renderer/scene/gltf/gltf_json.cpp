@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "scene/gltf/gltf_file.h"
+
 namespace chromeball {
 namespace {
 
@@ -72,7 +74,7 @@ std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
     if (!kSupportedExtensions.contains(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
-                                           name, adviceFor(name)));
+                                           oneLine(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
   for (const std::string& name : kSupportedExtensions) ignored.erase(name);
   return ignored;
