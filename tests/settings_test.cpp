@@ -159,7 +159,10 @@ class SettingsInAFile : public testing::Test {
       add("position", "[0, 0, 5]"), add("look_at", "[0, 0, 0]");
       if (s.key == "aperture" || s.key == "focus") add("aperture", "1"), add("focus", "1");
     }
-    if (s.section == "light") {
+    const bool sun = s.key == "irradiance" || s.key == "angle" || s.key == "visible";
+    if (s.section == "light" && sun) {
+      add("direction", "[0, 1, 0]"), add("irradiance", "1");
+    } else if (s.section == "light") {
       const bool spot = s.key.ends_with("_angle"), disc = s.key == "radius" || s.key == "radiance";
       add("type", spot ? "'spot'" : disc || s.key == "direction" ? "'disc'" : "'point'");
       add("position", "[0, 1, 0]");
