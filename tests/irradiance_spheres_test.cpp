@@ -13,7 +13,6 @@
 #include "lighting/fit/light_error.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
-#include "probe/mask.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
@@ -185,24 +184,6 @@ TEST(SlowAmbientFit, FindsTheWindowsOfAHall) {
   EXPECT_GT(fit.lights[last].direction.x, 0.9);    // the opposite wall
   EXPECT_GT(fit.ambient.x, 1.3f * fit.ambient.y);  // reddish, as the floor
   EXPECT_LT(fit.meanError, 2);
-}
-
-TEST(ProbeMask, RemovesTheLightFromBelowTheHorizon) {
-  for (const int height : {32, 33}) {
-    Image map = constantProbe({64, height}, Rgb(1, 2, 3));
-    applyMask(ProbeMask::BelowHorizon, map);
-    const std::vector<dvec3> e =
-        exactIrradiance(map, std::vector<vec3>{{0, 1, 0}, {0, -1, 0}, {1, 0, 0}});
-    EXPECT_NEAR(e[0].y, 2 * kPiD, 0.02) << height;
-    // Downwards only what the row at the horizon has below it.
-    EXPECT_LE(e[1].y, height % 2 ? 0.02 : 0) << height;
-    EXPECT_NEAR(e[2].y, kPiD, 0.01) << height;
-  }
-  Image map = constantProbe({4, 2}, Rgb(1));
-  applyMask(ProbeMask::None, map);
-  EXPECT_EQ(map.rgb(0, 1), Rgb(1));
-  EXPECT_EQ(parseProbeMask("below-horizon", "--probe-mask"), ProbeMask::BelowHorizon);
-  EXPECT_THROW(parseProbeMask("horizon", "--probe-mask"), InputError);
 }
 
 }  // namespace

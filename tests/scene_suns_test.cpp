@@ -15,6 +15,7 @@
 #include "run_command.h"
 #include "small_model.h"
 #include "sphere_test.h"
+#include "strategy_samples.h"
 #include "test_scene.h"
 
 namespace chromeball {
@@ -70,29 +71,6 @@ std::vector<SunLamp> wideSuns() {
   return {{{glm::normalize(dvec3(0.3, 1, 0.2)), dvec3(3, 2, 1), 25}, true},
           {{glm::normalize(dvec3(-0.5, 1, 0.1)), dvec3(1, 2, 3), 30}, false}};
 }
-
-class Samples {
- public:
-  Samples(const LightingStrategy& strategy, const vec3& normal)
-      : strategy_(strategy), point_{{}, normal, nullptr, 0} {}
-
-  const std::vector<DirectionSample>& take(int i) {
-    sampler_.startPixel(uint32_t(i), 0, 0);
-    sampler_.startSample(0);
-    sampler_.startVertex(0);
-    samples_.clear();
-    strategy_.sample(point_, sampler_, samples_);
-    return samples_;
-  }
-  const LightPoint& point() const { return point_; }
-
- private:
-  const LightingStrategy& strategy_;
-  LightPoint point_;
-  SobolTable table_{1, 16, 5};
-  PixelSampler sampler_{table_, 7};
-  std::vector<DirectionSample> samples_;
-};
 
 TEST(SceneSuns, PdfIsTheMixtureOfAllSamples) {
   const Probe probe(gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1}));

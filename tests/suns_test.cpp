@@ -8,6 +8,7 @@
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
+#include "strategy_samples.h"
 #include "test_scene.h"
 
 namespace chromeball {
@@ -22,30 +23,6 @@ Image sunnySky(int suns) {
   }
   return map;
 }
-
-// Independent samples at one point.
-class Samples {
- public:
-  Samples(const LightingStrategy& strategy, const vec3& normal)
-      : strategy_(strategy), point_{{}, normal, nullptr, 0} {}
-
-  const std::vector<DirectionSample>& take(int i) {
-    sampler_.startPixel(uint32_t(i), 0, 0);
-    sampler_.startSample(0);
-    sampler_.startVertex(0);
-    samples_.clear();
-    strategy_.sample(point_, sampler_, samples_);
-    return samples_;
-  }
-  const LightPoint& point() const { return point_; }
-
- private:
-  const LightingStrategy& strategy_;
-  LightPoint point_;
-  SobolTable table_{1, 16, 5};
-  PixelSampler sampler_{table_, 7};
-  std::vector<DirectionSample> samples_;
-};
 
 // The pdf is the mixture density of all samples of a point.
 TEST(Suns, PdfIsTheMixtureOfAllSamples) {

@@ -66,7 +66,6 @@ class Accel {
 
  private:
   void build();
-  FilterUse filterUse();
   void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
   void occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances, RayMask mask) const;

@@ -42,6 +42,19 @@ std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>
   return still;
 }
 
+FilterUse filterUse(const Scene& scene) {
+  FilterUse use{std::vector<bool>(scene.meshes.size())};
+  for (const Instance& instance : scene.instances) {
+    const Material& material = scene.materials[size_t(instance.material)];
+    const bool alpha = material.alphaMode != AlphaMode::Opaque;
+    if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
+    use.ofMesh[size_t(instance.mesh)] = use.any = true;
+    use.hasAlpha = use.hasAlpha || alpha;
+    use.hasStraightBodies = use.hasStraightBodies || material.straightShadows;
+  }
+  return use;
+}
+
 }  // namespace
 
 Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks,
@@ -65,26 +78,15 @@ Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks,
 
 Accel::~Accel() { rtcReleaseScene(scene_); }
 
-FilterUse Accel::filterUse() {
-  FilterUse use{std::vector<bool>(described_.meshes.size())};
-  for (const Instance& instance : described_.instances) {
-    const Material& material = described_.materials[size_t(instance.material)];
-    const bool alpha = material.alphaMode != AlphaMode::Opaque;
-    if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
-    use.ofMesh[size_t(instance.mesh)] = use.any = true;
-    use.hasAlpha = use.hasAlpha || alpha;
-    hasStraightBodies_ = hasStraightBodies_ || material.straightShadows;
-  }
-  hasFilter_ = use.any;
-  hasAlpha_ = use.hasAlpha;
-  return use;
-}
-
 // Geometry i of the top scene is instance i of ours; what does not move is one more geometry, so
 // that it is built once.
 void Accel::build() {
   const Scene& scene = described_;
-  built_->begin(filterUse());
+  const FilterUse use = filterUse(scene);
+  hasFilter_ = use.any;
+  hasAlpha_ = use.hasAlpha;
+  hasStraightBodies_ = use.hasStraightBodies;
+  built_->begin(use);
   std::vector<int> uses(scene.meshes.size());
   for (const Instance& instance : scene.instances) ++uses[size_t(instance.mesh)];
   const std::vector<uint32_t> still = staticInstances(scene, uses);

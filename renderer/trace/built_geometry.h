@@ -19,8 +19,9 @@ namespace chromeball {
 
 // Which hits call the filter functions (trace/filter.h).
 struct FilterUse {
-  std::vector<bool> ofMesh;            // by mesh: whether any instance lets light pass
-  bool any = false, hasAlpha = false;  // in the whole scene
+  std::vector<bool> ofMesh;  // by mesh: whether any instance lets light pass
+  // In the whole scene.
+  bool any = false, hasAlpha = false, hasStraightBodies = false;
 };
 
 class BuiltGeometry {

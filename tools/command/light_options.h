@@ -3,7 +3,10 @@
 // probe gives no light.
 #pragma once
 
+#include <string>
+
 #include "base/error.h"
+#include "image/image.h"
 
 namespace chromeball {
 
@@ -11,6 +14,16 @@ inline constexpr const char* kNormalsHelp =
     "number of surface orientations to compare: 20 times a power of 4";
 
 inline constexpr const char* kMaskHelp = "directions that give no light: none or below-horizon";
+
+// The probe of a command about lights.
+struct LightsProbe {
+  std::string file, mapping = "auto", mask = "none";
+
+  // Throws InputError.
+  void checkMask() const;
+  // As a lat-long map; prints warnings. Throws InputError.
+  Image load() const;
+};
 
 // Throws InputError.
 inline int subdivisionsFor(int normals) {

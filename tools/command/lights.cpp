@@ -18,8 +18,6 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
-#include "probe/load.h"
-#include "probe/mask.h"
 
 namespace chromeball {
 namespace {
@@ -27,8 +25,8 @@ namespace {
 constexpr double kMaxAngle = 10;  // degrees; the approximation of discSolidAngle() errs by 0.25%
 
 struct Arguments {
-  std::string probe, mapping = "auto", mask = "none", method, output, format, preview, sphere,
-                     maxError, units = "photometric";
+  LightsProbe probe;
+  std::string method, output, format, preview, sphere, maxError, units = "photometric";
   std::optional<int> normals;  // of the sphere
   std::optional<double> angle;
   bool regions = false;
@@ -68,7 +66,7 @@ void checkPictures(const LightingMethod& method, const Arguments& arguments) {
     throwInput("--normals: are those of --sphere, which is missing");
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
   if (!arguments.sphere.empty()) checkWritable(arguments.sphere);
-  checkDistinct({arguments.output, arguments.preview, arguments.sphere}, {arguments.probe});
+  checkDistinct({arguments.output, arguments.preview, arguments.sphere}, {arguments.probe.file});
 }
 
 std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
@@ -103,34 +101,32 @@ void run(Arguments arguments) {
   if (arguments.angle && !(*arguments.angle > 0 && *arguments.angle <= kMaxAngle))
     throwInput("--angle: should be above 0 and at most {} degrees", kMaxAngle);
   const int subdivisions = subdivisionsFor(arguments.normals.value_or(20480));
-  const ProbeMask mask = parseProbeMask(arguments.mask, "--probe-mask");
+  arguments.probe.checkMask();
   const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
   const LightFormat format = lightFormat(arguments.output, arguments.format, "--format");
   checkReplaceable(arguments.output);
   checkPictures(method, arguments);
 
-  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
-  applyMask(mask, probe.latLong);
-  MadeLights made = makeLights(arguments.method, probe.latLong, request);
+  const Image latLong = arguments.probe.load();
+  MadeLights made = makeLights(arguments.method, latLong, request);
   if (arguments.angle)
     for (DirectionalLight& light : made.lights) light.angle = float(*arguments.angle);
   const auto& [lights, ambient, meanError] = made;
   writeLights(arguments.output,
-              {.probe = arguments.probe,
+              {.probe = arguments.probe.file,
                .method = arguments.method,
                .ambient = ambient,
                .lights = lights,
                .units = units},
               format);
   if (!arguments.preview.empty())
-    writeImage(arguments.preview, arguments.regions
-                                      ? lightPreview(probe.latLong, lights,
-                                                     method.lights.regions(probe.latLong, request))
-                                      : lightPreview(probe.latLong, lights));
+    writeImage(arguments.preview,
+               arguments.regions
+                   ? lightPreview(latLong, lights, method.lights.regions(latLong, request))
+                   : lightPreview(latLong, lights));
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
-  if (!arguments.sphere.empty()) writeSphere(arguments.sphere, probe.latLong, made, subdivisions);
+  if (!arguments.sphere.empty()) writeSphere(arguments.sphere, latLong, made, subdivisions);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
     warn(fmt::format("--max-error: {} lights do not reach {}%", lights.size(),
                      *request.maxErrorPercent));
@@ -142,7 +138,7 @@ void addLightsCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("lights", "Replace a probe by directional lights, for other programs.");
-  command->add_option("PROBE", arguments->probe, "the probe's image")->required();
+  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
   command->footer(lightMethodHelp());
   command->add_option("--method", arguments->method, "how to find the lights; see below")
       ->required();
@@ -180,8 +176,9 @@ void addLightsCommand(CLI::App& app) {
   command->add_flag("--ambient", arguments->request.ambient,
                     "irradiance-fit: also fit a constant radiance from all directions");
   command->add_option("--seed", arguments->request.seed, "of stochastic methods");
-  command->add_option("--probe-mask", arguments->mask, kMaskHelp);
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
+  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command->add_option("--mapping", arguments->probe.mapping,
+                      "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }
 

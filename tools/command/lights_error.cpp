@@ -13,15 +13,14 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
-#include "probe/load.h"
-#include "probe/mask.h"
 #include "study/report/log_log_plot.h"
 
 namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string probe, mapping = "auto", mask = "none", csv, plot;
+  LightsProbe probe;
+  std::string csv, plot;
   std::vector<std::string> methods;
   std::vector<int> counts, levels;
   int normals = 20480;
@@ -65,7 +64,7 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
         maxima.points.push_back({double(row.lights), row.error.max});
       }
   }
-  return logLogPlot(std::filesystem::path(arguments.probe).filename().string(),
+  return logLogPlot(std::filesystem::path(arguments.probe.file).filename().string(),
                     "number of directional lights", "error of irradiance, % of its mean",
                     {mean, max});
 }
@@ -88,21 +87,18 @@ void run(const Arguments& arguments) {
     for (const LightRequest& request : requests) checkLightCount(method, request);
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});
   if (!arguments.plot.empty()) checkOutputFile(arguments.plot, {".svg"});
-  checkDistinct({arguments.csv, arguments.plot}, {arguments.probe});
+  checkDistinct({arguments.csv, arguments.plot}, {arguments.probe.file});
   const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
-  const ProbeMask mask = parseProbeMask(arguments.mask, "--probe-mask");
-  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
-  applyMask(mask, probe.latLong);
-  const std::vector<dvec3> irradiance = exactIrradiance(probe.latLong, normals);
+  arguments.probe.checkMask();
+  const Image latLong = arguments.probe.load();
+  const std::vector<dvec3> irradiance = exactIrradiance(latLong, normals);
 
   std::vector<Row> rows;
   fmt::print("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %",
              "max %", "seconds");
   for (const std::string& method : arguments.methods)
     for (const LightRequest& request : requests) {
-      const Row& row =
-          rows.emplace_back(measure(method, probe.latLong, request, normals, irradiance));
+      const Row& row = rows.emplace_back(measure(method, latLong, request, normals, irradiance));
       fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
                  row.lights, row.error.mean, row.error.max, row.seconds);
       std::fflush(stdout);
@@ -117,7 +113,7 @@ void addLightsErrorCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
       "lights-error", "The error of the irradiance of directional lights against their probe.");
-  command->add_option("PROBE", arguments->probe, "the probe's image")->required();
+  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
   command->footer(lightMethodHelp());
   command->add_option("--methods", arguments->methods, "one or several; see below")
       ->required()
@@ -132,8 +128,9 @@ void addLightsErrorCommand(CLI::App& app) {
   command->add_option("--csv", arguments->csv, "write the table to this file");
   command->add_option("--plot", arguments->plot, "write a plot of the table to this .svg");
   command->add_option("--seed", arguments->seed, "of stochastic methods");
-  command->add_option("--probe-mask", arguments->mask, kMaskHelp);
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
+  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command->add_option("--mapping", arguments->probe.mapping,
+                      "the mapping of PROBE; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes samples of a lighting strategy.
+#pragma once
+
+#include <vector>
+
+#include "lighting/strategy.h"
+
+namespace chromeball {
+
+// Independent samples at one point.
+class Samples {
+ public:
+  Samples(const LightingStrategy& strategy, const vec3& normal)
+      : strategy_(strategy), point_{{}, normal, nullptr, 0} {}
+
+  const std::vector<DirectionSample>& take(int i) {
+    sampler_.startPixel(uint32_t(i), 0, 0);
+    sampler_.startSample(0);
+    sampler_.startVertex(0);
+    samples_.clear();
+    strategy_.sample(point_, sampler_, samples_);
+    return samples_;
+  }
+  const LightPoint& point() const { return point_; }
+
+ private:
+  const LightingStrategy& strategy_;
+  LightPoint point_;
+  SobolTable table_{1, 16, 5};
+  PixelSampler sampler_{table_, 7};
+  std::vector<DirectionSample> samples_;
+};
+
+}  // namespace chromeball
