@@ -8,6 +8,7 @@
 #include "image/io/read_image.h"
 #include "integrate/mis.h"
 #include "job/job.h"
+#include "lighting/combined_light.h"
 #include "lighting/methods.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
@@ -72,9 +73,16 @@ std::vector<SunLamp> wideSuns() {
           {{glm::normalize(dvec3(-0.5, 1, 0.1)), dvec3(1, 2, 3), 30}, false}};
 }
 
+CombinedLight withSuns(std::unique_ptr<LightingStrategy> strategy) {
+  std::vector<std::unique_ptr<LightingStrategy>> parts;
+  parts.push_back(std::move(strategy));
+  parts.push_back(std::make_unique<SceneSuns>(wideSuns()));
+  return CombinedLight(std::move(parts));
+}
+
 TEST(SceneSuns, PdfIsTheMixtureOfAllSamples) {
   const Probe probe(gradientProbe({128, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1}));
-  const SceneSuns suns(makeStrategy("importance", probe, Mis::Off, "test"), wideSuns());
+  const CombinedLight suns = withSuns(makeStrategy("importance", probe, Mis::Off, "test"));
   Samples samples(suns, {0, 1, 0});
   const auto draw = [&](int i) -> std::optional<vec3> {
     const auto& taken = samples.take(i / 3);
@@ -104,7 +112,8 @@ TEST(SceneSuns, AddTheirIrradianceToEveryStrategy) {
   for (const std::string_view name : names) {
     SCOPED_TRACE(std::string(name));
     const auto own = makeStrategy(std::string(name), probe, Mis::Balance, "test");
-    const SceneSuns both(makeStrategy(std::string(name), probe, Mis::Balance, "test"), wideSuns());
+    const CombinedLight both =
+        withSuns(makeStrategy(std::string(name), probe, Mis::Balance, "test"));
     Samples ownSamples(*own, normal), samples(both, normal);
     const auto estimate = [&](const LightingStrategy& lighting, Samples& of, int i) {
       double sum = 0;
@@ -130,7 +139,7 @@ TEST(SceneSuns, AddTheirIrradianceToEveryStrategy) {
 
 TEST(SceneSuns, TheCameraSeesTheVisibleOnes) {
   const Probe black(Image(2, 1, 3));
-  const SceneSuns suns(makeStrategy("importance", black, Mis::Balance, "test"), wideSuns());
+  const CombinedLight suns = withSuns(makeStrategy("importance", black, Mis::Balance, "test"));
   const auto seen = [&](size_t i) {
     return suns.background({}, vec3(wideSuns()[i].sun.direction)).x;
   };

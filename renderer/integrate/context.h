@@ -16,6 +16,8 @@
 
 namespace chromeball {
 
+class GroupSums;
+
 struct RayCounts {
   uint64_t camera = 0, shadow = 0, bounce = 0;
 
@@ -58,8 +60,10 @@ struct PathContext {
   std::vector<DirectionSample> lightSamples;  // scratch; keeps its capacity
   RayCounts counts;
   DepthCut depthCut;
-  Clamp clamp;              // integrators apply it to the radiance that they return
-  std::vector<Rgb> layers;  // of the current sample (Integrator::layers)
+  Clamp clamp;                      // integrators apply it to the radiance that they return
+  std::vector<Rgb> layers;          // of the current sample (Integrator::layers)
+  GroupSums* groups = nullptr;      // output, of light_groups.h; null: not wanted
+  std::vector<Rgb> lightRadiances;  // scratch of `groups`; keeps its capacity
   // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.
   bool shadowsDiffer = false;
   GuideRecords* records = nullptr;  // output; null: not wanted

@@ -31,12 +31,14 @@ namespace chromeball {
   rest.deferred = nullptr;
   const RayCounts counted = context.counts;
   const auto records = std::exchange(context.records, nullptr);
+  const auto groups = std::exchange(context.groups, nullptr);
   const auto found = [&](const PathSettings& settings) {
     return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));
   };
   const float cut = found(farther) - found(limited);
   context.counts = counted;
   context.records = records;
+  context.groups = groups;
   context.sampler.startVertex(state.depth);
   if (std::isfinite(cut))
     context.depthCut.add(state.bounces() == settings_.maxDepth, kInterval * cut);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/direct_light.h"
 
+#include "integrate/light_groups.h"
 #include "integrate/mis.h"
 
 namespace chromeball {
@@ -83,6 +84,16 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
           .bsdfPdf = bsdf.pdf};
 }
 
+// contribution() by group.
+void DirectLight::addToGroups(const Vertex& vertex, const DirectionSample& light,
+                              const BsdfValue& bsdf, const Rgb& passed,
+                              PathContext& context) const {
+  const Rgb weight = vertex.throughput * bsdf.fCos * passed;
+  if (light.isDelta) return context.groups->add(light.group, weight * light.irradiance);
+  const float ofSample = lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf) / light.pdf;
+  context.groups->addEscaped(vertex.point, light.wi, weight * ofSample);
+}
+
 Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
   Rgb sum(0);
   const auto add = [&](const LightSample& light) {
@@ -92,6 +103,8 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
     if (isBlack(passed)) return;
     sum += contribution(light.direction, bsdf) * passed;
+    if (context.groups) [[unlikely]]
+      addToGroups(vertex, light.direction, bsdf, passed, context);
     if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
   };
   if (guideChooses(vertex, context)) {
@@ -166,7 +179,11 @@ Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
   const float pdf = world_.emitters->pdf(instance.material, distance, cosine);
   const Rgb fCos = broad.fCos * lightSampleWeight(settings_.mis, pdf, broad.pdf) +
                    narrow.fCos * lightSampleWeight(settings_.mis, pdf, narrow.pdf);
-  return fCos * radiance * passed / pdf;
+  const Rgb found = fCos * radiance * passed / pdf;
+  if (context.groups) [[unlikely]]
+    context.groups->add(context.groups->groups().ofInstance(world_.scene, instance),
+                        vertex.throughput * found);
+  return found;
 }
 
 Rgb DirectLight::punctual(const Vertex& vertex, PathContext& context) const {
@@ -177,7 +194,10 @@ Rgb DirectLight::punctual(const Vertex& vertex, PathContext& context) const {
     if (isBlack(fCos)) return;
     const Rgb passed =
         transmittance(vertex, {vertex.surface.rayOrigin(s.wi), s.wi, s.distance}, context);
-    light += fCos * s.irradiance * passed;
+    const Rgb found = fCos * s.irradiance * passed;
+    light += found;
+    if (context.groups) [[unlikely]]
+      context.groups->add(context.groups->groups().ofLamp(s.lamp), vertex.throughput * found);
   });
   return light;
 }

@@ -22,6 +22,7 @@ struct Vertex {
   const GuidedBsdf& bsdf;
   const Media& media;         // on the viewer's side
   const GuideRegion* region;  // of the guide; null: light samples are not guided here
+  Rgb throughput{1};          // weight of its light at the camera, for light groups
 };
 
 // Light from the probe at a vertex, for paths that are traced together (path_batch.h).
@@ -75,6 +76,8 @@ class DirectLight {
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
                              const LightingStrategy::Escaped& found);
   Rgb contribution(const DirectionSample& light, const BsdfValue& bsdf) const;
+  void addToGroups(const Vertex& vertex, const DirectionSample& light, const BsdfValue& bsdf,
+                   const Rgb& passed, PathContext& context) const;
   static LightRecord record(const LightPoint& point, const LightSample& light,
                             const BsdfValue& bsdf);
 

@@ -57,6 +57,9 @@ class Integrator {
   // How the film accumulates each layer (RenderResult::layers).
   virtual std::vector<Accumulation> layers() const { return {}; }
 
+  // The names of the layers, if they are light groups.
+  virtual std::vector<std::string> groups() const { return {}; }
+
   // The instances visible to camera rays.
   virtual RayMask visible() const { return kAllInstances; }
 };

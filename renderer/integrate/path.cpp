@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "integrate/light_groups.h"
 #include "integrate/mis.h"
 #include "integrate/pass_through.h"
 #include "integrate/regularization.h"
@@ -45,23 +46,29 @@ std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) 
 Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) const {
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
-  if (state.lobes == Lobes::Narrow)
+  if (state.lobes == Lobes::Narrow) {
+    if (context.groups) [[unlikely]]
+      context.groups->addBackground(origin, direction, state.throughput);
     return state.throughput * lighting_.background(origin, direction);
+  }
   return weighted(state, lighting_.escaped(state.from, direction), context);
 }
 
 Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
                          PathContext& context) const {
   const Rgb found = state.throughput * escaped.radiance;
-  if (state.isDelta) return found;
   const vec3& direction = state.ray.direction;
   const float lightPdf = state.region ? state.region->pdf(escaped.pdf, direction) : escaped.pdf;
+  const float weight = state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, lightPdf);
+  if (context.groups) [[unlikely]]
+    context.groups->addEscaped(state.from, direction, state.throughput * weight);
+  if (state.isDelta) return found;
   if (context.records) {
     const float integrand = luminance(found) / luminance(state.throughputBefore) * state.pdf;
     context.addRecord({state.from.position, state.from.normal, direction, integrand,
                        lightPdf + state.pdf, escaped.pdf, state.pdf});
   }
-  return found * bsdfSampleWeight(settings_.mis, state.pdf, lightPdf);
+  return found * weight;
 }
 
 void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
@@ -107,7 +114,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     const bool broad = bsdf.has(Lobes::Broad);
     if (settings_.guide && broad)
       state.region = settings_.guide->find(surface.position, bsdf.normal());
-    const Vertex vertex{state.from, surface, guided, state.media, state.region};
+    const Vertex vertex{state.from, surface, guided, state.media, state.region, state.throughput};
     if (broad && state.deferred && !needsMedium(world_.accel, state, surface))
       direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
@@ -200,7 +207,12 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     state.ray.origin = surface.rayOrigin(state.ray.direction);
     return true;
   }
-  if (surface.material->emits()) state.radiance += foundEmission(state, surface, instance);
+  if (surface.material->emits()) {
+    const Rgb found = foundEmission(state, surface, instance);
+    state.radiance += found;
+    if (context.groups) [[unlikely]]
+      context.groups->add(context.groups->groups().ofInstance(scene, instance), found);
+  }
   if (state.first && state.lobes != Lobes::Narrow && !state.first->direct) [[unlikely]]
     state.first->direct = state.radiance;
   const bool ends = surface.material->unlit ||

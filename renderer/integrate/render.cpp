@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "integrate/guide_training.h"
+#include "integrate/light_groups.h"
 #include "integrate/pixel_renderer.h"
 #include "integrate/render_state.h"
 #include "integrate/tile_grid.h"
@@ -120,6 +121,7 @@ class Renderer {
   void forgetRepeated() {
     RenderResult own(settings_, integrator_.layers());
     own.rays = state_.result.rays;
+    own.groups = std::move(state_.result.groups);
     state_.result = std::move(own);
   }
 
@@ -243,6 +245,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
                     .schedule = Schedule(settings),
                     .training = training};
   Renderer renderer(integrator, world, camera, settings, state);
+  state.result.groups = integrator.groups();
   state.result.isRepeated = settings.shard.index > 0 && settings.shard.repeated > 0;
   if (!control || !control->restore(state)) renderer.tracePhotons();
   renderPasses(renderer, state, progress, stop, control);
@@ -258,6 +261,13 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
 RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, RenderControl* control) {
+  if (settings.wantsGroups()) {
+    const LightGroups groups(world.scene, lighting);
+    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
+    const PathTracer tracer(world, lighting, training.guided(settings.path()));
+    return render(GroupIntegrator(tracer, groups), world, camera, settings, progress, stop,
+                  &training, control);
+  }
   GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
   return render(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
                 world, camera, settings, progress, stop, &training, control);

@@ -33,8 +33,9 @@ struct RenderResult {
 
   Film film;
   AovFilm aovs;
-  LayerFilm layers;      // of the integrator
-  FeatureFilm features;  // empty unless settings.wantsFeatures()
+  LayerFilm layers;                 // of the integrator
+  std::vector<std::string> groups;  // names of the layers that are light groups
+  FeatureFilm features;             // empty unless settings.wantsFeatures()
   RayCounts rays;
   DepthCut depthCut;
   InvalidSamples invalid;

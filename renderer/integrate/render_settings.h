@@ -40,6 +40,7 @@ struct RenderSettings {
   bool hideProbe = false;      // from the camera
   std::optional<float> clamp;  // largest value of a channel of a sample; nullopt: no limit
   std::vector<Aov> aovs;
+  bool lightGroups = false, shadowMattes = false;  // layers by source (light_groups.h)
   bool regularize = false;  // biased: see regularization.h; the World needs tables for it
   bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
 
@@ -50,6 +51,7 @@ struct RenderSettings {
   bool denoisesAtEnd() const { return denoise && !isPart(); }  // a part: when it is merged
   Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
 
+  bool wantsGroups() const { return lightGroups || shadowMattes; }
   bool wantsFeatures() const {
     return denoise || std::find(aovs.begin(), aovs.end(), Aov::Denoise) != aovs.end();
   }

@@ -115,7 +115,7 @@ void JobControl::show(const RenderState& state) {
 }
 
 FinishedImage JobControl::imageOf(const RenderState& state) const {
-  FinishPlan plan = finishPlan(job_, loaded_);
+  FinishPlan plan = finishPlan(job_, loaded_, state.result);
   plan.settings.denoise = false;
   const std::atomic<bool> never = false;
   FinishedImage finished = finish(
@@ -127,7 +127,7 @@ FinishedImage JobControl::imageOf(const RenderState& state) const {
 
 void JobControl::writeCheckpoint(RenderState& state) {
   OutputImage image = imageOf(state).image;
-  part_.plan = finishPlan(job_, loaded_);
+  part_.plan = finishPlan(job_, loaded_, state.result);
   image.state = [&](Archive& a) {
     part_.archive(a);
     part_.plan.archiveImages(a);

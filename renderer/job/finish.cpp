@@ -2,10 +2,12 @@
 #include "job/finish.h"
 
 #include <algorithm>
+#include <map>
 
 #include "composite/denoise_composite.h"
 #include "composite/layers.h"
 #include "film/rows.h"
+#include "relight/light_layers.h"
 
 namespace chromeball {
 namespace {
@@ -41,8 +43,39 @@ Layer layerOf(Aov aov, const RenderResult& result, const Image& variance) {
                                 : result.aovs.finished(aov)};
 }
 
-OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
-                     const Image& variance) {
+// The radiance of a group.
+Image groupImage(const LayerFilm& film, int group) {
+  Image image(film.width(), film.height(), 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.setRgb(x, y, Rgb(film.value(x, y, group) / std::max<double>(film.count(x, y), 1)));
+  return image;
+}
+
+// light.NAME: the radiance of a group. shadow.NAME: by what factor the picture darkens where the
+// group's light is blocked, (L - L_group) / L, from 0 to 1; 1 where the picture is black. The color
+// becomes the sum of the layers, in the order in which an .exr has them.
+void addGroups(const FinishPlan& plan, const RenderResult& result, OutputImage& output) {
+  std::map<std::string, int> order;
+  for (size_t i = 0; i < plan.groups.size(); ++i) order[plan.groups[i]] = int(i);
+  std::vector<Image> images;
+  for (const auto& [name, group] : order) images.push_back(groupImage(result.layers, group));
+  Image& color = output.layers.front().image;
+  const Image sum = sumOf(images);
+  for (int y = 0; y < sum.height; ++y)
+    for (int x = 0; x < sum.width; ++x) color.setRgb(x, y, sum.rgb(x, y));
+  size_t i = 0;
+  for (const auto& [name, group] : order) {
+    Image& image = images[i++];
+    if (plan.settings.shadowMattes)
+      output.layers.push_back({"shadow." + name, "RGB", shadowMatte(sum, image)});
+    if (plan.settings.lightGroups)
+      output.layers.push_back({"light." + name, "RGB", std::move(image)});
+  }
+}
+
+OutputImage assemble(const RenderResult& result, const FinishPlan& plan, const Image& variance) {
+  const RenderSettings& settings = plan.settings;
   OutputImage output;
   if (settings.hideProbe)
     output.layers.push_back(
@@ -54,6 +87,7 @@ OutputImage assemble(const RenderResult& result, const RenderSettings& settings,
       addFeatures(result, output);
     else
       output.layers.push_back(layerOf(aov, result, variance));
+  if (!plan.groups.empty()) addGroups(plan, result, output);
   return output;
 }
 
@@ -120,6 +154,15 @@ void archiveOptional(Archive& a, std::optional<T>& value) {
   if (has && !value) value.emplace();
 }
 
+void archiveNames(Archive& a, std::vector<std::string>& names) {
+  uint64_t count = names.size();
+  a(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    if (a.reads()) names.emplace_back();
+    a(names[i]);
+  }
+}
+
 // The pixels follow in archivePixels().
 void archiveChannels(Archive& a, Image& image) {
   uint32_t channels = image.empty() ? 0 : uint32_t(image.channels);
@@ -140,7 +183,8 @@ void archivePixels(Archive& a, const Crop& window, Image& image) {
 }  // namespace
 
 std::vector<Accumulation> FinishPlan::layers() const {
-  return composite ? DifferentialFilm::layers() : std::vector<Accumulation>();
+  if (composite) return DifferentialFilm::layers();
+  return std::vector<Accumulation>(groups.size(), Accumulation::Sum);
 }
 
 void FinishPlan::archive(Archive& a) {
@@ -157,16 +201,14 @@ void FinishPlan::archive(Archive& a) {
     a.check(aov < allAovs().size());
     s.aovs.push_back(Aov(aov));
   }
+  a(s.lightGroups), a(s.shadowMattes);
+  archiveNames(a, groups);
   archiveOptional(a, composite);
+  a.check(groups.empty() || !composite);
   a.check(composite || !s.hideProbe || std::ranges::count(s.aovs, Aov::Alpha) > 0);
   if (!composite) return;
   a.enumerator(composite->mode, CompositeMode::Ratio);
-  uint64_t count = composite->layers.size();
-  a(count);
-  for (uint64_t i = 0; i < count; ++i) {
-    if (a.reads()) composite->layers.emplace_back();
-    a(composite->layers[i]);
-  }
+  archiveNames(a, composite->layers);
   archiveChannels(a, composite->plate);
   archiveChannels(a, composite->reflectance);
   a.check(composite->plate.channels == 3 && composite->reflectance.channels % 3 == 0 &&
@@ -196,7 +238,7 @@ FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const P
     return finishComposite(plan, result, {result.film.mean(), result.film.errors()}, progress,
                            stop);
   FinishedImage finished{{}, ImageNoise(result.film.errors()), {}, {}};
-  finished.image = assemble(result, plan.settings, finished.noise.variance);
+  finished.image = assemble(result, plan, finished.noise.variance);
   finished.image.placement = placementOf(plan.settings);
   if (plan.settings.denoisesAtEnd() && !result.interrupted)
     finished.denoised =

@@ -40,6 +40,7 @@ struct CompositeFinish {
 struct FinishPlan {
   RenderSettings settings;  // size, crop, layers of the first hit, hideProbe, denoise
   std::optional<CompositeFinish> composite;
+  std::vector<std::string> groups = {};  // of light, if settings.wantsGroups()
 
   std::vector<Accumulation> layers() const;  // of the integrator
   // All but the composite's images, which are of the size of settings.window() or empty.

@@ -21,7 +21,7 @@ void FrameScene::show(RenderJob& job) {
     prepared_.world =
         std::make_unique<const World>(loaded_->scene, std::vector<RayMask>(), tables, built);
   }
-  if (change.lighting) prepared_.lighting = makeLighting(job.strategy, job.settings.mis, *loaded_);
+  if (change.lighting) prepared_.lighting = makeLighting(job, *loaded_);
 }
 
 void FrameScene::load(RenderJob& job) {

@@ -146,6 +146,7 @@ PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
   placed.view = viewAtStart(job, placed, cache);
   placed.camera = cameraOf(job, scene, placed.view, placed.origin);
   for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
+  removeLamps(job, scene);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
   if (job.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
@@ -186,6 +187,8 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   PlacedModels models = placeModels(job, cache);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
+  const auto& lists = job.file.lightLists;
+  files.insert(files.end(), lists.begin(), lists.end());
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
   if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
@@ -202,7 +205,8 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      job.file.surroundings,
                      std::move(room),
                      models.origin,
-                     sunsOf(job.file.lamps),
+                     sunsOf(job),
+                     ambientOf(job),
                      settings.getIfGiven<double>("lighting.sun_angle"),
                      std::move(files)};
   if (job.composite) prepareLocalScene(job, result);

@@ -93,11 +93,16 @@ void merge(SceneFile& file, const Settings& over) {
         rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
 }
 
+constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
+
+bool isOfLight(std::string_view layer) { return layer == kLightGroups || layer == kShadowMattes; }
+
 // The layers of plain renders; those of composites are in CompositePlan.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
   const std::string location = file.settings.location("output.aovs");
   for (const auto& name : file.settings.get<std::vector<std::string>>("output.aovs")) {
+    if (isOfLight(name)) continue;
     const CompositeLayerInfo* composite = findCompositeLayer(name);
     if (!composite || composite->layer == CompositeLayer::Alpha)
       layers.push_back(aovFromName(name, location));
@@ -152,6 +157,9 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.hideProbe = s.get<bool>("transparent");
   if (const auto clamp = s.getIfGiven<double>("clamp")) r.clamp = float(*clamp);
   r.aovs = layersOf(file);
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  r.lightGroups = std::ranges::count(layers, kLightGroups) > 0;
+  r.shadowMattes = std::ranges::count(layers, kShadowMattes) > 0;
   r.regularize = s.get<bool>("render.regularize");
   r.denoise = s.get<bool>("render.denoise");
   if (r.hideProbe && std::count(r.aovs.begin(), r.aovs.end(), Aov::Alpha) == 0)
@@ -199,6 +207,19 @@ void checkDenoise(const SceneFile& file) {
     throwInput("{}: needs at least 2 samples per pixel", location);
 }
 
+void checkGroups(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  const auto found = std::ranges::find_if(layers, isOfLight);
+  if (found == layers.end()) return;
+  if (file.composite)
+    throwInput("{}: composites have no `{}`; render the scene without [composite]",
+               s.location("output.aovs"), *found);
+  if (s.get<bool>("render.denoise"))
+    throwInput("{}: `{}` are not denoised; relight first, then use `image denoise`",
+               s.location("render.denoise"), *found);
+}
+
 void checkParts(const SceneFile& file) {
   const Settings& s = file.settings;
   if (s.get<bool>("resume") && !s.has("checkpoint"))
@@ -236,6 +257,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   checkOrbit(job.file);
   checkGuide(job.file);
   checkDenoise(job.file);
+  checkGroups(job.file);
   checkParts(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");

@@ -79,7 +79,8 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
       needsBehind,
       [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
       control);
-  FinishedImage finished = finishComposite(finishPlan(job, loaded), rendered, progress, stop);
+  FinishedImage finished =
+      finishComposite(finishPlan(job, loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
   Messages messages = warningsOf(*finished.composite, job.file.settings.get<double>("probe.scale"));
   return {std::move(finished), std::move(rendered.result), std::move(messages)};

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/stopwatch.h"
+#include "integrate/light_groups.h"
+#include "job/memory_estimate.h"
 #include "job/run_composite.h"
 #include "job/scene_lighting.h"
 
@@ -17,7 +20,7 @@ JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
   RenderResult result = render(
       *prepared.world, loaded.camera, *prepared.lighting, job.settings,
       [&](double fraction) { progress(share * fraction); }, stop, control);
-  FinishedImage finished = finish(finishPlan(job, loaded), result, progress, stop);
+  FinishedImage finished = finish(finishPlan(job, loaded, result), result, progress, stop);
   return {std::move(finished), std::move(result)};
 }
 
@@ -29,10 +32,27 @@ Image cropped(const Image& whole, const Crop& window) {
   return part;
 }
 
+// The number of groups is known only now.
+void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded,
+                      const LightingStrategy& lighting) {
+  const size_t count = LightGroups(loaded.scene, lighting).names().size();
+  const Crop window = job.settings.window();
+  const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
+                        window.width * window.height;
+  const double needed = estimateMemory(job, loaded).peak + layers;
+  if (needed > memoryLimit(job))
+    throw InputError(
+        fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
+                    "limit is {:.3g} GB",
+                    job.file.settings.location("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
+                    1e-9 * memoryLimit(job)),
+        Remedy{"memory", {}});
+}
+
 }  // namespace
 
-FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded) {
-  FinishPlan plan{job.settings, {}};
+FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded, const RenderResult& result) {
+  FinishPlan plan{job.settings, {}, result.groups};
   if (!job.composite) return plan;
   const Crop window = job.settings.window();
   plan.composite = {
@@ -48,7 +68,8 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
       loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>(),
       BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
-  prepared.lighting = makeLighting(job.strategy, job.settings.mis, loaded);
+  prepared.lighting = makeLighting(job, loaded);
+  if (job.settings.wantsGroups()) checkGroupMemory(job, loaded, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();
   loaded.scene.checkTexels();
   return prepared;

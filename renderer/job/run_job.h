@@ -19,11 +19,12 @@ struct PreparedScene {
   double buildSeconds = 0, prepareSeconds = 0;  // of the world, of the lighting
 };
 
-// Throws InputError for a strategy that is unknown or does not suit the probe.
+// Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
+// that take more memory than the job may.
 PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded);
 
 // How the image is made of the job's samples.
-FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded);
+FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded, const RenderResult& result);
 
 struct JobResult : FinishedImage {
   RenderResult render;

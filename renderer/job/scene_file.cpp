@@ -125,7 +125,9 @@ SceneFile readSceneFile(const std::string& path) {
     root.section(section).read(scene.settings);
   readCamera(root.section("camera"), scene);
   readProbeTurns(root.section("probe")["rotation_keys"], scene);
-  forEach(root["light"], [&](const Entry& e) { scene.lamps.push_back(readLamp(e)); });
+  forEach(root["light"], [&](const Entry& e) {
+    for (Lamp& lamp : readLamps(e, scene.lightLists)) scene.lamps.push_back(std::move(lamp));
+  });
   if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));
   return scene;

@@ -42,7 +42,8 @@ struct SceneFile {
   std::optional<Camera> camera;    // [camera] with `position`
   std::vector<std::pair<double, double>> probeTurns;  // seconds, degrees; ascending, may be empty
   std::optional<Lens> lens;
-  std::vector<Lamp> lamps;  // [[light]]
+  std::vector<Lamp> lamps;              // [[light]]
+  std::vector<std::string> lightLists;  // the files that some of them are from
   std::optional<CompositeEntry> composite;
   std::optional<Surroundings> surroundings;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake

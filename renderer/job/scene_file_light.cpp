@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_light.h"
 
+#include "lighting/light_list.h"
 #include "probe/sky.h"
 
 namespace chromeball {
@@ -17,11 +18,12 @@ const std::vector<LampType> kTypes = {
      {"type", "name", "position", "direction", "intensity", "power", "range", "inner_angle",
       "outer_angle"}},
     {"disc", {"type", "name", "position", "direction", "radiance", "power", "radius"}},
+    {"list", {"type", "name", "file", "visible"}},
 };
 
 const LampType& typeOf(const Section& light) {
   const Entry type = light["type"];
-  const std::string name = type ? type.choice() : "sun";
+  const std::string name = type ? type.choice() : light["file"] ? "list" : "sun";
   return *std::find_if(kTypes.begin(), kTypes.end(),
                        [&](const LampType& t) { return t.name == name; });
 }
@@ -87,24 +89,64 @@ SunLamp readSun(const Section& light) {
   return lamp;
 }
 
+// Lights with an angle become suns; those without, directional lamps.
+std::vector<Lamp> readList(const Section& light, const std::string& name,
+                           std::vector<std::string>& files) {
+  const std::string path = existingFile(light.required("file"));
+  const Entry visible = light["visible"];
+  const bool isVisible = !visible || visible.flag();
+  const LightList list = readLights(path);
+  files.push_back(path);
+  std::vector<Lamp> lamps;
+  for (const DirectionalLight& from : list.lights) {
+    Lamp& lamp = lamps.emplace_back();
+    lamp.name = fmt::format("{}_{}", name, lamps.size() - 1);
+    if (from.angle > 0)
+      lamp.sun = {{glm::dvec3(from.direction), glm::dvec3(from.irradiance), double(from.angle)},
+                  isVisible,
+                  lamp.name};
+    else
+      lamp.punctual = {.kind = PunctualLight::Kind::Directional,
+                       .intensity = from.irradiance,
+                       .direction = -from.direction,
+                       .name = lamp.name};
+  }
+  if (list.ambient) {
+    Lamp& lamp = lamps.emplace_back();
+    lamp.name = name + "_ambient";
+    lamp.ambient = {*list.ambient, isVisible, lamp.name};
+  }
+  return lamps;
+}
+
+Lamp readLamp(const Section& light, const LampType& type, const std::string& name) {
+  Lamp lamp;
+  lamp.name = name;
+  if (type.name == "sun") {
+    (lamp.sun = readSun(light))->name = name;
+    return lamp;
+  }
+  const vec3 position = light.required("position").vector();
+  if (type.name == "disc") {
+    (lamp.disc = readDisc(light))->position = position;
+    return lamp;
+  }
+  lamp.punctual = readPunctual(light, type.name == "spot");
+  lamp.punctual->position = position;
+  lamp.punctual->name = name;
+  return lamp;
+}
+
 }  // namespace
 
-Lamp readLamp(const Entry& entry) {
+std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files) {
   if (!entry.node->is_table()) entry.mustBe("a table, [[light]]");
   const Section light(entry.file, "light", *entry.node->as_table());
   const LampType& type = typeOf(light);
   light.allowOnly(type.keys, fmt::format("a {} light", type.name));
-  Lamp lamp{light["name"] ? light["name"].text() : "light", {}, {}, {}};
-  if (type.name == "sun") {
-    lamp.sun = readSun(light);
-    return lamp;
-  }
-  const vec3 position = light.required("position").vector();
-  if (type.name == "disc")
-    (lamp.disc = readDisc(light))->position = position;
-  else
-    (lamp.punctual = readPunctual(light, type.name == "spot"))->position = position;
-  return lamp;
+  const Entry name = light["name"];
+  if (type.name == "list") return readList(light, name ? name.text() : "light", files);
+  return {readLamp(light, type, name ? name.text() : type.name == "sun" ? "sun" : "light")};
 }
 
 }  // namespace chromeball

@@ -7,7 +7,8 @@
 
 namespace chromeball {
 
-// Reads one table. Throws InputError.
-Lamp readLamp(const Entry& entry);
+// Reads one table: a lamp, or the lamps of a list (lighting/light_list.h), whose path is added to
+// `files`. Throws InputError.
+std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files);
 
 }  // namespace chromeball

@@ -4,13 +4,74 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "lighting/ambient_light.h"
+#include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
 #include "lighting/scene_suns.h"
+#include "lighting/split_probe.h"
 
 namespace chromeball {
+namespace {
+
+// Throws InputError if the part is to be the suns, and there are none.
+void keepPart(const RenderJob& job, Image& latLong) {
+  const LightFrom from = lightFrom(job);
+  if (from == LightFrom::All) return;
+  SunExtraction extraction = extractSuns(latLong);
+  if (from == LightFrom::Rest) {
+    latLong = std::move(extraction.remainder);
+    return;
+  }
+  if (extraction.suns.empty() && sunsOf(job).empty())
+    throwInput("{}: there are no suns, neither in the probe nor in the scene file",
+               job.file.settings.location("lighting.from"));
+  for (size_t i = 0; i < latLong.texels.size(); ++i)
+    latLong.texels[i] -= extraction.remainder.texels[i];
+}
+
+LoadedProbe loadWholeProbe(const RenderJob& job, Scene& scene) {
+  const SceneFile& file = job.file;
+  const auto path = file.settings.getIfGiven<std::string>("probe.file");
+  if (path)
+    return loadProbe(*path, file.settings.get<std::string>("probe.mapping"),
+                     file.settings.location("probe.mapping"));
+  LoadedProbe loaded;
+  if (scene.environment) {
+    loaded.latLong = std::move(*scene.environment);
+    return loaded;
+  }
+  checkLit(job, scene);
+  loaded.latLong = Image(2, 1, 3);
+  return loaded;
+}
+
+}  // namespace
+
+LightFrom lightFrom(const RenderJob& job) {
+  const auto name = job.file.settings.get<std::string>("lighting.from");
+  return name == "suns" ? LightFrom::Suns : name == "rest" ? LightFrom::Rest : LightFrom::All;
+}
+
+void removeLamps(const RenderJob& job, Scene& scene) {
+  if (lightFrom(job) != LightFrom::Suns) return;
+  scene.lights.clear();
+  for (Material& material : scene.materials) {
+    material.emission = Rgb(0);
+    if (material.unlit) material.baseColor = vec4(0, 0, 0, material.baseColor.w);
+  }
+}
+
+std::vector<SunLamp> sunsOf(const RenderJob& job) {
+  return lightFrom(job) == LightFrom::Rest ? std::vector<SunLamp>() : sunsOf(job.file.lamps);
+}
+
+std::vector<AmbientLamp> ambientOf(const RenderJob& job) {
+  return lightFrom(job) == LightFrom::Suns ? std::vector<AmbientLamp>() : ambientOf(job.file.lamps);
+}
 
 void checkLit(const RenderJob& job, const Scene& scene) {
   const bool lit = !scene.lights.empty() || !sunsOf(job.file.lamps).empty() ||
+                   !ambientOf(job.file.lamps).empty() ||
                    std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const Material& m) { return m.emits(); });
   if (!lit)
@@ -20,21 +81,9 @@ void checkLit(const RenderJob& job, const Scene& scene) {
 }
 
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
-  const SceneFile& file = job.file;
-  const auto path = file.settings.getIfGiven<std::string>("probe.file");
-  if (!path && scene.environment) {
-    LoadedProbe own;
-    own.latLong = std::move(*scene.environment);
-    return own;
-  }
-  if (!path) {
-    checkLit(job, scene);
-    LoadedProbe black;
-    black.latLong = Image(2, 1, 3);
-    return black;
-  }
-  return loadProbe(*path, file.settings.get<std::string>("probe.mapping"),
-                   file.settings.location("probe.mapping"));
+  LoadedProbe loaded = loadWholeProbe(job, scene);
+  keepPart(job, loaded.latLong);
+  return loaded;
 }
 
 Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
@@ -46,14 +95,25 @@ Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded) {
+                                               const LoadedScene& loaded, bool splitsProbe) {
   auto lighting =
       makeStrategy(strategy.name, loaded.probe, {mis, loaded.sunAngle}, strategy.location);
+  if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
+    lighting = std::make_unique<SplitProbe>(std::move(lighting), loaded.probe);
   if (loaded.surroundings)
     lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
                                                     *loaded.surroundings, loaded.room.get());
-  if (loaded.suns.empty()) return lighting;
-  return std::make_unique<SceneSuns>(std::move(lighting), loaded.suns);
+  if (loaded.suns.empty() && loaded.ambient.empty()) return lighting;
+  std::vector<std::unique_ptr<LightingStrategy>> parts;
+  parts.push_back(std::move(lighting));
+  if (!loaded.suns.empty()) parts.push_back(std::make_unique<SceneSuns>(loaded.suns));
+  for (const AmbientLamp& lamp : loaded.ambient)
+    parts.push_back(std::make_unique<AmbientLight>(lamp.radiance, lamp.isVisible, lamp.name));
+  return std::make_unique<CombinedLight>(std::move(parts));
+}
+
+std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded) {
+  return makeLighting(job.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
 }
 
 }  // namespace chromeball

@@ -9,16 +9,30 @@ namespace chromeball {
 // Throws InputError if nothing lights a scene that has no probe.
 void checkLit(const RenderJob& job, const Scene& scene);
 
+// What part of the light renders (`[lighting] from`): the suns of the probe and of the scene file,
+// or all the rest. Both together are the whole.
+enum class LightFrom { All, Suns, Rest };
+LightFrom lightFrom(const RenderJob& job);
+
+// Removes the lamps and emission that the job leaves out.
+void removeLamps(const RenderJob& job, Scene& scene);
+
+// The suns and the ambient light of the scene file that the job renders.
+std::vector<SunLamp> sunsOf(const RenderJob& job);
+std::vector<AmbientLamp> ambientOf(const RenderJob& job);
+
 // The probe's map: the job's file, else the model's own environment, which it takes, else black if
-// the scene has lights of its own. Throws InputError.
+// the scene has lights of its own; of it, the part that the job renders. Throws InputError.
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene);
 
 // With the job's rotation and scale; frees the map.
 Probe probeOf(const RenderJob& job, LoadedProbe& loaded);
 
-// The strategy, with the probe mapped onto the scene's surroundings and with the scene file's suns,
-// if it has any. `loaded` must outlive it. Throws InputError for an unknown name.
+// The strategy, with the probe mapped onto the scene's surroundings, and with the scene file's suns
+// and ambient light, if it has any. `splitsProbe`: for light groups, tells the probe's suns from
+// the rest. `loaded` must outlive it. Throws InputError for an unknown name.
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded);
+                                               const LoadedScene& loaded, bool splitsProbe = false);
+std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded);
 
 }  // namespace chromeball

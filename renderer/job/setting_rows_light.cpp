@@ -16,23 +16,31 @@ std::vector<Setting> lightRows() {
        .fallback = "sun",
        .choices =
            [] {
-             return std::vector<std::string_view>{"sun", "point", "spot", "disc"};
+             return std::vector<std::string_view>{"sun", "point", "spot", "disc", "list"};
            },
-       .help = "The kind of lamp. A sun is a distant disc besides those in the probe."});
+       .help = "The kind of lamp. A sun is a distant disc besides those in the probe; a list is a "
+               "file of `chromeball lights` or `probe split`, and needs no type."});
+  add({.key = "file",
+       .type = Compound,
+       .form = "a file name",
+       .absent = "required for a list",
+       .help = "The .json of a list. Lights with an angle are suns, those without are directional "
+               "lamps; ambient light comes from all directions."});
   add({.key = "name",
        .type = Name,
-       .fallback = "light",
-       .help = "Name of the lamp's node, for `local_scene`."});
+       .absent = "sun, or light",
+       .help = "Name of the lamp, for `local_scene` and light groups; those of a list get numbers: "
+               "NAME_0."});
   add({.key = "position",
        .type = Compound,
        .form = "three numbers",
        .unit = "metres",
-       .absent = "required, but for a sun",
+       .absent = "required for a point, spot or disc",
        .help = "Position of the lamp."});
   add({.key = "direction",
        .type = Compound,
        .form = "three numbers",
-       .absent = "required, but for a point light",
+       .absent = "required for a spot, disc or sun",
        .help = "Direction in which a spot or disc emits, or from the scene to a sun; of any length "
                "except 0."});
   add({.key = "intensity",
@@ -66,7 +74,7 @@ std::vector<Setting> lightRows() {
   add({.key = "visible",
        .type = Flag,
        .fallback = "true",
-       .help = "Whether the camera and mirrors see a sun."});
+       .help = "Whether the camera and mirrors see a sun, or a list's suns and ambient light."});
   add({.key = "power",
        .type = Compound,
        .form = color,

@@ -14,6 +14,7 @@ Names layers() {
   for (const AovInfo& info : allAovs()) names.push_back(info.name);
   for (const CompositeLayerInfo& info : compositeLayers())
     if (info.layer != CompositeLayer::Alpha) names.push_back(info.name);
+  names.insert(names.end(), {"light_groups", "shadow_mattes"});
   return names;
 }
 
@@ -166,7 +167,9 @@ void addOutput(std::vector<Setting>& rows) {
                   .absent = "none",
                   .choices = layers,
                   .help = "Layers of the .exr beside the color. l_obj, l_noobj, difference and "
-                          "reflectance are those of a composite.",
+                          "reflectance are those of a composite. light_groups are layers "
+                          "light.NAME, the radiance from each source; shadow_mattes are "
+                          "shadow.NAME, the factor by which its shadow darkens.",
                   .renderOnly = true});
 }
 

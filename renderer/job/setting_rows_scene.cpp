@@ -192,6 +192,17 @@ void addLighting(std::vector<Setting>& rows) {
        .absent = "as measured in the probe",
        .help = "Diameter of the discs of the strategy `suns`; their irradiance stays. The Sun's is "
                "0.5323."});
+  add({.key = "from",
+       .option = "light-from",
+       .argument = "PART",
+       .type = Choice,
+       .fallback = "all",
+       .choices =
+           [] {
+             return Names{"all", "suns", "rest"};
+           },
+       .help = "What lights the scene: all, only the suns of the probe and of [[light]], or all "
+               "but these. The two parts add up to the whole."});
   add({.key = "lights",
        .option = "lights",
        .argument = "FACTOR",

@@ -17,11 +17,19 @@ float importance(const DirectionSample& light, const LightPoint& point) {
 }  // namespace
 
 DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const Rgb& ambient)
-    : probe_(probe), ambient_(ambient) {
+    : probe_(probe), ambient_(ambient), count_(lights.size()) {
   const glm::quat turn = glm::angleAxis(glm::radians(probe.rotationDegrees()), vec3(0, 1, 0));
-  for (const DirectionalLight& light : lights)
-    if (!isBlack(light.irradiance))
-      lights_.push_back({glm::normalize(turn * light.direction), light.irradiance, 0, true});
+  for (size_t i = 0; i < count_; ++i)
+    if (const DirectionalLight& light = lights[i]; !isBlack(light.irradiance))
+      lights_.push_back(
+          {glm::normalize(turn * light.direction), light.irradiance, 0, true, int(i)});
+}
+
+std::vector<std::string> DeltaLights::groups() const {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < count_; ++i) names.push_back(std::to_string(i));
+  names.insert(names.end(), {"ambient", "background"});
+  return names;
 }
 
 void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
@@ -37,7 +45,7 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
   for (const DirectionSample& light : lights_)
     if (const float weight = importance(light, point); weight > 0) {
       total += weight;
-      out.push_back({light.wi, light.irradiance, weight, true});
+      out.push_back({light.wi, light.irradiance, weight, true, light.group});
     }
   const float step = total / kLater;
   float target = step * sampler.get1(dimension::kLight), sum = 0;
@@ -47,7 +55,8 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
     int times = 0;
     for (sum += weight; sum > target; target += step) ++times;
     if (times > 0)
-      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / weight), 0, true};
+      out[kept++] = {out[i].wi, out[i].irradiance * (float(times) * step / weight), 0, true,
+                     out[i].group};
   }
   out.resize(kept);
 }

@@ -32,11 +32,21 @@ class DeltaLights : public LightingStrategy {
     return lights_.empty() ? 0 : 1 / std::sqrt(float(lights_.size()));
   }
   bool unbiased() const override { return false; }
+  // The lights by number, in the order of the constellation; then what the camera and mirrors see.
+  std::vector<std::string> groups() const override;
+  void splitEscaped(const LightPoint&, const vec3&, std::span<Rgb> radiances) const override {
+    radiances[count_] += ambient_;
+  }
+  void splitBackground(const vec3& origin, const vec3& wi,
+                       std::span<Rgb> radiances) const override {
+    radiances.back() += background(origin, wi);
+  }
 
  private:
   const Probe& probe_;
   Rgb ambient_;
-  std::vector<DirectionSample> lights_;
+  size_t count_;                         // of the constellation's lights
+  std::vector<DirectionSample> lights_;  // without black ones
 };
 
 }  // namespace chromeball

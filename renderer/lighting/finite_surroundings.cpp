@@ -23,7 +23,7 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
     // The ratio is 0 if the point lies on the surface itself.
     if (!(ratio > 0) || !isSeen(y, point.position)) continue;
     out[kept++] = {glm::normalize(y.position - point.position), out[i].irradiance * ratio,
-                   out[i].pdf / ratio, out[i].isDelta};
+                   out[i].pdf / ratio, out[i].isDelta, out[i].group};
   }
   out.resize(kept);
 }
@@ -42,6 +42,25 @@ LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
 Rgb FiniteSurroundings::background(const vec3& origin, const vec3& wi) const {
   const Surroundings::Point y = behind(origin, wi);
   return probe_.radiance(glm::normalize(y.position - surroundings_.capture));
+}
+
+void FiniteSurroundings::splitEscaped(const LightPoint& point, const vec3& wi,
+                                      std::span<Rgb> radiances) const {
+  const Surroundings::Point y = behind(point.position, wi);
+  strategy_->splitEscaped(point, glm::normalize(y.position - surroundings_.capture), radiances);
+}
+
+// The probe's radiance, in the proportions of what the strategy sees.
+void FiniteSurroundings::splitBackground(const vec3& origin, const vec3& wi,
+                                         std::span<Rgb> radiances) const {
+  const Surroundings::Point y = behind(origin, wi);
+  const vec3 direction = glm::normalize(y.position - surroundings_.capture);
+  const Rgb whole = probe_.radiance(direction), own = strategy_->background(origin, direction);
+  Rgb factor;
+  for (int k = 0; k < 3; ++k) factor[k] = own[k] > 0 ? whole[k] / own[k] : 0;
+  std::vector<Rgb> parts(radiances.size(), Rgb(0));
+  strategy_->splitBackground(origin, direction, parts);
+  for (size_t i = 0; i < parts.size(); ++i) radiances[i] += factor * parts[i];
 }
 
 }  // namespace chromeball

@@ -36,6 +36,10 @@ class FiniteSurroundings : public LightingStrategy {
   Rgb background(const vec3& origin, const vec3& wi) const override;
   float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
   bool unbiased() const override { return strategy_->unbiased(); }
+  std::vector<std::string> groups() const override { return strategy_->groups(); }
+  void splitEscaped(const LightPoint& point, const vec3& wi,
+                    std::span<Rgb> radiances) const override;
+  void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
   Surroundings::Point behind(const vec3& origin, const vec3& direction) const {

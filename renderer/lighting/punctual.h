@@ -12,9 +12,10 @@ namespace chromeball {
 
 // The light of one lamp at a point. No BSDF sample can find a delta light, so its MIS weight is 1.
 struct PunctualSample {
-  vec3 wi;         // unit, from the point to the light
-  float distance;  // metres; infinite for a directional light
-  Rgb irradiance;  // on a surface that faces it
+  vec3 wi;          // unit, from the point to the light
+  float distance;   // metres; infinite for a directional light
+  Rgb irradiance;   // on a surface that faces it
+  size_t lamp = 0;  // index into Scene::lights
 };
 
 // The light that arrives at `position` (KHR_lights_punctual): intensity / distance^2, times
@@ -37,13 +38,18 @@ class PunctualLights {
   void sample(const LightPoint& point, const PixelSampler& sampler, const Use& use) const {
     const size_t wanted = point.depth == 0 ? kFirst : kLater;
     if (lights_.size() > wanted) return choose(point, sampler, int(wanted), use);
-    for (const PunctualLight& light : lights_)
-      if (const PunctualSample s = incidentLight(light, point.position); !isBlack(s.irradiance))
-        use(s);
+    for (size_t i = 0; i < lights_.size(); ++i)
+      if (const PunctualSample s = sampleOf(i, point); !isBlack(s.irradiance)) use(s);
   }
 
  private:
   explicit PunctualLights(const Scene& scene) : lights_(scene.lights) {}
+
+  PunctualSample sampleOf(size_t i, const LightPoint& point) const {
+    PunctualSample s = incidentLight(lights_[i], point.position);
+    s.lamp = i;
+    return s;
+  }
 
   template <class Use>
   void choose(const LightPoint& point, const PixelSampler& sampler, int count,
@@ -54,8 +60,8 @@ class PunctualLights {
     const float step = total / float(count);
     constexpr uint64_t kPurpose = 0x6c616d70;  // separate random stream
     float target = step * toUnit(uint32_t(hash(sampler.sampleKey(), kPurpose))), sum = 0;
-    for (const PunctualLight& light : lights_) {
-      PunctualSample s = incidentLight(light, point.position);
+    for (size_t i = 0; i < lights_.size(); ++i) {
+      PunctualSample s = sampleOf(i, point);
       const float weight = luminance(s.irradiance);
       sum += weight;
       s.irradiance *= step / weight;

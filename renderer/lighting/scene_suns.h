@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wraps any strategy: adds the suns that a scene has besides its probe (HDRI book, sections 9.3.5
-// and 9.6.1).
+// Suns that a scene has besides its probe (HDRI book, sections 9.3.5 and 9.6.1).
 #pragma once
-
-#include <memory>
 
 #include "lighting/sky_discs.h"
 #include "lighting/strategy.h"
@@ -11,25 +8,28 @@
 
 namespace chromeball {
 
-// Takes the samples of the strategy, and those of the discs. Radiances and pdfs of both are added
-// in each direction, so that all samples are combined by the balance heuristic. The camera and
-// mirrors see the visible discs.
+// A part of a CombinedLight. The camera and mirrors see the visible discs.
 class SceneSuns : public LightingStrategy {
  public:
-  SceneSuns(std::unique_ptr<LightingStrategy> strategy, const std::vector<SunLamp>& suns);
+  explicit SceneSuns(const std::vector<SunLamp>& suns);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
-  Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  Rgb background(const vec3& origin, const vec3& wi) const override {
-    return strategy_->background(origin, wi) + visible_.at(wi).radiance;
+  Escaped escaped(const LightPoint&, const vec3& wi) const override {
+    const SkyDiscs::Light light = all_.at(wi);
+    return {light.radiance, light.pdf};
   }
-  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
-  bool unbiased() const override { return strategy_->unbiased(); }
+  Rgb background(const vec3&, const vec3& wi) const override { return visible_.at(wi).radiance; }
+  bool unbiased() const override { return true; }
+  std::vector<std::string> groups() const override { return names_; }
+  void splitEscaped(const LightPoint& point, const vec3& wi,
+                    std::span<Rgb> radiances) const override;
+  void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
-  std::unique_ptr<LightingStrategy> strategy_;
   SkyDiscs all_, visible_;
+  std::vector<std::string> names_;  // of all
+  std::vector<size_t> seen_;        // indices of the visible ones
 };
 
 }  // namespace chromeball

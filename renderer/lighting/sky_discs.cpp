@@ -42,14 +42,4 @@ vec3 SkyDiscs::Disc::direction(float u, float v) const {
   return frame.toWorld({r * cosine, r * sine, 1 - squared / 2});
 }
 
-SkyDiscs::Light SkyDiscs::at(const vec3& wi) const {
-  Light light;
-  for (const Disc& disc : discs_)
-    if (disc.contains(wi)) {
-      light.radiance += disc.radiance;
-      light.pdf += disc.pdf;
-    }
-  return light;
-}
-
 }  // namespace chromeball

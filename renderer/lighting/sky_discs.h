@@ -44,7 +44,20 @@ class SkyDiscs {
     Rgb radiance{0};
     float pdf = 0;  // of sample(), over solid angle: the sum over its directions
   };
-  Light at(const vec3& wi) const;
+  Light at(const vec3& wi) const {
+    Light light;
+    forDiscsAt(wi, [&](size_t, const Light& disc) {
+      light.radiance += disc.radiance;
+      light.pdf += disc.pdf;
+    });
+    return light;
+  }
+  // Calls visit(index of the sun, its Light) for each disc in the direction.
+  template <class Visit>
+  void forDiscsAt(const vec3& wi, const Visit& visit) const {
+    for (size_t i = 0; i < discs_.size(); ++i)
+      if (discs_[i].contains(wi)) visit(i, Light{discs_[i].radiance, discs_[i].pdf});
+  }
 
  private:
   // Discs are measured by chords. The chord from the centre to wi is accurate for discs of any

@@ -35,6 +35,7 @@ struct DirectionSample {
   Rgb irradiance;
   float pdf;             // unless isDelta
   bool isDelta = false;  // from a delta light: no BSDF sample can find it, so its MIS weight is 1
+  int group = 0;         // of a delta light: index into LightingStrategy::groups()
 };
 
 class LightingStrategy {
@@ -83,6 +84,18 @@ class LightingStrategy {
 
   // False for an approximation, whose error does not converge to 0 with the number of samples.
   virtual bool unbiased() const = 0;
+
+  // The names of the parts of the light that light groups tell apart (integrate/light_groups.h).
+  virtual std::vector<std::string> groups() const { return {"probe"}; }
+  // Adds the radiance of escaped(), or of background(), to that of each group: one element of
+  // `radiances` per group.
+  virtual void splitEscaped(const LightPoint& point, const vec3& wi,
+                            std::span<Rgb> radiances) const {
+    radiances.front() += escaped(point, wi).radiance;
+  }
+  virtual void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const {
+    radiances.front() += background(origin, wi);
+  }
 };
 
 // The heuristic that weights light samples and BSDF samples (Veach 1997).

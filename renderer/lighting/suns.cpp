@@ -44,4 +44,19 @@ Rgb Suns::background(const vec3&, const vec3& wi) const {
   return remainder_.radiance(wi) + discs_.at(wi).radiance;
 }
 
+std::vector<std::string> Suns::groups() const {
+  if (discs_.empty()) return {"rest"};
+  return {"suns", "rest"};
+}
+
+void Suns::splitEscaped(const LightPoint&, const vec3& wi, std::span<Rgb> radiances) const {
+  radiances.front() += discs_.at(wi).radiance;
+  radiances.back() += remainder_.radiance(wi);
+}
+
+void Suns::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> radiances) const {
+  radiances.front() += discs_.at(wi).radiance;
+  radiances.back() += remainder_.radiance(wi);
+}
+
 }  // namespace chromeball

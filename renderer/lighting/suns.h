@@ -34,6 +34,10 @@ class Suns : public LightingStrategy {
   Rgb background(const vec3&, const vec3& wi) const override;
   // Without suns this is `importance`.
   bool unbiased() const override { return discs_.empty(); }
+  std::vector<std::string> groups() const override;
+  void splitEscaped(const LightPoint& point, const vec3& wi,
+                    std::span<Rgb> radiances) const override;
+  void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
   Suns(SunExtraction extraction, float rotationDegrees, bool compensated,

@@ -52,8 +52,15 @@ std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps) {
   return suns;
 }
 
+std::vector<AmbientLamp> ambientOf(const std::vector<Lamp>& lamps) {
+  std::vector<AmbientLamp> ambient;
+  for (const Lamp& lamp : lamps)
+    if (lamp.ambient) ambient.push_back(*lamp.ambient);
+  return ambient;
+}
+
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
-  if (lamp.sun) return;
+  if (lamp.sun || lamp.ambient) return;
   if (lamp.punctual) {
     scene.lights.push_back(*lamp.punctual);
     scene.lights.back().position = moved(lamp.punctual->position, origin);

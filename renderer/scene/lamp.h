@@ -2,6 +2,10 @@
 // Lamps that a scene file adds to the models ([[light]]).
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "probe/sun.h"
 #include "scene/scene.h"
 
@@ -11,21 +15,31 @@ namespace chromeball {
 struct SunLamp {
   Sun sun;
   bool isVisible = true;  // to the camera and mirrors
+  std::string name = {};
 };
 
-// Exactly one of `punctual`, `disc` and `sun` is set.
+// Constant radiance from all directions.
+struct AmbientLamp {
+  Rgb radiance{0};
+  bool isVisible = true;
+  std::string name = {};
+};
+
+// Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
 struct Lamp {
   std::string name;  // of its node
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;
   std::optional<SunLamp> sun;
+  std::optional<AmbientLamp> ambient;
 };
 
 std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps);
+std::vector<AmbientLamp> ambientOf(const std::vector<Lamp>& lamps);
 
-// Adds the lamp, unless it is a sun, to the scene, whose origin is at `origin` in world space. A
-// disc becomes a single-sided emitting polygon of kDiscSides sides with exactly the area of the
-// disc.
+// Adds the lamp, unless it is a sun or ambient, to the scene, whose origin is at `origin` in world
+// space. A disc becomes a single-sided emitting polygon of kDiscSides sides with exactly the area
+// of the disc.
 inline constexpr int kDiscSides = 128;
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 

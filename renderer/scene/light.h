@@ -26,6 +26,7 @@ struct PunctualLight {
   vec3 direction{0, 0, -1};                    // unit, from the light into the scene
   float range = INFINITY;                      // metres; beyond it the light is 0
   float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
+  std::string name = {};                       // of its node
 
   bool operator==(const PunctualLight&) const = default;
 

@@ -9,6 +9,7 @@ void addImageCommand(CLI::App& app) {
   image->require_subcommand(1);
   addImageDenoiseCommand(*image);
   addImageErrorCommand(*image);
+  addImageRelightCommand(*image);
   addImageViewCommand(*image);
 }
 

@@ -8,6 +8,7 @@ namespace chromeball {
 
 void addImageDenoiseCommand(CLI::App& image);
 void addImageErrorCommand(CLI::App& image);
+void addImageRelightCommand(CLI::App& image);
 void addImageViewCommand(CLI::App& image);
 
 }  // namespace chromeball

@@ -13,5 +13,7 @@ void addProbeEditCommand(CLI::App& probe);
 void addProbeIrradianceCommand(CLI::App& probe);
 void addProbeRaysCommand(CLI::App& probe);
 void addProbePlotCommand(CLI::App& probe);
+void addProbeSplitCommand(CLI::App& probe);
+void addProbeAddSunCommand(CLI::App& probe);
 
 }  // namespace chromeball

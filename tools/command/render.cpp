@@ -92,7 +92,7 @@ std::optional<RenderPart> identified(const RenderJob& job, const LoadedScene& lo
 void addState(const RenderJob& job, const LoadedScene& loaded, std::optional<RenderPart>& part,
               JobResult& result) {
   if (!part) return;
-  part->plan = finishPlan(job, loaded);
+  part->plan = finishPlan(job, loaded, result.render);
   result.image.state = partState(*part, result.render);
 }
 

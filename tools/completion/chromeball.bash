@@ -12,13 +12,13 @@ _chromeball() {
       words='render merge compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
-      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
-      words='info convert synth edit irradiance rays plot'
+      words='info convert synth edit split add-sun irradiance rays plot'
       options='--help' ;;
     'probe info')
       options='--help --mapping --json --mapping-report' ;;
@@ -28,6 +28,10 @@ _chromeball() {
       options='--help --size --radiance --texel --direction --slope --sun-elevation --sun-azimuth --turbidity --ground-albedo --no-sun' ;;
     'probe edit')
       options='--help --fill-nadir --below-horizon --region --gain --scale --clip --clip-stops --mapping' ;;
+    'probe split')
+      options='--help --suns --rest --angle --probe-mask --mapping' ;;
+    'probe add-sun')
+      options='--help --lights --mapping' ;;
     'probe irradiance')
       options='--help --size --method --mapping' ;;
     'probe rays')
@@ -35,12 +39,14 @@ _chromeball() {
     'probe plot')
       options='--help --row --elevation --azimuth --samples --compensated --mapping' ;;
     'image')
-      words='denoise error view'
+      words='denoise error relight view'
       options='--help' ;;
     'image denoise')
       options='--help --quiet' ;;
     'image error')
       options='--help --json --flip --output --map' ;;
+    'image relight')
+      options='--help --gain --output --exposure --tonemap' ;;
     'image view')
       options='--help --exposure --tonemap --layer' ;;
     'lights')

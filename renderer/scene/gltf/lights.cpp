@@ -80,6 +80,7 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
       continue;
     }
     light.direction = vec3(-backwards / length);
+    light.name = tree.names[size_t(index)];
     if (!isBlack(light.intensity)) lights.push_back(light);
   }
   return lights;

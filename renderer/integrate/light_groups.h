@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light groups: the radiance of a picture by the source that it comes from (Madsen et al. 2003,
+// section 4; HDRI book, section 9.9.1).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "integrate/integrator.h"
+
+namespace chromeball {
+
+// The groups of a scene: those of the strategy (LightingStrategy::groups()), then one for each
+// punctual lamp, each node that emits, and one for all unlit materials.
+class LightGroups {
+ public:
+  LightGroups(const Scene& scene, const LightingStrategy& lighting);
+
+  // Unique; without the characters that separate layers and gains: . , = and spaces.
+  const std::vector<std::string>& names() const { return names_; }
+
+  size_t countOfStrategy() const { return size_t(firstLamp_); }
+  int ofLamp(size_t lamp) const { return firstLamp_ + int(lamp); }
+  // Of the radiance that an instance emits.
+  int ofInstance(const Scene& scene, const Instance& instance) const {
+    return scene.materials[size_t(instance.material)].unlit ? unlit_
+                                                            : ofNode_[size_t(instance.node)];
+  }
+
+ private:
+  int add(const std::string& name);
+
+  std::vector<std::string> names_;
+  int firstLamp_ = 0, unlit_ = -1;
+  std::vector<int> ofNode_;  // -1 for a node that does not emit
+};
+
+// Where a path adds what it finds, beside its whole radiance.
+class GroupSums {
+ public:
+  // `sums`: one element per group. `scratch` keeps its capacity.
+  GroupSums(const LightGroups& groups, const LightingStrategy& lighting, std::span<Rgb> sums,
+            std::vector<Rgb>& scratch)
+      : groups_(groups), lighting_(lighting), sums_(sums), scratch_(scratch) {}
+
+  const LightGroups& groups() const { return groups_; }
+  void add(int group, const Rgb& radiance) { sums_[size_t(group)] += radiance; }
+  // `throughput` times the radiance of LightingStrategy::escaped(), by group. Each group is
+  // independent of the others, so that its bits scale with those of its source.
+  void addEscaped(const LightPoint& point, const vec3& wi, const Rgb& throughput);
+  // `throughput` times LightingStrategy::background().
+  void addBackground(const vec3& origin, const vec3& wi, const Rgb& throughput);
+
+ private:
+  std::span<Rgb> startScratch();
+  void addScratch(const Rgb& throughput);
+
+  const LightGroups& groups_;
+  const LightingStrategy& lighting_;
+  std::span<Rgb> sums_;
+  std::vector<Rgb>& scratch_;
+};
+
+// Path tracing of all instances; the layers are the groups, whose sum is the radiance up to
+// rounding. A clamp scales all groups of a sample alike.
+class GroupIntegrator : public Integrator {
+ public:
+  // `groups` must outlive this.
+  GroupIntegrator(const PathTracer& tracer, const LightGroups& groups)
+      : tracer_(tracer), groups_(groups) {}
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override;
+  std::vector<Accumulation> layers() const override {
+    return std::vector<Accumulation>(groups_.names().size(), Accumulation::Sum);
+  }
+  std::vector<std::string> groups() const override { return groups_.names(); }
+
+ private:
+  PathTracer tracer_;
+  const LightGroups& groups_;
+};
+
+}  // namespace chromeball

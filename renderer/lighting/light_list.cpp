@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/light_list.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "lighting/light_file.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dvec3;
+using nlohmann::json;
+
+constexpr size_t kMaxLights = 100000, kMaxBytes = 100 << 20;
+
+// One light, or the list itself, for errors that name it.
+class Reader {
+ public:
+  Reader(const json& object, std::string where) : object_(object), where_(std::move(where)) {
+    if (!object.is_object()) fail("should be an object, {{ ... }}");
+  }
+
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> reason, Args&&... args) const {
+    throwInput("{}: {}", where_, fmt::format(reason, std::forward<Args>(args)...));
+  }
+
+  std::optional<dvec3> vector(const char* key) const {
+    const auto member = object_.find(key);
+    if (member == object_.end()) return {};
+    const bool isVector = member->is_array() && member->size() == 3 &&
+                          std::all_of(member->begin(), member->end(), isFiniteFloat);
+    if (!isVector) fail("`{}` should be three numbers", key);
+    return dvec3((*member)[0].get<double>(), (*member)[1].get<double>(),
+                 (*member)[2].get<double>());
+  }
+
+  std::optional<dvec3> color(const char* key) const {
+    const std::optional<dvec3> value = vector(key);
+    if (value && !(std::min({value->x, value->y, value->z}) >= 0))
+      fail("`{}` must not be negative", key);
+    return value;
+  }
+
+  double angle() const {
+    const auto member = object_.find("angle");
+    if (member == object_.end()) return 0;
+    const double degrees = member->is_number() ? member->get<double>() : -1;
+    if (!(degrees >= 0 && degrees <= kMaxListedAngle))
+      fail("`angle` should be a number of degrees, 0 to {}", kMaxListedAngle);
+    return degrees;
+  }
+
+ private:
+  static bool isFiniteFloat(const json& number) {
+    return number.is_number() && std::isfinite(number.get<float>());
+  }
+
+  const json& object_;
+  std::string where_;
+};
+
+DirectionalLight readLight(const Reader& light) {
+  constexpr double kRounding = 0.01;
+  const auto direction = light.vector("direction");
+  if (!direction || !(glm::length(*direction) > 0))
+    light.fail("`direction` should be three numbers, not all of them 0");
+  const double angle = light.angle();
+  const auto radiance = light.color("radiance"), irradiance = light.color("irradiance");
+  if (radiance && angle == 0) light.fail("`radiance` needs an `angle` above 0");
+  if (!radiance && !irradiance) light.fail("has neither `irradiance` nor `radiance`");
+  const dvec3 ofRadiance = radiance ? *radiance * discSolidAngle(angle) : dvec3(0);
+  if (radiance && irradiance &&
+      glm::distance(ofRadiance, *irradiance) > kRounding * glm::length(*irradiance))
+    light.fail("`irradiance` is not `radiance` x solid angle; if one was edited, delete the other");
+  const Rgb kept = Rgb(irradiance.value_or(ofRadiance));
+  if (!isFinite(kept)) light.fail("`radiance` x solid angle is too large");
+  return {vec3(glm::normalize(*direction)), kept, float(angle)};
+}
+
+}  // namespace
+
+LightList readLights(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  const auto size = std::filesystem::file_size(path, unreadable);
+  if (!unreadable && size > kMaxBytes)
+    throwInput("{}: has {} MB; lists of lights have at most {}", path.string(), size >> 20,
+               kMaxBytes >> 20);
+  const std::vector<uint8_t> bytes = readFile(path);
+  const json root = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (root.is_discarded()) throwInput("{}: is not valid JSON", path.string());
+  const Reader list(root, path.string());
+  const auto lights = root.find("lights");
+  if (lights == root.end() || !lights->is_array())
+    list.fail("has no array `lights`; `chromeball lights` and `probe split` write such lists");
+  if (lights->size() > kMaxLights) list.fail("has more than {} lights", kMaxLights);
+  LightList result;
+  for (size_t i = 0; i < lights->size(); ++i)
+    result.lights.push_back(
+        readLight(Reader((*lights)[i], fmt::format("{}: lights[{}]", path.string(), i))));
+  if (const auto ambient = list.color("ambient")) result.ambient = Rgb(*ambient);
+  return result;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image relight GROUPS.exr --gain sun=2,lamp=1,0.8,0.6 -o OUT.exr
+#include <map>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "image_commands.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "relight/light_layers.h"
+
+namespace chromeball {
+namespace {
+
+constexpr std::string_view kPrefix = "light.";
+
+struct Arguments {
+  std::string in, out, gains, tone = "none";
+  float exposure = 0;
+};
+
+// "sun=2,lamp=1,0.8,0.6": a number (grey) or three for each name.
+std::map<std::string, Rgb> parseGains(const std::string& text) {
+  std::map<std::string, std::string> numbers;
+  std::string name;
+  for (size_t from = 0; from <= text.size();) {
+    const size_t comma = std::min(text.find(',', from), text.size());
+    std::string item = text.substr(from, comma - from);
+    from = comma + 1;
+    if (const size_t equals = item.find('='); equals != std::string::npos) {
+      name = item.substr(0, equals);
+      item.erase(0, equals + 1);
+      if (numbers.contains(name)) throwInput("--gain: `{}` has two gains", name);
+    } else if (name.empty()) {
+      throwInput("--gain: `{}` has no name; give NAME=GAIN or NAME=R,G,B", item);
+    } else {
+      numbers[name] += ',';
+    }
+    numbers[name] += item;
+  }
+  std::map<std::string, Rgb> gains;
+  for (const auto& [group, list] : numbers) {
+    const bool isGrey = list.find(',') == std::string::npos;
+    const auto values = parseNumbers(list, isGrey ? 1 : 3, "--gain " + group);
+    gains[group] =
+        isGrey ? Rgb(float(values[0])) : Rgb(float(values[0]), float(values[1]), float(values[2]));
+    if (!isFinite(gains[group])) throwInput("--gain {}: is too large", group);
+  }
+  return gains;
+}
+
+struct Groups {
+  std::vector<std::string> names;
+  std::vector<Image> layers;
+};
+
+Groups readGroups(const ImageFile& file, const std::string& path) {
+  Groups groups;
+  for (const std::string& layer : layerNames(file)) {
+    if (!layer.starts_with(kPrefix)) continue;
+    const std::optional<Image> image = findLayer(file, layer);
+    if (!image || image->channels != 3) continue;
+    groups.names.push_back(layer.substr(kPrefix.size()));
+    groups.layers.push_back(*image);
+  }
+  if (groups.layers.empty())
+    throwInput("{}: has no light groups; `render --aov light_groups` writes them", path);
+  return groups;
+}
+
+// In the order of the groups; 1 for those that are not named.
+std::vector<Rgb> gainsOf(const Groups& groups, const std::map<std::string, Rgb>& given) {
+  std::vector<Rgb> gains(groups.names.size(), Rgb(1));
+  for (const auto& [name, gain] : given) {
+    const auto found = std::ranges::find(groups.names, name);
+    if (found == groups.names.end())
+      throwInput("--gain: there is no group `{}`; {}", name,
+                 didYouMean(name, {groups.names.begin(), groups.names.end()}));
+    gains[size_t(found - groups.names.begin())] = gain;
+  }
+  return gains;
+}
+
+// Alpha is that of the file: light does not change it.
+Layer withAlphaOf(const ImageFile& file, const Image& color) {
+  const std::optional<Image> before = findColorAndAlpha(file);
+  if (!before || before->channels < 4) return {"", "RGB", color};
+  Image both = *before;
+  for (int y = 0; y < both.height; ++y)
+    for (int x = 0; x < both.width; ++x) both.setRgb(x, y, color.rgb(x, y));
+  return {"", "RGBA", std::move(both)};
+}
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in});
+  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+  const std::map<std::string, Rgb> given = parseGains(arguments.gains);
+  const ImageFile file = readImageFile(arguments.in);
+  Groups groups = readGroups(file, arguments.in);
+  const std::vector<Rgb> gains = gainsOf(groups, given);
+  for (size_t i = 0; i < gains.size(); ++i) groups.layers[i] = scaled(groups.layers[i], gains[i]);
+  OutputImage output;
+  output.layers.push_back(withAlphaOf(file, sumOf(groups.layers)));
+  for (size_t i = 0; i < gains.size(); ++i)
+    output.layers.push_back(
+        {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
+  writeImage(arguments.out, output, transform);
+}
+
+}  // namespace
+
+void addImageRelightCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand(
+      "relight", "Mix the light groups of a render anew (`render --aov light_groups`).");
+  command->add_option("GROUPS", arguments->in, "the .exr with the layers light.NAME")->required();
+  command
+      ->add_option("--gain", arguments->gains,
+                   "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->out,
+                   "the image to write: .exr (with the changed groups), .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--exposure", arguments->exposure, "of a .png, in stops");
+  command
+      ->add_option("--tonemap", arguments->tone,
+                   fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      ->capture_default_str();
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe split PROBE --suns suns.json --rest rest.exr
+// chromeball probe add-sun REST.exr OUT.exr --lights suns.json
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/io/write_image.h"
+#include "job/output_file.h"
+#include "light_options.h"
+#include "lighting/light_file.h"
+#include "lighting/light_list.h"
+#include "probe/sky.h"
+#include "probe/sun_extraction.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+struct SplitArguments {
+  LightsProbe probe;
+  std::string suns, rest;
+  std::optional<double> angle;
+};
+
+void split(const SplitArguments& arguments) {
+  if (arguments.angle && !(*arguments.angle > 0 && *arguments.angle <= kMaxListedAngle))
+    throwInput("--angle: should be above 0 and at most {} degrees", kMaxListedAngle);
+  if (lightFormat(arguments.suns, "", "") != LightFormat::Json)
+    throwInput("--suns: {} should end in .json, which [[light]] and `probe add-sun` read",
+               arguments.suns);
+  checkReplaceable(arguments.suns);
+  checkWritable(arguments.rest);
+  checkDistinct({arguments.suns, arguments.rest}, {arguments.probe.file});
+  const SunExtraction extraction = extractSuns(arguments.probe.load());
+  LightRig rig{.probe = arguments.probe.file, .method = "suns", .ambient = {}, .lights = {}};
+  for (const Sun& sun : extraction.suns)
+    rig.lights.push_back(
+        {vec3(sun.direction), Rgb(sun.irradiance), float(arguments.angle.value_or(sun.angle))});
+  writeImage(arguments.rest, extraction.remainder);
+  writeLights(arguments.suns, rig);
+  fmt::print("suns        {}\n", extraction.suns.size());
+  for (const DirectionalLight& light : rig.lights)
+    fmt::print(
+        "sun         direction {:.4f} {:.4f} {:.4f}, irradiance {:.4g} {:.4g} {:.4g}, "
+        "diameter {:.4g} degrees\n",
+        light.direction.x, light.direction.y, light.direction.z, light.irradiance.x,
+        light.irradiance.y, light.irradiance.z, light.angle);
+}
+
+struct AddArguments {
+  LightsProbe probe;
+  std::string out, lights;
+};
+
+// Lights without an angle become as small as a map can show.
+void addSuns(const AddArguments& arguments) {
+  constexpr double kLeastAngle = 0.01;  // degrees
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.probe.file, arguments.lights});
+  const LightList list = readLights(arguments.lights);
+  Image map = arguments.probe.load();
+  const Rgb ambient = list.ambient.value_or(Rgb(0));
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, map.rgb(x, y) + ambient);
+  for (const DirectionalLight& light : list.lights)
+    addSunDisc(map, glm::normalize(dvec3(light.direction)),
+               std::max<double>(light.angle, kLeastAngle), dvec3(light.irradiance));
+  writeImage(arguments.out, map);
+}
+
+}  // namespace
+
+void addProbeSplitCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<SplitArguments>();
+  CLI::App* command = probe.add_subcommand(
+      "split",
+      "Divide a probe into its suns, as a list of lights, and the rest, as a lat-long map.");
+  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
+  command->add_option("--suns", arguments->suns, "the .json to write; [[light]] `file` reads it")
+      ->required();
+  command->add_option("--rest", arguments->rest, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--angle", arguments->angle,
+                      "diameter of the suns in degrees, in place of the measured one; the Sun's is "
+                      "0.5323");
+  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command->add_option("--mapping", arguments->probe.mapping,
+                      "the mapping of PROBE; auto detects it");
+  command->callback([arguments] { split(*arguments); });
+}
+
+void addProbeAddSunCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<AddArguments>();
+  CLI::App* command = probe.add_subcommand(
+      "add-sun", "Draw a list of lights into a probe: discs of constant radiance.");
+  command->add_option("IN", arguments->probe.file, "the probe's image")->required();
+  command->add_option("OUT", arguments->out, "the lat-long map to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command
+      ->add_option("--lights", arguments->lights,
+                   "the .json of `probe split` or `lights`; its ambient light is added too")
+      ->required();
+  command->add_option("--mapping", arguments->probe.mapping, "the mapping of IN; auto detects it");
+  command->callback([arguments] { addSuns(*arguments); });
+}
+
+}  // namespace chromeball
