@@ -197,18 +197,13 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
-  LoadedScene result{std::move(scene),
-                     models.camera,
-                     models.view,
-                     std::move(loaded),
-                     std::move(probe),
-                     job.file.surroundings,
-                     std::move(room),
-                     models.origin,
-                     sunsOf(job),
-                     ambientOf(job),
-                     settings.getIfGiven<double>("lighting.sun_angle"),
-                     std::move(files)};
+  std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
+  LoadedScene result{
+      std::move(scene),  models.camera,    models.view,
+      std::move(loaded), std::move(probe), job.file.surroundings,
+      std::move(room),   models.origin,    std::move(sources),
+      sunsOf(job),       ambientOf(job),   settings.getIfGiven<double>("lighting.sun_angle"),
+      std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
   checkMemory(job, result);
   result.messages = loadMessages(job, result, models.warnings);
@@ -221,6 +216,7 @@ FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   if (loaded.probe.rotationDegrees() != float(job.file.settings.get<double>("probe.rotation"))) {
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
+    loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
     change.lighting = true;
   }
   if (!loaded.scene.isAnimated) {

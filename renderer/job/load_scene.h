@@ -5,6 +5,7 @@
 #include "base/message.h"
 #include "composite/objects.h"
 #include "job/render_job.h"
+#include "job/scene_lighting.h"
 #include "lighting/strategy.h"
 #include "probe/load.h"
 #include "scene/projection.h"
@@ -22,6 +23,7 @@ struct LoadedScene {
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
+  std::optional<ProbeSources> sources;       // polygons of the probe
   std::vector<SunLamp> suns;                 // of the scene file, besides the probe
   std::vector<AmbientLamp> ambient;          // likewise
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle

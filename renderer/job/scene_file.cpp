@@ -115,7 +115,7 @@ void readCamera(const Section& camera, SceneFile& scene) {
 SceneFile readSceneFile(const std::string& path) {
   const toml::table table = parseToml(path);
   const Section root(path, table,
-                     {"model", "camera", "probe", "lighting", "light", "render", "output",
+                     {"model", "camera", "probe", "lighting", "light", "source", "render", "output",
                       "composite", "surroundings"});
   SceneFile scene;
   scene.path = path;
@@ -127,6 +127,10 @@ SceneFile readSceneFile(const std::string& path) {
   readProbeTurns(root.section("probe")["rotation_keys"], scene);
   forEach(root["light"], [&](const Entry& e) {
     for (Lamp& lamp : readLamps(e, scene.lightLists)) scene.lamps.push_back(std::move(lamp));
+  });
+  forEach(root["source"], [&](const Entry& e) {
+    for (SourceEntry& source : readSources(e, scene.lightLists))
+      scene.sources.push_back(std::move(source));
   });
   if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));

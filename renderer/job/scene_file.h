@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/named_setting.h"
+#include "job/scene_file_source.h"
 #include "job/settings.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
@@ -43,7 +44,8 @@ struct SceneFile {
   std::vector<std::pair<double, double>> probeTurns;  // seconds, degrees; ascending, may be empty
   std::optional<Lens> lens;
   std::vector<Lamp> lamps;              // [[light]]
-  std::vector<std::string> lightLists;  // the files that some of them are from
+  std::vector<SourceEntry> sources;     // [[source]]
+  std::vector<std::string> lightLists;  // files that lamps and sources are from
   std::optional<CompositeEntry> composite;
   std::optional<Surroundings> surroundings;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake

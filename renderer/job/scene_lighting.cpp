@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "job/load_scene.h"
+#include "job/polygon_file.h"
 #include "lighting/ambient_light.h"
 #include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
@@ -94,12 +96,53 @@ Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
   return probe;
 }
 
+std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
+                                      const Probe& probe) {
+  const std::vector<SourceEntry>& entries = job.file.sources;
+  if (entries.empty() || lightFrom(job) == LightFrom::Suns) return {};
+  if (loaded.fileWidth == 0) throwInput("{}: [[source]] needs a probe", entries.front().location);
+  std::vector<PolygonLight> lights;
+  Image rest = probe.latLong();
+  // First the illums: what they take stays visible.
+  const auto take = [&](bool isIllum) {
+    std::vector<SphericalPolygon> polygons;
+    const size_t first = lights.size();
+    std::vector<std::string> locations;
+    for (const SourceEntry& entry : entries) {
+      if (entry.isIllum != isIllum) continue;
+      polygons.push_back(polygonOf(entry.corners, loaded, entry.location));
+      locations.push_back(entry.location);
+      lights.push_back({{polygons.back(), dvec3(0)}, isIllum, entry.name});
+    }
+    PolygonExtraction extraction = extractPolygons(rest, polygons);
+    for (size_t i = 0; i < polygons.size(); ++i) {
+      if (extraction.sources[i].coveredTexels == 0)
+        throwInput("{}: the polygon is smaller than the probe's texels", locations[i]);
+      lights[first + i].source = extraction.sources[i];
+    }
+    rest = std::move(extraction.remainder);
+  };
+  take(true);
+  Image hidden = probe.latLong();
+  for (size_t i = 0; i < hidden.texels.size(); ++i) hidden.texels[i] -= rest.texels[i];
+  take(false);
+  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotationDegrees())};
+}
+
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded, bool splitsProbe) {
-  auto lighting =
-      makeStrategy(strategy.name, loaded.probe, {mis, loaded.sunAngle}, strategy.location);
+  const auto& sources = loaded.sources;
+  const Probe& sampled = sources ? sources->remainder : loaded.probe;
+  auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle}, strategy.location);
   if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
-    lighting = std::make_unique<SplitProbe>(std::move(lighting), loaded.probe);
+    lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
+  if (sources) {
+    std::vector<std::unique_ptr<LightingStrategy>> parts;
+    parts.push_back(std::move(lighting));
+    parts.push_back(std::make_unique<PolygonLights>(sources->lights, sources->hidden,
+                                                    sampled.rotationDegrees()));
+    lighting = std::make_unique<CombinedLight>(std::move(parts));
+  }
   if (loaded.surroundings)
     lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
                                                     *loaded.surroundings, loaded.room.get());

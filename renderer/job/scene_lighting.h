@@ -2,9 +2,17 @@
 // The light of a job: its probe, and the strategy that samples it.
 #pragma once
 
-#include "job/load_scene.h"
+#include <optional>
+
+#include "job/render_job.h"
+#include "lighting/polygon_lights.h"
+#include "lighting/strategy.h"
+#include "probe/load.h"
+#include "scene/scene.h"
 
 namespace chromeball {
+
+struct LoadedScene;
 
 // Throws InputError if nothing lights a scene that has no probe.
 void checkLit(const RenderJob& job, const Scene& scene);
@@ -24,6 +32,16 @@ std::vector<AmbientLamp> ambientOf(const RenderJob& job);
 // The probe's map: the job's file, else the model's own environment, which it takes, else black if
 // the scene has lights of its own; of it, the part that the job renders. Throws InputError.
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene);
+
+// The polygons of the probe that are sources of their own ([[source]]), and what is left of it.
+struct ProbeSources {
+  std::vector<PolygonLight> lights;
+  Image hidden;  // PolygonLights
+  Probe remainder;
+};
+// Nullopt if the job renders none. `loaded`: the file that `probe` is from. Throws InputError.
+std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
+                                      const Probe& probe);
 
 // With the job's rotation and scale; frees the map.
 Probe probeOf(const RenderJob& job, LoadedProbe& loaded);

@@ -8,6 +8,7 @@ namespace chromeball {
 
 std::vector<Setting> sceneRows();      // [[model]], [camera], [probe], [lighting]
 std::vector<Setting> lightRows();      // [[light]]
+std::vector<Setting> sourceRows();     // [[source]]
 std::vector<Setting> renderRows();     // [render], [output]
 std::vector<Setting> compositeRows();  // [composite], [surroundings]
 std::vector<Setting> commandRows();    // options without a key

@@ -10,7 +10,7 @@ namespace chromeball {
 const std::vector<Setting>& settingTable() {
   static const std::vector<Setting> table = [] {
     std::vector<Setting> all = sceneRows();
-    for (const auto rows : {lightRows, renderRows, compositeRows, commandRows})
+    for (const auto rows : {lightRows, sourceRows, renderRows, compositeRows, commandRows})
       for (Setting& row : rows()) all.push_back(std::move(row));
     return all;
   }();
@@ -35,6 +35,9 @@ std::span<const SettingSection> settingSections() {
        "`radius`, "
        "and `radiance` or `power`, and is a surface like others: a polygon of 128 sides with its "
        "exact area that shines to one side."},
+      {"source", "[[source]]", "Sources",
+       "Windows and lamps in the probe that become light sources of their own: one table for each, "
+       "or for a file of them. With [surroundings] they are on its walls."},
       {"render", "[render]", "Render",
        "The image, and how long to render it. `time` and `noise` end the samples early; if one of "
        "them is given, `samples` is a maximum. On the command line, any of the three replaces all "

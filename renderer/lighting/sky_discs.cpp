@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/sky_discs.h"
 
+#include "math/rotation.h"
 #include "math/trig.h"
 
 namespace chromeball {
 namespace {
 
 constexpr size_t kMaxSampledEach = 2;  // of more discs, one is chosen by power
-
-// Rotation about +Y, the same as Probe's.
-vec3 rotated(const dvec3& d, double degrees) {
-  const double angle = degrees * kPiD / 180, sine = std::sin(angle), cosine = std::cos(angle);
-  return vec3(dvec3(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine));
-}
 
 }  // namespace
 
@@ -29,8 +24,9 @@ SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, double rotationDegrees) {
     const Sun& sun = suns[i];
     const double chord = 2 * std::sin(sun.angle * kPiD / 720);
     const double probability = chooses ? powers[i] / power : 1;
-    discs_.push_back({Frame(rotated(sun.direction, rotationDegrees)), float(chord * chord),
-                      Rgb(sun.radiance()), float(probability / (kPiD * chord * chord))});
+    discs_.push_back({Frame(vec3(turnedAboutY(sun.direction, rotationDegrees))),
+                      float(chord * chord), Rgb(sun.radiance()),
+                      float(probability / (kPiD * chord * chord))});
   }
 }
 

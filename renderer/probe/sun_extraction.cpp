@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "probe/bright_region.h"
 #include "probe/sky.h"
 #include "probe/solid_angle.h"
 
@@ -16,10 +17,6 @@ constexpr double kGlowContrast = 20;
 constexpr double kDegree = kPiD / 180;
 constexpr double kMaxCore = 3 * kDegree, kMaxGlow = 6 * kDegree;  // radii
 
-struct Texel {
-  int x, y;
-};
-
 dvec3 centreDirection(const Image& image, Texel t) {
   return texelDirection({image.width, image.height}, t.x, t.y);
 }
@@ -31,29 +28,6 @@ double angleBetween(const dvec3& a, const dvec3& b) {
 
 double largestTexelSide(const Image& image) {
   return std::max(2 * kPiD / image.width, kPiD / image.height);
-}
-
-// The texels brighter than `threshold` and not yet `visited` that are connected to `start` by eight
-// neighbours, across the seam too. A source that covers a pole fills the row there, which connects
-// it.
-std::vector<Texel> gatherRegion(const Image& image, Texel start, double threshold,
-                                std::vector<bool>& visited) {
-  std::vector<Texel> region;
-  const auto visit = [&](int x, int y) {
-    x = (x + image.width) % image.width;
-    const size_t index = size_t(y) * image.width + x;
-    if (visited[index] || luminance(image.rgb(x, y)) <= threshold) return;
-    visited[index] = true;
-    region.push_back({x, y});
-  };
-  visit(start.x, start.y);
-  for (size_t i = 0; i < region.size(); ++i) {
-    const Texel t = region[i];
-    for (int y = t.y - 1; y <= t.y + 1; ++y)
-      if (y >= 0 && y < image.height)
-        for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
-  }
-  return region;
 }
 
 // A candidate sun.

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/polygon_file.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "job/json_text.h"
+#include "job/output_file.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr size_t kMaxPolygons = 1000, kMaxBytes = 10 << 20;
+
+Corners cornersOf(const json& polygon, const std::string& where) {
+  const auto points = polygon.is_object() ? polygon.find("probe_polygon") : polygon.end();
+  if (!polygon.is_object() || points == polygon.end() || !points->is_array())
+    throwInput("{}: has no array `probe_polygon`", where);
+  Corners corners;
+  for (const json& point : *points) {
+    if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
+      throwInput("{}: `probe_polygon` should be pairs of numbers, [u, v]", where);
+    corners.push_back({point[0].get<double>(), point[1].get<double>()});
+  }
+  return corners;
+}
+
+ordered_json arrayOf(const dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+// Between positions in the file and in the map, for a map that was turned by 180 degrees on
+// loading.
+glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
+  if (!probe.turned) return uv;
+  return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};
+}
+
+}  // namespace
+
+std::vector<Corners> readPolygons(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  if (const auto size = std::filesystem::file_size(path, unreadable);
+      !unreadable && size > kMaxBytes)
+    throwInput("{}: has {} MB; lists of polygons have at most {}", path.string(), size >> 20,
+               kMaxBytes >> 20);
+  const std::vector<uint8_t> bytes = readFile(path);
+  const json root = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (root.is_discarded()) throwInput("{}: is not valid JSON", path.string());
+  const auto polygons = root.is_object() ? root.find("polygons") : root.end();
+  if (!root.is_object() || polygons == root.end() || !polygons->is_array())
+    throwInput("{}: has no array `polygons`; `chromeball lights --suggest` writes such lists",
+               path.string());
+  if (polygons->size() > kMaxPolygons)
+    throwInput("{}: has more than {} polygons", path.string(), kMaxPolygons);
+  std::vector<Corners> result;
+  for (size_t i = 0; i < polygons->size(); ++i)
+    result.push_back(cornersOf((*polygons)[i], fmt::format("{}: polygons[{}]", path.string(), i)));
+  return result;
+}
+
+void writePolygons(const std::filesystem::path& path, const std::string& probe,
+                   const std::vector<Corners>& polygons,
+                   const std::vector<PolygonSource>& sources) {
+  ordered_json list = ordered_json::array();
+  for (size_t i = 0; i < polygons.size(); ++i) {
+    ordered_json corners = ordered_json::array();
+    for (const glm::dvec2& c : polygons[i]) corners.push_back({float(c.x), float(c.y)});
+    list.push_back({{"probe_polygon", corners},
+                    {"solid_angle", float(sources[i].polygon.solidAngle())},
+                    {"radiance", arrayOf(sources[i].radiance)},
+                    {"irradiance", arrayOf(sources[i].irradiance())}});
+  }
+  writeText(path, jsonText({{"probe", probe}, {"polygons", list}}, 2) + "\n");
+}
+
+SphericalPolygon polygonOf(const Corners& corners, const LoadedProbe& probe,
+                           const std::string& location) {
+  std::vector<dvec3> directions;
+  for (const glm::dvec2& corner : corners) {
+    const glm::dvec2 uv = corner / glm::dvec2(probe.fileWidth, probe.fileHeight);
+    const bool isInside = uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1;
+    const auto direction =
+        isInside ? uvToDirection(probe.mapping, turned(uv, probe)) : std::nullopt;
+    if (!direction)
+      throwInput("{}: ({:g}, {:g}) is no pixel of the probe, whose image is {} x {}", location,
+                 corner.x, corner.y, probe.fileWidth, probe.fileHeight);
+    directions.push_back(*direction);
+  }
+  return {directions, location};
+}
+
+Corners cornersOf(const SphericalPolygon& polygon, const LoadedProbe& probe) {
+  Corners corners;
+  for (const dvec3& direction : polygon.corners()) {
+    const glm::dvec2 uv = turned(directionToUv(probe.mapping, direction), probe);
+    corners.push_back(uv * glm::dvec2(probe.fileWidth, probe.fileHeight));
+  }
+  return corners;
+}
+
+}  // namespace chromeball

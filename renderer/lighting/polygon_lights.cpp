@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/polygon_lights.h"
+
+#include "base/hash.h"
+#include "math/rotation.h"
+
+namespace chromeball {
+namespace {
+
+constexpr uint64_t kSet = uint64_t(2) << 32;  // apart from the discs of sky_discs.h
+
+SphericalPolygon turned(const SphericalPolygon& polygon, double degrees) {
+  std::vector<dvec3> corners;
+  for (const dvec3& corner : polygon.corners()) corners.push_back(turnedAboutY(corner, degrees));
+  return {corners, "polygon"};
+}
+
+}  // namespace
+
+PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Image& hidden,
+                             float rotationDegrees)
+    : choice_(1, int(lights.size())), hidden_(hidden, rotationDegrees) {
+  std::vector<double> powers;
+  for (const PolygonLight& light : lights)
+    powers.push_back(luminance(Rgb(light.source.irradiance())));
+  const double total = choice_.setRow(0, powers);
+  for (size_t i = 0; i < lights.size(); ++i) {
+    const auto& [polygon, radiance] = lights[i].source;
+    const double probability = total > 0 ? powers[i] / total : 0;
+    lights_.push_back({turned(polygon, rotationDegrees), Rgb(radiance), lights[i].isIllum,
+                       lights[i].name, float(probability / polygon.solidAngle())});
+  }
+  while (firstIllum_ + 1 < lights_.size() && !lights_[firstIllum_].isIllum) ++firstIllum_;
+}
+
+void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
+                           std::vector<DirectionSample>& out) const {
+  if (lights_.front().pdf == 0 && choice_.row(0).back() == 0) return;  // all are black
+  double u = toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kSet)));
+  const float v = toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kSet + 1)));
+  const int chosen = choice_.sample(0, u);
+  const Light& light = lights_[size_t(chosen)];
+  const vec3 wi(light.polygon.sample(u, v));
+  if (light.isIllum) {
+    out.push_back({wi, light.radiance / light.pdf, light.pdf, true, chosen});
+    return;
+  }
+  const Escaped found = escaped(point, wi);
+  if (found.pdf > 0) out.push_back({wi, found.radiance / found.pdf, found.pdf});
+}
+
+LightingStrategy::Escaped PolygonLights::escaped(const LightPoint&, const vec3& wi) const {
+  Escaped sum{Rgb(0), 0};
+  for (const Light& light : lights_)
+    if (!light.isIllum && light.polygon.contains(dvec3(wi))) {
+      sum.radiance += light.radiance;
+      sum.pdf += light.pdf;
+    }
+  return sum;
+}
+
+Rgb PolygonLights::background(const vec3&, const vec3& wi) const {
+  Rgb sum = hidden_.radiance(wi);
+  for (const Light& light : lights_)
+    if (!light.isIllum && light.polygon.contains(dvec3(wi))) sum += light.radiance;
+  return sum;
+}
+
+std::vector<std::string> PolygonLights::groups() const {
+  std::vector<std::string> names;
+  for (const Light& light : lights_) names.push_back(light.name);
+  return names;
+}
+
+void PolygonLights::splitEscaped(const LightPoint&, const vec3& wi,
+                                 std::span<Rgb> radiances) const {
+  for (size_t i = 0; i < lights_.size(); ++i)
+    if (!lights_[i].isIllum && lights_[i].polygon.contains(dvec3(wi)))
+      radiances[i] += lights_[i].radiance;
+}
+
+void PolygonLights::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> radiances) const {
+  splitEscaped({}, wi, radiances);
+  radiances[firstIllum_] += hidden_.radiance(wi);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/spherical_polygon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace chromeball {
+namespace {
+
+constexpr double kLeastCosine = 0.17364817766693033;  // of 80 degrees
+
+// The part of `v` that is perpendicular to the unit vector `axis`, normalised.
+dvec3 perpendicular(const dvec3& v, const dvec3& axis) {
+  return glm::normalize(v - glm::dot(v, axis) * axis);
+}
+
+}  // namespace
+
+SphericalPolygon::SphericalPolygon(const std::vector<dvec3>& corners, const std::string& location)
+    : corners_(corners) {
+  if (corners.size() < 3 || corners.size() > kMaxCorners)
+    throwInput("{}: a polygon has 3 to {} corners, not {}", location, kMaxCorners, corners.size());
+  axis_ = dvec3(0);
+  for (const dvec3& corner : corners) axis_ += corner;
+  axis_ = glm::length(axis_) > 1e-9 ? glm::normalize(axis_) : corners.front();
+  if (std::ranges::any_of(corners,
+                          [&](const dvec3& c) { return glm::dot(c, axis_) < kLeastCosine; }))
+    throwInput("{}: the polygon reaches more than 80 degrees from its middle; divide it", location);
+  x_ = perpendicular(std::fabs(axis_.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0), axis_);
+  y_ = glm::cross(axis_, x_);
+  for (const dvec3& corner : corners_) plane_.push_back(projected(corner));
+  if (const auto reason = whyNotSimple(plane_)) throwInput("{}: the polygon {}", location, *reason);
+  if (signedArea(plane_) < 0) {
+    std::ranges::reverse(corners_);
+    std::ranges::reverse(plane_);
+  }
+  for (const auto& [i, j, k] : triangulate(plane_))
+    solidAngle_ += triangles_.emplace_back(corners_[i], corners_[j], corners_[k]).solidAngle;
+}
+
+dvec2 SphericalPolygon::projected(const dvec3& direction) const {
+  return dvec2(glm::dot(direction, x_), glm::dot(direction, y_)) / glm::dot(direction, axis_);
+}
+
+bool SphericalPolygon::contains(const dvec3& direction) const {
+  return glm::dot(direction, axis_) > 0 && chromeball::contains(plane_, projected(direction));
+}
+
+dvec3 SphericalPolygon::vectorIrradiance() const {
+  dvec3 sum(0);
+  for (size_t i = 0; i < corners_.size(); ++i) {
+    const dvec3 normal = glm::cross(corners_[i], corners_[(i + 1) % corners_.size()]);
+    const double sine = glm::length(normal);
+    const double cosine = glm::dot(corners_[i], corners_[(i + 1) % corners_.size()]);
+    if (sine > 0) sum += normal * (std::atan2(sine, cosine) / sine);
+  }
+  return 0.5 * sum;
+}
+
+dvec3 SphericalPolygon::sample(double u, double v) const {
+  double target = u * solidAngle_;
+  size_t i = 0;
+  while (i + 1 < triangles_.size() && target >= triangles_[i].solidAngle)
+    target -= triangles_[i++].solidAngle;
+  return triangles_[i].sample(std::clamp(target / triangles_[i].solidAngle, 0.0, 1.0), v);
+}
+
+// The solid angle by van Oosterom and Strackee (1983).
+SphericalPolygon::Triangle::Triangle(const dvec3& p, const dvec3& q, const dvec3& r)
+    : a(p), b(q), c(r) {
+  const double triple = std::fabs(glm::dot(a, glm::cross(b - a, c - a)));
+  cosC = glm::dot(a, b);
+  solidAngle = 2 * std::atan2(triple, 1 + cosC + glm::dot(b, c) + glm::dot(c, a));
+  const dvec3 ab = glm::cross(a, b), ac = glm::cross(a, c);
+  alpha = std::atan2(glm::length(glm::cross(ab, ac)), glm::dot(ab, ac));
+}
+
+dvec3 SphericalPolygon::Triangle::sample(double u, double v) const {
+  constexpr double kFlat = 1e-7;  // sr; below, the plane of the corners is as good, and accurate
+  if (solidAngle < kFlat) {
+    const double root = std::sqrt(u);
+    return glm::normalize(a * (1 - root) + root * (b * (1 - v) + c * v));
+  }
+  // Arvo, "Stratified Sampling of Spherical Triangles": a triangle (a, b, point on the side a c) of
+  // the area u x solidAngle, then a point between b and that.
+  const double s = std::sin(u * solidAngle - alpha), t = std::cos(u * solidAngle - alpha);
+  const double sinAlpha = std::sin(alpha), cosAlpha = std::cos(alpha);
+  const double p = t - cosAlpha, q = s + sinAlpha * cosC;
+  const double below = (q * s + p * t) * sinAlpha;
+  const double cosine =
+      below != 0 ? std::clamp(((q * t - p * s) * cosAlpha - q) / below, -1.0, 1.0) : 1;
+  const dvec3 onSide = cosine * a + std::sqrt(1 - cosine * cosine) * perpendicular(c, a);
+  const double z = 1 - v * (1 - glm::dot(onSide, b));
+  const dvec3 away = onSide - glm::dot(onSide, b) * b;
+  const double length = glm::length(away);
+  if (!(length > 0)) return b;
+  return glm::normalize(z * b + std::sqrt(std::max(0.0, 1 - z * z)) * (away / length));
+}
+
+}  // namespace chromeball

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Windows and lamps of a probe as polygons of constant radiance (HDRI book, section 9.6.1, Figs.
+// 9.29 and 9.30).
+#pragma once
+
+#include <vector>
+
+#include "image/image.h"
+#include "math/spherical_polygon.h"
+
+namespace chromeball {
+
+struct PolygonSource {
+  SphericalPolygon polygon;
+  dvec3 radiance;
+  double coveredTexels = 0;  // of the map; 0: smaller than a texel, or between points of them
+
+  dvec3 irradiance() const;  // on a surface that faces its vector irradiance
+};
+
+// The sources, and the map without them. From each texel the part that a polygon covers gives up
+// its radiance above `fill`, the mean of the texels around the polygon, channel by channel. The
+// source's radiance is what was taken, by radiance x solid angle, over the polygon's solid angle,
+// so that energy is kept; texels below `fill` stay. Polygons are taken one after another.
+struct PolygonExtraction {
+  std::vector<PolygonSource> sources;  // in the order of the polygons
+  Image remainder;                     // of the map's size, three channels
+};
+PolygonExtraction extractPolygons(const Image& latLong,
+                                  const std::vector<SphericalPolygon>& polygons);
+
+// Proposals: convex polygons around the connected regions whose luminance is above 4 times the mean
+// of the sphere, at most `count`, in order of decreasing flux; without regions that reach more than
+// 60 degrees from their middle.
+std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count);
+
+}  // namespace chromeball
