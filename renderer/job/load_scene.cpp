@@ -204,6 +204,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      models.origin,
                      sunsOf(job.file.lamps),
                      settings.getIfGiven<double>("lighting.sun_angle"),
+                     settings.get<bool>("lighting.show_lights"),
                      std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
   checkMemory(job, result);

@@ -24,6 +24,7 @@ struct LoadedScene {
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::vector<SunLamp> suns;                 // of the scene file, besides the probe
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle
+  bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one
   Messages messages;  // of the job's settings, of the models and of the probe
 

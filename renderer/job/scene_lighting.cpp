@@ -47,11 +47,12 @@ Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded) {
-  auto lighting =
-      makeStrategy(strategy.name, loaded.probe, {mis, loaded.sunAngle}, strategy.location);
+  auto lighting = makeStrategy(strategy.name, loaded.probe,
+                               {mis, loaded.sunAngle, loaded.showLights}, strategy.location);
   if (loaded.surroundings)
     lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                                    *loaded.surroundings, loaded.room.get());
+                                                    *loaded.surroundings, loaded.room.get(),
+                                                    loaded.showLights);
   if (loaded.suns.empty()) return lighting;
   return std::make_unique<SceneSuns>(std::move(lighting), loaded.suns);
 }

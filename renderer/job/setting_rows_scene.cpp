@@ -192,6 +192,12 @@ void addLighting(std::vector<Setting>& rows) {
        .absent = "as measured in the probe",
        .help = "Diameter of the discs of the strategy `suns`; their irradiance stays. The Sun's is "
                "0.5323."});
+  add({.key = "show_lights",
+       .option = "show-lights",
+       .type = Flag,
+       .help = "The camera and mirrors see, instead of the probe, the lights by which the strategy "
+               "replaces it: discs of at least a degree.",
+       .renderOnly = true});
   add({.key = "lights",
        .option = "lights",
        .argument = "FACTOR",

@@ -41,7 +41,9 @@ LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
 
 Rgb FiniteSurroundings::background(const vec3& origin, const vec3& wi) const {
   const Surroundings::Point y = behind(origin, wi);
-  return probe_.radiance(glm::normalize(y.position - surroundings_.capture));
+  const vec3 captured = glm::normalize(y.position - surroundings_.capture);
+  return showsLights_ ? strategy_->background(surroundings_.capture, captured)
+                      : probe_.radiance(captured);
 }
 
 }  // namespace chromeball

@@ -7,8 +7,8 @@
 
 #include "base/hash.h"
 #include "math/cdf.h"
-#include "math/frame.h"
 #include "math/sampler.h"
+#include "math/spherical_cap.h"
 #include "probe/sun.h"
 
 namespace chromeball {
@@ -30,12 +30,14 @@ class SkyDiscs {
     if (choice_) {
       double position = (u ^ uint32_t(hash(set))) * 0x1p-32;
       const int chosen = choice_->sample(0, position);
-      visit(discs_[size_t(chosen)].direction(float(position), toUnit(v ^ uint32_t(hash(set + 1)))));
+      visit(discs_[size_t(chosen)].cap.direction(float(position),
+                                                 toUnit(v ^ uint32_t(hash(set + 1)))));
       return;
     }
     for (size_t i = 0; i < discs_.size(); ++i) {
       const uint64_t shift = hash(set + i);
-      visit(discs_[i].direction(toUnit(u ^ uint32_t(shift)), toUnit(v ^ uint32_t(shift >> 32))));
+      visit(
+          discs_[i].cap.direction(toUnit(u ^ uint32_t(shift)), toUnit(v ^ uint32_t(shift >> 32))));
     }
   }
 
@@ -47,19 +49,10 @@ class SkyDiscs {
   Light at(const vec3& wi) const;
 
  private:
-  // Discs are measured by chords. The chord from the centre to wi is accurate for discs of any
-  // size, and its square is uniform over the disc's solid angle, pi chord^2.
   struct Disc {
-    Frame frame;  // z: towards the centre
-    float squaredChord;
+    SphericalCap cap;
     Rgb radiance;
     float pdf;  // inside this disc
-
-    bool contains(const vec3& wi) const {
-      const vec3 to = wi - frame.z;
-      return glm::dot(to, to) <= squaredChord;
-    }
-    vec3 direction(float u, float v) const;
   };
 
   std::vector<Disc> discs_;
