@@ -12,7 +12,7 @@ _chromeball() {
       words='render merge compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
