@@ -15,6 +15,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "shading/bsdf.h"
+#include "strategy_samples.h"
 #include "test_scene.h"
 
 namespace chromeball {
@@ -229,7 +230,8 @@ TEST(SlowDeltaLights, laterHitsSampleEveryContributingLight) {
   const Probe probe(studioProbe({64, 32}), 70);
   for (const std::string_view name : strategyNames()) {
     const auto lighting = makeStrategy(std::string(name), probe, Mis::Balance, "test");
-    if (lighting->mirrorAlpha() == 0) continue;  // it samples the probe
+    const auto samples = Samples(*lighting, {0, 1, 0}).take(0);
+    if (samples.empty() || !samples.front().isDelta) continue;  // it samples areas
     for (const Case& c : {Case{"body", 0.4f, 1, false, false},
                           {"rougher body", 0.9f, 1, false, false},
                           {"sheet", 0.5f, 1, true, false},
@@ -327,9 +329,10 @@ TEST(StrategyTable, resolvedNamesIncludeTheCount) {
   const Probe probe(gradientProbe({16, 8}, Rgb(1), {0.3, 0.5, 0}));
   for (const char* name : {"bsdf", "uniform", "importance", "kollig-keller-strata"})
     EXPECT_TRUE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
-  for (const char* name :
-       {"median-cut", "median-cut-centre", "median-cut-flat", "variance-cut", "lightgen",
-        "kollig-keller", "cube-grid", "penrose", "irradiance-fit", "irradiance-fit-ambient"})
+  for (const char* name : {"median-cut", "median-cut-centre", "median-cut-flat", "median-cut-area",
+                           "median-cut-centre-area", "median-cut-flat-area", "median-cut-disc",
+                           "variance-cut", "lightgen", "kollig-keller", "kollig-keller-average",
+                           "cube-grid", "penrose", "irradiance-fit", "irradiance-fit-ambient"})
     EXPECT_FALSE(makeStrategy(name, probe, Mis::Balance, "")->unbiased()) << name;
 }
 

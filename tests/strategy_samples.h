@@ -8,11 +8,11 @@
 
 namespace chromeball {
 
-// Independent samples at one point.
+// Independent samples at one point: the first hit, or a later one.
 class Samples {
  public:
-  Samples(const LightingStrategy& strategy, const vec3& normal)
-      : strategy_(strategy), point_{{}, normal, nullptr, 0} {}
+  Samples(const LightingStrategy& strategy, const vec3& normal, int depth = 0)
+      : strategy_(strategy), point_{{}, normal, nullptr, depth} {}
 
   const std::vector<DirectionSample>& take(int i) {
     sampler_.startPixel(uint32_t(i), 0, 0);

@@ -198,12 +198,20 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
-  LoadedScene result{
-      std::move(scene),  models.camera,    models.view,
-      std::move(loaded), std::move(probe), job.file.surroundings,
-      std::move(room),   models.origin,    std::move(sources),
-      sunsOf(job),       ambientOf(job),   settings.getIfGiven<double>("lighting.sun_angle"),
-      std::move(files)};
+  LoadedScene result{std::move(scene),
+                     models.camera,
+                     models.view,
+                     std::move(loaded),
+                     std::move(probe),
+                     job.file.surroundings,
+                     std::move(room),
+                     models.origin,
+                     std::move(sources),
+                     sunsOf(job),
+                     ambientOf(job),
+                     settings.getIfGiven<double>("lighting.sun_angle"),
+                     settings.get<bool>("lighting.show_lights"),
+                     std::move(files)};
   if (job.composite) prepareLocalScene(job, result);
   checkMemory(job, result);
   result.messages = loadMessages(job, result, models.warnings);

@@ -27,6 +27,7 @@ struct LoadedScene {
   std::vector<SunLamp> suns;                 // of the scene file, besides the probe
   std::vector<AmbientLamp> ambient;          // likewise
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle
+  bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one
   Messages messages;  // of the job's settings, of the models and of the probe
 

@@ -193,6 +193,16 @@ void checkGuide(const SceneFile& file) {
                strategy);
 }
 
+void checkShowLights(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const std::string strategy = s.get<std::string>("lighting.strategy");
+  if (s.get<bool>("lighting.show_lights") && !hasLights(strategy))
+    throwInput(
+        "{}: the strategy `{}` has no lights; give one that replaces the probe by lights, "
+        "such as median-cut:64",
+        s.location("lighting.show_lights"), resolveStrategy(strategy));
+}
+
 void checkDenoise(const SceneFile& file) {
   const Settings& s = file.settings;
   const auto layers = s.get<std::vector<std::string>>("output.aovs");
@@ -256,6 +266,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   checkTransparent(job.file);
   checkOrbit(job.file);
   checkGuide(job.file);
+  checkShowLights(job.file);
   checkDenoise(job.file);
   checkGroups(job.file);
   checkParts(job.file);

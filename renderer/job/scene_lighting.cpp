@@ -133,7 +133,8 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
                                                const LoadedScene& loaded, bool splitsProbe) {
   const auto& sources = loaded.sources;
   const Probe& sampled = sources ? sources->remainder : loaded.probe;
-  auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle}, strategy.location);
+  auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
+                               strategy.location);
   if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
     lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
   if (sources) {
@@ -145,7 +146,8 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   }
   if (loaded.surroundings)
     lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                                    *loaded.surroundings, loaded.room.get());
+                                                    *loaded.surroundings, loaded.room.get(),
+                                                    loaded.showLights);
   if (loaded.suns.empty() && loaded.ambient.empty()) return lighting;
   std::vector<std::unique_ptr<LightingStrategy>> parts;
   parts.push_back(std::move(lighting));

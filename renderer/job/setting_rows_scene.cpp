@@ -203,6 +203,12 @@ void addLighting(std::vector<Setting>& rows) {
            },
        .help = "What lights the scene: all, only the suns of the probe and of [[light]], or all "
                "but these. The two parts add up to the whole."});
+  add({.key = "show_lights",
+       .option = "show-lights",
+       .type = Flag,
+       .help = "The camera and mirrors see, instead of the probe, the lights by which the strategy "
+               "replaces it: discs of at least a degree.",
+       .renderOnly = true});
   add({.key = "lights",
        .option = "lights",
        .argument = "FACTOR",

@@ -41,7 +41,9 @@ LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
 
 Rgb FiniteSurroundings::background(const vec3& origin, const vec3& wi) const {
   const Surroundings::Point y = behind(origin, wi);
-  return probe_.radiance(glm::normalize(y.position - surroundings_.capture));
+  const vec3 captured = glm::normalize(y.position - surroundings_.capture);
+  return showsLights_ ? strategy_->background(surroundings_.capture, captured)
+                      : probe_.radiance(captured);
 }
 
 void FiniteSurroundings::splitEscaped(const LightPoint& point, const vec3& wi,
@@ -55,9 +57,13 @@ void FiniteSurroundings::splitBackground(const vec3& origin, const vec3& wi,
                                          std::span<Rgb> radiances) const {
   const Surroundings::Point y = behind(origin, wi);
   const vec3 direction = glm::normalize(y.position - surroundings_.capture);
-  const Rgb whole = probe_.radiance(direction), own = strategy_->background(origin, direction);
+  const Rgb whole = background(origin, wi), own = strategy_->background(origin, direction);
   Rgb factor;
-  for (int k = 0; k < 3; ++k) factor[k] = own[k] > 0 ? whole[k] / own[k] : 0;
+  for (int k = 0; k < 3; ++k)
+    if (own[k] > 0)
+      factor[k] = whole[k] / own[k];
+    else
+      factor[k] = 0, radiances.back()[k] += whole[k];
   std::vector<Rgb> parts(radiances.size(), Rgb(0));
   strategy_->splitBackground(origin, direction, parts);
   for (size_t i = 0; i < parts.size(); ++i) radiances[i] += factor * parts[i];

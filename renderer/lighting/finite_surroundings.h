@@ -21,13 +21,19 @@ namespace chromeball {
 // another wall hides from x is dropped.
 //
 // The camera and mirrors see the probe as captured; lamps made from suns light only broad lobes
-// (RADIANCE's "illum").
+// (RADIANCE's "illum"). With `showsLights` they see on the surface what the strategy shows instead
+// of the probe (StrategyOptions::showLights).
 class FiniteSurroundings : public LightingStrategy {
  public:
   // `room`: replaces the box or sphere of `surroundings` unless null; must outlive this.
   FiniteSurroundings(std::unique_ptr<LightingStrategy> strategy, const Probe& probe,
-                     const Surroundings& surroundings, const Walls* room = nullptr)
-      : strategy_(std::move(strategy)), probe_(probe), surroundings_(surroundings), room_(room) {}
+                     const Surroundings& surroundings, const Walls* room = nullptr,
+                     bool showsLights = false)
+      : strategy_(std::move(strategy)),
+        probe_(probe),
+        surroundings_(surroundings),
+        room_(room),
+        showsLights_(showsLights) {}
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
@@ -56,6 +62,7 @@ class FiniteSurroundings : public LightingStrategy {
   const Probe& probe_;
   Surroundings surroundings_;
   const Walls* room_;
+  bool showsLights_;
 };
 
 }  // namespace chromeball

@@ -7,12 +7,15 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "lighting/area/region_areas.h"
+#include "lighting/area_lights.h"
 #include "lighting/bsdf_only.h"
 #include "lighting/constellation_lights.h"
 #include "lighting/delta_lights.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"
 #include "lighting/product.h"
+#include "lighting/shown_lights.h"
 #include "lighting/strata.h"
 #include "lighting/suns.h"
 #include "lighting/uniform.h"
@@ -48,12 +51,37 @@ Strategy strata(const Probe& probe, const StrategyOptions&, int count) {
 
 // A method whose strategy replaces the probe by its lights, made with seed 0.
 LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights) {
-  const auto makeStrategy = [make = lights.make](const Probe& probe, const StrategyOptions&,
-                                                 int count) {
+  const auto makeStrategy = [make = lights.make](const Probe& probe, const StrategyOptions& options,
+                                                 int count) -> Strategy {
     const MadeLights made = make(probe.latLong(), {.count = count});
-    return std::make_unique<DeltaLights>(probe, made.lights, made.ambient.value_or(Rgb(0)));
+    const Rgb ambient = made.ambient.value_or(Rgb(0));
+    auto strategy = std::make_unique<DeltaLights>(probe, made.lights, ambient);
+    if (!options.showLights) return strategy;
+    return std::make_unique<ShownLights>(
+        std::move(strategy), shownLights(made.lights, probe.rotationDegrees()), ambient);
   };
-  return {name, summary, lights.counts, makeStrategy, lights};
+  return {name, summary, lights.counts, makeStrategy, true, lights};
+}
+
+using Areas = std::unique_ptr<const LightAreas>;
+
+Areas asRegions(RegionAreas regions) { return std::make_unique<RegionAreas>(std::move(regions)); }
+Areas asDiscs(RegionAreas regions) { return std::make_unique<DiscAreas>(regions.lights()); }
+
+// A method whose strategy replaces the probe by area lights, for the regions of `lights`.
+LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights,
+                         Areas (*shape)(RegionAreas)) {
+  const auto makeStrategy = [regions = lights.regions, shape](const Probe& probe,
+                                                              const StrategyOptions& options,
+                                                              int count) -> Strategy {
+    const Image map = probe.latLong();
+    Areas areas = shape({map, regions(map, {.count = count}).partition, probe.rotationDegrees()});
+    std::vector<AreaLight> all = areas->lights();
+    auto strategy = std::make_unique<AreaLights>(probe, std::move(areas));
+    if (!options.showLights) return strategy;
+    return std::make_unique<ShownLights>(std::move(strategy), std::move(all));
+  };
+  return {name, summary, lights.counts, makeStrategy, true, {}};
 }
 
 MadeLights fitLights(const Image& latLong, const LightRequest& request) {
@@ -108,19 +136,29 @@ const std::vector<LightingMethod>& lightingMethods() {
       {"uniform", "samples uniform over the hemisphere", {}, sampling<Uniform>},
       {"importance", "samples proportional to luminance", {}, compensated<Importance>},
       {"product", "samples proportional to luminance x cosine", {}, sampling<Product>},
-      {"suns", "each sun in the probe as a disc of its own", {}, suns, sunLights()},
+      {"suns", "each sun in the probe as a disc of its own", {}, suns, false, sunLights()},
       replacing("median-cut", "a light for each region of equal energy", medianCutLights(kRegions)),
       replacing("median-cut-centre", "the same, with lights at the centres of the regions",
                 centreCutLights(kRegions)),
       replacing("median-cut-flat", "the same, with the map cut as if it were a flat picture",
                 flatCutLights(kRegions)),
+      replacing("median-cut-area", "each region of median-cut as an area light",
+                medianCutLights(kRegions), asRegions),
+      replacing("median-cut-centre-area", "the same for median-cut-centre",
+                centreCutLights(kRegions), asRegions),
+      replacing("median-cut-flat-area", "the same for median-cut-flat", flatCutLights(kRegions),
+                asRegions),
+      replacing("median-cut-disc", "discs with the solid angles of median-cut's regions",
+                medianCutLights(kRegions), asDiscs),
       replacing("variance-cut", "a light for each region of small variance",
                 varianceCutLights(kRegions)),
       replacing("lightgen", "K-means on the sphere, from random starts", lightGenLights(kRegions)),
       replacing("kollig-keller", "K-means on the sphere, adding one light at a time",
                 kolligKellerLights(kRegions)),
       {"kollig-keller-strata", "a random direction in each region of kollig-keller", kStrata,
-       strata, strataLights(kStrata)},
+       strata, false, strataLights(kStrata)},
+      replacing("kollig-keller-average", "the same, with the average colour of the region",
+                kolligKellerLights(kStrata), asRegions),
       replacing("cube-grid", "6 N^2 lights on the faces of a cube", cubeGridLights({1, 26, 10})),
       replacing("penrose", "blue-noise points on a Penrose tiling", penroseLights({2, 4096, 300})),
       replacing("irradiance-fit", "the lights that minimise the error of irradiance",
@@ -168,11 +206,13 @@ MadeLights makeLights(std::string_view method, const Image& latLong, const Light
 std::string strategyHelp() {
   std::string help = "Strategies:\n" +
                      helpLine("auto", "the unbiased strategy best for most scenes: importance", "");
-  for (const auto& [name, summary, counts, makeStrategy, lights] : lightingMethods())
+  for (const LightingMethod& method : lightingMethods()) {
+    const CountRange& counts = method.counts;
     help += counts.max == 0
-                ? helpLine(std::string(name), summary, "")
-                : helpLine(fmt::format("{}:N", name), summary,
+                ? helpLine(std::string(method.name), method.summary, "")
+                : helpLine(fmt::format("{}:N", method.name), method.summary,
                            fmt::format(" (N {}, default {})", rangeOf(counts), counts.usual));
+  }
   return help;
 }
 

@@ -48,6 +48,7 @@ struct LightingMethod {
   CountRange counts;
   std::function<std::unique_ptr<LightingStrategy>(const Probe&, const StrategyOptions&, int count)>
       makeStrategy;
+  bool replacesProbe = false;  // by lights, which the camera can see (StrategyOptions::showLights)
 
   // As directional lights that replace a lat-long map.
   struct Lights {

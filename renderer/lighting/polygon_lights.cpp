@@ -25,17 +25,18 @@ PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Imag
     powers.push_back(luminance(Rgb(light.source.irradiance())));
   const double total = choice_.setRow(0, powers);
   for (size_t i = 0; i < lights.size(); ++i) {
-    const auto& [polygon, radiance] = lights[i].source;
+    const PolygonSource& source = lights[i].source;
     const double probability = total > 0 ? powers[i] / total : 0;
-    lights_.push_back({turned(polygon, rotationDegrees), Rgb(radiance), lights[i].isIllum,
-                       lights[i].name, float(probability / polygon.solidAngle())});
+    lights_.push_back({turned(source.polygon, rotationDegrees), Rgb(source.radiance),
+                       lights[i].isIllum, lights[i].name,
+                       float(probability / source.polygon.solidAngle())});
   }
   while (firstIllum_ + 1 < lights_.size() && !lights_[firstIllum_].isIllum) ++firstIllum_;
 }
 
 void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
                            std::vector<DirectionSample>& out) const {
-  if (lights_.front().pdf == 0 && choice_.row(0).back() == 0) return;  // all are black
+  if (choice_.row(0).back() == 0) return;  // all are black
   double u = toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kSet)));
   const float v = toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kSet + 1)));
   const int chosen = choice_.sample(0, u);

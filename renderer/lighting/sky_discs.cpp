@@ -2,7 +2,6 @@
 #include "lighting/sky_discs.h"
 
 #include "math/rotation.h"
-#include "math/trig.h"
 
 namespace chromeball {
 namespace {
@@ -24,18 +23,11 @@ SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, double rotationDegrees) {
     const Sun& sun = suns[i];
     const double chord = 2 * std::sin(sun.angle * kPiD / 720);
     const double probability = chooses ? powers[i] / power : 1;
-    discs_.push_back({Frame(vec3(turnedAboutY(sun.direction, rotationDegrees))),
-                      float(chord * chord), Rgb(sun.radiance()),
-                      float(probability / (kPiD * chord * chord))});
+    discs_.push_back(
+        {{Frame(vec3(turnedAboutY(sun.direction, rotationDegrees))), float(chord * chord)},
+         Rgb(sun.radiance()),
+         float(probability / (kPiD * chord * chord))});
   }
-}
-
-vec3 SkyDiscs::Disc::direction(float u, float v) const {
-  const float squared = u * squaredChord;
-  float sine, cosine;
-  sinCosTurns(v, sine, cosine);
-  const float r = std::sqrt(squared * (1 - squared / 4));
-  return frame.toWorld({r * cosine, r * sine, 1 - squared / 2});
 }
 
 }  // namespace chromeball

@@ -7,8 +7,8 @@
 
 #include "base/hash.h"
 #include "math/cdf.h"
-#include "math/frame.h"
 #include "math/sampler.h"
+#include "math/spherical_cap.h"
 #include "probe/sun.h"
 
 namespace chromeball {
@@ -30,12 +30,14 @@ class SkyDiscs {
     if (choice_) {
       double position = (u ^ uint32_t(hash(set))) * 0x1p-32;
       const int chosen = choice_->sample(0, position);
-      visit(discs_[size_t(chosen)].direction(float(position), toUnit(v ^ uint32_t(hash(set + 1)))));
+      visit(discs_[size_t(chosen)].cap.direction(float(position),
+                                                 toUnit(v ^ uint32_t(hash(set + 1)))));
       return;
     }
     for (size_t i = 0; i < discs_.size(); ++i) {
       const uint64_t shift = hash(set + i);
-      visit(discs_[i].direction(toUnit(u ^ uint32_t(shift)), toUnit(v ^ uint32_t(shift >> 32))));
+      visit(
+          discs_[i].cap.direction(toUnit(u ^ uint32_t(shift)), toUnit(v ^ uint32_t(shift >> 32))));
     }
   }
 
@@ -56,23 +58,14 @@ class SkyDiscs {
   template <class Visit>
   void forDiscsAt(const vec3& wi, const Visit& visit) const {
     for (size_t i = 0; i < discs_.size(); ++i)
-      if (discs_[i].contains(wi)) visit(i, Light{discs_[i].radiance, discs_[i].pdf});
+      if (discs_[i].cap.contains(wi)) visit(i, Light{discs_[i].radiance, discs_[i].pdf});
   }
 
  private:
-  // Discs are measured by chords. The chord from the centre to wi is accurate for discs of any
-  // size, and its square is uniform over the disc's solid angle, pi chord^2.
   struct Disc {
-    Frame frame;  // z: towards the centre
-    float squaredChord;
+    SphericalCap cap;
     Rgb radiance;
     float pdf;  // inside this disc
-
-    bool contains(const vec3& wi) const {
-      const vec3 to = wi - frame.z;
-      return glm::dot(to, to) <= squaredChord;
-    }
-    vec3 direction(float u, float v) const;
   };
 
   std::vector<Disc> discs_;

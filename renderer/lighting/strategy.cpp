@@ -47,6 +47,12 @@ std::vector<std::string_view> strategyNames() {
   return names;
 }
 
+bool hasLights(const std::string& name) {
+  const std::string resolved = resolveStrategy(name);
+  const LightingMethod* method = findMethod(resolved.substr(0, resolved.find(':')));
+  return !method || method->replacesProbe;
+}
+
 std::string resolveStrategy(const std::string& name) {
   if (name == "auto") return "importance";
   const LightingMethod* method = findMethod(name);

@@ -104,9 +104,12 @@ enum class Mis { Off, Balance, Power };
 struct StrategyOptions {
   Mis mis;
   std::optional<double> sunAngle;  // diameter of the strategy suns' discs, degrees; else measured
+  // With strategies that replace the probe by lights, the camera and mirrors see these lights, as
+  // discs of at least a degree, instead of the probe.
+  bool showLights = false;
 
-  StrategyOptions(Mis m = Mis::Balance, std::optional<double> angle = {})
-      : mis(m), sunAngle(angle) {}
+  StrategyOptions(Mis m = Mis::Balance, std::optional<double> angle = {}, bool show = false)
+      : mis(m), sunAngle(angle), showLights(show) {}
 };
 
 // Makes a strategy from its name on the command line, "NAME" or "NAME:COUNT"; "auto" is the
@@ -119,6 +122,10 @@ std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Pr
 
 // Replaces "auto" by a strategy, and appends the default count if none is given.
 std::string resolveStrategy(const std::string& name);
+
+// Whether a strategy, "NAME" or "NAME:COUNT", replaces the probe by lights, so that there are
+// lights to show. True for an unknown name, which makeStrategy() refuses.
+bool hasLights(const std::string& name);
 
 // Every name but "auto", without counts.
 std::vector<std::string_view> strategyNames();

@@ -4,7 +4,6 @@
 #include "base/suggest.h"
 #include "messages.h"
 #include "probe/edit.h"
-#include "probe/load.h"
 
 namespace chromeball {
 
@@ -14,11 +13,11 @@ void LightsProbe::checkMask() const {
                didYouMean(mask, {"none", "below-horizon"}));
 }
 
-Image LightsProbe::load() const {
+LoadedProbe LightsProbe::loadWithFile() const {
   LoadedProbe probe = loadProbe(file, mapping, "--mapping");
   for (const std::string& warning : warnings(probe, file)) warn(warning);
   if (mask == "below-horizon") replaceBelowHorizon(probe.latLong, Rgb(0));
-  return std::move(probe.latLong);
+  return probe;
 }
 
 }  // namespace chromeball

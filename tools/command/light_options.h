@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "image/image.h"
+#include "probe/load.h"
 
 namespace chromeball {
 
@@ -22,7 +22,9 @@ struct LightsProbe {
   // Throws InputError.
   void checkMask() const;
   // As a lat-long map; prints warnings. Throws InputError.
-  Image load() const;
+  Image load() const { return loadWithFile().latLong; }
+  // The same, with the properties of the file.
+  LoadedProbe loadWithFile() const;
 };
 
 // Throws InputError.

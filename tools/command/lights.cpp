@@ -15,6 +15,7 @@
 #include "lighting/light_file.h"
 #include "lighting/light_preview.h"
 #include "lighting/methods.h"
+#include "lights_polygons.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
@@ -26,7 +27,8 @@ constexpr double kMaxAngle = 10;  // degrees; the approximation of discSolidAngl
 
 struct Arguments {
   LightsProbe probe;
-  std::string method, output, format, preview, sphere, maxError, units = "photometric";
+  std::string method, output, format, preview, sphere, maxError, polygons, units = "photometric";
+  std::optional<int> suggest;  // so many polygons
   std::optional<int> normals;  // of the sphere
   std::optional<double> angle;
   bool regions = false;
@@ -92,7 +94,29 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
   fmt::print("\n");
 }
 
+// Polygons in place of a method.
+void runPolygonsOf(const Arguments& arguments) {
+  if (!arguments.method.empty())
+    throwInput("--method: excludes --suggest and --polygons; give one");
+  const LightFormat format = arguments.suggest
+                                 ? LightFormat::Json
+                                 : lightFormat(arguments.output, arguments.format, "--format");
+  checkReplaceable(arguments.output);
+  if (!arguments.preview.empty()) checkWritable(arguments.preview);
+  arguments.probe.checkMask();
+  runPolygons({.probe = arguments.probe,
+               .output = arguments.output,
+               .preview = arguments.preview,
+               .suggest = arguments.suggest,
+               .polygons = arguments.polygons,
+               .format = format,
+               .units = parseLightUnits({arguments.units, "--light-units"})});
+}
+
 void run(Arguments arguments) {
+  if (arguments.suggest || !arguments.polygons.empty()) return runPolygonsOf(arguments);
+  if (arguments.method.empty())
+    throwInput("--method: is missing; or give --suggest N or --polygons FILE");
   LightRequest& request = arguments.request;
   const LightingMethod& method = lightMethod(arguments.method, "--method");
   if (!arguments.maxError.empty())
@@ -140,8 +164,12 @@ void addLightsCommand(CLI::App& app) {
       app.add_subcommand("lights", "Replace a probe by directional lights, for other programs.");
   command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
   command->footer(lightMethodHelp());
-  command->add_option("--method", arguments->method, "how to find the lights; see below")
-      ->required();
+  command->add_option("--method", arguments->method, "how to find the lights; see below");
+  command->add_option("--suggest", arguments->suggest,
+                      "in place of a method: propose polygons around so many bright regions, as a "
+                      ".json that [[source]] reads");
+  command->add_option("--polygons", arguments->polygons,
+                      "in place of a method: a light for each polygon of this .json");
   command->add_option("--count", arguments->request.count,
                       "number of lights; of cube-grid: of lights along a face's edge; of suns: the "
                       "maximum");

@@ -17,16 +17,16 @@ namespace {
 Constellation lightsOf(const std::vector<PolygonSource>& sources) {
   Constellation lights;
   for (const PolygonSource& source : sources)
-    lights.push_back({vec3(glm::normalize(source.polygon.vectorIrradiance())),
-                      Rgb(source.irradiance()), 0});
+    lights.push_back(
+        {vec3(glm::normalize(source.polygon.vectorIrradiance())), Rgb(source.irradiance()), 0});
   return lights;
 }
 
 // The texels whose centres are inside each polygon; the later of two that overlap.
 Partition partitionOf(const Image& latLong, const std::vector<PolygonSource>& sources) {
-  Partition partition{int(sources.size()),
-                      std::vector<uint16_t>(size_t(latLong.width) * size_t(latLong.height),
-                                            kNoRegion)};
+  Partition partition{
+      int(sources.size()),
+      std::vector<uint16_t>(size_t(latLong.width) * size_t(latLong.height), kNoRegion)};
   for (int y = 0; y < latLong.height; ++y)
     for (int x = 0; x < latLong.width; ++x) {
       const dvec3 direction = texelDirection({latLong.width, latLong.height}, x, y);
@@ -41,8 +41,8 @@ std::vector<SphericalPolygon> polygonsOf(const PolygonRequest& request, const Lo
   if (request.suggest) return suggestPolygons(probe.latLong, *request.suggest);
   std::vector<SphericalPolygon> polygons;
   for (const Corners& corners : readPolygons(request.polygons))
-    polygons.push_back(polygonOf(corners, probe,
-                                 fmt::format("{}: polygons[{}]", request.polygons, polygons.size())));
+    polygons.push_back(polygonOf(
+        corners, probe, fmt::format("{}: polygons[{}]", request.polygons, polygons.size())));
   return polygons;
 }
 
@@ -82,10 +82,11 @@ void runPolygons(const PolygonRequest& request) {
   fmt::print("polygons    {}\n", sources.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     const Rgb& e = lights[i].irradiance;
-    fmt::print("polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
-               "{:.4g} {:.4g}\n",
-               sources[i].polygon.corners().size(), sources[i].polygon.solidAngle(),
-               sources[i].radiance.x, sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z);
+    fmt::print(
+        "polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
+        "{:.4g} {:.4g}\n",
+        sources[i].polygon.corners().size(), sources[i].polygon.solidAngle(), sources[i].radiance.x,
+        sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z);
   }
 }
 
