@@ -65,12 +65,12 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
 
 using Areas = std::unique_ptr<const LightAreas>;
 
-Areas asRegions(RegionAreas regions) { return std::make_unique<RegionAreas>(std::move(regions)); }
-Areas asDiscs(RegionAreas regions) { return std::make_unique<DiscAreas>(regions.lights()); }
+Areas asRegions(RegionAreas&& regions) { return std::make_unique<RegionAreas>(std::move(regions)); }
+Areas asDiscs(RegionAreas&& regions) { return std::make_unique<DiscAreas>(regions.lights()); }
 
 // A method whose strategy replaces the probe by area lights, for the regions of `lights`.
 LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights,
-                         Areas (*shape)(RegionAreas)) {
+                         Areas (*shape)(RegionAreas&&)) {
   const auto makeStrategy = [regions = lights.regions, shape](const Probe& probe,
                                                               const StrategyOptions& options,
                                                               int count) -> Strategy {
