@@ -87,6 +87,7 @@ TEST(CosinePattern, ClosedFormsAgreeWithASumOverNormals) {
   }
 }
 
+// But for the extent of a texel or block, which a point has not.
 TEST(RadiancePoints, HaveTheProductsOfTheProbe) {
   const Image probe = studioProbe({128, 64});
   const std::vector<vec3> normals = texelDirections(kNormals);
@@ -97,8 +98,8 @@ TEST(RadiancePoints, HaveTheProductsOfTheProbe) {
     for (size_t i = 0; i < normals.size(); ++i)
       expected += irradiance[i] * (normalSolidAngle(i) * std::max(0.0, dot(dvec3(normals[i]), d)));
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(all.productWith(d).product[c], expected[c], 3e-4 * expected[c]);
-      EXPECT_NEAR(merged.productWith(d).product[c], expected[c], 2e-3 * expected[c]);
+      EXPECT_NEAR(all.productWith(d).product[c], expected[c], 8e-4 * expected[c]);
+      EXPECT_NEAR(merged.productWith(d).product[c], expected[c], 3e-3 * expected[c]);
     }
   }
 }
