@@ -191,6 +191,85 @@ TEST(SlowCommandLights, ErrorTableCsvAndPlot) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
+// Counts and methods in any order and given twice: one row and one point for each, from left to
+// right in the plot.
+TEST(SlowCommandLights, ErrorPlotOfCountsInAnyOrder) {
+  const TemporaryFolder folder;
+  writeImage(folder / "studio.exr", studioProbe({64, 32}));
+  const auto plotOf = [&](const std::string& methods, const std::string& counts) {
+    const std::string table =
+        run({"lights-error", folder / "studio.exr", "--methods", methods, "--counts", counts,
+             "--normals", "80", "--plot", folder / "e.svg"})
+            .out;
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
+    return fileContents(folder / "e.svg");
+  };
+  EXPECT_EQ(plotOf("median-cut", "2,8,32"), plotOf("median-cut,median-cut", "32,2,8,2,32"));
+}
+
+// What a file cannot hold is said: ambient light, angles, units, many lights.
+TEST(SlowCommandLights, WarnsOfWhatAFileLoses) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "probe.exr";
+  writeImage(probe, studioProbe({64, 32}));
+  const auto errorsOf = [&](const std::string& file, std::vector<std::string> more,
+                            const std::string& method = "irradiance-fit") {
+    more.insert(more.begin(), {"lights", probe, "--method", method, "-o", folder / file});
+    return run(more).error;
+  };
+  const auto has = [](const std::string& text, const char* words) {
+    return text.find(words) != std::string::npos;
+  };
+  const std::vector<std::string> ambient{"--count", "1", "--ambient"};
+  EXPECT_TRUE(has(errorsOf("a.csv", ambient), "the fitted ambient light is not in a .csv"));
+  EXPECT_TRUE(has(errorsOf("a.gltf", ambient), "the fitted ambient light is only in `extras`"));
+  for (const char* file : {"a.json", "a.h"}) EXPECT_EQ(errorsOf(file, ambient), "");
+  const std::vector<std::string> angle{"--count", "1", "--angle", "2"};
+  EXPECT_TRUE(has(errorsOf("a.gltf", angle), "angular diameter is only in `extras`"));
+  EXPECT_TRUE(has(errorsOf("a.h", angle), "angular diameter is not in a header"));
+  for (const char* file : {"a.json", "a.csv"}) EXPECT_EQ(errorsOf(file, angle), "");
+  const std::vector<std::string> units{"--count", "1", "--light-units", "radiometric"};
+  EXPECT_TRUE(has(errorsOf("a.json", units), "--light-units: has no effect"));
+  EXPECT_EQ(errorsOf("a.gltf", units), "");
+  EXPECT_TRUE(has(errorsOf("a.h", {"--count", "16"}, "median-cut"), "16 lights; OpenGL"));
+  EXPECT_EQ(errorsOf("a.h", {"--count", "8"}, "median-cut"), "");
+  EXPECT_FALSE(has(fileContents(folder / "a.h"), "ambient light in place"));
+  EXPECT_EQ(errorsOf("a.h", ambient), "");
+  EXPECT_TRUE(has(fileContents(folder / "a.h"), "and the ambient light in place"));
+}
+
+// Also of a mask that leaves no light; and no light that is written is black.
+TEST(SlowCommandLights, OfProbesWithLittleLight) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "probe.exr", out = folder / "a.json";
+  writeImage(probe, oneHotProbe({64, 32}, 3, 25, Rgb(1)));
+  const CommandResult masked = run({"lights", probe, "--method", "median-cut", "--count", "2",
+                                    "--probe-mask", "below-horizon", "-o", out});
+  EXPECT_NE(masked.error.find("--probe-mask: below-horizon leaves no light"), std::string::npos);
+  writeImage(probe, constantProbe({4, 2}, Rgb(0)));
+  run({"lights", probe, "--method", "irradiance-fit", "--count", "3", "-o", out});
+  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 0u);
+}
+
+// The error of coarse probes is that of finer ones.
+TEST(SlowCommandLights, ErrorOfAProbeOfOneTexel) {
+  const TemporaryFolder folder;
+  const auto errorOf = [&](const ImageSize& size) {
+    writeImage(folder / "a.exr", constantProbe(size, Rgb(2)));
+    run({"lights-error", folder / "a.exr", "--methods", "irradiance-fit-ambient", "--counts", "1",
+         "--normals", "1280", "--csv", folder / "a.csv"});
+    const std::string csv = fileContents(folder / "a.csv");
+    double mean = -1;
+    EXPECT_EQ(std::sscanf(csv.c_str() + csv.find('\n') + 1, "%*[^,],%*d,%*d,%lf", &mean), 1) << csv;
+    return mean;
+  };
+  for (const ImageSize& size : {ImageSize{1, 1}, {2, 1}, {4, 2}, {128, 64}}) {
+    const double percent = errorOf(size);
+    EXPECT_GE(percent, 0) << size.width;
+    EXPECT_LT(percent, 0.02) << size.width;
+  }
+}
+
 TEST(SlowCommandLights, ABlackProbeIsAccepted) {
   const TemporaryFolder folder;
   const std::string probe = folder / "black.exr";
@@ -253,7 +332,9 @@ TEST(SlowCommandLights, BadInputIsRejected) {
   expectError(with(errors, {"2", "--csv", folder / "a.txt"}), ".csv");
   expectError(with(errors, {"2", "--plot", folder / "a.png"}), ".svg");
   expectError({"lights-error", in, "--methods", "median-cut"}, "--counts");
-  expectError(with(errors, {"2", "--recursion", "2"}), "either --counts or --recursion");
+  expectError(with(errors, {"2", "--recursion", "2"}), "--recursion: excludes --counts");
+  expectError(with(errors, {"2", "--seed", "-1"}), "--seed: `-1`");
+  expectError(with(lights, {"median-cut", "--seed", "-1"}), "--seed: `-1`");
   expectError({"lights-error", in, "--methods", "lightgen", "--recursion", "2"}, "lightgen");
   expectError({"lights-error", in, "--methods", "median-cut", "--recursion", "0"}, "1 to 12");
   expectError({"lights-error", in, "--methods", "median-cut,suns-cut", "--counts", "2"},

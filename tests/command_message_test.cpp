@@ -86,6 +86,10 @@ TEST_F(SlowCommandMessage, WarnsAboutSettingsWithoutEffect) {
   EXPECT_EQ(render({"--tonemap", "aces", "--exposure", "1"}, "a.png").error.find("no effect"),
             std::string::npos);
   EXPECT_EQ(render({}).error.find("warning"), std::string::npos);
+  EXPECT_NE(render({"--sun-angle", "1"}).error.find("warning: --sun-angle has no effect"),
+            std::string::npos);
+  EXPECT_EQ(render({"--sun-angle", "1", "--strategy", "suns"}).error.find("no effect"),
+            std::string::npos);
   EXPECT_NE(render({"--aov", "albedo"}, "a.png").error.find("warning: --aov has no effect"),
             std::string::npos);
   EXPECT_EQ(render({"--aov", "albedo"}, "a.exr").error.find("warning"), std::string::npos);

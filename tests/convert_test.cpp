@@ -84,6 +84,59 @@ TEST(Convert, TheMeanOfAMirrorBallIsTheMeanRadiance) {
   EXPECT_NEAR(sum / double(ball.texels.size()) * 4 / kPiD / meanRadiance(probe).x, 1, 0.003);
 }
 
+// The integral of radiance over the sphere, from an image in any mapping.
+dvec3 fluxOf(const Image& image, Mapping mapping) {
+  dvec3 sum(0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const dvec2 uv((x + 0.5) / image.width, (y + 0.5) / image.height);
+      if (showsDirection(mapping, uv))
+        sum += dvec3(image.rgb(x, y)) * solidAngleJacobian(mapping, uv);
+    }
+  return sum / (double(image.width) * image.height);
+}
+
+// Lamps of one texel, a thousand times as bright as the rest.
+Image manyLamps(const ImageSize& size) {
+  Image image = constantProbe(size, Rgb(1));
+  for (int y = 3; y < size.height - 3; ++y)
+    for (int x = 0; x < size.width; ++x)
+      if ((x * 7 + y * 13) % 101 == 0) image.setRgb(x, y, Rgb(1000, 500, 2000));
+  return image;
+}
+
+TEST(Convert, EveryMappingKeepsTheFluxOfLamps) {
+  const Image lamps = manyLamps({256, 128});
+  const double expected = 4 * kPiD * meanRadiance(lamps).x;
+  for (const Mapping to : kMappings) {
+    const Image there = convert(lamps, Mapping::LatLong, to, sizeFor(to, {256, 128}));
+    EXPECT_NEAR(fluxOf(there, to).x / expected, 1, 5e-3) << mappingName(to);
+  }
+}
+
+// There and back.
+TEST(SlowConvert, EveryMappingKeepsTheFluxOfGraceCathedral) {
+  int found = 0;
+  for (const char* file : {"debevec/grace_probe.hdr", "probulator/grace_latlong_small.hdr"}) {
+    const auto path = sharedData(std::string("probes/") + file);
+    if (!path) continue;
+    ++found;
+    const Image map = loadProbe(*path).latLong;
+    const dvec3 expected = 4 * kPiD * meanRadiance(map);
+    for (const Mapping to : kMappings) {
+      const Image there = convert(map, Mapping::LatLong, to, sizeFor(to, {map.width, map.height}));
+      const Image back = latLongOf(there, to, glm::dmat3(1));
+      const dvec3 ratio = fluxOf(there, to) / expected;
+      const dvec3 ratioBack = 4 * kPiD * meanRadiance(back) / expected;
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(ratio[c], 1, 5e-3) << file << " " << mappingName(to) << " " << c;
+        EXPECT_NEAR(ratioBack[c], 1, 5e-3) << file << " " << mappingName(to) << " " << c;
+      }
+    }
+  }
+  if (found == 0) GTEST_SKIP() << "no probes of Grace Cathedral";
+}
+
 TEST(Convert, SameSizeIsACopy) {
   const Image image = gradientProbe({37, 11}, Rgb(1, 2, 3), {0.1, 0.2, 0.3});
   EXPECT_EQ(convert(image, Mapping::LatLong, Mapping::LatLong, {37, 11}).texels, image.texels);

@@ -73,17 +73,30 @@ TEST(IrradianceSpheres, ShowTheSideThatALightIsOn) {
   }
 }
 
-// One exposure for all: constant light of radiance 3 is white; half of it as ambient light is half
+// One exposure for all: constant light of radiance 3 is white; 40% of it as ambient light is 40%
 // as bright, also in the square, and the difference is as far below grey.
 TEST(IrradianceSpheres, HaveOneExposure) {
-  const Image picture =
-      irradianceSpheres(spheresOf(constantProbe({256, 128}, Rgb(3)), {}, Rgb(1.5f)));
+  const IrradianceSpheres spheres = spheresOf(constantProbe({256, 128}, Rgb(3)), {}, Rgb(1.2f));
+  EXPECT_EQ(differenceGain(spheres), 1);
+  const Image picture = irradianceSpheres(spheres);
   ASSERT_EQ(picture.width, 1080);
   EXPECT_NEAR(picture.rgb(kFrontProbe.width, kFrontProbe.height).y, 1, 1e-3);
-  EXPECT_NEAR(picture.rgb(kBackLights.width, kBackLights.height).y, 0.5, 1e-3);
-  EXPECT_NEAR(picture.rgb(1020, 330).y, 0.5, 1e-3);
+  EXPECT_NEAR(picture.rgb(kBackLights.width, kBackLights.height).y, 0.4, 1e-3);
+  EXPECT_NEAR(picture.rgb(1020, 330).y, 0.4, 1e-3);
   EXPECT_NEAR(linearToSrgb(picture.rgb(kFrontDifference.width, kFrontDifference.height).y),
-              0.5 - 0.5 * linearToSrgb(0.5f), 1e-3);
+              0.5 - 0.5 * linearToSrgb(0.6f), 1e-3);
+}
+
+// A difference of 10% of the brightest is shown eight times as large.
+TEST(IrradianceSpheres, MagnifySmallDifferences) {
+  const IrradianceSpheres spheres = spheresOf(constantProbe({256, 128}, Rgb(3)), {}, Rgb(2.7f));
+  EXPECT_EQ(differenceGain(spheres), 8);
+  const Image picture = irradianceSpheres(spheres);
+  EXPECT_NEAR(linearToSrgb(picture.rgb(kFrontDifference.width, kFrontDifference.height).y),
+              0.5 - 0.5 * linearToSrgb(0.8f), 1e-3);
+  IrradianceSpheres same = spheres;
+  same.lights = same.probe;
+  EXPECT_EQ(differenceGain(same), 1);
 }
 
 TEST(IrradianceSpheres, OfABlackProbe) {

@@ -78,7 +78,8 @@ TEST(SlowLevelCut, CentresInStPetersErrAsInAnotherImplementation) {
                0.05);
 }
 
-// Under a sky without ground, centres are far from the sun until its region is small.
+// Under a sky without ground, centres are far from the sun until its region is small. The other
+// implementation finds 0.555 at last: its horizons do not cut texels, of which the sun's is large.
 TEST(SlowLevelCut, CentresAndCentroidsUnderASkyWithoutGround) {
   auto map = smallProbe("polyhaven/qwantani_afternoon_puresky_1k.hdr");
   if (!map) GTEST_SKIP() << "no sky";
@@ -99,7 +100,7 @@ TEST(SlowLevelCut, CentresAndCentroidsUnderASkyWithoutGround) {
                  {1.51, 3.93},
                  {0.491, 1.83},
                  {0.322, 1.32},
-                 {0.152, 0.555}}},
+                 {0.152, 0.6}}},
                0.05);
 }
 
@@ -187,7 +188,8 @@ TEST(LightRegions, LightsOfPenroseAreCornersOfTheTiling) {
   }
 }
 
-// Two regions, left and right: a column of white pixels in the middle and at the seam.
+// Two regions, left and right: a column of white pixels in the middle and at the seam, between
+// black ones.
 TEST(LightRegions, PreviewOutlinesRegionsAndMarksLightsInRed) {
   const Image map = constantProbe({32, 16}, Rgb(0.2f));
   Partition halves{2, std::vector<uint16_t>(32 * 16)};
@@ -197,7 +199,9 @@ TEST(LightRegions, PreviewOutlinesRegionsAndMarksLightsInRed) {
   for (const int y : {0, 100, 511}) {
     EXPECT_EQ(preview.rgb(511, y), Rgb(1));
     EXPECT_EQ(preview.rgb(1023, y), Rgb(1));
-    for (const int x : {0, 300, 510, 512, 1022}) EXPECT_NE(preview.rgb(x, y), Rgb(1)) << x;
+    for (const int x : {0, 510, 512, 1022}) EXPECT_EQ(preview.rgb(x, y), Rgb(0)) << x;
+    EXPECT_EQ(preview.rgb(300, y), preview.rgb(200, y));
+    EXPECT_GT(preview.rgb(300, y).x, 0);
   }
   EXPECT_EQ(preview.rgb(512, 256), Rgb(1, 0, 0));
   // Without regions the dot is white.

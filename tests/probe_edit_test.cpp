@@ -143,6 +143,7 @@ TEST(Clipping, OfSyntheticProbes) {
 
   EXPECT_NEAR(robustRange(constantProbe({8, 4}, Rgb(1e-8f))), 1, 1e-12);
   EXPECT_EQ(robustRange(constantProbe({8, 4}, Rgb(0))), 0);
+  EXPECT_EQ(robustRange(spot(64, 32, 9, 16, 1, 0)), 0);  // lit in 0.08% of the sphere
   EXPECT_EQ(robustRange(overcastProbe({64, 32}, Rgb(1), 0)), INFINITY);
   EXPECT_NEAR(robustRange(spot(1024, 512, 9, 100, 1e10f, 1)), 1, 1e-12);  // the sun is left out
   // Over 1 + y the luminance y is uniformly distributed: 0.02 and 1.98 are exceeded by 99% and 1%.
@@ -237,12 +238,38 @@ TEST(SlowCommandEdit, InfoSeesThatAProbeIsClipped) {
   EXPECT_NEAR(infoOf(in)["max_over_mean"].get<double>(), 1 + std::sqrt(0.38), 0.01);
   EXPECT_EQ(runCommand({"probe", "edit", in, out, "--clip", "1.25"}).status, 0);
   const json clipped = infoOf(out);
+  EXPECT_NEAR(clipped["robust_range"].get<double>(), 1.25 / (1 - 0.98 * std::sqrt(0.38)), 0.1);
   EXPECT_EQ(clipped["max"], json({1.25, 1.25, 1.25}));
   EXPECT_EQ(clipped["plateau"]["looks_clipped"], true);
   // Radiance is distributed uniformly from 1 - s to 1 + s, s = |slope|.
   EXPECT_NEAR(clipped["plateau"]["solid_angle"].get<double>() / (4 * kPiD),
               0.5 - 0.25 / 2 / std::sqrt(0.38), 0.01);
   EXPECT_NE(runCommand({"probe", "info", out}).out.find("looks clipped"), std::string::npos);
+}
+
+TEST(SlowCommandEdit, WarnsOfWhatAPngClips) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "a.exr";
+  writeImage(in, spot(10, 5, 3, 1, 2, 0.5f));
+  const auto errorsOf = [&](const std::string& out, const std::string& clip) {
+    return runCommand({"probe", "edit", in, folder / out, "--clip", clip}).error;
+  };
+  EXPECT_NE(errorsOf("b.png", "1.5").find("2% of the channels are above 1"), std::string::npos);
+  EXPECT_EQ(errorsOf("b.png", "1"), "");
+  EXPECT_EQ(errorsOf("b.exr", "1.5"), "");
+}
+
+// Nothing lit, hardly anything, and half of the sphere.
+TEST(SlowCommandEdit, InfoSaysWhyThereIsNoRobustRange) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "a.exr";
+  const auto rangeOf = [&](const Image& image, const std::string& text) {
+    writeImage(file, image);
+    EXPECT_NE(runCommand({"probe", "info", file}).out.find(text), std::string::npos) << text;
+    return json::parse(runCommand({"probe", "info", file, "--json"}).out)["robust_range"];
+  };
+  EXPECT_EQ(rangeOf(spot(64, 32, 9, 16, 1, 0), "none: less than 1% of the sphere is lit"), 0);
+  EXPECT_TRUE(rangeOf(overcastProbe({64, 32}, Rgb(1), 0), "infinite: more than 1%").is_null());
 }
 
 TEST(SlowCommandEdit, BadInputIsRejected) {
@@ -263,6 +290,12 @@ TEST(SlowCommandEdit, BadInputIsRejected) {
   expect({"--clip", "1", "--clip-stops", "2"}, "--clip");
   expect({"--clip-stops", "many"}, "--clip-stops");
   expect({"--scale", "1e300"}, "--scale");
+  expect({"--scale", "1e39"}, "--scale: 1e39 should be not negative: 0, or 1.4e-45 to 3.4e38");
+  expect({"--scale", "1,1,1e-46"}, "1.4e-45 to 3.4e38");
+  expect({"--scale", "1,2"}, "--scale: `1,2` should be one number, or three");
+  expect({"--clip", "1e-46"}, "--clip: 1e-46 should be above 0: 1.4e-45 to 3.4e38");
+  expect({"--clip-stops", "-300"}, "--clip-stops: ");
+  expect({"--region", "1e300,0,30", "--gain", "2"}, "--region: the azimuth 1e+300");
   expect({"--scale", "1e30"}, "exceeds the range of a float");
   expect({"--scale", "1,2,3,4"}, "--scale");
   expect({"--region", "0,0,30"}, "--gain");

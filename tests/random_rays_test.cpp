@@ -80,8 +80,22 @@ TEST(RandomRays, OneSmallSource) {
     const double w = texelSolidAngle(90, 1024, 512), cosine = texelDirection({1024, 512}, 0, 90).y;
     EXPECT_NEAR(v.cosine / (kPiD / (w * cosine) - 1), 1, 1e-4);
     EXPECT_NEAR(v.uniform / (2 * kPiD / w - 1), 1, 1e-4);
-    EXPECT_NEAR(v.luminance, 0, 1e-9);
+    EXPECT_NEAR(v.luminance, 0, 1e-5);  // the cosine varies over the texel
   }
+}
+
+// A sun behind the surface changes nothing but for the rays that are drawn towards it.
+TEST(RandomRays, ASunBehindTheSurface) {
+  const Image sky = constantProbe({64, 32}, Rgb(1e-3f));
+  Image sunny = sky;
+  sunny.setRgb(10, 12, Rgb(1e10f));
+  const vec3 away(-texelDirection({64, 32}, 10, 12));
+  const RayVariance v = rayVariances(sunny, {&away, 1})[0],
+                    plain = rayVariances(sky, {&away, 1})[0];
+  EXPECT_NEAR(v.irradiance / plain.irradiance, 1, 1e-12);
+  EXPECT_NEAR(v.uniform, plain.uniform, 1e-9);
+  EXPECT_NEAR(v.cosine, 0, 1e-9);
+  EXPECT_GT(v.luminance, 1e9);
 }
 
 TEST(RandomRays, WithoutLightThereIsNoVariance) {

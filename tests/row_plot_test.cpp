@@ -42,15 +42,15 @@ TEST(RowDistribution, OfAConstantProbeIsALine) {
       }
 }
 
-// The row between the centres of texel rows 8 and 9, of which row 9 has one bright texel: the
-// samples lie in the two cells beside its centre.
+// Row 9 has one bright texel: the samples lie between the centres of the texels beside it.
 TEST(RowDistribution, SamplesFindTheLight) {
   const Image image = spot(32, 16, 5, 9, 1e6f, 1e-3f);
-  const int row = cellRowBelow(8);
-  EXPECT_EQ(row, cellRowAt(Probe(image), 90 - 180 * 9.1 / 16));
+  const int row = 9;
+  EXPECT_EQ(row, texelRowAt(Probe(image), 90 - 180 * 9.1 / 16));
+  EXPECT_EQ(row, brightestRow(Probe(image), Importance(Probe(image), false)));
   const double azimuth = 180 - 360 * 5.5 / 32;
   const RowDistribution all = distributionOf(image, row, {}, 100);
-  EXPECT_NEAR(all.elevation, 90 - 180 * 9. / 16, 1e-12);
+  EXPECT_NEAR(all.elevation, 90 - 180 * 9.5 / 16, 1e-12);
   for (const RowDistribution::Sample& sample : all.samples)
     EXPECT_NEAR(sample.azimuth, azimuth, 360. / 32);
   EXPECT_NEAR(all.samples[50].azimuth, azimuth, 0.5);
@@ -79,11 +79,48 @@ TEST(RowDistribution, SamplesInvertTheCdf) {
   }
 }
 
+TEST(RowDistribution, ShowsTheTexelsOfTheRow) {
+  const Image image = studioProbe({64, 32});
+  for (const int y : {0, 9, 31}) {
+    const RowDistribution row = distributionOf(image, y, {}, 0);
+    EXPECT_EQ(row.row, y);
+    EXPECT_NEAR(row.elevation, 90 - 180 * (y + 0.5) / 32, 1e-12);
+    EXPECT_EQ(row.azimuths.front(), 180);
+    ASSERT_EQ(row.luminances.size(), 64u);
+    for (int x = 0; x < 64; ++x)
+      EXPECT_EQ(row.luminances[size_t(x)], double(luminance(image.rgb(x, y))));
+  }
+}
+
+// The cdf is that of the sampler's pdf along the middle of the row.
+TEST(RowDistribution, HasThePdfOfImportance) {
+  const Image image = studioProbe({64, 32});
+  const Probe probe(image);
+  for (const bool compensated : {false, true}) {
+    const Importance importance(probe, compensated);
+    const RowDistribution row = rowDistribution(probe, importance, 9, {}, 0, "here");
+    constexpr int kSteps = 200;
+    std::vector<double> masses;
+    for (size_t i = 0; i + 1 < row.cdf.size(); ++i) {
+      double mass = 0;
+      for (int step = 0; step < kSteps; ++step) {
+        const double at = (step + 0.5) / kSteps;
+        const double azimuth = row.azimuths[i] + at * (row.azimuths[i + 1] - row.azimuths[i]);
+        mass += double(importance.pdf(vec3(directionAt(azimuth, row.elevation)))) / kSteps;
+      }
+      masses.push_back(mass);
+    }
+    const double all = std::accumulate(masses.begin(), masses.end(), 0.);
+    for (size_t i = 0; i < masses.size(); ++i)
+      EXPECT_NEAR(row.cdf[i + 1] - row.cdf[i], masses[i] / all, 1e-4) << i;
+  }
+}
+
 TEST(RowDistribution, ThrowsWhereNothingIsSampled) {
   EXPECT_THROW(distributionOf(constantProbe({8, 4}, Rgb(0)), 2, {}, 4), InputError);
   EXPECT_THROW(distributionOf(spot(8, 4, 1, 0, 1, 0), 3, {}, 4), InputError);
   EXPECT_THROW(distributionOf(spot(64, 32, 1, 16, 1, 0), 16, {10, -10}, 4), InputError);
-  EXPECT_THROW(distributionOf(constantProbe({8, 4}, Rgb(3.3e38f)), 2, {}, 4), InputError);
+  EXPECT_NEAR(distributionOf(constantProbe({8, 4}, Rgb(3.3e38f)), 2, {}, 4).cdf[4], 0.5, 1e-6);
 }
 
 // HDRI book, figure 9.36: most samples fall on a few texels of the row, its windows.
@@ -91,7 +128,7 @@ TEST(SlowRowDistribution, WindowsOfSaintPeters) {
   const auto path = sharedData("probes/debevec/stpeters_cross.hdr");
   if (!path) GTEST_SKIP() << "no probes/debevec/stpeters_cross.hdr";
   const Image image = loadProbe(*path).latLong;
-  const RowDistribution row = distributionOf(image, cellRowAt(Probe(image), 17), {}, 1000);
+  const RowDistribution row = distributionOf(image, texelRowAt(Probe(image), 17), {}, 1000);
   EXPECT_EQ(row.cdf.back(), 1);
   std::vector<size_t> order(row.luminances.size());
   std::iota(order.begin(), order.end(), size_t(0));
@@ -131,6 +168,20 @@ TEST(RowPlot, HasAnArrowForEachSample) {
   EXPECT_FALSE(hasInvalidNumber(svg));
   const size_t samples = svg.find("class=\"samples\""), end = svg.find("</g>", samples);
   EXPECT_EQ(countOf(svg.substr(samples, end - samples), "H"), 7u);
+}
+
+// Black texels are at 0, below the axis' powers of ten, and not at the least of these.
+TEST(RowPlot, BlackIsBelowTheAxis) {
+  Image image = constantProbe({4, 2}, Rgb(1));
+  const auto pathOf = [&] {
+    const std::string svg = rowPlot(Probe(image), distributionOf(image, 0, {}, 0), "a");
+    const size_t at = svg.find("class=\"luminance\" d=\"");
+    EXPECT_NE(at, std::string::npos);
+    return svg.substr(at + 21, svg.find('"', at + 21) - at - 21);
+  };
+  EXPECT_EQ(pathOf(), "M72.0 236.0H288.0L288.0 236.0H504.0L504.0 236.0H720.0L720.0 236.0H936.0");
+  image.setRgb(1, 0, Rgb(0));
+  EXPECT_EQ(pathOf(), "M72.0 218.0H288.0L288.0 236.0H504.0L504.0 218.0H720.0L720.0 218.0H936.0");
 }
 
 TEST(SlowCommandPlot, ManyProbes) {
@@ -183,7 +234,7 @@ TEST(SlowCommandPlot, BadInputIsRejected) {
   expect({"--azimuth", "1e9,999999999"}, "--azimuth");
   expect({"--samples", "-1"}, "--samples");
   expect({"--samples", "10001"}, "--samples");
-  expect({"--row", "20"}, "nothing is sampled in the row");
+  expect({"--row", "20"}, "nothing is sampled in row 20");
   expect({"--row", "2", "--azimuth", "0,-20"}, "nothing is sampled between");
   expectError({"probe", "plot", in, folder / "a.png"}, ".svg");
   expectError({"probe", "plot", in, folder / "no/a.svg"}, "folder");

@@ -63,6 +63,8 @@ TEST(SceneSuns, RefusesWhatIsNoSun) {
   refused("direction = [0, 0, 0]\nradiance = 1\n", "must not be 0");
   refused("direction = [0, 1, 0]\nradiance = 1\nangle = 0\n", "angle");
   refused("direction = [0, 1, 0]\nradiance = -1\n", "radiance");
+  refused("direction = [0, 1, 0]\nangle = 0.01\nirradiance = 1e36\n",
+          "a.toml:5: the sun's radiance");
   refused("direction = [0, 1, 0]\nradiance = 1\nposition = [0, 0, 0]\n", "position");
   EXPECT_FALSE(std::filesystem::exists(folder / "o.exr"));
 }

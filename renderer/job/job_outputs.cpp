@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "image/io/write_image.h"
 #include "job/output_file.h"
+#include "lighting/strategy.h"
 
 namespace chromeball {
 
@@ -38,6 +39,9 @@ Messages checkOutputs(const RenderJob& job) {
     if (!has(".png"))
       warn(name, fmt::format("it is for .png; {} holds radiance", job.outputs.front()));
   if (!has(".exr")) warn("output.aovs", "only an .exr holds layers");
+  if (const std::string strategy = resolveStrategy(job.strategy.name);
+      !strategy.starts_with("suns"))
+    warn("lighting.sun_angle", fmt::format("the strategy is {}; only suns has discs", strategy));
   return messages;
 }
 

@@ -8,7 +8,7 @@
 namespace chromeball {
 
 // Checks, before rendering, that the outputs can be written. Returns warnings about settings that
-// have no effect on them. Throws InputError or RunError.
+// have no effect. Throws InputError or RunError.
 Messages checkOutputs(const RenderJob& job);
 
 // Call when all files are read (`inputs`; the scene file itself is added) and no other input error

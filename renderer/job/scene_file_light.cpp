@@ -86,6 +86,11 @@ SunLamp readSun(const Section& light) {
   const glm::dvec3 ofOne = lamp.sun.radiance();
   lamp.sun.irradiance =
       irradiance ? glm::dvec3(readColor(irradiance)) : glm::dvec3(readColor(radiance)) / ofOne;
+  if (!isFinite(Rgb(lamp.sun.radiance())))
+    failAt((irradiance ? irradiance : radiance).location(),
+           "the sun's radiance, {:.3g} of its irradiance for an angle of {:.3g} degrees, exceeds "
+           "the largest float, 3.4e38",
+           ofOne.x, lamp.sun.angle);
   return lamp;
 }
 

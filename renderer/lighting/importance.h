@@ -35,6 +35,8 @@ class Importance : public LightingStrategy {
   DirectionSample sampleDirection(double u, double v) const;
   float pdf(const vec3& wi) const;
 
+  const LuminanceField& field() const { return field_; }
+
   // The tables: of the rows of cells by `v`, and of the cells in each row by `u`.
   const CdfRows& rows() const { return rows_; }
   const CdfRows& columns() const { return columns_; }

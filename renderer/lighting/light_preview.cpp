@@ -30,8 +30,11 @@ void drawDots(Image& image, const Constellation& lights, const Dot& dot) {
     drawDot(image, directionToUv(Mapping::LatLong, dvec3(light.direction)), dot);
 }
 
-// The pixels whose right or lower neighbour is in another region.
-void drawOutlines(Image& image, const Image& latLong, const Partition& partition) {
+// Pixels of lines, row by row.
+using Lines = std::vector<bool>;
+
+// Adds the pixels whose right or lower neighbour is in another region.
+void addOutlines(Lines& lines, const Image& latLong, const Partition& partition) {
   const auto region = [&](int x, int y) {
     const int64_t column = int64_t(x % kWidth) * latLong.width / kWidth;
     const int64_t row = int64_t(std::min(y, kHeight - 1)) * latLong.height / kHeight;
@@ -40,19 +43,32 @@ void drawOutlines(Image& image, const Image& latLong, const Partition& partition
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       if (region(x, y) != region(x + 1, y) || region(x, y) != region(x, y + 1))
-        image.setRgb(x, y, Rgb(1));
+        lines[size_t(y) * kWidth + size_t(x)] = true;
 }
 
 // Where the line is inside the image.
-void drawLine(Image& image, const MapLine& line) {
+void addLine(Lines& lines, const MapLine& line) {
   const dvec2 size(kWidth, kHeight), from = line.from * size, to = line.to * size;
   const dvec2 length = abs(to - from);
   const int steps = int(std::max(length.x, length.y)) + 1;
   for (int i = 0; i <= steps; ++i) {
     const dvec2 p = floor(mix(from, to, double(i) / steps));
     if (p.x >= 0 && p.x < kWidth && p.y >= 0 && p.y < kHeight)
-      image.setRgb(int(p.x), int(p.y), Rgb(1));
+      lines[size_t(p.y) * kWidth + size_t(p.x)] = true;
   }
+}
+
+// White with a black edge, as they pass over bright and dark parts of the map.
+void drawLines(Image& image, const Lines& lines) {
+  const auto isLine = [&](int x, int y) {
+    return y >= 0 && y < kHeight && lines[size_t(y) * kWidth + size_t((x + kWidth) % kWidth)];
+  };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (isLine(x, y))
+        image.setRgb(x, y, Rgb(1));
+      else if (isLine(x - 1, y) || isLine(x + 1, y) || isLine(x, y - 1) || isLine(x, y + 1))
+        image.setRgb(x, y, Rgb(0));
 }
 
 }  // namespace
@@ -65,8 +81,10 @@ Image lightPreview(const Image& latLong, const Constellation& lights) {
 
 Image lightPreview(const Image& latLong, const Constellation& lights, const LightRegions& regions) {
   Image preview = probePreview(Probe(latLong), kWidth);
-  if (regions.partition.regions > 0) drawOutlines(preview, latLong, regions.partition);
-  for (const MapLine& line : regions.tiling) drawLine(preview, line);
+  Lines lines(size_t(kWidth) * kHeight, false);
+  if (regions.partition.regions > 0) addOutlines(lines, latLong, regions.partition);
+  for (const MapLine& line : regions.tiling) addLine(lines, line);
+  drawLines(preview, lines);
   drawDots(preview, lights, {Rgb(1, 0, 0), 2.5, 3.5});
   return preview;
 }

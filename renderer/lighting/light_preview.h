@@ -19,8 +19,9 @@ struct LightRegions {
 // light.
 Image lightPreview(const Image& latLong, const Constellation& lights);
 
-// The same with red dots, and with white outlines of the regions, one pixel wide (Madsen and
-// Laursen 2007, Fig. 1; HDRI book, Figs. 9.32 and 9.35). The partition, if any, is of `latLong`.
+// The same with red dots, and with white outlines of the regions, one pixel wide with a black edge
+// (Madsen and Laursen 2007, Fig. 1; HDRI book, Figs. 9.32 and 9.35). The partition, if any, is of
+// `latLong`.
 Image lightPreview(const Image& latLong, const Constellation& lights, const LightRegions& regions);
 
 }  // namespace chromeball

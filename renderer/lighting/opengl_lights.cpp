@@ -25,7 +25,7 @@ std::string array(const char* name, const Constellation& lights, int last,
 }
 
 constexpr const char* kHead =
-    R"(/* {} directional lights and the ambient light in place of the probe
+    R"(/* {} directional lights{} in place of the probe
    {}
    by {}, for OpenGL's fixed-function lighting (Madsen et al. 2003, eq. 4).
 
@@ -51,7 +51,8 @@ constexpr const char* kLoop = R"(  static const float black[4] = {0, 0, 0, 1};
 // C has no empty arrays, so without lights only the ambient light is written.
 std::string formatOpenGl(const LightRig& rig) {
   std::string text =
-      fmt::format(kHead, rig.lights.size(), inComment(rig.probe), inComment(rig.method));
+      fmt::format(kHead, rig.lights.size(), rig.ambient ? " and the ambient light" : "",
+                  inComment(rig.probe), inComment(rig.method));
   text += fmt::format("enum {{ kProbeLights = {} }};\n", rig.lights.size());
   text += fmt::format("static const float kProbeAmbient[4] = {};\n",
                       row(rig.ambient.value_or(Rgb(0)), 1));

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/row_distribution.h"
 
+#include <numeric>
+
 #include "base/error.h"
 
 namespace chromeball {
 namespace {
 
-// Column c of cells starts at the centre of texel c: u = (c + 1/2) / width. Any whole number is a
-// column; they repeat every `width`.
+// Any whole number is a column of texels; they repeat every `width`.
 struct Columns {
   int first, count;
 
   Columns(const Probe& probe, const AzimuthRange& range) {
     const auto position = [&](double azimuth) {
-      return (0.5 - (azimuth - probe.rotationDegrees()) / 360) * probe.width() - 0.5;
+      return (0.5 - (azimuth - probe.rotationDegrees()) / 360) * probe.width();
     };
     constexpr double kRounding = 1e-9;
     first = int(std::floor(position(range.left) + kRounding));
@@ -23,63 +24,105 @@ struct Columns {
 
 int wrapped(int column, int width) { return (column % width + width) % width; }
 
-// The row's cdf at the left edge of a column, continued beyond the map's ends.
-double cdfAt(std::span<const double> row, int column) {
-  const int width = int(row.size()) - 1, within = wrapped(column, width);
-  return double((column - within) / width) + row[size_t(within)];
+// The weight of each texel of a row, the upper corner of a cell (probe/probe.h).
+std::vector<double> weightsOf(const Probe& probe, const Importance& importance, int row) {
+  std::vector<double> weights;
+  for (int x = 0; x < probe.width(); ++x)
+    weights.push_back(double(importance.field().at({}, {x, row + 1, 0, 0, 1}).weight));
+  return weights;
+}
+
+// The pdf over one texel: linear from its left edge to its centre, and on to its right edge.
+struct TexelPdf {
+  double left, centre, right;
+
+  TexelPdf(const std::vector<double>& weights, int column) {
+    const int width = int(weights.size());
+    const auto weight = [&](int x) { return weights[size_t(wrapped(x, width))]; };
+    centre = weight(column);
+    left = (weight(column - 1) + centre) / 2, right = (centre + weight(column + 1)) / 2;
+  }
+  double integral() const { return (left + 2 * centre + right) / 4; }
+
+  // The position in [0, 1] to whose left lies this part of the integral.
+  double position(double part) const {
+    const double leftHalf = (left + centre) / 4, rightHalf = (centre + right) / 4;
+    const double mass = part * (leftHalf + rightHalf);
+    if (mass < leftHalf || rightHalf == 0) return 0.5 * sampleLinear(mass / leftHalf, left, centre);
+    return 0.5 + 0.5 * sampleLinear((mass - leftHalf) / rightHalf, centre, right);
+  }
+
+ private:
+  // A number in [0, 1] with pdf proportional to a (1 - x) + b x; not both are 0.
+  static double sampleLinear(double u, double a, double b) {
+    const double greater = std::max(a, b), p = a / greater, q = b / greater;
+    const double root = std::sqrt(std::max(p * p + u * (q * q - p * p), 0.0));
+    return std::min(u * (p + q) / std::max(p + root, 1e-300), 1.0);
+  }
+};
+
+void addSamples(RowDistribution& found, const std::vector<double>& weights, int first, int count) {
+  for (int i = 0; i < count; ++i) {
+    const double number = (i + 0.5) / count;
+    const auto above = std::upper_bound(found.cdf.begin(), found.cdf.end(), number);
+    const size_t texel = size_t(above - found.cdf.begin()) - 1;
+    const double part = (number - found.cdf[texel]) / (found.cdf[texel + 1] - found.cdf[texel]);
+    const double position = TexelPdf(weights, first + int(texel)).position(part);
+    const double left = found.azimuths[texel], right = found.azimuths[texel + 1];
+    found.samples.push_back({number, left + (right - left) * position});
+  }
 }
 
 }  // namespace
 
-int cellRowAt(const Probe& probe, double elevation) {
-  return std::clamp(int((90 - elevation) / 180 * probe.height() + 0.5), 0, probe.height());
+int texelRowAt(const Probe& probe, double elevation) {
+  return std::clamp(int((90 - elevation) / 180 * probe.height()), 0, probe.height() - 1);
+}
+
+int brightestRow(const Probe& probe, const Importance& importance) {
+  int best = 0;
+  double most = -1;
+  for (int row = 0; row < probe.height(); ++row) {
+    const std::vector<double> weights = weightsOf(probe, importance, row);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.) *
+                       std::sin(kPiD * (row + 0.5) / probe.height());
+    if (sum > most) most = sum, best = row;
+  }
+  return best;
 }
 
 RowDistribution rowDistribution(const Probe& probe, const Importance& importance, int row,
                                 const AzimuthRange& range, int count, std::string_view location) {
-  const int width = probe.width(), height = probe.height();
+  const int width = probe.width();
   const Columns columns(probe, range);
+  const std::vector<double> weights = weightsOf(probe, importance, row);
   RowDistribution found{};
   found.row = row;
-  // The rows next to the poles are half as high.
-  const double middle = row == 0 ? 0.25 : row == height ? height - 0.25 : row;
-  found.elevation = 90 - 180 * middle / height;
+  found.elevation = 90 - 180 * (row + 0.5) / probe.height();
 
-  const std::span<const double> rows = importance.rows().row(0),
-                                cdf = importance.columns().row(row);
-  const double begin = cdfAt(cdf, columns.first);
-  found.share = cdfAt(cdf, columns.first + columns.count) - begin;
-  if (!(rows[size_t(row) + 1] > rows[size_t(row)]))
-    throwInput(
-        "{}: nothing is sampled in the row at an elevation of {:.4g} degrees: it is black, "
-        "or too dark beside the others",
-        location, found.elevation);
-  if (!(found.share > 0))
-    throwInput(
-        "{}: nothing is sampled between the azimuths {:.6g} and {:.6g} at an elevation of "
-        "{:.4g} degrees",
-        location, range.left, range.right, found.elevation);
-
+  double within = 0;
+  std::vector<double> sums{0};
   for (int i = 0; i <= columns.count; ++i) {
     const int column = columns.first + i;
-    found.azimuths.push_back(180 - 360 * (column + 0.5) / width + probe.rotationDegrees());
-    found.cdf.push_back((cdfAt(cdf, column) - begin) / found.share);
+    found.azimuths.push_back(180 - 360. * column / width + probe.rotationDegrees());
     if (i == columns.count) break;
-    const Probe::Corners corners = probe.corners(wrapped(column, width), row);
-    found.luminances.push_back(double(luminance(Probe::interpolate(corners, 0.5f, 0.5f))));
+    const Rgb texel = probe.corners(wrapped(column, width), row + 1).c00;
+    found.luminances.push_back(double(luminance(texel)));
+    sums.push_back(within += TexelPdf(weights, column).integral());
   }
-
-  const double v = 0.5 * (rows[size_t(row)] + rows[size_t(row) + 1]);
-  for (int i = 0; i < count; ++i) {
-    const double number = (i + 0.5) / count, u = begin + number * found.share;
-    const vec3 d = importance.sampleDirection(u - std::floor(u), v).wi;
-    const double azimuth = std::atan2(double(-d.x), double(-d.z)) * 180 / kPiD;
-    if (!std::isfinite(azimuth))
-      throwInput("{}: radiance near the largest float cannot be sampled; scale it down", location);
-    // The same azimuth to the right of the left edge, but for rounding.
-    const double turns = std::floor((found.azimuths.front() - azimuth) / 360 + 1e-6);
-    found.samples.push_back({number, azimuth + 360 * turns});
-  }
+  // Also the sum of the integrals over all texels.
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.);
+  if (!(all > 0))
+    throwInput("{}: nothing is sampled in row {}, at an elevation of {:.4g} degrees: it is black",
+               location, row, found.elevation);
+  if (!(within > 0))
+    throwInput(
+        "{}: nothing is sampled between the azimuths {:.6g} and {:.6g} in row {}, at an elevation "
+        "of {:.4g} degrees",
+        location, range.left, range.right, row, found.elevation);
+  found.share = within / all;
+  for (const double sum : sums) found.cdf.push_back(sum / within);
+  addSamples(found, weights, columns.first, count);
   return found;
 }
 

@@ -43,23 +43,39 @@ std::vector<Triangle> subdivide(const std::vector<Triangle>& faces) {
   return smaller;
 }
 
-// Positive inside the cone of the face, 0 on its sides.
-double depthIn(const Triangle& face, const dvec3& direction) {
+// The inner sides of the planes through the origin and the edges of a face: unit normals.
+Triangle planesOf(const Triangle& face) {
   const auto& [a, b, c] = face;
   const double turn = dot(cross(a, b), c) < 0 ? -1 : 1;
-  const auto side = [&](const dvec3& from, const dvec3& to) {
-    return turn * dot(normalize(cross(from, to)), direction);
+  const auto plane = [&](const dvec3& from, const dvec3& to) {
+    return turn * normalize(cross(from, to));
   };
-  return std::min({side(a, b), side(b, c), side(c, a)});
+  return {plane(a, b), plane(b, c), plane(c, a)};
 }
 
-template <class Faces>
-int deepest(const Faces& faces, const dvec3& direction) {
+// The face whose cone the direction is deepest inside.
+int deepest(const std::vector<Triangle>& planes, const dvec3& direction) {
   int best = 0;
   double depth = -2;
-  for (int i = 0; i < int(faces.size()); ++i)
-    if (const double d = depthIn(faces[i], direction); d > depth) depth = d, best = i;
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const auto& [a, b, c] = planes[i];
+    const double d = std::min({dot(a, direction), dot(b, direction), dot(c, direction)});
+    if (d > depth) depth = d, best = int(i);
+  }
   return best;
+}
+
+// The index in quarters() of the quarter that the direction goes through: a corner's, beyond the
+// opposite edge of the middle one, or the middle one.
+int quarterAt(const std::array<Triangle, 4>& parts, const dvec3& direction) {
+  const auto& [ab, bc, ca] = parts[3];
+  const auto isBeyond = [&](const dvec3& from, const dvec3& to, const dvec3& corner) {
+    const dvec3 plane = cross(from, to);
+    return dot(plane, direction) * dot(plane, corner) > 0;
+  };
+  if (isBeyond(ca, ab, parts[0][0])) return 0;
+  if (isBeyond(ab, bc, parts[1][1])) return 1;
+  return isBeyond(bc, ca, parts[2][2]) ? 2 : 3;
 }
 
 }  // namespace
@@ -78,13 +94,18 @@ std::vector<vec3> icosphereNormals(int subdivisions) {
 
 int icosphereFace(const vec3& direction, int subdivisions) {
   static const std::vector<Triangle> kFaces = icosahedron();
+  static const std::vector<Triangle> kPlanes = [] {
+    std::vector<Triangle> planes;
+    for (const Triangle& face : kFaces) planes.push_back(planesOf(face));
+    return planes;
+  }();
   const dvec3 d = normalize(dvec3(direction));
-  int index = deepest(kFaces, d);
-  Triangle face = kFaces[index];
+  int index = deepest(kPlanes, d);
+  Triangle face = kFaces[size_t(index)];
   for (int i = 0; i < subdivisions; ++i) {
     const std::array<Triangle, 4> parts = quarters(face);
-    const int part = deepest(parts, d);
-    face = parts[part];
+    const int part = quarterAt(parts, d);
+    face = parts[size_t(part)];
     index = 4 * index + part;
   }
   return index;

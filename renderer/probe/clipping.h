@@ -22,7 +22,8 @@ struct Plateau {
 Plateau plateau(const Image& latLong);
 
 // The ratio of the luminances that 1% of the sphere exceeds, and that 1% is below: neither suns nor
-// single texels change it. Accurate to 2%; infinite if 1% of the sphere is black, 0 if all is.
+// single texels change it. Accurate to 2%; 0 if less than 1% of the sphere is lit, else infinite if
+// more than 1% is black.
 double robustRange(const Image& latLong);
 
 // The fraction of the light, of red, green and blue together, that is lost if the map is exposed so

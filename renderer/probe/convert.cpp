@@ -62,11 +62,20 @@ class PatchSource {
   int faceWidth_, faceHeight_;
 };
 
-// Samples along the side of a target texel: two per source texel that it covers, at least two.
-int samplesPerSide(const ImageSize& source, const ImageSize& target) {
-  const double sourceTexels = double(source.width) * source.height;
-  const double targetTexels = double(target.width) * target.height;
-  return std::max(2, int(std::ceil(2 * std::sqrt(sourceTexels / targetTexels))));
+// The texels that show a direction: not those around a disc, or between the arms of a cross.
+double texelsInUse(Mapping mapping, const ImageSize& image) {
+  const auto [columns, rows] = faceLayout(mapping);
+  const double all = double(image.width) * image.height;
+  if (mapping == Mapping::AngularMap || mapping == Mapping::MirrorBall) return all * kPiD / 4;
+  return columns * rows > 1 ? all * 6 / (columns * rows) : all;
+}
+
+// Samples along the side of a target texel: two per source texel that it covers, at least two; more
+// for the angular map, whose texels are wider at its rim than in its centre, by angle / sin(angle).
+int samplesPerSide(Mapping from, const ImageSize& source, Mapping to, const ImageSize& target) {
+  const double texels = texelsInUse(from, source) / texelsInUse(to, target);
+  const double perTexel = to == Mapping::AngularMap ? 4 : 2;
+  return std::max(2, int(std::ceil(perTexel * std::sqrt(texels))));
 }
 
 glm::dmat3 turnAboutY(double degrees) {
@@ -77,7 +86,7 @@ glm::dmat3 turnAboutY(double degrees) {
 // Resamples a cube map or a disc.
 Image resample(const Image& image, Mapping from, Mapping to, const ImageSize& size,
                const glm::dmat3& rotation) {
-  const int samples = samplesPerSide({image.width, image.height}, size);
+  const int samples = samplesPerSide(from, {image.width, image.height}, to, size);
   const PatchSource patches(image, from);
   const glm::dmat3 back = glm::transpose(rotation);
   return rasterize(to, size, samples, [&](const dvec3& d) { return patches.radiance(back * d); });
@@ -114,7 +123,7 @@ Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& siz
     return image;
 
   if (from == Mapping::LatLong) {
-    const int samples = samplesPerSide(source, size);
+    const int samples = samplesPerSide(from, source, to, size);
     const Probe probe(image, rotationDegrees);
     return rasterize(to, size, samples,
                      [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });

@@ -1,110 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/random_rays.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <array>
-
+#include "probe/arc_integrals.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
 
-// Rows and columns of cells at least: texels of coarser maps are divided, because the cosine at a
-// cell's centre stands for all of it.
-constexpr int kMinRows = 256, kMinColumns = 512;
+// Of 1, the luminance L and L^2: the same arcs for all, so that a constant probe has no variance.
+using Row = RowIntegrals<dvec3, 5>;
 
-// The map's luminance on cells that are no larger than its texels.
-struct Cells {
-  int columns, rows, perTexelX, perTexelY;
-  std::vector<float> luminances;  // of the texels
-  std::vector<dvec2> azimuths;    // of the columns: x, z
-  double sphere = 0;              // integral of luminance over all directions
+// Rows of coarser maps are divided (probe/irradiance.cpp).
+constexpr int kMinRows = 256;
 
-  explicit Cells(const Image& latLong)
-      : perTexelX((kMinColumns + latLong.width - 1) / latLong.width),
-        perTexelY((kMinRows + latLong.height - 1) / latLong.height) {
-    columns = perTexelX * latLong.width;
-    rows = perTexelY * latLong.height;
-    luminances.reserve(size_t(latLong.width) * latLong.height);
-    for (int y = 0; y < latLong.height; ++y)
-      for (int x = 0; x < latLong.width; ++x) luminances.push_back(luminance(latLong.rgb(x, y)));
-    for (int x = 0; x < columns; ++x) {
-      const double phi = 2 * kPiD * (x + 0.5) / columns;
-      azimuths.emplace_back(-std::sin(phi), std::cos(phi));
-    }
-    for (int y = 0; y < latLong.height; ++y) {
-      double row = 0;
-      for (int x = 0; x < latLong.width; ++x)
-        row += double(luminances[size_t(y) * latLong.width + x]);
-      sphere += row * texelSolidAngle(y, latLong.width, latLong.height);
+Row rowOf(const Image& latLong, int y, const AzimuthTable<5>& table) {
+  std::vector<dvec3> texels;
+  texels.reserve(size_t(latLong.width));
+  for (int x = 0; x < latLong.width; ++x) {
+    const double l = double(luminance(latLong.rgb(x, y)));
+    texels.emplace_back(1, l, l * l);
+  }
+  return {table, std::move(texels)};
+}
+
+// The integrals over theta of the products of the parts of a squared cosine with sin(theta).
+struct SquareMoments {
+  double sine3, sine2Cosine, sineCosine2;
+
+  // Simpson's rule: rows are flat.
+  SquareMoments(double theta0, double theta1) : sine3(0), sine2Cosine(0), sineCosine2(0) {
+    for (const auto& [at, weight] : {std::pair{0., 1.}, {0.5, 4.}, {1., 1.}}) {
+      const double theta = theta0 + at * (theta1 - theta0), w = weight * (theta1 - theta0) / 6;
+      const double s = std::sin(theta), c = std::cos(theta);
+      sine3 += w * s * s * s, sine2Cosine += w * s * s * c, sineCosine2 += w * s * c * c;
     }
   }
 };
 
-// Normals in a structure of arrays, which the compiler vectorises.
-constexpr size_t kGroup = 8;
-using Group = std::array<double, kGroup>;
-
-// Integrals over a hemisphere.
+// Integrals over a hemisphere of 1, L and L^2 times the cosine, and times its square.
 struct Sums {
-  Group cosine{};                             // of cos
-  Group radianceCosine{}, radianceCosine2{};  // of L cos, L cos^2
-  Group squareCosine{}, squareCosine2{};      // of L^2 cos, L^2 cos^2
+  dvec3 cosine{0}, cosine2{0};
+
+  void add(const Row& row, const PolarMoments& m, const SquareMoments& m2, const Horizon& horizon) {
+    const auto [one, c, s, cc, sc] = row.over(horizon.above(m.sine2, m.sineCosine));
+    const dvec3& n = horizon.normal();
+    const dvec3 across = n.z * c - n.x * s;
+    const dvec3 across2 = n.z * n.z * cc - 2 * n.z * n.x * sc + n.x * n.x * (one - cc);
+    cosine += max(m.sine2 * across + m.sineCosine * n.y * one, dvec3(0));
+    cosine2 += max(
+        m2.sine3 * across2 + 2 * m2.sine2Cosine * n.y * across + m2.sineCosine2 * n.y * n.y * one,
+        dvec3(0));
+  }
 };
 
-Sums integrate(const Cells& cells, std::span<const vec3> normals) {
-  Group nx{}, ny{}, nz{};
-  for (size_t i = 0; i < normals.size(); ++i)
-    nx[i] = normals[i].x, ny[i] = normals[i].y, nz[i] = normals[i].z;
-  Sums sums;
-  const int texelColumns = cells.columns / cells.perTexelX;
-  for (int y = 0; y < cells.rows; ++y) {
-    const double theta = kPiD * (y + 0.5) / cells.rows, sinTheta = std::sin(theta);
-    const double solidAngle = texelSolidAngle(y, cells.columns, cells.rows);
-    Group vertical;
-    for (size_t i = 0; i < kGroup; ++i) vertical[i] = ny[i] * std::cos(theta);
-    const float* row = &cells.luminances[size_t(y / cells.perTexelY) * texelColumns];
-    for (int x = 0; x < cells.columns; ++x) {
-      const double radiance = double(row[x / cells.perTexelX]);
-      const dvec2 xz = sinTheta * cells.azimuths[x];
-      for (size_t i = 0; i < kGroup; ++i) {
-        const double dot = nx[i] * xz.x + vertical[i] + nz[i] * xz.y;
-        const double cosine = dot > 0 ? dot : 0, c = solidAngle * cosine;
-        const double lc = radiance * c, lc2 = lc * cosine;
-        sums.cosine[i] += c;
-        sums.radianceCosine[i] += lc;
-        sums.radianceCosine2[i] += lc2;
-        sums.squareCosine[i] += radiance * lc;
-        sums.squareCosine2[i] += radiance * lc2;
+std::vector<Sums> integrate(const Image& latLong, std::span<const vec3> normals) {
+  const int height = latLong.height, parts = (kMinRows + height - 1) / height;
+  const AzimuthTable<5> table = azimuthTable<5>(latLong.width);
+  const std::vector<Horizon> horizons(normals.begin(), normals.end());
+  std::vector<Sums> sums(normals.size());
+  for (int y = 0; y < height; ++y) {
+    const Row row = rowOf(latLong, y, table);
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, normals.size(), 64), [&](const auto& range) {
+      for (int part = 0; part < parts; ++part) {
+        const double step = kPiD / (double(height) * parts), theta = step * (y * parts + part);
+        const PolarMoments m(theta, theta + step);
+        const SquareMoments m2(theta, theta + step);
+        for (size_t i = range.begin(); i < range.end(); ++i) sums[i].add(row, m, m2, horizons[i]);
       }
-    }
+    });
   }
   return sums;
 }
 
 // The variance over E^2 of an estimate with this mean square.
 double relativeVariance(double meanSquare, double e) {
-  return e > 0 ? std::max(meanSquare / e / e - 1, 0.0) : 0;
+  return std::max(meanSquare / e / e - 1, 0.0);
 }
 
 }  // namespace
 
 std::vector<RayVariance> rayVariances(const Image& latLong, std::span<const vec3> normals) {
-  const Cells cells(latLong);
-  std::vector<RayVariance> variances(normals.size());
-  tbb::parallel_for(size_t(0), (normals.size() + kGroup - 1) / kGroup, [&](size_t group) {
-    const size_t begin = group * kGroup, count = std::min(kGroup, normals.size() - begin);
-    const Sums sums = integrate(cells, normals.subspan(begin, count));
-    for (size_t i = 0; i < count; ++i) {
-      const double e = sums.radianceCosine[i];
-      // The sum of cosines is pi but for the cells cut by the horizon: with pi itself, a constant
-      // probe would have a variance.
-      variances[begin + i] = {e, relativeVariance(2 * kPiD * sums.squareCosine2[i], e),
-                              relativeVariance(sums.cosine[i] * sums.squareCosine[i], e),
-                              relativeVariance(cells.sphere * sums.radianceCosine2[i], e)};
-    }
-  });
+  // What an arc that ends beside a light gets of it by rounding is no light.
+  constexpr double kRounding = 1e-13;
+  const double sphere = 4 * kPiD * luminance(meanRadiance(latLong));
+  std::vector<RayVariance> variances;
+  for (const Sums& sums : integrate(latLong, normals)) {
+    const double e = sums.cosine.y;
+    // The sum of cosines is pi but for the rows cut by the horizon: with pi itself, a constant
+    // probe would have a variance.
+    variances.push_back(e > kRounding * sphere
+                            ? RayVariance{e, relativeVariance(2 * kPiD * sums.cosine2.z, e),
+                                          relativeVariance(sums.cosine.x * sums.cosine.z, e),
+                                          relativeVariance(sphere * sums.cosine2.y, e)}
+                            : RayVariance{});
+  }
   return variances;
 }
 

@@ -22,7 +22,7 @@ struct RayVariance {
 };
 
 // For each of `normals` (unit). `latLong` is finite and not negative; radiance is constant over
-// each texel. The integrals are sums over all texels, divided where these are coarse, in double.
+// each texel. The integrals are as in exactIrradiance(), with rows of at most 1/256 of the map.
 // Parallel; the same bits for any number of threads.
 std::vector<RayVariance> rayVariances(const Image& latLong, std::span<const vec3> normals);
 

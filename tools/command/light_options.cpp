@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light_options.h"
 
+#include <charconv>
+
 #include "base/suggest.h"
 #include "messages.h"
 #include "probe/edit.h"
+#include "probe/solid_angle.h"
 
 namespace chromeball {
 
@@ -16,8 +19,22 @@ void LightsProbe::checkMask() const {
 LoadedProbe LightsProbe::loadWithFile() const {
   LoadedProbe probe = loadProbe(file, mapping, "--mapping");
   for (const std::string& warning : warnings(probe, file)) warn(warning);
-  if (mask == "below-horizon") replaceBelowHorizon(probe.latLong, Rgb(0));
+  if (mask == "below-horizon") {
+    replaceBelowHorizon(probe.latLong, Rgb(0));
+    if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))
+      warn(fmt::format("--probe-mask: {} leaves no light; {} is black above the horizon", mask,
+                       file));
+  }
   return probe;
+}
+
+uint64_t parseSeed(const std::string& text) {
+  uint64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc() || rest != end)
+    throwInput("--seed: `{}` should be a whole number from 0 to 2^64 - 1", text);
+  return seed;
 }
 
 }  // namespace chromeball

@@ -3,6 +3,7 @@
 // probe gives no light.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "base/error.h"
@@ -11,7 +12,7 @@
 namespace chromeball {
 
 inline constexpr const char* kNormalsHelp =
-    "number of surface orientations to compare: 20 times a power of 4";
+    "number of surface orientations to compare: 20 times a power of 4, up to 1310720";
 
 inline constexpr const char* kMaskHelp = "directions that give no light: none or below-horizon";
 
@@ -21,7 +22,7 @@ struct LightsProbe {
 
   // Throws InputError.
   void checkMask() const;
-  // As a lat-long map; prints warnings. Throws InputError.
+  // As a lat-long map; prints warnings, also if the mask leaves no light. Throws InputError.
   Image load() const { return loadWithFile().latLong; }
   // The same, with the properties of the file.
   LoadedProbe loadWithFile() const;
@@ -32,8 +33,13 @@ inline int subdivisionsFor(int normals) {
   constexpr int kMax = 8;
   for (int i = 0, faces = 20; i <= kMax; ++i, faces *= 4)
     if (faces == normals) return i;
-  throwInput("--normals: {} should be 20 times a power of 4: 20, 80, 320, 1280, 5120, 20480, ...",
-             normals);
+  throwInput(
+      "--normals: {} should be 20 times a power of 4, up to 1310720: 20, 80, 320, 1280, 5120, "
+      "20480, ...",
+      normals);
 }
+
+// A seed from its text: std::stoull and the like take -1 for 2^64 - 1. Throws InputError.
+uint64_t parseSeed(const std::string& text);
 
 }  // namespace chromeball

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights PROBE --method NAME --count N -o FILE
+#include <algorithm>
 #include <cstdio>
 #include <numeric>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "busy_line.h"
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
@@ -27,7 +29,7 @@ constexpr double kMaxAngle = 10;  // degrees; the approximation of discSolidAngl
 
 struct Arguments {
   LightsProbe probe;
-  std::string method, output, format, preview, sphere, maxError, polygons, units = "photometric";
+  std::string method, output, format, preview, sphere, maxError, polygons, units, seed = "0";
   std::optional<int> suggest;  // so many polygons
   std::optional<int> normals;  // of the sphere
   std::optional<double> angle;
@@ -71,9 +73,30 @@ void checkPictures(const LightingMethod& method, const Arguments& arguments) {
   checkDistinct({arguments.output, arguments.preview, arguments.sphere}, {arguments.probe.file});
 }
 
+// Of what is asked for, or was found, and is not in the file where other programs look for it.
+void warnOfLosses(const Arguments& arguments, const MadeLights& made, LightFormat format) {
+  const bool isGltf = format == LightFormat::Gltf, isJson = format == LightFormat::Json;
+  constexpr const char* kUnread = "is only in `extras`, which other programs do not read";
+  if (made.ambient && (isGltf || format == LightFormat::Csv))
+    warn(fmt::format("{}: the fitted ambient light {}; a .json holds it", arguments.output,
+                     isGltf ? kUnread : "is not in a .csv"));
+  const bool hasAngle = std::any_of(made.lights.begin(), made.lights.end(),
+                                    [](const DirectionalLight& light) { return light.angle > 0; });
+  if (hasAngle && (isGltf || format == LightFormat::OpenGl))
+    warn(fmt::format("{}: the lights' angular diameter {}; a .json holds it", arguments.output,
+                     isGltf ? kUnread : "is not in a header for OpenGL"));
+  if (!arguments.units.empty() && !isGltf)
+    warn(fmt::format("--light-units: has no effect on {}, which holds {}", arguments.output,
+                     isJson || format == LightFormat::Csv ? "irradiance in W/m^2" : "radiance"));
+  constexpr size_t kOpenGlLights = 8;
+  if (format == LightFormat::OpenGl && made.lights.size() > kOpenGlLights)
+    warn(fmt::format("{}: {} lights; OpenGL is sure to have {}", arguments.output,
+                     made.lights.size(), kOpenGlLights));
+}
+
 std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
 
-// Writes the picture, and says what it shows in one line.
+// Writes the picture, and says what it shows.
 void writeSphere(const std::string& file, const Image& latLong, const MadeLights& made,
                  int subdivisions) {
   const std::vector<vec3> normals = icosphereNormals(subdivisions);
@@ -91,7 +114,15 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
       error.mean, error.max, normals.size(), rgbText(mean(spheres.probe)),
       rgbText(mean(spheres.lights)));
   if (made.ambient) fmt::print("; ambient radiance {}", rgbText(dvec3(ambient)));
-  fmt::print("\n");
+  fmt::print(
+      "\n            columns: probe, lights, {:g} x (lights - probe) about grey{}; rows: facing "
+      "+Z (front), -Z (back)\n",
+      differenceGain(spheres), made.ambient ? ", ambient light" : "");
+}
+
+LightUnits unitsOf(const Arguments& arguments) {
+  return arguments.units.empty() ? LightUnits::Photometric
+                                 : parseLightUnits({arguments.units, "--light-units"});
 }
 
 // Polygons in place of a method.
@@ -110,7 +141,7 @@ void runPolygonsOf(const Arguments& arguments) {
                .suggest = arguments.suggest,
                .polygons = arguments.polygons,
                .format = format,
-               .units = parseLightUnits({arguments.units, "--light-units"})});
+               .units = unitsOf(arguments)});
 }
 
 void run(Arguments arguments) {
@@ -126,13 +157,16 @@ void run(Arguments arguments) {
     throwInput("--angle: should be above 0 and at most {} degrees", kMaxAngle);
   const int subdivisions = subdivisionsFor(arguments.normals.value_or(20480));
   arguments.probe.checkMask();
-  const LightUnits units = parseLightUnits({arguments.units, "--light-units"});
+  request.seed = parseSeed(arguments.seed);
+  const LightUnits units = unitsOf(arguments);
   const LightFormat format = lightFormat(arguments.output, arguments.format, "--format");
   checkReplaceable(arguments.output);
   checkPictures(method, arguments);
 
   const Image latLong = arguments.probe.load();
+  std::optional<BusyLine> busy("making lights");
   MadeLights made = makeLights(arguments.method, latLong, request);
+  busy.reset();
   if (arguments.angle)
     for (DirectionalLight& light : made.lights) light.angle = float(*arguments.angle);
   const auto& [lights, ambient, meanError] = made;
@@ -143,6 +177,7 @@ void run(Arguments arguments) {
                .lights = lights,
                .units = units},
               format);
+  warnOfLosses(arguments, made, format);
   if (!arguments.preview.empty())
     writeImage(arguments.preview,
                arguments.regions
@@ -184,17 +219,21 @@ void addLightsCommand(CLI::App& app) {
                       "angular diameter of the written lights in degrees, up to 10; a .json then "
                       "has their radiance too");
   command->add_option("--light-units", arguments->units,
-                      "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them), or "
-                      "radiometric (1 lux)");
+                      "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them; the "
+                      "default), or radiometric (1 lux)");
   command->add_option("--preview", arguments->preview,
                       "write an image of the probe with a dot at each light");
   command->add_flag("--regions", arguments->regions,
                     "in the preview: outline the region of each light, of penrose the tiling");
   command->add_option("--sphere", arguments->sphere,
-                      "write an image of white spheres, front and back: lit by the probe, by the "
-                      "lights, and their difference; at the right the ambient light");
-  command->add_option("--normals", arguments->normals,
-                      "number of faces of these spheres: 20 times a power of 4; 20480 by default");
+                      "write an image of white spheres: in the left column lit by the probe, in "
+                      "the middle by the lights, in the right one their difference about grey, "
+                      "times a power of two that is printed; above the front (+Z), below the back; "
+                      "at the right edge a square of the ambient light");
+  command->add_option(
+      "--normals", arguments->normals,
+      "number of faces of these spheres: 20 times a power of 4, up to 1310720; 20480 by "
+      "default");
   command->add_option("--recursion", arguments->request.levels,
                       "median-cut: in place of --count, cut all regions this many times: 8 lights "
                       "of 3");
@@ -203,7 +242,7 @@ void addLightsCommand(CLI::App& app) {
                       "mean error is no greater; percent of the mean irradiance");
   command->add_flag("--ambient", arguments->request.ambient,
                     "irradiance-fit: also fit a constant radiance from all directions");
-  command->add_option("--seed", arguments->request.seed, "of stochastic methods");
+  command->add_option("--seed", arguments->seed, "of stochastic methods");
   command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
   command->add_option("--mapping", arguments->probe.mapping,
                       "the mapping of PROBE; auto detects it");

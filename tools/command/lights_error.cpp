@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights-error PROBE --methods a,b,c --counts 2,4,8,...
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "busy_line.h"
 #include "commands.h"
 #include "job/output_file.h"
 #include "light_options.h"
@@ -24,7 +27,7 @@ struct Arguments {
   std::vector<std::string> methods;
   std::vector<int> counts, levels;
   int normals = 20480;
-  uint64_t seed = 0;
+  std::string seed = "0";
 };
 
 struct Row {
@@ -63,6 +66,9 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
         means.points.push_back({double(row.lights), row.error.mean});
         maxima.points.push_back({double(row.lights), row.error.max});
       }
+    const auto isLeft = [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; };
+    for (PlotSeries* series : {&means, &maxima})
+      std::stable_sort(series->points.begin(), series->points.end(), isLeft);
   }
   return logLogPlot(std::filesystem::path(arguments.probe.file).filename().string(),
                     "number of directional lights", "error of irradiance, % of its mean",
@@ -70,17 +76,30 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
 }
 
 std::vector<LightRequest> requestsOf(const Arguments& arguments) {
-  if (arguments.counts.empty() == arguments.levels.empty())
+  if (arguments.counts.empty() && arguments.levels.empty())
     throwInput("--counts: the numbers of lights are missing; give either --counts or --recursion");
+  if (!arguments.counts.empty() && !arguments.levels.empty())
+    throwInput("--recursion: excludes --counts; give one");
+  const uint64_t seed = parseSeed(arguments.seed);
   std::vector<LightRequest> requests;
-  for (const int count : arguments.counts)
-    requests.push_back({.count = count, .seed = arguments.seed});
-  for (const int levels : arguments.levels)
-    requests.push_back({.seed = arguments.seed, .levels = levels});
+  for (const int count : arguments.counts) requests.push_back({.count = count, .seed = seed});
+  for (const int levels : arguments.levels) requests.push_back({.seed = seed, .levels = levels});
   return requests;
 }
 
-void run(const Arguments& arguments) {
+// Keeps the first of equal elements.
+template <class T>
+void removeRepeats(std::vector<T>& all) {
+  std::vector<T> once;
+  for (const T& element : all)
+    if (std::find(once.begin(), once.end(), element) == once.end()) once.push_back(element);
+  all = std::move(once);
+}
+
+void run(Arguments arguments) {
+  removeRepeats(arguments.methods);
+  removeRepeats(arguments.counts);
+  removeRepeats(arguments.levels);
   const std::vector<LightRequest> requests = requestsOf(arguments);
   for (const std::string& method : arguments.methods) lightMethod(method, "--methods");
   for (const std::string& method : arguments.methods)
@@ -91,14 +110,18 @@ void run(const Arguments& arguments) {
   const std::vector<vec3> normals = icosphereNormals(subdivisionsFor(arguments.normals));
   arguments.probe.checkMask();
   const Image latLong = arguments.probe.load();
+  std::optional<BusyLine> busy("irradiance of the probe");
   const std::vector<dvec3> irradiance = exactIrradiance(latLong, normals);
 
   std::vector<Row> rows;
+  busy.reset();
   fmt::print("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %",
              "max %", "seconds");
   for (const std::string& method : arguments.methods)
     for (const LightRequest& request : requests) {
+      busy.emplace("making lights by " + method);
       const Row& row = rows.emplace_back(measure(method, latLong, request, normals, irradiance));
+      busy.reset();
       fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
                  row.lights, row.error.mean, row.error.max, row.seconds);
       std::fflush(stdout);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe convert IN OUT --to MAPPING
-#include <cstdio>
+#include <optional>
 
 #include "base/error.h"
+#include "busy_line.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
@@ -10,6 +11,7 @@
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -42,8 +44,11 @@ void run(const Arguments& arguments) {
   const LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
   const auto [mapping, size] = target(arguments, probe.latLong);
-  writeImage(arguments.out,
-             convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation));
+  std::optional<BusyLine> busy("converting");
+  const Image converted =
+      convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation);
+  busy.reset();
+  writeProbe(arguments.out, converted);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "probe/load.h"
 #include "probe/solid_angle.h"
 #include "probe_commands.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -40,14 +41,22 @@ struct Edits {
   std::optional<double> clip, clipStops;
 };
 
+// Whether a number above 0 is one as a float.
+bool isPositiveFloat(double number) {
+  return float(number) > 0 && number <= double(std::numeric_limits<float>::max());
+}
+constexpr const char* kFloats = "1.4e-45 to 3.4e38, the range of a float";
+
 // "X" or "R,G,B".
 Rgb parseColor(const std::string& text, std::string_view option) {
-  const std::vector<double> c =
-      parseNumbers(text, text.find(',') == std::string::npos ? 1 : 3, option);
-  const Rgb color = c.size() == 1 ? Rgb(float(c[0])) : Rgb(dvec3(c[0], c[1], c[2]));
-  if (!isFinite(color) || std::min({color.x, color.y, color.z}) < 0)
-    throwInput("{}: {} should be finite and not negative", option, text);
-  return color;
+  const auto commas = std::count(text.begin(), text.end(), ',');
+  if (commas != 0 && commas != 2)
+    throwInput("{}: `{}` should be one number, or three with commas between them", option, text);
+  const std::vector<double> c = parseNumbers(text, commas == 0 ? 1 : 3, option);
+  for (const double channel : c)
+    if (channel != 0 && !isPositiveFloat(channel))
+      throwInput("{}: {} should be not negative: 0, or {}", option, text, kFloats);
+  return c.size() == 1 ? Rgb(float(c[0])) : Rgb(dvec3(c[0], c[1], c[2]));
 }
 
 double parseNumber(const std::string& text, std::string_view option) {
@@ -56,6 +65,10 @@ double parseNumber(const std::string& text, std::string_view option) {
 
 Region parseRegion(const std::string& text, const std::string& gain) {
   const std::vector<double> region = parseNumbers(text, 3, "--region");
+  constexpr double kLargest = 3600;
+  if (std::fabs(region[0]) > kLargest)
+    throwInput("--region: the azimuth {} should be {} to {} degrees", region[0], -kLargest,
+               kLargest);
   if (std::fabs(region[1]) > 90)
     throwInput("--region: the elevation {} should be -90 to 90 degrees", region[1]);
   if (!(region[2] > 0 && region[2] <= 180))
@@ -89,7 +102,8 @@ Edits parse(const Arguments& arguments) {
   if (!arguments.scale.empty()) edits.scale = parseColor(arguments.scale, "--scale");
   if (!arguments.clip.empty()) {
     edits.clip = parseNumber(arguments.clip, "--clip");
-    if (!(*edits.clip > 0)) throwInput("--clip: {} should be above 0", *edits.clip);
+    if (!isPositiveFloat(*edits.clip))
+      throwInput("--clip: {} should be above 0: {}", *edits.clip, kFloats);
   }
   if (!arguments.clipStops.empty())
     edits.clipStops = parseNumber(arguments.clipStops, "--clip-stops");
@@ -104,8 +118,11 @@ Edits parse(const Arguments& arguments) {
 
 // The largest float where the level is beyond it: then nothing is clipped.
 float clipLevel(const Edits& edits, const Image& latLong) {
-  const double level =
-      edits.clip ? *edits.clip : luminance(meanRadiance(latLong)) * std::exp2(*edits.clipStops);
+  if (edits.clip) return float(*edits.clip);
+  const double mean = luminance(meanRadiance(latLong)), level = mean * std::exp2(*edits.clipStops);
+  if (mean > 0 && !(float(level) > 0))
+    throwInput("--clip-stops: {} times 2^{} should be at least 1.4e-45, the least float", mean,
+               *edits.clipStops);
   return float(std::min(level, double(std::numeric_limits<float>::max())));
 }
 
@@ -137,7 +154,7 @@ void run(const Arguments& arguments) {
   LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
   apply(edits, arguments.in, probe.latLong);
-  writeImage(arguments.out, probe.latLong);
+  writeProbe(arguments.out, probe.latLong);
 }
 
 }  // namespace

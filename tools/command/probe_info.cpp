@@ -41,7 +41,7 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"max_over_mean", info.maxOverMean},
-          {"robust_range", info.robustRange},
+          {"robust_range", std::isfinite(info.robustRange) ? Json(info.robustRange) : Json()},
           {"plateau",
            {{"texels", info.plateau.texels},
             {"solid_angle", info.plateau.solidAngle},
@@ -80,6 +80,12 @@ void print(const LoadedProbe& probe, const TexelSolidAngles& angles) {
              100 * double(angles.texels) / all);
 }
 
+std::string robustText(double range) {
+  if (range == 0) return "none: less than 1% of the sphere is lit";
+  if (!std::isfinite(range)) return "infinite: more than 1% of the sphere is black";
+  return fmt::format("{:.3g} : 1, without 1% of the sphere at either end", range);
+}
+
 void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("resolution       {} x {}\n", probe.fileWidth, probe.fileHeight);
   fmt::print("mapping          {} ({})\n", mappingName(probe.mapping),
@@ -94,8 +100,7 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
   fmt::print("at the maximum   {:.3g}% of the file's texels\n", 100 * probe.fractionAtMaximum);
   fmt::print("dynamic range    {:.4g} : 1\n", info.dynamicRange);
   fmt::print("max / mean       {:.4g} of the luminance\n", info.maxOverMean);
-  fmt::print("robust range     {:.3g} : 1, without 1% of the sphere at either end\n",
-             info.robustRange);
+  fmt::print("robust range     {}\n", robustText(info.robustRange));
   fmt::print(
       "plateau          {} texel{}, {:.3g} sr, within 0.2% of the maximum{}\n", info.plateau.texels,
       info.plateau.texels == 1 ? "" : "s", info.plateau.solidAngle,
@@ -129,6 +134,9 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
   command->add_option("--mapping", arguments->mapping,
                       "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
   command->add_flag("--json", arguments->json, "print JSON");
+  command->footer(
+      "robust_range of the JSON is null if it is infinite, as more than 1% of the sphere is black, "
+      "and 0 if less than 1% is lit.\n");
   command->add_flag("--mapping-report", arguments->mappingReport,
                     "also show the solid angles of the file's texels");
   command->callback([arguments] {

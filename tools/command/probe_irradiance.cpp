@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe irradiance IN OUT
+#include <optional>
+
 #include "base/error.h"
 #include "base/suggest.h"
+#include "busy_line.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
@@ -9,6 +12,7 @@
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -24,13 +28,17 @@ void run(const Arguments& arguments) {
   if (!exact && arguments.method != "sh")
     throwInput("--method: unknown method `{}`; {}", arguments.method,
                didYouMean(arguments.method, {"exact", "sh"}));
-  const std::optional<ImageSize> given =
-      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
+  const ImageSize given =
+      arguments.size.empty() ? ImageSize{0, 0} : parseSize(arguments.size, "--size");
   const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
-  const ImageSize size = given.value_or(ImageSize{probe.latLong.width, probe.latLong.height});
-  writeImage(arguments.out,
-             exact ? irradianceMap(probe.latLong, size) : shIrradianceMap(probe.latLong, size));
+  const ImageSize size =
+      given.width > 0 ? given : ImageSize{probe.latLong.width, probe.latLong.height};
+  std::optional<BusyLine> busy("irradiance of the probe");
+  const Image irradiance =
+      exact ? irradianceMap(probe.latLong, size) : shIrradianceMap(probe.latLong, size);
+  busy.reset();
+  writeProbe(arguments.out, irradiance);
 }
 
 }  // namespace

@@ -34,23 +34,13 @@ AzimuthRange parseRange(const std::string& text) {
   return range;
 }
 
-// The most probable row of cells.
-int brightestRow(const Importance& importance) {
-  const std::span<const double> cdf = importance.rows().row(0);
-  int best = 0;
-  for (int row = 1; row + 1 < int(cdf.size()); ++row)
-    if (cdf[size_t(row) + 1] - cdf[size_t(row)] > cdf[size_t(best) + 1] - cdf[size_t(best)])
-      best = row;
-  return best;
-}
-
 int chosenRow(const Arguments& arguments, const Probe& probe, const Importance& importance) {
-  if (arguments.elevation) return cellRowAt(probe, *arguments.elevation);
-  if (!arguments.row) return brightestRow(importance);
+  if (arguments.elevation) return texelRowAt(probe, *arguments.elevation);
+  if (!arguments.row) return brightestRow(probe, importance);
   if (*arguments.row < 0 || *arguments.row >= probe.height())
     throwInput("--row: {} should be 0 to {}, a row of texels of the lat-long map", *arguments.row,
                probe.height() - 1);
-  return cellRowBelow(*arguments.row);
+  return *arguments.row;
 }
 
 void run(const Arguments& arguments) {
@@ -70,8 +60,8 @@ void run(const Arguments& arguments) {
       rowDistribution(probe, importance, chosenRow(arguments, probe, importance), range,
                       arguments.samples, arguments.file);
   const std::string title =
-      fmt::format("{}: elevation {:.3g} degrees, {} sample{}",
-                  std::filesystem::path(arguments.file).filename().string(), row.elevation,
+      fmt::format("{}: row {}, elevation {:.4g} degrees, {} sample{}",
+                  std::filesystem::path(arguments.file).filename().string(), row.row, row.elevation,
                   row.samples.size(), row.samples.size() == 1 ? "" : "s");
   writeText(arguments.out, rowPlot(probe, row, title));
 }

@@ -11,6 +11,7 @@
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "probe_commands.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -112,7 +113,7 @@ void run(const Arguments& arguments, const CLI::App& command) {
   checkRange("--ground-albedo", arguments.sky.groundAlbedo, 0, 1);
   checkRange("--sun-elevation", arguments.sky.sunElevation, 0, 90);
   checkRange("--turbidity", arguments.sky.turbidity, 2, 10);
-  writeImage(arguments.out, maker->second(arguments, parseSize(arguments.size, "--size")));
+  writeProbe(arguments.out, maker->second(arguments, parseSize(arguments.size, "--size")));
 }
 
 }  // namespace

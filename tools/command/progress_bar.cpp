@@ -9,13 +9,11 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <string_view>
 
 namespace chromeball {
 namespace {
 
 constexpr int kWidth = 32, kLeastWidth = 8;
-constexpr std::string_view kTitle = "rendering  ";
 
 int terminalColumns() {
   winsize size{};
@@ -31,7 +29,8 @@ std::string clockTime(double seconds) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool shown) : shown_(shown) {}
+ProgressBar::ProgressBar(bool shown, std::string title)
+    : shown_(shown), title_(std::move(title) + "  ") {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
@@ -50,14 +49,14 @@ void ProgressBar::update(double fraction) {
   const int columns = terminalColumns();
   const std::string described =
       description_.empty() ? times : fmt::format("{}, {}", times, description_);
-  const bool fits = int(kTitle.size() + described.size()) + kLeastWidth + 3 < columns;
+  const bool fits = int(title_.size() + described.size()) + kLeastWidth + 3 < columns;
   const std::string& text = fits ? described : times;
   if (std::isnan(fraction)) {
-    fmt::print(stderr, "\r{}{}\x1b[K", kTitle, text);
+    fmt::print(stderr, "\r{}{}\x1b[K", title_, text);
   } else {
-    const int room = columns - int(kTitle.size() + text.size()) - 4;
+    const int room = columns - int(title_.size() + text.size()) - 4;
     const int width = std::clamp(room, kLeastWidth, kWidth), full = int(fraction * width);
-    fmt::print(stderr, "\r{}[{}{}] {}\x1b[K", kTitle, std::string(full, '#'),
+    fmt::print(stderr, "\r{}[{}{}] {}\x1b[K", title_, std::string(full, '#'),
                std::string(width - full, '.'), text);
   }
   std::fflush(stderr);

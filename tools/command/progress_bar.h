@@ -11,7 +11,7 @@ namespace chromeball {
 // Draws only if `shown`, at most ten times a second.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool shown);
+  explicit ProgressBar(bool shown, std::string title = "rendering");
   ~ProgressBar();  // clears the line
 
   // `fraction` of the work done, in [0, 1]; NaN if it is unknown.
@@ -24,7 +24,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
   bool shown_, drawn_ = false;
-  std::string description_;
+  std::string title_, description_;
   Clock::time_point start_ = Clock::now(), last_{};
 };
 

@@ -187,7 +187,6 @@ IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
       if (fit.meanError < best.meanError) best = std::move(fit);
     }
   }
-  best.lights.resize(count, {vec3(0, 1, 0), Rgb(0)});
   return best;
 }
 

@@ -10,7 +10,7 @@
 namespace chromeball {
 
 struct IrradianceFit {
-  Constellation lights;                // as many as requested; some may be black
+  Constellation lights;                // at most as many as requested; none is black
   Rgb ambient{0};                      // radiance from all directions; 0 unless requested
   double meanError = 0, maxError = 0;  // percent, over 20480 normals (light_error.h)
 };

@@ -34,7 +34,11 @@ Lanes arcCosine(Lanes x) {
 }  // namespace
 
 RadiancePoints::RadiancePoints(const Image& latLong, int maxRows, double scale) {
-  const int w = latLong.width, h = latLong.height;
+  // Texels of coarser maps are divided: a point in the middle of one has another irradiance.
+  constexpr int kMinRows = 16, kMinColumns = 32;
+  const int partsX = (kMinColumns + latLong.width - 1) / latLong.width;
+  const int partsY = (kMinRows + latLong.height - 1) / latLong.height;
+  const int w = latLong.width * partsX, h = latLong.height * partsY;
   const int rows = std::min(h, maxRows), columns = std::min(w, 2 * maxRows);
   std::vector<dvec2> azimuths(w);  // x, z
   for (int x = 0; x < w; ++x) {
@@ -47,7 +51,7 @@ RadiancePoints::RadiancePoints(const Image& latLong, int maxRows, double scale) 
     for (int y = int(int64_t(row) * h / rows); y < int64_t(row + 1) * h / rows; ++y) {
       const double solidAngle = texelSolidAngle(y, w, h), theta = kPiD * (y + 0.5) / h;
       for (int x = 0; x < w; ++x) {
-        const dvec3 texelFlux = dvec3(latLong.rgb(x, y)) * (solidAngle * scale);
+        const dvec3 texelFlux = dvec3(latLong.rgb(x / partsX, y / partsY)) * (solidAngle * scale);
         const dvec3 direction(azimuths[x].x * std::sin(theta), std::cos(theta),
                               azimuths[x].y * std::sin(theta));
         const size_t column = size_t(int64_t(x) * columns / w);

@@ -25,7 +25,8 @@ class RadiancePoints {
  public:
   // Merges blocks of texels so that at most `maxRows` rows and twice as many columns remain. The
   // direction of a block is the mean, weighted by the sum of the channels. A smaller map keeps its
-  // texels. `scale` multiplies all radiance.
+  // texels, which are divided if it has fewer than 16 rows or 32 columns. `scale` multiplies all
+  // radiance.
   RadiancePoints(const Image& latLong, int maxRows, double scale);
 
   PatternProduct productWith(const dvec3& direction) const;

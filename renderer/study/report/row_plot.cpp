@@ -17,6 +17,7 @@ namespace {
 // In pixels.
 constexpr double kLeft = 72, kWidth = 864, kRight = 24, kTop = 46, kPanel = 190, kGap = 26;
 constexpr double kCdfTop = kTop + kPanel + kGap, kCdfBottom = kCdfTop + kPanel;
+constexpr double kZero = 18;  // from the black texels to the least luminance of the axis
 constexpr double kStripTop = kCdfBottom + 50, kStrip = 96, kBottom = 34;
 constexpr const char *kLine = "#27a", *kFill = "#dbe7f3", *kArrow = "#c33";
 
@@ -40,23 +41,29 @@ struct AzimuthAxis {
   }
 };
 
-// Decades that contain the row's luminances, but at most the twelve below the largest.
+// Decades that contain the row's luminances, but at most the twelve below the largest; and 0, at a
+// distance below them, where a texel is black.
 struct LuminanceAxis {
   int first = 0, last = 1;  // powers of ten
+  double height = kPanel;   // of the decades
 
   explicit LuminanceAxis(const std::vector<double>& luminances) {
     constexpr int kMaxDecades = 12;
     const double maximum = *std::max_element(luminances.begin(), luminances.end());
     double minimum = maximum;
-    for (const double l : luminances)
+    for (const double l : luminances) {
       if (l > 0) minimum = std::min(minimum, l);
+      if (!(l > 0)) height = kPanel - kZero;
+    }
     if (!(maximum > 0)) return;
     last = int(std::ceil(std::log10(maximum) + 1e-9));
     first = std::max(int(std::floor(std::log10(minimum))), last - kMaxDecades);
   }
+  bool hasZero() const { return height < kPanel; }
   double operator()(double luminance) const {
-    const double power = luminance > 0 ? std::log10(luminance) : first;
-    return kTop + kPanel * (1 - std::clamp((power - first) / (last - first), 0., 1.));
+    if (!(luminance > 0)) return kTop + kPanel;
+    const double power = std::log10(luminance);
+    return kTop + height * (1 - std::clamp((power - first) / (last - first), 0., 1.));
   }
   // Powers of ten, not all of many; with twice and five times as much between two or three.
   std::vector<double> ticks() const {
@@ -85,14 +92,15 @@ std::string verticalLabel(double top, const std::string& text) {
                      svgText(0, 0, "middle", text));
 }
 
-// Where a map has many more cells than the plot has pixels, each step shows the largest of several.
+// Where a map has many more texels than the plot has pixels, each step shows the largest of
+// several.
 std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimuth) {
   constexpr size_t kMaxSteps = 1728;
   const LuminanceAxis axis(row.luminances);
-  const size_t cells = row.luminances.size(), stride = (cells + kMaxSteps - 1) / kMaxSteps;
+  const size_t texels = row.luminances.size(), stride = (texels + kMaxSteps - 1) / kMaxSteps;
   std::string path;
-  for (size_t i = 0; i < cells; i += stride) {
-    const size_t end = std::min(i + stride, cells);
+  for (size_t i = 0; i < texels; i += stride) {
+    const size_t end = std::min(i + stride, texels);
     const double y = axis(*std::max_element(row.luminances.begin() + ptrdiff_t(i),
                                             row.luminances.begin() + ptrdiff_t(end)));
     path += fmt::format("{}{:.1f} {:.1f}H{:.1f}", i == 0 ? 'M' : 'L', azimuth(row.azimuths[i]), y,
@@ -105,18 +113,24 @@ std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimut
     svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#e4e4e4\"/>", kLeft, axis(tick), kWidth);
     svg += svgText(kLeft - 8, axis(tick) + 4, "end", fmt::format("{:.6g}", tick));
   }
-  svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>\n", path,
-                     kLine);
-  return svg + verticalLabel(kTop, "luminance");
+  if (axis.hasZero()) {
+    svg += svgText(kLeft - 8, axis(0) + 4, "end", "0");
+    svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#999\" stroke-dasharray=\"2 3\"/>",
+                       kLeft, kTop + axis.height, kWidth);
+  }
+  svg += fmt::format(
+      "<path class=\"luminance\" d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>\n",
+      path, kLine);
+  return svg + verticalLabel(kTop, fmt::format("luminance of row {}", row.row));
 }
 
 double cdfY(double number) { return kCdfBottom - kPanel * number; }
 
-// From the number on the axis to the curve, and down to the azimuth. Many samples are drawn
-// thinner.
+// From the number on the axis to the curve, and down to the azimuth. The lines of many samples are
+// thinner, so that together they cover no more of the panel.
 std::string arrows(const RowDistribution& row, const AzimuthAxis& azimuth) {
   const double crowd = double(row.samples.size());
-  const double opacity = std::clamp(24 / crowd, 0.12, 0.85);
+  const double lineWidth = std::min(1., 24 / crowd), opacity = std::clamp(100 / crowd, 0.3, 0.85);
   std::string lines, heads;
   for (const RowDistribution::Sample& sample : row.samples) {
     const double x = azimuth(sample.azimuth), size = crowd > 100 ? 2 : 3.5;
@@ -125,17 +139,17 @@ std::string arrows(const RowDistribution& row, const AzimuthAxis& azimuth) {
     heads += fmt::format("M{:.1f} {:.1f}l{} {}h{}z", x, kCdfBottom, -size, -2 * size, 2 * size);
   }
   return fmt::format(
-      "<g class=\"samples\" opacity=\"{:.2f}\"><path d=\"{}\" fill=\"none\" stroke=\"{}\"/>"
-      "<path d=\"{}\" fill=\"{}\"/></g>\n",
-      opacity, lines, kArrow, heads, kArrow);
+      "<g class=\"samples\"><path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.4g}\" "
+      "opacity=\"0.85\"/><path d=\"{}\" fill=\"{}\" opacity=\"{:.2f}\"/></g>\n",
+      lines, kArrow, lineWidth, heads, kArrow, opacity);
 }
 
 std::string cdfPanel(const RowDistribution& row, const AzimuthAxis& azimuth) {
   constexpr size_t kMaxSteps = 3456;
-  const size_t cells = row.luminances.size(), stride = (cells + kMaxSteps - 1) / kMaxSteps;
+  const size_t texels = row.luminances.size(), stride = (texels + kMaxSteps - 1) / kMaxSteps;
   std::string path, svg = frame(azimuth, kCdfTop);
-  for (size_t i = 0; i < cells + stride; i += stride) {
-    const size_t edge = std::min(i, cells);
+  for (size_t i = 0; i < texels + stride; i += stride) {
+    const size_t edge = std::min(i, texels);
     path += fmt::format("{}{:.1f} {:.2f}", i == 0 ? 'M' : 'L', azimuth(row.azimuths[edge]),
                         cdfY(row.cdf[edge]));
   }
