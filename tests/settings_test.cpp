@@ -151,7 +151,9 @@ class SettingsInAFile : public testing::Test {
     std::string toml = isModel ? "[[model]]\n" : "model = 'ball.glb'\n";
     if (isModel && s.key != "file") toml += "file = 'ball.glb'\n";
     if (isModel) return toml + key;
-    toml += s.section == "light" ? "[[light]]\n" : fmt::format("[{}]\n", s.section);
+    const bool isOneOfMany = s.section == "light" || s.section == "source";
+    toml +=
+        fmt::format("{0}{1}{2}\n", isOneOfMany ? "[[" : "[", s.section, isOneOfMany ? "]]" : "]");
     const auto add = [&](const char* other, const char* line) {
       if (s.key != other) toml += fmt::format("{} = {}\n", other, line);
     };
@@ -171,6 +173,7 @@ class SettingsInAFile : public testing::Test {
       if (!disc && s.key != "intensity" && s.key != "direction") add("power", "1");
       if (s.key == "radius" || s.key == "direction") add("power", "1");
     }
+    if (s.section == "source" && s.key != "file") add("probe_polygon", "[[0, 0], [1, 0], [0, 1]]");
     if (s.section == "composite") add("plate", "'sky.exr'"), add("local_scene", "'ground'");
     if (s.section == "surroundings") {
       const bool sphere = s.key == "radius" || s.key == "center", room = s.key == "file";

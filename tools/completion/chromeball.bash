@@ -12,7 +12,7 @@ _chromeball() {
       words='render merge compare probe image lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
@@ -50,7 +50,7 @@ _chromeball() {
     'image view')
       options='--help --exposure --tonemap --layer' ;;
     'lights')
-      options='--help --method --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --probe-mask --mapping' ;;
+      options='--help --method --suggest --polygons --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --probe-mask --mapping' ;;
     'lights-error')
       options='--help --methods --counts --recursion --normals --csv --plot --seed --probe-mask --mapping' ;;
   esac
