@@ -6,7 +6,7 @@ namespace chromeball {
 SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const Probe& probe)
     : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotationDegrees()) {}
 
-SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, SunExtraction extraction,
+SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
                        float rotationDegrees)
     : strategy_(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),

@@ -40,7 +40,7 @@ class SplitProbe : public LightingStrategy {
   }
 
  private:
-  SplitProbe(std::unique_ptr<LightingStrategy> strategy, SunExtraction extraction,
+  SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
              float rotationDegrees);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
