@@ -207,6 +207,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                                 {"single-sided", {"off"}},
                                                 {"lights", {"2"}},
                                                 {"sun-angle", {"2"}},
+                                                {"light-from", {"rest"}},
                                                 {"light-units", {"radiometric"}},
                                                 {"camera", {"Far"}},
                                                 {"animation", {"Still"}},

@@ -224,6 +224,8 @@ TEST(LightList, RefusesOthers) {
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1e39, 1])"), "three numbers");
   refused(light(R"("direction": [0, 1, 0], "irradiance": ["1", 1, 1])"), "three numbers");
   refused(light(R"("direction": [0, 1, 0], "radiance": [1, 1, 1])"), "angle");
+  refused(light(R"("direction": [0, 1, 0], "irradiance": [1e38, 1, 1], "angle": 0.01)"),
+          "too large");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "angle": 100)"), "angle");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "radiance": [9, 9, 9],
                    "angle": 1)"),

@@ -37,9 +37,9 @@ Image roomWithWindow() {
   return map;
 }
 
-const Corners kWindow{{139, 29}, {171, 29}, {171, 61}, {139, 61}};
+const PolygonCorners kWindow{{139, 29}, {171, 29}, {171, 61}, {139, 61}};
 
-SphericalPolygon window(const Corners& corners = kWindow) {
+SphericalPolygon window(const PolygonCorners& corners = kWindow) {
   LoadedProbe probe;
   probe.fileWidth = kWidth, probe.fileHeight = kHeight;
   return polygonOf(corners, probe, "test");
@@ -217,7 +217,7 @@ TEST(PolygonLights, SuggestedOnesAreReadAgain) {
   const CommandResult suggest = runCommand({"lights", room / "room.exr", "--suggest", "3", "-o",
                                             room / "p.json", "--preview", room / "p.png"});
   ASSERT_EQ(suggest.status, 0) << suggest.error;
-  const std::vector<Corners> polygons = readPolygons(room / "p.json");
+  const std::vector<PolygonCorners> polygons = readPolygons(room / "p.json");
   ASSERT_EQ(polygons.size(), 1u);
   EXPECT_NEAR(window(polygons.front()).solidAngle() /
                   suggestPolygons(roomWithWindow(), 1).front().solidAngle(),

@@ -18,11 +18,11 @@ using nlohmann::ordered_json;
 
 constexpr size_t kMaxPolygons = 1000, kMaxBytes = 10 << 20;
 
-Corners cornersOf(const json& polygon, const std::string& where) {
+PolygonCorners cornersOf(const json& polygon, const std::string& where) {
   const auto points = polygon.is_object() ? polygon.find("probe_polygon") : polygon.end();
   if (!polygon.is_object() || points == polygon.end() || !points->is_array())
     throwInput("{}: has no array `probe_polygon`", where);
-  Corners corners;
+  PolygonCorners corners;
   for (const json& point : *points) {
     if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
       throwInput("{}: `probe_polygon` should be pairs of numbers, [u, v]", where);
@@ -42,7 +42,7 @@ glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
 
 }  // namespace
 
-std::vector<Corners> readPolygons(const std::filesystem::path& path) {
+std::vector<PolygonCorners> readPolygons(const std::filesystem::path& path) {
   std::error_code unreadable;
   if (const auto size = std::filesystem::file_size(path, unreadable);
       !unreadable && size > kMaxBytes)
@@ -57,14 +57,14 @@ std::vector<Corners> readPolygons(const std::filesystem::path& path) {
                path.string());
   if (polygons->size() > kMaxPolygons)
     throwInput("{}: has more than {} polygons", path.string(), kMaxPolygons);
-  std::vector<Corners> result;
+  std::vector<PolygonCorners> result;
   for (size_t i = 0; i < polygons->size(); ++i)
     result.push_back(cornersOf((*polygons)[i], fmt::format("{}: polygons[{}]", path.string(), i)));
   return result;
 }
 
 void writePolygons(const std::filesystem::path& path, const std::string& probe,
-                   const std::vector<Corners>& polygons,
+                   const std::vector<PolygonCorners>& polygons,
                    const std::vector<PolygonSource>& sources) {
   ordered_json list = ordered_json::array();
   for (size_t i = 0; i < polygons.size(); ++i) {
@@ -78,7 +78,7 @@ void writePolygons(const std::filesystem::path& path, const std::string& probe,
   writeText(path, jsonText({{"probe", probe}, {"polygons", list}}, 2) + "\n");
 }
 
-SphericalPolygon polygonOf(const Corners& corners, const LoadedProbe& probe,
+SphericalPolygon polygonOf(const PolygonCorners& corners, const LoadedProbe& probe,
                            const std::string& location) {
   std::vector<dvec3> directions;
   for (const glm::dvec2& corner : corners) {
@@ -94,8 +94,8 @@ SphericalPolygon polygonOf(const Corners& corners, const LoadedProbe& probe,
   return {directions, location};
 }
 
-Corners cornersOf(const SphericalPolygon& polygon, const LoadedProbe& probe) {
-  Corners corners;
+PolygonCorners cornersOf(const SphericalPolygon& polygon, const LoadedProbe& probe) {
+  PolygonCorners corners;
   for (const dvec3& direction : polygon.corners()) {
     const glm::dvec2 uv = turned(directionToUv(probe.mapping, direction), probe);
     corners.push_back(uv * glm::dvec2(probe.fileWidth, probe.fileHeight));

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "job/scene_file_composite.h"
 #include "job/scene_file_light.h"
+#include "job/scene_file_source.h"
 #include "job/toml_section.h"
 
 namespace chromeball {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/named_setting.h"
-#include "job/scene_file_source.h"
 #include "job/settings.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
@@ -33,6 +32,13 @@ struct Lens {
 struct CompositeEntry {
   std::string location;  // of the section: FILE:LINE, begins an error
   std::vector<NamedSetting> localScene;
+};
+
+// A polygon of the probe that becomes a source of its own ([[source]]).
+struct SourceEntry {
+  std::string name, location;       // location: FILE:LINE, begins an error
+  std::vector<glm::dvec2> corners;  // positions in the probe's image, in pixels from its top left
+  bool isIllum = true;
 };
 
 // The contents of a scene file. Paths are resolved against the scene file's folder.

@@ -6,9 +6,9 @@
 namespace chromeball {
 namespace {
 
-Corners readCorners(const Entry& entry) {
+PolygonCorners readCorners(const Entry& entry) {
   if (!entry.isArray()) entry.mustBe(entry.setting->form);
-  Corners corners;
+  PolygonCorners corners;
   for (size_t i = 0; i < entry.node->as_array()->size(); ++i) {
     const Entry corner = entry.element(i);
     if (!corner.isArrayOf(2)) corner.mustBe("two numbers, [u, v]");
@@ -37,7 +37,7 @@ std::vector<SourceEntry> readSources(const Entry& entry, std::vector<std::string
     return sources;
   }
   files.push_back(existingFile(file));
-  for (const Corners& corners : readPolygons(files.back())) {
+  for (const PolygonCorners& corners : readPolygons(files.back())) {
     SourceEntry& added = sources.emplace_back(common);
     added.name += fmt::format("_{}", sources.size() - 1);
     added.corners = corners;

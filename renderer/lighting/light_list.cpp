@@ -79,6 +79,8 @@ DirectionalLight readLight(const Reader& light) {
     light.fail("`irradiance` is not `radiance` x solid angle; if one was edited, delete the other");
   const Rgb kept = Rgb(irradiance.value_or(ofRadiance));
   if (!isFinite(kept)) light.fail("`radiance` x solid angle is too large");
+  if (angle > 0 && !isFinite(Rgb(dvec3(kept) / discSolidAngle(angle))))
+    light.fail("`irradiance` / solid angle is too large");
   return {vec3(glm::normalize(*direction)), kept, float(angle)};
 }
 
