@@ -100,16 +100,16 @@ FinishPlan wholePlan(FinishPlan plan) {
   return plan;
 }
 
-// The images of a composite, and its layers, are not among what imageBytes() counts.
+// The images of a composite, its layers and light groups are not among what imageBytes() counts.
 double bytesOf(const FinishPlan& plan) {
   const RenderSettings& s = plan.settings;
-  const size_t layers = plan.layers().size();
-  const double perPixel =
-      layers == 0
-          ? 0
-          : double(LayerFilm::bytesPerPixel(layers, s.wantsFeatures())) +
-                2 * sizeof(float) *
-                    double(plan.composite->plate.channels + plan.composite->reflectance.channels);
+  double perPixel = 0;
+  if (const size_t layers = plan.layers().size(); layers > 0)
+    perPixel += double(LayerFilm::bytesPerPixel(layers, s.wantsFeatures()));
+  perPixel += 2 * double(plan.groups.size() * sizeof(Rgb));
+  if (const auto& composite = plan.composite)
+    perPixel +=
+        2 * sizeof(float) * double(composite->plate.channels + composite->reflectance.channels);
   return imageBytes(s) + perPixel * s.width * s.height;
 }
 
@@ -117,7 +117,7 @@ double bytesOf(const FinishPlan& plan) {
 bool fits(const FinishPlan& part, const FinishPlan& whole) {
   const RenderSettings &a = part.settings, &b = whole.settings;
   return a.width == b.width && a.height == b.height && a.aovs == b.aovs && a.denoise == b.denoise &&
-         part.composite.has_value() == whole.composite.has_value() &&
+         part.groups == whole.groups && part.composite.has_value() == whole.composite.has_value() &&
          (!part.composite ||
           (part.composite->plate.channels == whole.composite->plate.channels &&
            part.composite->reflectance.channels == whole.composite->reflectance.channels));

@@ -40,7 +40,7 @@ Partition partitionOf(const Image& latLong, const std::vector<PolygonSource>& so
 std::vector<SphericalPolygon> polygonsOf(const PolygonRequest& request, const LoadedProbe& probe) {
   if (request.suggest) return suggestPolygons(probe.latLong, *request.suggest);
   std::vector<SphericalPolygon> polygons;
-  for (const Corners& corners : readPolygons(request.polygons))
+  for (const PolygonCorners& corners : readPolygons(request.polygons))
     polygons.push_back(polygonOf(
         corners, probe, fmt::format("{}: polygons[{}]", request.polygons, polygons.size())));
   return polygons;
@@ -64,7 +64,7 @@ void runPolygons(const PolygonRequest& request) {
       throwInput("{}: polygons[{}] is smaller than the probe's texels", request.polygons, i);
   const Constellation lights = lightsOf(sources);
   if (request.suggest) {
-    std::vector<Corners> corners;
+    std::vector<PolygonCorners> corners;
     for (const PolygonSource& source : sources) corners.push_back(cornersOf(source.polygon, probe));
     writePolygons(request.output, request.probe.file, corners, sources);
   } else {
