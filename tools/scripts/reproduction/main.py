@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the reproduction page; see ../reproduce.sh."""
+import argparse
+import pathlib
+import tempfile
+import time
+
+import lights
+import probes
+import rendering
+from page import page
+from run import ROOT, Run
+
+SECTIONS = [("Lights in place of a probe", lights.rows), ("Probes", probes.rows),
+            ("Sampling a probe", rendering.rows)]
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--out", type=pathlib.Path, help="a folder, in place of docs/ and scenes/gallery/")
+    out = options.parse_args().out
+    docs = out or ROOT / "docs"
+    pictures = out or ROOT / "scenes" / "gallery" / "reproduction"
+    for folder in (docs, pictures):
+        folder.mkdir(parents=True, exist_ok=True)
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory() as scratch:
+        run = Run(scratch, pictures.resolve())
+        sections = []
+        for title, rows in SECTIONS:
+            print(f"{time.monotonic() - start:5.0f} s  {title}", flush=True)
+            sections.append((title, rows(run)))
+    text = page(sections, sorted(run.missing), time.monotonic() - start,
+                "." if out else "../scenes/gallery/reproduction")
+    (docs / "reproduction.md").write_text(text)
+    print(f"{time.monotonic() - start:5.0f} s  {docs / 'reproduction.md'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rows of the reproduction page, and the page as Markdown."""
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Row:
+    """A figure or a statement of a source, and what the program has for it."""
+
+    title: str
+    source: str  # what the source shows or says
+    commands: list
+    ours: str  # Markdown: numbers, perhaps a table
+    why: str  # why they differ
+    pictures: list = field(default_factory=list)  # (file name, what it shows)
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
+    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+    return "\n".join(lines)
+
+
+def row_text(row, picture_folder):
+    parts = [f"### {row.title}", f"**Source.** {row.source}", f"**Here.** {row.ours}"]
+    if row.commands:
+        parts.append("\n".join("    " + command for command in row.commands))
+    if row.why:
+        parts.append(f"**Difference.** {row.why}")
+    parts += [f"![{text}]({picture_folder}/{name})\n\n{text}" for name, text in row.pictures]
+    return "\n\n".join(parts)
+
+
+INTRODUCTION = """# Reproduction of the sources
+
+What three sources show, beside what this program computes:
+
+- HDRI: Reinhard et al., "High Dynamic Range Imaging", chapter 9, "Image-Based Lighting" (figures 9.x);
+- ML07: Madsen and Laursen, "A Scalable GPU-Based Approach to Shading and Shadowing for Photo-Realistic
+  Real-Time Augmented Reality" (2007);
+- M03: Madsen et al., "Estimating Positions and Radiances of a Small Number of Light Sources for Real-Time
+  Image-Based Lighting" (2003).
+
+`tools/scripts/reproduce.sh` makes this page. Debevec's probes may be used for research; their numbers are given
+here, and pictures are only of probes that may be copied: those of Poly Haven and of this project (CC0)."""
+
+
+def page(sections, missing, seconds, picture_folder):
+    parts = [INTRODUCTION]
+    for title, rows in sections:
+        parts.append(f"## {title}")
+        parts += [row_text(row, picture_folder) for row in rows]
+    if missing:
+        parts.append("## Left out\n\nThese probes are not in `$CHROMEBALL_DATA`: " + ", ".join(missing) + ".")
+    parts.append(f"Made in {seconds / 60:.0f} minutes.")
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Facts about probes: mappings, irradiance, harmonics, suns, clipping, numbers of rays."""
+import math
+
+from page import Row, table
+from run import NOON, luminance, read_pfm
+
+ALL = ["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi", "Beach", "Ennis", "Lobby", "Studio",
+       "Qwantani", "Kloppenheim", "Hilly terrain"]
+
+
+def mappings(run):
+    rows = []
+    for mapping, facts in [("mirror-ball", "all texels show the same solid angle"),
+                           ("angular", "theta / sin(theta): infinite at the rim"),
+                           ("cube-3x2", "3 sqrt(3) = 5.196 in the limit of small texels"),
+                           ("lat-long", "sin(theta)")]:
+        name = f"noon-{mapping}.exr"
+        run("probe", "convert", NOON, name, "--to", mapping, "--size",
+            {"lat-long": "512x256", "cube-3x2": "384x256"}.get(mapping, "256x256"))
+        report = run.json("probe", "info", name, "--mapping", mapping, "--mapping-report")["mapping_report"]
+        rows.append([mapping, f"{report['max_over_min']:.4g}", facts])
+        run.picture(name, f"noon-{mapping}.png", "--tonemap", "reinhard")
+    return [Row(
+        "HDRI 9.4.1 to 9.4.4: one probe in four mappings",
+        "The ball is equal-area, the angular map has a constant radial density, cubes vary by 5.2.",
+        ["chromeball probe convert probes/noon.exr OUT.exr --to MAPPING",
+         "chromeball probe info OUT.exr --mapping-report"],
+        table(["mapping", "largest / smallest solid angle of a texel", "closed form"], rows), "",
+        [(f"noon-{m}.png", f"The project's noon as {m}") for m in ("mirror-ball", "angular", "cube-3x2")])]
+
+
+def compare_irradiance(run, file, more, small):
+    """Mean, maximum in % of the mean; share of texels below 0; of two irradiance maps."""
+    run("probe", "irradiance", file, "exact.pfm", "--size", "64x32")
+    run("probe", "irradiance", small, "other.pfm", "--size", "64x32", *more)
+    width, height, exact = read_pfm(run.scratch / "exact.pfm")
+    other = read_pfm(run.scratch / "other.pfm")[2]
+    total = difference = worst = below = weight = 0.0
+    for y in range(height):
+        solid_angle = math.sin(math.pi * (y + 0.5) / height)
+        for x in range(width):
+            e, o = (sum(color) / 3 for color in (exact[y][x], other[y][x]))
+            total += solid_angle * e
+            difference += solid_angle * abs(e - o)
+            worst = max(worst, abs(e - o))
+            below += solid_angle * (luminance(other[y][x]) < 0)
+            weight += solid_angle
+    return 100 * difference / total, 100 * worst * weight / total, 100 * below / weight
+
+
+def irradiance(run):
+    rows = []
+    for name, file in run.probes(ALL).items():
+        run("probe", "convert", file, "small.exr", "--to", "lat-long", "--size", "32x16")
+        reduced = compare_irradiance(run, file, [], "small.exr")
+        harmonics = compare_irradiance(run, file, ["--method", "sh"], file)
+        rows.append([name, f"{reduced[0]:.2g} / {reduced[1]:.2g}", f"{harmonics[0]:.2g} / {harmonics[1]:.2g}",
+                     f"{harmonics[2]:.2g}"])
+    if not rows:
+        return []
+    return [Row(
+        "HDRI 9.8.1, ML07: irradiance from little data",
+        "Nine spherical harmonics keep 99% (HDRI); ML07 integrated every normal for 24 hours, and found faster "
+        "ways to have \"too many artefacts\".",
+        ["chromeball probe irradiance PROBE OUT.exr --method sh"],
+        "Mean / maximum error in percent of the mean irradiance, from a reduction to 32 x 16 texels and from nine "
+        "harmonics, and the share of the normals whose irradiance is negative with these:\n\n"
+        + table(["probe", "32 x 16", "harmonics", "negative, %"], rows),
+        "The 99% holds for the energy that is kept, not for the irradiance of a normal. An exact irradiance map "
+        "takes seconds.")]
+
+
+def suns(run):
+    rows = []
+    for name, file in [("noon, of this project", NOON),
+                       *run.probes(["Qwantani", "Kloppenheim"]).items()]:
+        info = run.json("probe", "info", file)
+        for sun in info["suns"]:
+            share = luminance(sun["irradiance"]) / (4 * math.pi * luminance(info["mean_radiance"]))
+            rows.append([name, f"{100 * share:.0f}%", f"{sun['angle']:.2f}", f"{info['max_over_mean']:.0f}"])
+    omega = 2 * math.pi * (1 - math.cos(math.radians(0.5323 / 2)))
+    return [Row(
+        "HDRI 9.6, figure 9.23: a sunny sky",
+        "The sun gives over half of the sky's light, from one hundred-thousandth of its area; its pixels are 100,000 "
+        "times brighter than the rest of the sky.",
+        ["chromeball probe info PROBE"],
+        table(["probe", "share of the sun in all light", "its diameter in the map, degrees", "maximum / mean"],
+              rows) + f"\n\nThe Sun's disc is {omega / (2 * math.pi):.3g} of a hemisphere.",
+        "A map's sun is wider than the real one, because its texels and its glow count; with a sun of 0.53 degrees the "
+        "ratio of the maximum would be about twice as large. The share here is of the light from all sides; the "
+        "project's noon has a bright ground.")]
+
+
+def clipping(run):
+    rows = [[name, f"{100 * run.json('probe', 'info', file)['lost_if_clipped_at_white']:.0f}%"]
+            for name, file in run.probes(["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi",
+                                          "Qwantani", "Beach"]).items()]
+    if not rows:
+        return []
+    return [Row("HDRI figure 9.40: an image of low dynamic range as a probe",
+                "Clipped highlights change the light.", ["chromeball probe info PROBE"],
+                "Irradiance that is lost, exposed for a mean of 0.18 and clipped at 1:\n\n"
+                + table(["probe", "lost"], rows), "")]
+
+
+def rays(run):
+    rows = []
+    for name, file in run.probes(["Uffizi", "Grace Cathedral", "Galileo's Tomb", "St Peter's", "Qwantani",
+                                  "Kloppenheim"]).items():
+        counts = run.json("probe", "rays", file, "--size", "256x128")["rays"]
+        rows.append([name] + [f"{counts[sampling]['upward']:,}" for sampling in ("uniform", "cosine", "luminance")])
+    if not rows:
+        return []
+    return [Row(
+        "HDRI 9.6, figure 9.24: how many rays?",
+        "Tens of rays under an overcast sky, hundreds or thousands in interiors, hundreds of thousands with a sun.",
+        ["chromeball probe rays PROBE --size 256x128"],
+        "Random rays for a standard error of 10% on a surface that faces up:\n\n"
+        + table(["probe", "uniform", "cosine", "luminance"], rows),
+        "All three statements hold for random rays; sampling by luminance needs few even with a sun.")]
+
+
+def errata(run):
+    del run
+    facing = {d: 46700 * math.sin(math.radians(d / 2)) ** 2 for d in (0.53, 0.5323)}
+    return [Row(
+        "Errata of HDRI",
+        "A sun of radiance 46,700 gives the irradiance pi; \"10960000 10280000 866000\" is a yellowish sun.", [],
+        f"46,700 is 1 / sin^2(0.53 / 2 degrees) = {1 / math.sin(math.radians(0.265)) ** 2:,.0f}, rounded: the "
+        f"irradiance is {facing[0.53]:.4f} pi for 0.53 degrees and {facing[0.5323]:.4f} pi for 0.5323. The blue of "
+        "that sun lacks a digit: 8,660,000. Its direction (y = -0.58) is where light travels to, that of 9.3.5 "
+        "points to the sun.", "")]
+
+
+def rows(run):
+    return (mappings(run) + suns(run) + clipping(run) + rays(run) + irradiance(run) + errata(run))
