@@ -140,9 +140,9 @@ TEST(EmitterChoice, ALampOf1e_9OfThePowerIsSampled) {
   addQuad(scene, addMaterial(scene, strong), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   addQuad(scene, addMaterial(scene, weak), {5, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const auto emitters = Emitters::make(scene);
-  EXPECT_EQ(emitters->sample(1 - 0.4e-9, 0.5f).instance, 1u);
-  EXPECT_EQ(emitters->sample(1 - 1.1e-9, 0.5f).instance, 0u);
-  const Emitters::Point p = emitters->sample(1 - 0.25e-9, 0.5f);  // inside its first triangle
+  EXPECT_EQ(emitters->choose(1 - 0.4e-9, 0.5f).instance, 1u);
+  EXPECT_EQ(emitters->choose(1 - 1.1e-9, 0.5f).instance, 0u);
+  const Emitters::Point p = emitters->choose(1 - 0.25e-9, 0.5f);  // inside its first triangle
   EXPECT_GT(p.position.x, 5.01f);
   EXPECT_LT(p.position.x, 5.99f);
 }

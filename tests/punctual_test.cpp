@@ -30,7 +30,7 @@ PunctualLight lampAt(vec3 position, Rgb intensity) {
 
 TEST(Punctual, InverseSquareAndRange) {
   PunctualLight light = lampAt({0, 3, 0}, Rgb(18, 9, 0));
-  const PunctualSample s = incidentLight(light, {0, 0, 0});
+  const DirectionSample s = incidentLight(light, {0, 0, 0});
   EXPECT_EQ(s.wi, vec3(0, 1, 0));
   EXPECT_EQ(s.distance, 3);
   EXPECT_NEAR(glm::distance(s.irradiance, Rgb(2, 1, 0)), 0, 1e-6);

@@ -17,20 +17,19 @@ BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
 }  // namespace
 
 Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, RayMask mask,
-                            std::optional<uint32_t> lamp) const {
-  if (lamp && !(world_.accel.mask(*lamp) & mask)) return Rgb(0);  // the lamp does not exist there
+                            uint32_t lamp) const {
+  if (!exists(lamp, mask)) return Rgb(0);
   return world_.accel.transmittance(ray, mask, attenuation);
 }
 
 Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,
-                            std::optional<uint32_t> lamp) const {
+                            uint32_t lamp) const {
   ++context.counts.shadow;
   if (context.log) context.log->rays.push_back({ray, true});
   const Rgb passed = visibility(ray, attenuation, settings_.visible, lamp);
   const bool differs = settings_.compared != settings_.visible;
-  const bool lampIsHidden = lamp && !(world_.accel.mask(*lamp) & settings_.compared);
   // `compared` is a subset of `visible`: a ray unoccluded in `visible` is unoccluded there too.
-  if (differs && (passed != Rgb(1) || lampIsHidden)) [[unlikely]] {
+  if (differs && (passed != Rgb(1) || !exists(lamp, settings_.compared))) [[unlikely]] {
     // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
     const Rgb other = visibility(ray, attenuation, settings_.compared, lamp);
@@ -40,7 +39,7 @@ Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, PathContext&
 }
 
 Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
-                               std::optional<uint32_t> lamp) const {
+                               uint32_t lamp) const {
   Rgb attenuation(0);
   if (vertex.media.inside() || vertex.surface.material->extended)
     attenuation = Media(vertex.media).follow(vertex.surface, ray.direction).attenuation();
@@ -89,7 +88,7 @@ void DirectLight::addToGroups(const Vertex& vertex, const DirectionSample& light
                               const BsdfValue& bsdf, const Rgb& passed,
                               PathContext& context) const {
   const Rgb weight = vertex.throughput * bsdf.fCos * passed;
-  if (light.isDelta) return context.groups->add(light.group, weight * light.irradiance);
+  if (light.isDelta) return context.groups->addDelta(light, weight * light.irradiance);
   const float ofSample = lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf) / light.pdf;
   context.groups->addEscaped(vertex.point, light.wi, weight * ofSample);
 }
@@ -150,56 +149,30 @@ void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight
   if (context.records) light.record = record(light.point, sample, light.bsdf);
 }
 
-Rgb DirectLight::emitter(const Vertex& vertex, PathContext& context) const {
-  const Surface& surface = vertex.surface;
-  const Emitters::Point emitter = world_.emitters->sample(
-      context.sampler.getFine1(dimension::kEmitter), context.sampler.get1(dimension::kEmitter + 1));
-  const vec3 to = emitter.position - surface.position;
-  const float distance = glm::length(to);
-  if (!(distance > surface.rayOffset)) return Rgb(0);
-  const vec3 wi = to / distance;
-  const BsdfValue broad = vertex.bsdf.evaluate(wi);
-  const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), wi);
-  if (isBlack(broad.fCos) && isBlack(narrow.fCos)) return Rgb(0);
-
-  const Instance& instance = world_.scene.instances[emitter.instance];
-  const Surface source =
-      surfaceAt(world_.scene, instance, emitter.triangle, emitter.barycentric, -wi);
-  // A BSDF-sampled ray hits the lamp with probability alpha.
-  const Rgb radiance = emittedRadiance(world_.scene, instance, source, -wi) *
-                       surfaceAlpha(world_.scene, instance, emitter.triangle, emitter.barycentric);
-  const float cosine = glm::dot(source.geometricNormal, -wi);
-  if (isBlack(radiance) || !(cosine > 0)) return Rgb(0);
-
-  // Between offset points, so that neither surface shadows itself.
-  const vec3 origin = surface.rayOrigin(wi), target = source.rayOrigin(-wi);
-  const float length = glm::length(target - origin);
-  const Rgb passed = transmittance(vertex, {origin, (target - origin) / length, length}, context,
-                                   emitter.instance);
-  const float pdf = world_.emitters->pdf(instance.material, distance, cosine);
-  const Rgb fCos = broad.fCos * lightSampleWeight(settings_.mis, pdf, broad.pdf) +
-                   narrow.fCos * lightSampleWeight(settings_.mis, pdf, narrow.pdf);
-  const Rgb found = fCos * radiance * passed / pdf;
-  if (context.groups) [[unlikely]]
-    context.groups->add(context.groups->groups().ofInstance(world_.scene, instance),
-                        vertex.throughput * found);
-  return found;
-}
-
-Rgb DirectLight::punctual(const Vertex& vertex, PathContext& context) const {
-  Rgb light(0);
-  world_.punctual->sample(vertex.point, context.sampler, [&](const PunctualSample& s) {
-    const Rgb fCos =
-        vertex.bsdf.bsdf().evaluate(s.wi).fCos + narrowLobes(vertex.bsdf.bsdf(), s.wi).fCos;
-    if (isBlack(fCos)) return;
-    const Rgb passed =
-        transmittance(vertex, {vertex.surface.rayOrigin(s.wi), s.wi, s.distance}, context);
-    const Rgb found = fCos * s.irradiance * passed;
-    light += found;
+Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& context) const {
+  std::vector<DirectionSample>& samples = context.lightSamples;
+  samples.clear();
+  world_.sources.all[source]->sample(vertex.point, context.sampler, samples);
+  Rgb sum(0);
+  for (const DirectionSample& light : samples) {
+    const bool isSurface = light.end.instance != LightEnd::kNone;
+    if (isSurface && !(light.distance > vertex.surface.rayOffset)) continue;
+    const BsdfValue broad = vertex.bsdf.evaluate(light.wi);
+    const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), light.wi);
+    if (isBlack(broad.fCos) && isBlack(narrow.fCos)) continue;
+    // To a point that is offset, too, so that neither surface shadows itself.
+    Ray ray{vertex.surface.rayOrigin(light.wi), light.wi, light.distance};
+    if (isSurface) {
+      ray.tMax = glm::length(light.end.position - ray.origin);
+      ray.direction = (light.end.position - ray.origin) / ray.tMax;
+    }
+    const Rgb passed = transmittance(vertex, ray, context, light.end.instance);
+    const Rgb found = (contribution(light, broad) + contribution(light, narrow)) * passed;
+    sum += found;
     if (context.groups) [[unlikely]]
-      context.groups->add(context.groups->groups().ofLamp(s.lamp), vertex.throughput * found);
-  });
-  return light;
+      context.groups->addOfScene(source, light, vertex.throughput * found);
+  }
+  return sum;
 }
 
 }  // namespace chromeball

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "integrate/context.h"
 #include "integrate/guided_bsdf.h"
@@ -58,10 +57,8 @@ class DirectLight {
   // LightingStrategy::escaped() returns for light.point and the direction of the shadow ray.
   void complete(const LightingStrategy::Escaped& found, DeferredLight& light,
                 const PathContext& context) const;
-  // From one point on an emissive triangle. World::emitters must not be null.
-  Rgb emitter(const Vertex& vertex, PathContext& context) const;
-  // From point, spot and directional lights. World::punctual must not be null.
-  Rgb punctual(const Vertex& vertex, PathContext& context) const;
+  // From one of World::sources, which lights narrow lobes too.
+  Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
 
  private:
   // A light sample, and the strategy's pdf of its direction.
@@ -82,13 +79,15 @@ class DirectLight {
                             const BsdfValue& bsdf);
 
   // Transmittance of a shadow ray from the vertex: occluders, and absorption in media. `lamp`: the
-  // instance at which the ray ends.
+  // instance at which the ray ends, or LightEnd::kNone.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
-                    std::optional<uint32_t> lamp = {}) const;
-  Rgb visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,
-                 std::optional<uint32_t> lamp) const;
-  Rgb visibility(const Ray& ray, const Rgb& attenuation, RayMask mask,
-                 std::optional<uint32_t> lamp) const;
+                    uint32_t lamp = LightEnd::kNone) const;
+  Rgb visibility(const Ray& ray, const Rgb& attenuation, PathContext& context, uint32_t lamp) const;
+  Rgb visibility(const Ray& ray, const Rgb& attenuation, RayMask mask, uint32_t lamp) const;
+  // False for an instance that is not in this part of the scene.
+  bool exists(uint32_t lamp, RayMask mask) const {
+    return lamp == LightEnd::kNone || world_.accel.mask(lamp) & mask;
+  }
 
   const World& world_;
   const LightingStrategy& lighting_;

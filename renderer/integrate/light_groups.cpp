@@ -5,11 +5,15 @@
 
 namespace chromeball {
 
-LightGroups::LightGroups(const Scene& scene, const LightingStrategy& lighting)
-    : ofNode_(scene.nodeNames.size(), -1) {
+LightGroups::LightGroups(const World& world, const LightingStrategy& lighting)
+    : scene_(world.scene), ofNode_(world.scene.nodeNames.size(), -1) {
+  const Scene& scene = world.scene;
   for (const std::string& name : lighting.groups()) add(name);
-  firstLamp_ = int(names_.size());
-  for (const PunctualLight& light : scene.lights) add(light.name);
+  countOfStrategy_ = names_.size();
+  for (const auto& source : world.sources.all) {
+    firstOfSource_.push_back(int(names_.size()));
+    for (const std::string& name : source->groups()) add(name);
+  }
   for (const Instance& instance : scene.instances) {
     const Material& material = scene.materials[size_t(instance.material)];
     if (!material.emits()) continue;

@@ -11,28 +11,36 @@
 
 namespace chromeball {
 
-// The groups of a scene: those of the strategy (LightingStrategy::groups()), then one for each
-// punctual lamp, each node that emits, and one for all unlit materials.
+// The groups of a scene: those of the strategy, then those of the scene's sources
+// (LightingStrategy::groups()), each node that emits, and one for all unlit materials.
 class LightGroups {
  public:
-  LightGroups(const Scene& scene, const LightingStrategy& lighting);
+  LightGroups(const World& world, const LightingStrategy& lighting);
 
   // Unique; without the characters that separate layers and gains: . , = and spaces.
   const std::vector<std::string>& names() const { return names_; }
 
-  size_t countOfStrategy() const { return size_t(firstLamp_); }
-  int ofLamp(size_t lamp) const { return firstLamp_ + int(lamp); }
+  size_t countOfStrategy() const { return countOfStrategy_; }
+  // Of a sample of one of World::sources.
+  int ofScene(size_t source, const DirectionSample& light) const {
+    if (light.end.instance != LightEnd::kNone)
+      return ofInstance(scene_.instances[light.end.instance]);
+    return firstOfSource_[source] + light.group;
+  }
   // Of the radiance that an instance emits.
-  int ofInstance(const Scene& scene, const Instance& instance) const {
-    return scene.materials[size_t(instance.material)].unlit ? unlit_
-                                                            : ofNode_[size_t(instance.node)];
+  int ofInstance(const Instance& instance) const {
+    return scene_.materials[size_t(instance.material)].unlit ? unlit_
+                                                             : ofNode_[size_t(instance.node)];
   }
 
  private:
   int add(const std::string& name);
 
+  const Scene& scene_;
   std::vector<std::string> names_;
-  int firstLamp_ = 0, unlit_ = -1;
+  size_t countOfStrategy_ = 0;
+  std::vector<int> firstOfSource_;
+  int unlit_ = -1;
   std::vector<int> ofNode_;  // -1 for a node that does not emit
 };
 
@@ -44,8 +52,16 @@ class GroupSums {
             std::vector<Rgb>& scratch)
       : groups_(groups), lighting_(lighting), sums_(sums), scratch_(scratch) {}
 
-  const LightGroups& groups() const { return groups_; }
-  void add(int group, const Rgb& radiance) { sums_[size_t(group)] += radiance; }
+  void addEmitted(const Instance& instance, const Rgb& radiance) {
+    sums_[size_t(groups_.ofInstance(instance))] += radiance;
+  }
+  void addOfScene(size_t source, const DirectionSample& light, const Rgb& radiance) {
+    sums_[size_t(groups_.ofScene(source, light))] += radiance;
+  }
+  // Of a delta light of the strategy.
+  void addDelta(const DirectionSample& light, const Rgb& radiance) {
+    sums_[size_t(light.group)] += radiance;
+  }
   // `throughput` times the radiance of LightingStrategy::escaped(), by group. Each group is
   // independent of the others, so that its bits scale with those of its source.
   void addEscaped(const LightPoint& point, const vec3& wi, const Rgb& throughput);

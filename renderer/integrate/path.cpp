@@ -79,11 +79,11 @@ void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& e
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
                               const Instance& instance) const {
   float weight = 1;
-  if (world_.emitters && !surface.material->unlit && !state.isDelta) {
-    const float cosine = std::max(-glm::dot(surface.geometricNormal, state.ray.direction), 1e-12f);
-    const float distance = glm::length(surface.position - state.from.position);
-    weight = bsdfSampleWeight(settings_.mis, state.pdf,
-                              world_.emitters->pdf(instance.material, distance, cosine));
+  if (!surface.material->unlit && !state.isDelta) {
+    float pdf = 0;
+    for (const auto& source : world_.sources.all)
+      pdf += source->pdfOfHit(state.from, surface, instance);
+    weight = bsdfSampleWeight(settings_.mis, state.pdf, pdf);
   }
   return state.throughput * emittedRadiance(world_.scene, instance, surface, -state.ray.direction) *
          weight;
@@ -119,10 +119,9 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
       direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
       state.radiance += state.throughput * direct_.probe(vertex, context);
-    if (broad || bsdf.has(Lobes::Narrow)) {
-      if (world_.emitters) state.radiance += state.throughput * direct_.emitter(vertex, context);
-      if (world_.punctual) state.radiance += state.throughput * direct_.punctual(vertex, context);
-    }
+    if (broad || bsdf.has(Lobes::Narrow))
+      for (size_t i = 0; i < world_.sources.all.size(); ++i)
+        state.radiance += state.throughput * direct_.ofScene(i, vertex, context);
   }
   state.from.bsdf = nullptr;  // its lifetime ends with the vertex
 
@@ -211,7 +210,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     const Rgb found = foundEmission(state, surface, instance);
     state.radiance += found;
     if (context.groups) [[unlikely]]
-      context.groups->add(context.groups->groups().ofInstance(scene, instance), found);
+      context.groups->addEmitted(instance, found);
   }
   if (state.first && state.lobes != Lobes::Narrow && !state.first->direct) [[unlikely]]
     state.first->direct = state.radiance;

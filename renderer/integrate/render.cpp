@@ -262,7 +262,7 @@ RenderResult render(const World& world, const Camera& camera, const LightingStra
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, RenderControl* control) {
   if (settings.wantsGroups()) {
-    const LightGroups groups(world.scene, lighting);
+    const LightGroups groups(world, lighting);
     GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
     const PathTracer tracer(world, lighting, training.guided(settings.path()));
     return render(GroupIntegrator(tracer, groups), world, camera, settings, progress, stop,

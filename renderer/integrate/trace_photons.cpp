@@ -123,7 +123,7 @@ class PhotonTracer {
   // From a point on an emissive triangle, in a cosine-distributed direction.
   void traceFromLamp(Random random, Traced& out) const {
     const Emitters::Point lamp =
-        world_.emitters->sample(double(random.bits()) * 0x1p-32, random.get1());
+        world_.sources.emitters->choose(double(random.bits()) * 0x1p-32, random.get1());
     const Instance& instance = world_.scene.instances[lamp.instance];
     const auto surfaceTowards = [&](const vec3& direction) {
       return surfaceAt(world_.scene, instance, lamp.triangle, lamp.barycentric, direction);
@@ -137,7 +137,7 @@ class PhotonTracer {
     const float flux = luminance(emittedRadiance(world_.scene, instance, surface, direction)) *
                        sides * kPi *
                        surfaceAlpha(world_.scene, instance, lamp.triangle, lamp.barycentric) /
-                       world_.emitters->pdf(instance.material, 1, 1);
+                       world_.sources.emitters->pdf(instance.material, 1, 1);
     follow({{surface.rayOrigin(direction), direction}, flux, {0, 0, 1}, hash(lamp.instance)},
            nullptr, random, out);
   }
@@ -223,7 +223,7 @@ std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lig
   const Scene& scene = world.scene;
   if (std::ranges::none_of(scene.materials, mayHaveNarrowLobes)) return {};  // before any bounds
   const PhotonTracer tracer(world, lighting);
-  const bool fromProbe = lighting.sampleMany({}, {}), fromLamps = world.emitters != nullptr;
+  const bool fromProbe = lighting.sampleMany({}, {}), fromLamps = world.sources.emitters != nullptr;
   std::vector<Photon> photons;
   if (!tracer.hasTargets() || !(fromProbe || fromLamps)) return photons;
   const size_t tasks = (budget.paths + kPathsPerTask - 1) / kPathsPerTask;

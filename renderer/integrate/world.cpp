@@ -10,8 +10,7 @@ World::World(const Scene& described, const std::vector<RayMask>& masks, const Bs
              std::shared_ptr<BuiltGeometry> earlier)
     : scene(described),
       accel(described, masks, std::move(earlier)),
-      emitters(Emitters::make(described)),
-      punctual(PunctualLights::make(described)),
+      sources(described),
       bsdfTables(tables) {}
 
 }  // namespace chromeball

@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "lighting/emitters.h"
-#include "lighting/punctual.h"
+#include "lighting/scene_sources.h"
 #include "scene/scene.h"
 #include "shading/bsdf_tables.h"
 #include "trace/accel.h"
@@ -26,9 +25,8 @@ struct World {
 
   const Scene& scene;
   const Accel accel;
-  const std::unique_ptr<const Emitters> emitters;        // null where nothing emits
-  const std::unique_ptr<const PunctualLights> punctual;  // null where there are none
-  const BsdfTables bsdfTables;                           // those that its materials need
+  const SceneSources sources;
+  const BsdfTables bsdfTables;  // those that its materials need
 };
 
 }  // namespace chromeball

@@ -33,9 +33,9 @@ Image cropped(const Image& whole, const Crop& window) {
 }
 
 // The number of groups is known only now.
-void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded,
+void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded, const World& world,
                       const LightingStrategy& lighting) {
-  const size_t count = LightGroups(loaded.scene, lighting).names().size();
+  const size_t count = LightGroups(world, lighting).names().size();
   const Crop window = job.settings.window();
   const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
                         window.width * window.height;
@@ -69,7 +69,8 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
       BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(job, loaded);
-  if (job.settings.wantsGroups()) checkGroupMemory(job, loaded, *prepared.lighting);
+  if (job.settings.wantsGroups())
+    checkGroupMemory(job, loaded, *prepared.world, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();
   loaded.scene.checkTexels();
   return prepared;

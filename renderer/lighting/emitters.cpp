@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "math/warp.h"
+#include "scene/surface.h"
+#include "shading/bsdf.h"
 
 namespace chromeball {
 namespace {
@@ -69,20 +71,51 @@ std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
     }
   }
   if (triangles.empty()) return nullptr;
-  return std::unique_ptr<Emitters>(new Emitters(std::move(triangles), powers, radiances));
+  return std::unique_ptr<Emitters>(new Emitters(scene, std::move(triangles), powers, radiances));
 }
 
-Emitters::Emitters(std::vector<EmissiveTriangle> triangles, const std::vector<double>& powers,
-                   const std::vector<double>& radiances)
-    : triangles_(std::move(triangles)), choice_(1, int(triangles_.size())) {
+Emitters::Emitters(const Scene& scene, std::vector<EmissiveTriangle> triangles,
+                   const std::vector<double>& powers, const std::vector<double>& radiances)
+    : scene_(scene), triangles_(std::move(triangles)), choice_(1, int(triangles_.size())) {
   const double total = choice_.setRow(0, powers);
   for (double radiance : radiances) areaPdf_.push_back(float(radiance / total));
 }
 
-Emitters::Point Emitters::sample(double choice, float v) const {
+Emitters::Point Emitters::choose(double choice, float v) const {
   const EmissiveTriangle& t = triangles_[choice_.sample(0, choice)];
   const vec2 b = squareToTriangle({float(choice), v});
   return {t.instance, t.triangle, b, (1 - b.x - b.y) * t.p0 + b.x * t.p1 + b.y * t.p2};
+}
+
+void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
+                      std::vector<DirectionSample>& out) const {
+  const Point emitter = choose(sampler.getFine1(dimension::kEmitter),  //
+                               sampler.get1(dimension::kEmitter + 1));
+  const vec3 to = emitter.position - point.position;
+  const float distance = glm::length(to);
+  const vec3 wi = to / distance;
+  if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || point.bsdf->isLayered())) return;
+  const Instance& instance = scene_.instances[emitter.instance];
+  const Surface surface = surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi);
+  const float cosine = glm::dot(surface.geometricNormal, -wi);
+  const Rgb radiance = emittedRadiance(scene_, instance, surface, -wi) *
+                       surfaceAlpha(scene_, instance, emitter.triangle, emitter.barycentric);
+  if (isBlack(radiance) || !(cosine > 0)) return;
+  const float density = pdf(instance.material, distance, cosine);
+  out.push_back({.wi = wi,
+                 .irradiance = radiance / density,
+                 .pdf = density,
+                 .distance = distance,
+                 .end = {emitter.instance, surface.rayOrigin(-wi)}});
+}
+
+float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
+                         const Instance& instance) const {
+  const vec3 to = surface.position - point.position;
+  const float distance = glm::length(to);
+  constexpr float kGrazing = 1e-12f;
+  const float cosine = -glm::dot(surface.geometricNormal, to) / distance;
+  return pdf(instance.material, distance, std::max(cosine, kGrazing));
 }
 
 }  // namespace chromeball

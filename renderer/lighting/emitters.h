@@ -2,8 +2,10 @@
 // Emissive triangles as lights.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "lighting/strategy.h"
 #include "math/cdf.h"
 #include "scene/scene.h"
 
@@ -12,10 +14,19 @@ namespace chromeball {
 // Every triangle whose material emits, chosen by power (mean emitted luminance x mean alpha x area)
 // and sampled uniformly over its area. The pdf over area is then the same for all points of a
 // material: its mean luminance x alpha / total.
-class Emitters {
+//
+// A call of sample() gives one sample. Its radiance is that of the point times its alpha, with
+// which a BSDF-sampled ray hits it.
+class Emitters : public LightingStrategy {
  public:
-  // Null if nothing emits.
+  // Null if nothing emits. The scene must outlive this.
   static std::unique_ptr<Emitters> make(const Scene& scene);
+
+  void sample(const LightPoint& point, const PixelSampler& sampler,
+              std::vector<DirectionSample>& out) const override;
+  float pdfOfHit(const LightPoint& point, const Surface& surface,
+                 const Instance& instance) const override;
+  std::vector<std::string> groups() const override { return {}; }
 
   struct Point {
     uint32_t instance, triangle;  // as in Hit
@@ -24,7 +35,7 @@ class Emitters {
   };
   // `choice` in [0, 1) needs the 53 bits of PixelSampler::getFine1(), so that the weakest of a
   // million triangles can be chosen.
-  Point sample(double choice, float v) const;
+  Point choose(double choice, float v) const;
 
   // Pdf over solid angle of sampling a point of `material` at a distance of `distance` metres, with
   // cosine `cosine` (> 0) at the emitter.
@@ -37,9 +48,10 @@ class Emitters {
     uint32_t instance, triangle;
     vec3 p0, p1, p2;
   };
-  Emitters(std::vector<EmissiveTriangle> triangles, const std::vector<double>& powers,
-           const std::vector<double>& radiances);
+  Emitters(const Scene& scene, std::vector<EmissiveTriangle> triangles,
+           const std::vector<double>& powers, const std::vector<double>& radiances);
 
+  const Scene& scene_;
   std::vector<EmissiveTriangle> triangles_;
   std::vector<float> areaPdf_;  // by material, 1/m^2; 0 where it does not emit
   CdfRows choice_;

@@ -21,21 +21,59 @@ float coneAttenuation(const PunctualLight& light, const vec3& wi) {
 
 }  // namespace
 
-PunctualSample incidentLight(const PunctualLight& light, const vec3& position) {
+DirectionSample incidentLight(const PunctualLight& light, const vec3& position) {
   if (light.kind == PunctualLight::Kind::Directional)
-    return {-light.direction, INFINITY, light.intensity};
+    return {-light.direction, light.intensity, 0, true};
   const vec3 to = light.position - position;
   const float distance = glm::length(to);
-  if (!(distance > 0)) return {-light.direction, 0, Rgb(0)};
+  if (!(distance > 0)) return {-light.direction, Rgb(0), 0, true, 0, 0};
   const vec3 wi = to / distance;
   float attenuation = rangeAttenuation(light, distance) / (distance * distance);
   if (light.kind == PunctualLight::Kind::Spot) attenuation *= coneAttenuation(light, wi);
-  return {wi, distance, light.intensity * attenuation};
+  return {wi, light.intensity * attenuation, 0, true, 0, distance};
 }
 
 std::unique_ptr<PunctualLights> PunctualLights::make(const Scene& scene) {
   if (scene.lights.empty()) return nullptr;
   return std::unique_ptr<PunctualLights>(new PunctualLights(scene));
+}
+
+std::vector<std::string> PunctualLights::groups() const {
+  std::vector<std::string> names;
+  for (const PunctualLight& light : lights_) names.push_back(light.name);
+  return names;
+}
+
+DirectionSample PunctualLights::sampleOf(size_t i, const vec3& position) const {
+  DirectionSample s = incidentLight(lights_[i], position);
+  s.group = int(i);
+  return s;
+}
+
+void PunctualLights::sample(const LightPoint& point, const PixelSampler& sampler,
+                            std::vector<DirectionSample>& out) const {
+  const size_t wanted = point.depth == 0 ? kFirst : kLater;
+  if (lights_.size() > wanted) return choose(point.position, sampler, int(wanted), out);
+  for (size_t i = 0; i < lights_.size(); ++i)
+    if (const DirectionSample s = sampleOf(i, point.position); !isBlack(s.irradiance))
+      out.push_back(s);
+}
+
+void PunctualLights::choose(const vec3& position, const PixelSampler& sampler, int count,
+                            std::vector<DirectionSample>& out) const {
+  float total = 0;
+  for (const PunctualLight& light : lights_)
+    total += luminance(incidentLight(light, position).irradiance);
+  const float step = total / float(count);
+  constexpr uint64_t kPurpose = 0x6c616d70;  // separate random stream
+  float target = step * toUnit(uint32_t(hash(sampler.sampleKey(), kPurpose))), sum = 0;
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    DirectionSample s = sampleOf(i, position);
+    const float weight = luminance(s.irradiance);
+    sum += weight;
+    s.irradiance *= step / weight;
+    for (; weight > 0 && sum > target; target += step) out.push_back(s);
+  }
 }
 
 }  // namespace chromeball

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of lighting strategies: ways to sample the light of a probe.
+// The interface of light sources: the light of a probe, in any way of sampling it, and what else
+// lights a scene.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +18,8 @@
 namespace chromeball {
 
 class Bsdf;
+struct Instance;
+struct Surface;
 
 // A point that receives light.
 struct LightPoint {
@@ -26,6 +30,14 @@ struct LightPoint {
   bool transmits = false;  // light from behind contributes too
 };
 
+// The surface at which a shadow ray to a light in the scene ends.
+struct LightEnd {
+  static constexpr uint32_t kNone = ~0u;
+
+  uint32_t instance = kNone;
+  vec3 position{0};  // offset from the surface, as origins of rays
+};
+
 // One direction for a shadow ray, as a directional light. `pdf` is the sum of the pdfs, over solid
 // angle, of all samples of the call; `irradiance`, on a surface perpendicular to the direction, is
 // radiance / pdf. So for any number of samples the estimate is the sum over samples of
@@ -33,11 +45,15 @@ struct LightPoint {
 struct DirectionSample {
   vec3 wi;  // unit, from the point to the light
   Rgb irradiance;
-  float pdf;             // unless isDelta
-  bool isDelta = false;  // from a delta light: no BSDF sample can find it, so its MIS weight is 1
-  int group = 0;         // of a delta light: index into LightingStrategy::groups()
+  float pdf;                  // unless isDelta
+  bool isDelta = false;       // no BSDF sample can find the light: its MIS weight is 1
+  int group = 0;              // of a delta light: index into LightingStrategy::groups()
+  float distance = INFINITY;  // metres
+  LightEnd end{};
 };
 
+// Light of a probe, as a strategy samples it; of suns and windows that are infinitely far away; or
+// of lamps and surfaces in the scene (scene_sources.h), which override less.
 class LightingStrategy {
  public:
   virtual ~LightingStrategy() = default;
@@ -52,7 +68,11 @@ class LightingStrategy {
     Rgb radiance;
     float pdf;
   };
-  virtual Escaped escaped(const LightPoint& point, const vec3& wi) const = 0;
+  virtual Escaped escaped(const LightPoint&, const vec3&) const { return {Rgb(0), 0}; }
+
+  // The pdf of sample(), over solid angle, for the point of a surface in the scene that a
+  // BSDF-sampled ray from `point` hits. Its radiance is emittedRadiance() (scene/surface.h).
+  virtual float pdfOfHit(const LightPoint&, const Surface&, const Instance&) const { return 0; }
 
   // escaped() for up to kMaxMany rays. Strategies override it where table reads of several rays can
   // overlap.
@@ -76,16 +96,17 @@ class LightingStrategy {
   virtual bool takesOneSample() const { return sampleMany({}, {}); }
 
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
-  virtual Rgb background(const vec3& origin, const vec3& wi) const = 0;
+  virtual Rgb background(const vec3&, const vec3&) const { return Rgb(0); }
 
   // Specular lobes with a GGX alpha below this are treated as mirrors: they see background(), and
   // sample() does not light them. The scene's own lamps light them like all other lobes.
   virtual float mirrorAlpha() const { return 0; }
 
   // False for an approximation, whose error does not converge to 0 with the number of samples.
-  virtual bool unbiased() const = 0;
+  virtual bool unbiased() const { return true; }
 
   // The names of the parts of the light that light groups tell apart (integrate/light_groups.h).
+  // Surfaces in the scene have none: their groups are those of their nodes.
   virtual std::vector<std::string> groups() const { return {"probe"}; }
   // Adds the radiance of escaped(), or of background(), to that of each group: one element of
   // `radiances` per group.

@@ -8,11 +8,12 @@ import time
 import lights
 import probes
 import rendering
+import scenes
 from page import page
 from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", lights.rows), ("Probes", probes.rows),
-            ("Sampling a probe", rendering.rows)]
+            ("Sampling a probe", rendering.rows), ("Composites and rooms", scenes.rows)]
 
 
 def main():

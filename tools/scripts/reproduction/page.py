@@ -16,8 +16,11 @@ class Row:
 
 
 def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
-    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+    def line(cells):
+        return "| " + " | ".join(map(str, cells)) + " |"
+
+    lines = [line(head), "| --- |" + " ---: |" * (len(head) - 1)]
+    lines += [line(row) for row in rows]
     return "\n".join(lines)
 
 
