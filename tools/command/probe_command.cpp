@@ -13,6 +13,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeEditCommand(*probe);
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
+  addProbeAlignCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
   addProbePlotCommand(*probe);

@@ -15,5 +15,6 @@ void addProbeRaysCommand(CLI::App& probe);
 void addProbePlotCommand(CLI::App& probe);
 void addProbeSplitCommand(CLI::App& probe);
 void addProbeAddSunCommand(CLI::App& probe);
+void addProbeAlignCommand(CLI::App& probe);
 
 }  // namespace chromeball
