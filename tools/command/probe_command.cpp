@@ -14,6 +14,7 @@ void addProbeCommand(CLI::App& app) {
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
   addProbeAlignCommand(*probe);
+  addProbeStitchCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
   addProbePlotCommand(*probe);

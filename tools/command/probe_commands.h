@@ -16,5 +16,6 @@ void addProbePlotCommand(CLI::App& probe);
 void addProbeSplitCommand(CLI::App& probe);
 void addProbeAddSunCommand(CLI::App& probe);
 void addProbeAlignCommand(CLI::App& probe);
+void addProbeStitchCommand(CLI::App& probe);
 
 }  // namespace chromeball
