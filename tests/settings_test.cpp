@@ -62,6 +62,14 @@ std::vector<OptionValue> valuesOf(const Setting& s) {
       for (const char* text : {"nan", "inf", "1e300", "much", "", "1 2"})
         values.push_back({text, false});
       break;
+    case SettingType::Numbers:
+      limit(s.range.min, s.range.excludesMin, -0.001);
+      values.push_back({"0.25", true});
+      values.push_back({"0.25,0,0.5", true});
+      values.push_back({"0,0,0,1", std::ranges::count(s.counts, 4) == 1});
+      for (const char* text : {"0,0", "0,0,0,0,0", "0,0,nan", "1e300", "0,,0", "0,0,", "", "1 2"})
+        values.push_back({text, false});
+      break;
     case SettingType::Choice:
     case SettingType::Choices:
       for (const std::string_view name : s.choices()) values.push_back({std::string(name), true});
@@ -91,7 +99,9 @@ TEST(Settings, EveryRowIsComplete) {
     EXPECT_TRUE(s.help.ends_with('.'));
     EXPECT_EQ(s.section.empty(), s.key.empty());
     EXPECT_FALSE(s.key.empty() && s.option.empty());
-    EXPECT_EQ(s.type == SettingType::Compound, !s.form.empty());
+    const bool isNumbers = s.type == SettingType::Numbers;
+    EXPECT_EQ(s.type == SettingType::Compound || isNumbers, !s.form.empty());
+    EXPECT_EQ(isNumbers, !s.counts.empty());
     if (s.type == SettingType::Choice || s.type == SettingType::Choices) {
       EXPECT_TRUE(s.choices);
     }
@@ -193,6 +203,11 @@ std::string asToml(const Setting& s, const std::string& text) {
   switch (s.type) {
     case SettingType::Size:
       return text == "1x1" ? "[1, 1]" : text == "800x600" ? "[800, 600]" : "'" + text + "'";
+    case SettingType::Numbers:
+      if (text.find(',') != std::string::npos && text.find(",,") == std::string::npos &&
+          !text.ends_with(','))
+        return '[' + text + ']';
+      [[fallthrough]];
     case SettingType::Flag:
       if (text == "true" || text == "false") return text;
       [[fallthrough]];

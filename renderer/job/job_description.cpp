@@ -26,6 +26,8 @@ Json toJson(const SettingValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
   if (const auto* number = std::get_if<uint64_t>(&value)) return *number;
   if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+    if (numbers->size() == 1) return numbers->front();
   return toText(value);
 }
 

@@ -221,7 +221,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
   FrameChange change;
-  if (loaded.probe.rotationDegrees() != float(job.file.settings.get<double>("probe.rotation"))) {
+  if (!(loaded.probe.rotation() == rotationOf(job))) {
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
     loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);

@@ -67,15 +67,20 @@ void applyToModels(const Settings& over, SceneFile& file) {
   }
 }
 
-// Between the keys linear, before and after them constant.
-double rotationAt(const std::vector<std::pair<double, double>>& keys, double seconds) {
+// Before the first key and after the last one constant.
+std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
   const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
-                                      [](double t, const auto& key) { return t < key.first; });
-  if (after == keys.begin()) return keys.front().second;
-  if (after == keys.end()) return keys.back().second;
-  const auto& [t0, degrees0] = *(after - 1);
-  const auto& [t1, degrees1] = *after;
-  return degrees0 + (degrees1 - degrees0) * (seconds - t0) / (t1 - t0);
+                                      [](double t, const auto& key) { return t < key.seconds; });
+  if (after == keys.begin()) return keys.front().rotation;
+  if (after == keys.end()) return keys.back().rotation;
+  const ProbeTurn &from = *(after - 1), &to = *after;
+  const double elapsed = seconds - from.seconds, duration = to.seconds - from.seconds;
+  if (from.rotation.size() == 1 && to.rotation.size() == 1) {
+    const double degrees = from.rotation.front();
+    return {degrees + (to.rotation.front() - degrees) * elapsed / duration};
+  }
+  return numbersOf(between(parseRotation(from.rotation, "rotation_keys"),
+                           parseRotation(to.rotation, "rotation_keys"), elapsed / duration));
 }
 
 // Overrides the settings of the scene file by `over`.
@@ -262,6 +267,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   job.file = std::move(scene);
   merge(job.file, over);
   const Settings& s = job.file.settings;
+  parseRotation(s.get<std::vector<double>>("probe.rotation"), s.location("probe.rotation"));
   checkTwoPass(job.file);
   checkTransparent(job.file);
   checkOrbit(job.file);

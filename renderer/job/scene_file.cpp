@@ -2,6 +2,7 @@
 #include "job/scene_file.h"
 
 #include "base/file.h"
+#include "job/arguments.h"
 #include "job/scene_file_composite.h"
 #include "job/scene_file_light.h"
 #include "job/scene_file_source.h"
@@ -57,12 +58,15 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
   if (!keys) return;
   if (!keys.isArray()) keys.mustBe(keys.setting->form);
   forEach(keys, [&](const Entry& key) {
-    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, degrees]");
+    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, rotation]");
     const double seconds = key.element(0).number();
-    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().first))
+    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().seconds))
       failAt(key.location(), "the times of `rotation_keys` must ascend: {:g} s is not after {:g} s",
-             seconds, scene.probeTurns.back().first);
-    scene.probeTurns.emplace_back(seconds, key.element(1).number());
+             seconds, scene.probeTurns.back().seconds);
+    Entry rotation = key.element(1);
+    rotation.setting = findSetting("probe", "rotation");
+    scene.probeTurns.push_back({seconds, rotation.numbers()});
+    parseRotation(scene.probeTurns.back().rotation, rotation.location());
   });
 }
 

@@ -41,13 +41,19 @@ struct SourceEntry {
   bool isIllum = true;
 };
 
+// The rotation of the probe at a time (`rotation_keys`).
+struct ProbeTurn {
+  double seconds;
+  std::vector<double> rotation;  // as the setting "probe.rotation"
+};
+
 // The contents of a scene file. Paths are resolved against the scene file's folder.
 struct SceneFile {
   std::string path;                // of the scene file, or of the model if there is no scene file
   std::vector<ModelEntry> models;  // at least one
   Settings settings;               // the given keys, except those of structured parts
   std::optional<Camera> camera;    // [camera] with `position`
-  std::vector<std::pair<double, double>> probeTurns;  // seconds, degrees; ascending, may be empty
+  std::vector<ProbeTurn> probeTurns;  // ascending, may be empty
   std::optional<Lens> lens;
   std::vector<Lamp> lamps;              // [[light]]
   std::vector<SourceEntry> sources;     // [[source]]

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "job/arguments.h"
 #include "job/load_scene.h"
 #include "job/polygon_file.h"
 #include "lighting/ambient_light.h"
@@ -88,10 +89,15 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
   return loaded;
 }
 
-Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
+Rotation rotationOf(const RenderJob& job) {
   const Settings& settings = job.file.settings;
-  Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
-              float(settings.get<double>("probe.scale")));
+  return parseRotation(settings.get<std::vector<double>>("probe.rotation"),
+                       settings.location("probe.rotation"));
+}
+
+Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
+  Probe probe(loaded.latLong, rotationOf(job),
+              colorOf(job.file.settings.get<std::vector<double>>("probe.scale")));
   loaded.latLong = {};
   return probe;
 }
@@ -126,7 +132,7 @@ std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& l
   Image hidden = probe.latLong();
   for (size_t i = 0; i < hidden.texels.size(); ++i) hidden.texels[i] -= rest.texels[i];
   take(false);
-  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotationDegrees())};
+  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotation())};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
@@ -140,8 +146,8 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   if (sources) {
     std::vector<std::unique_ptr<LightingStrategy>> parts;
     parts.push_back(std::move(lighting));
-    parts.push_back(std::make_unique<PolygonLights>(sources->lights, sources->hidden,
-                                                    sampled.rotationDegrees()));
+    parts.push_back(
+        std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
     lighting = std::make_unique<CombinedLight>(std::move(parts));
   }
   if (loaded.surroundings)

@@ -43,6 +43,9 @@ struct ProbeSources {
 std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
                                       const Probe& probe);
 
+// As `[probe] rotation`. Throws InputError for a quaternion that is not one.
+Rotation rotationOf(const RenderJob& job);
+
 // With the job's rotation and scale; frees the map.
 Probe probeOf(const RenderJob& job, LoadedProbe& loaded);
 

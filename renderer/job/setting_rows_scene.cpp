@@ -140,24 +140,30 @@ void addProbe(std::vector<Setting>& rows) {
        .help = "How the probe's image maps to directions; auto detects it."});
   add({.key = "rotation",
        .option = "probe-rotation",
-       .argument = "DEGREES",
-       .type = Number,
+       .argument = "YAW[,PITCH,ROLL]",
+       .type = Numbers,
+       .form = "one angle, three (yaw, pitch, roll), or a quaternion (x, y, z, w)",
+       .counts = {1, 3, 4},
        .unit = "degrees",
        .fallback = "0",
-       .help = "Turns the environment about +Y, counter-clockwise seen from above."});
+       .help = "Turns the environment about the fixed axes Z (roll), then X (pitch), then Y (yaw), "
+               "counter-clockwise seen from the tip of the axis: yaw from above."});
   add({.key = "rotation_keys",
        .type = Compound,
-       .form = "pairs [seconds, degrees], each later than the one before",
+       .form = "pairs [seconds, rotation], each later than the one before",
        .absent = "`rotation` at all times",
-       .help = "The rotation at times of an animation, linear between; see --frames and "
-               "--animation-time."});
+       .help = "The rotation at times of an animation, as a number or an array like `rotation`; "
+               "between them linear in the yaw, or the shortest way if one is tilted; see --frames "
+               "and --animation-time."});
   add({.key = "scale",
        .option = "probe-scale",
-       .argument = "FACTOR",
-       .type = Number,
+       .argument = "X|R,G,B",
+       .type = Numbers,
+       .form = "a number, or three (r, g, b)",
+       .counts = {1, 3},
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the probe's radiance."});
+       .help = "Factor on the probe's radiance, or on each of its channels."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

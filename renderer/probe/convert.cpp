@@ -78,9 +78,8 @@ int samplesPerSide(Mapping from, const ImageSize& source, Mapping to, const Imag
   return std::max(2, int(std::ceil(perTexel * std::sqrt(texels))));
 }
 
-glm::dmat3 turnAboutY(double degrees) {
-  const double angle = degrees * kPiD / 180, c = std::cos(angle), s = std::sin(angle);
-  return glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+glm::dmat3 matrixOf(const Rotation& rotation) {
+  return {rotation(dvec3(1, 0, 0)), rotation(dvec3(0, 1, 0)), rotation(dvec3(0, 0, 1))};
 }
 
 // Resamples a cube map or a disc.
@@ -113,22 +112,22 @@ ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
 }
 
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
-              float rotationDegrees) {
+              const Rotation& rotation) {
   if (parseMapping(mappingName(to), size.width, size.height, "convert") != to)
     throwInput("convert: {} x {} is the wrong aspect ratio for this {} layout", size.width,
                size.height, mappingName(to));
   const ImageSize source{image.width, image.height};
-  if (from == to && rotationDegrees == 0 && size.width == image.width &&
+  if (from == to && rotation == Rotation() && size.width == image.width &&
       size.height == image.height)
     return image;
 
   if (from == Mapping::LatLong) {
     const int samples = samplesPerSide(from, source, to, size);
-    const Probe probe(image, rotationDegrees);
+    const Probe probe(image, rotation);
     return rasterize(to, size, samples,
                      [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
   }
-  return resample(image, from, to, size, turnAboutY(double(rotationDegrees)));
+  return resample(image, from, to, size, matrixOf(rotation));
 }
 
 Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation) {

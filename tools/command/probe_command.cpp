@@ -13,6 +13,8 @@ void addProbeCommand(CLI::App& app) {
   addProbeEditCommand(*probe);
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
+  addProbeAlignCommand(*probe);
+  addProbeStitchCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
   addProbePlotCommand(*probe);

@@ -15,5 +15,7 @@ void addProbeRaysCommand(CLI::App& probe);
 void addProbePlotCommand(CLI::App& probe);
 void addProbeSplitCommand(CLI::App& probe);
 void addProbeAddSunCommand(CLI::App& probe);
+void addProbeAlignCommand(CLI::App& probe);
+void addProbeStitchCommand(CLI::App& probe);
 
 }  // namespace chromeball

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe convert IN OUT --to MAPPING
+#include <algorithm>
 #include <optional>
 
 #include "base/error.h"
@@ -9,16 +10,18 @@
 #include "job/output_file.h"
 #include "messages.h"
 #include "probe/convert.h"
+#include "probe/edit.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 #include "write_probe.h"
 
 namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string in, out, to, from = "auto", size;
-  float rotation = 0;
+  std::string in, out, to, from = "auto", size, scale;
+  Rotation rotation;
 };
 
 // The mapping and size of the output. Without a size, crosses and strips are vertical.
@@ -40,10 +43,13 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
-  if (!std::isfinite(arguments.rotation)) throwInput("--rotation: should be a number of degrees");
-  const LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
+  const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
+  LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
   const auto [mapping, size] = target(arguments, probe.latLong);
+  multiply(probe.latLong, scale);
+  if (!std::ranges::all_of(probe.latLong.texels, [](float x) { return std::isfinite(x); }))
+    throwInput("{}: a texel times the scale exceeds the range of a float", arguments.in);
   std::optional<BusyLine> busy("converting");
   const Image converted =
       convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation);
@@ -67,8 +73,8 @@ void addProbeConvertCommand(CLI::App& probe) {
   command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT; else the size that keeps the detail");
-  command->add_option("--rotation", arguments->rotation,
-                      "degrees about +Y, counter-clockwise seen from above");
+  addRotationOption(*command, arguments->rotation);
+  command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
   command->callback([arguments] { run(*arguments); });
 }
 
