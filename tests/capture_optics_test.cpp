@@ -82,8 +82,8 @@ TEST(BallReflectance, OfMetals) {
   EXPECT_NEAR(metalFresnel(1, {1.37, 7.62}), 0.915, 2e-3);  // aluminium, in red light
   for (const MetalIndex& m : {MetalIndex{3.18, 3.31}, MetalIndex{0.2, 3}, MetalIndex{1.5, 0}}) {
     const double k2 = m.k * m.k;
-    EXPECT_NEAR(metalFresnel(1, m),
-                ((m.n - 1) * (m.n - 1) + k2) / ((m.n + 1) * (m.n + 1) + k2), 1e-15);
+    EXPECT_NEAR(metalFresnel(1, m), ((m.n - 1) * (m.n - 1) + k2) / ((m.n + 1) * (m.n + 1) + k2),
+                1e-15);
     EXPECT_NEAR(metalFresnel(0, m), 1, 1e-12);
   }
   // Glass at Brewster's angle, tan(i) = n, reflects one polarisation only: half of
@@ -94,8 +94,9 @@ TEST(BallReflectance, OfMetals) {
 
 TEST(BallReflectance, IsMeasuredAtTheCentre) {
   const dvec3 measured(0.632, 0.647, 0.653);
-  const BallReflectance constant(measured), schlick = BallReflectance::schlick(measured),
-                        chrome = BallReflectance::ofMetal(measured, {3.18, 3.31});
+  const BallReflectance constant(measured),
+      schlick = BallReflectance::schlick(measured),
+      chrome = BallReflectance::ofMetal(measured, {3.18, 3.31});
   for (const BallReflectance& reflectance : {constant, schlick, chrome})
     EXPECT_LT(glm::distance(reflectance.at(1), measured), 1e-15);
   EXPECT_EQ(constant.at(0.1), measured);

@@ -81,8 +81,8 @@ inline Image photographOf(const BallScene& scene, int width, int height, const C
                       scene.samples);
 }
 
-// The mean over many normals of the largest channel's error of irradiance, over the mean irradiance;
-// and the largest.
+// The mean over many normals of the largest channel's error of irradiance, over the mean
+// irradiance; and the largest.
 struct IrradianceError {
   double mean = 0, largest = 0;
 };

@@ -52,8 +52,7 @@ TEST(FindCircle, InFrontOfAPattern) {
   std::normal_distribution<float> noise(1, 0.03f);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const bool isOutside =
-          glm::distance(dvec2(x + 0.5, y + 0.5), circle.centre) > circle.radius;
+      const bool isOutside = glm::distance(dvec2(x + 0.5, y + 0.5), circle.centre) > circle.radius;
       const float stripe = (x / 14 + y / 23) % 2 == 0 ? 0.5f : 2;
       const Rgb color = isOutside ? Rgb(stripe) : image.rgb(x, y);
       image.setRgb(x, y, color * std::max(noise(random), 0.f));
@@ -81,8 +80,8 @@ TEST(FindCircle, FindsNoneWhereThereIsNone) {
 
 // A ball in an office. The author of these photographs took the circle inscribed in the picture.
 TEST(FindCircle, OfARealPhotograph) {
-  const auto path = sharedData(
-      "reference/differential_rendering/bbold72_cs445_samples/calib_hdr.hdr");
+  const auto path =
+      sharedData("reference/differential_rendering/bbold72_cs445_samples/calib_hdr.hdr");
   if (!path) GTEST_SKIP() << "no shared data";
   expectCircle(readImage(*path), {{190.5, 190.5}, 190.5}, 3, "office");
 }

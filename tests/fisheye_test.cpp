@@ -15,9 +15,9 @@ namespace {
 
 using enum FisheyeProjection;
 
-const std::vector<Fisheye> kLenses{{180, Equidistant},   {220, Equidistant},   {360, Equidistant},
-                                   {180, Equisolid},     {235, Equisolid},     {120, Orthographic},
-                                   {180, Orthographic},  {180, Stereographic}, {300, Stereographic}};
+const std::vector<Fisheye> kLenses{{180, Equidistant},  {220, Equidistant},   {360, Equidistant},
+                                   {180, Equisolid},    {235, Equisolid},     {120, Orthographic},
+                                   {180, Orthographic}, {180, Stereographic}, {300, Stereographic}};
 
 // Directions at even steps of the angle from the axis, inside the field of view.
 template <class Body>
@@ -36,10 +36,15 @@ TEST(Fisheye, DirectionToImageAndBack) {
       const dvec2 uv = directionToUv(lens, d);
       const std::optional<dvec3> back = uvToDirection(lens, uv);
       // On the rim, rounding may move it out. There the sine has its maximum if the projection is
-      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 of it are 1e-8 radians.
-      if (!back) return EXPECT_NEAR(angle, lens.halfAngle(), 1e-9);
+      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 of it are 1e-8
+      // radians.
+      if (!back) {
+        EXPECT_NEAR(angle, lens.halfAngle(), 1e-9);
+        return;
+      }
       const bool isFlat = lens == Fisheye{180, Orthographic} && angle > 0.999 * lens.halfAngle();
-      EXPECT_LT(glm::distance(*back, d), isFlat ? 1e-7 : 1e-12) << fisheyeName(lens) << " " << angle;
+      EXPECT_LT(glm::distance(*back, d), isFlat ? 1e-7 : 1e-12)
+          << fisheyeName(lens) << " " << angle;
       EXPECT_LT(glm::distance(directionToUv(lens, *back), uv), 1e-12) << fisheyeName(lens);
       EXPECT_NEAR(glm::length(*back), 1, 1e-14);
     });
@@ -127,10 +132,10 @@ TEST(Fisheye, Names) {
   EXPECT_EQ(parseFisheye("fisheye:200", "x"), (Fisheye{200, Equidistant}));
   EXPECT_EQ(parseFisheye("fisheye:185.5:equisolid", "x"), (Fisheye{185.5, Equisolid}));
   for (const Fisheye& lens : kLenses) EXPECT_EQ(parseFisheye(fisheyeName(lens), "x"), lens);
-  for (const char* wrong : {"fisheye:", "fisheye:x", "fisheye:0", "fisheye:59", "fisheye:361",
-                            "fisheye:nan", "fisheye:inf", "fisheye:180:", "fisheye:180:equi",
-                            "fisheye:181:orthographic", "fisheye:301:stereographic",
-                            "fisheye:180:equisolid:1", "fisheye:-180"})
+  for (const char* wrong :
+       {"fisheye:", "fisheye:x", "fisheye:0", "fisheye:59", "fisheye:361", "fisheye:nan",
+        "fisheye:inf", "fisheye:180:", "fisheye:180:equi", "fisheye:181:orthographic",
+        "fisheye:301:stereographic", "fisheye:180:equisolid:1", "fisheye:-180"})
     EXPECT_THROW(parseFisheye(wrong, "x"), InputError) << wrong;
   EXPECT_FALSE(namesFisheye("fisheyes"));
   EXPECT_EQ(parseMapping("fisheye:200", 10, 10, "x"), Mapping(Fisheye{200, Equidistant}));

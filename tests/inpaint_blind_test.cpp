@@ -24,8 +24,8 @@ Assembly withHole(const Image& map, const dvec3& centre, double radius) {
   return assembly;
 }
 
-const std::vector<dvec3> kCentres{{0, 0, -1}, {0, 0, 1}, {0, 1, 0}, {0, -1, 0}, {0.6, 0, 0.8},
-                                  {0, 0.8, -0.6}};
+const std::vector<dvec3> kCentres{{0, 0, -1}, {0, 0, 1},     {0, 1, 0},
+                                  {0, -1, 0}, {0.6, 0, 0.8}, {0, 0.8, -0.6}};
 
 TEST(InpaintBlind, ContinuesAConstant) {
   const Image map = constantProbe(kSize, Rgb(0.7f, 2, 1e5f));
@@ -40,8 +40,8 @@ TEST(InpaintBlind, ContinuesAConstant) {
 }
 
 // Under the stereographic projection from the point opposite to the hole's centre, powers of the
-// complex coordinate are harmonic on the sphere: radius^m cos(m around) inside the rim, with radius =
-// tan(angle / 2).
+// complex coordinate are harmonic on the sphere: radius^m cos(m around) inside the rim, with radius
+// = tan(angle / 2).
 TEST(InpaintBlind, ContinuesAHarmonicFunction) {
   for (const dvec3& centre : kCentres) {
     const dvec3 side = glm::normalize(

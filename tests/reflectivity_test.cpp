@@ -49,8 +49,8 @@ TEST(Reflectivity, StandardErrorIsThatOfTheRatio) {
   for (unsigned i = 0; i < kTrials; ++i) {
     const PatchMean direct =
         patchMean(noisy(12, 10, light, 0.1, 2 * i), {0, 0, 12, 10}, kUnlimited, "x");
-    const PatchMean reflected = patchMean(noisy(8, 8, truth * light, 0.1, 2 * i + 1), {0, 0, 8, 8},
-                                          kUnlimited, "x");
+    const PatchMean reflected =
+        patchMean(noisy(8, 8, truth * light, 0.1, 2 * i + 1), {0, 0, 8, 8}, kUnlimited, "x");
     const Reflectivity result = reflectivity(reflected, direct, glm::dvec3(1), "x");
     const double z = (result.value.x - truth.x) / result.standardError.x;
     within += std::fabs(z) < 1;
@@ -67,9 +67,8 @@ TEST(Reflectivity, OfAPaintBesideAStandard) {
   const Reflectivity result = reflectivity(paint, standard, glm::dvec3(0.9), "x");
   EXPECT_LT(glm::distance(result.value, glm::dvec3(0.36, 0.54, 0.72)), 1e-15);
   EXPECT_EQ(result.standardError, glm::dvec3(0));
-  EXPECT_THROW(
-      reflectivity(paint, {glm::dvec3(1, 0, 1), glm::dvec3(0), 1}, glm::dvec3(1), "x"),
-      InputError);
+  EXPECT_THROW(reflectivity(paint, {glm::dvec3(1, 0, 1), glm::dvec3(0), 1}, glm::dvec3(1), "x"),
+               InputError);
 }
 
 TEST(Reflectivity, RefusesWhatIsNoRadiance) {

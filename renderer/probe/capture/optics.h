@@ -29,8 +29,6 @@ class CaptureOptics {
 
   // The solid angle that the circle shows, over the whole sphere's.
   virtual double shareShown() const = 0;
-  // Whether the rim is stretched so far that its pixels show nothing useful.
-  virtual bool hasStretchedRim() const = 0;
 };
 
 // A mirror ball seen by a camera that looks at its centre. A point at radius r of the disc, which
@@ -50,7 +48,6 @@ class BallOptics : public CaptureOptics {
   // cos(i) along the radius (HDRI book, section 9.3.1: blind spots).
   std::optional<DiscPoint> locate(const dvec3& direction) const override;
   double shareShown() const override;
-  bool hasStretchedRim() const override { return true; }
 
   // The direction that a point of the disc shows, and the cosine of the angle of incidence there.
   struct Reflection {
@@ -74,7 +71,6 @@ class FisheyeOptics : public CaptureOptics {
   explicit FisheyeOptics(const Fisheye& lens) : lens_(lens) {}
   std::optional<DiscPoint> locate(const dvec3& direction) const override;
   double shareShown() const override;
-  bool hasStretchedRim() const override { return false; }
 
  private:
   Fisheye lens_;

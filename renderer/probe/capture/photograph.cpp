@@ -40,9 +40,8 @@ Image loadMask(const std::filesystem::path& path, const Image& photograph,
   return mask;
 }
 
-PhotographDisc::PhotographDisc(const Image& image, const Circle& circle, const Image& mask,
-                               bool keepsRim)
-    : image_(image), circle_(circle), mask_(mask), keepsRim_(keepsRim) {}
+PhotographDisc::PhotographDisc(const Image& image, const Circle& circle, const Image& mask)
+    : image_(image), circle_(circle), mask_(mask) {}
 
 double PhotographDisc::weight(int x, int y) const {
   if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return 0;
@@ -56,10 +55,7 @@ PhotographDisc::Sample PhotographDisc::at(const glm::dvec2& position) const {
   constexpr double kRim = 0.75;  // pixels
   glm::dvec2 fromCentre = circle_.radius * glm::dvec2(position.x, -position.y);
   const double distance = glm::length(fromCentre), largest = circle_.radius - kRim;
-  if (distance > largest) {
-    if (!keepsRim_) return {glm::dvec3(0), 0};
-    fromCentre *= largest / distance;
-  }
+  if (distance > largest) fromCentre *= largest / distance;
   const glm::dvec2 corner = circle_.centre + fromCentre - 0.5, floor = glm::floor(corner);
   const glm::dvec2 part = corner - floor;
   Sample sum{glm::dvec3(0), 0};

@@ -27,16 +27,16 @@ Image loadMask(const std::filesystem::path& path, const Image& photograph,
 // The disc of a photograph, as a function of position.
 class PhotographDisc {
  public:
-  // `mask` is empty, or as from loadMask(). With `keepsRim`, points closer to the rim than 0.75
-  // pixels take the radiance there; else they are not covered.
-  PhotographDisc(const Image& image, const Circle& circle, const Image& mask, bool keepsRim);
+  // Keeps references to the images. `mask` is empty, or as from loadMask().
+  PhotographDisc(const Image& image, const Circle& circle, const Image& mask);
 
   struct Sample {
     glm::dvec3 radiance;
     double coverage;  // the share of the interpolation inside image and mask; 0: no radiance
   };
   // The bilinear interpolation at a position in the disc of radius 1, x right and y up. It never
-  // reads pixels that the rim may cut.
+  // reads pixels that the rim may cut: points closer to the rim than 0.75 pixels have the radiance
+  // at that distance.
   Sample at(const glm::dvec2& position) const;
 
  private:
@@ -45,7 +45,6 @@ class PhotographDisc {
   const Image& image_;
   Circle circle_;
   const Image& mask_;
-  bool keepsRim_;
 };
 
 }  // namespace chromeball
