@@ -26,11 +26,13 @@ constexpr double kDistances[] = {kParallel, 1000, 32, 4, 1.2};
 TEST(BallOptics, ReflectsAsAMirror) {
   for (const double distance : kDistances) {
     const BallOptics optics(distance, BallReflectance(), 0);
+    // The vector form loses digits in the difference of squares of the distance, of size 1.
+    const double rounding = 1e-11 + (std::isfinite(distance) ? 1e-14 * distance * distance : 0);
     for (int i = 0; i <= 50; ++i) {
       const double radius = 0.999 * i / 50, around = 0.4 + i;
       const dvec2 p = radius * dvec2(std::cos(around), std::sin(around));
       const BallOptics::Reflection reflection = optics.reflection(p);
-      EXPECT_LT(glm::distance(reflection.direction, reflectedDirection(distance, p)), 1e-11)
+      EXPECT_LT(glm::distance(reflection.direction, reflectedDirection(distance, p)), rounding)
           << distance << " " << radius;
       const std::optional<DiscPoint> back = optics.locate(reflection.direction);
       ASSERT_TRUE(back);
