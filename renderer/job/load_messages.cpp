@@ -44,7 +44,7 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
 void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
   for (const std::string& line : warnings(probe, path)) messages.warn(line);
   if (!probe.detected) return;
-  const std::string_view mapping = mappingName(probe.mapping);
+  const std::string mapping = mappingName(probe.mapping);
   messages.note(fmt::format("{}: detected as {} {} probe because {}", path,
                             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
 }

@@ -9,6 +9,8 @@ void addProbeCommand(CLI::App& app) {
   probe->require_subcommand(1);
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
+  addProbeAssembleCommand(*probe);
+  addProbeReflectivityCommand(*probe);
   addProbeSynthCommand(*probe);
   addProbeEditCommand(*probe);
   addProbeSplitCommand(*probe);

@@ -8,6 +8,8 @@ namespace chromeball {
 
 void addProbeInfoCommand(CLI::App& probe);
 void addProbeConvertCommand(CLI::App& probe);
+void addProbeAssembleCommand(CLI::App& probe);
+void addProbeReflectivityCommand(CLI::App& probe);
 void addProbeSynthCommand(CLI::App& probe);
 void addProbeEditCommand(CLI::App& probe);
 void addProbeIrradianceCommand(CLI::App& probe);

@@ -22,6 +22,7 @@ namespace {
 struct Arguments {
   std::string in, out, to, from = "auto", size, scale;
   Rotation rotation;
+  bool flip = false;
 };
 
 // The mapping and size of the output. Without a size, crosses and strips are vertical.
@@ -31,13 +32,22 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
     if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
       return {*mapping, size};
   }
-  for (const Mapping mapping : {Mapping::LatLong, Mapping::AngularMap, Mapping::MirrorBall,
-                                Mapping::VerticalCross, Mapping::VerticalStrip, Mapping::CubeGrid})
-    if (mappingName(mapping) == arguments.to)
-      return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
-  throwInput(
-      "--to: `{}` should be lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2",
-      arguments.to);
+  const Mapping mapping = parseMapping(arguments.to, "--to");
+  return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
+}
+
+void warnOfSource(const LoadedProbe& probe, const Arguments& arguments) {
+  if (probe.mapping == Mapping::MirrorBall && !arguments.flip)
+    warn(fmt::format(
+        "{}: read as an ideal mirror ball; a photograph of a ball is mirrored and shows "
+        "its camera in the centre: use --flip, or `probe assemble`",
+        arguments.in));
+  const std::optional<Fisheye> lens = probe.mapping.disc();
+  if (!lens) return;
+  const double share = lens->solidAngle() / (4 * kPiD);
+  if (share < 1 - 1e-9)
+    warn(fmt::format("{}: shows {:.3g}% of the sphere; the rest is black", arguments.in,
+                     100 * share));
 }
 
 void run(const Arguments& arguments) {
@@ -46,6 +56,8 @@ void run(const Arguments& arguments) {
   const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
   LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  warnOfSource(probe, arguments);
+  if (arguments.flip) mirrorLeftAndRight(probe.latLong);
   const auto [mapping, size] = target(arguments, probe.latLong);
   multiply(probe.latLong, scale);
   if (!std::ranges::all_of(probe.latLong.texels, [](float x) { return std::isfinite(x); }))
@@ -68,13 +80,19 @@ void addProbeConvertCommand(CLI::App& probe) {
       ->required();
   command
       ->add_option("--to", arguments->to,
-                   "lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2")
+                   "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
+                   "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
+                   "orthographic, stereographic")
       ->required();
   command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT; else the size that keeps the detail");
   addRotationOption(*command, arguments->rotation);
   command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
+  command->add_flag(
+      "--flip", arguments->flip,
+      "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
+      "shows the camera: with the camera on +Z, turn by --rotation 180");
   command->callback([arguments] { run(*arguments); });
 }
 
