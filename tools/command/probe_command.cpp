@@ -11,6 +11,8 @@ void addProbeCommand(CLI::App& app) {
   addProbeConvertCommand(*probe);
   addProbeSynthCommand(*probe);
   addProbeEditCommand(*probe);
+  addProbeMergeCommand(*probe);
+  addProbeSunCommand(*probe);
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
   addProbeIrradianceCommand(*probe);
