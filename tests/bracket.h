@@ -34,7 +34,8 @@ inline std::vector<Exposure> bracket(const Image& radiance, const std::vector<do
                                      const Encoding& encode = encodeSrgb, int steps = 255) {
   std::vector<Exposure> exposures;
   for (size_t i = 0; i < factors.size(); ++i)
-    exposures.push_back({std::to_string(i + 1), photographed(radiance, dvec3(factors[i]), encode, steps),
+    exposures.push_back({std::to_string(i + 1),
+                         photographed(radiance, dvec3(factors[i]), encode, steps),
                          dvec3(factors[i])});
   return exposures;
 }

@@ -107,22 +107,22 @@ TEST_F(SlowCommandCapture, MergesByOptions) {
   EXPECT_EQ(mergedWith({"--exposures", "1/8,1/8", "--filter", "1=0.08,0.08,0.08"}).texels,
             plain.texels);
   EXPECT_EQ(mergedWith({"--exposures", "1/8,1/8", "--filter", "1=0.08"}).texels, plain.texels);
-  EXPECT_EQ(mergedWith({"--exposures", "4,4", "--apertures", "20,8", "--aperture-ratio",
-                        "8:20=12.5"})
-                .rgb(9, 9),
-            2.f * plain.rgb(9, 9));
+  EXPECT_EQ(
+      mergedWith({"--exposures", "4,4", "--apertures", "20,8", "--aperture-ratio", "8:20=12.5"})
+          .rgb(9, 9),
+      2.f * plain.rgb(9, 9));
 }
 
 TEST_F(SlowCommandCapture, SolvesWritesAndReadsAResponse) {
   const Words files = series(ramp(256, 64, 0.05, 100));
   const std::string curve = folder_ / "curve.csv", again = folder_ / "again.exr";
-  const CommandResult solved = runCommand(joined(joined({"probe", "merge"}, files),
-                                                 {"--response", "solve", "--write-response", curve,
-                                                  "-o", out_}));
+  const CommandResult solved =
+      runCommand(joined(joined({"probe", "merge"}, files),
+                        {"--response", "solve", "--write-response", curve, "-o", out_}));
   EXPECT_EQ(solved.status, 0) << solved.error;
   EXPECT_EQ(solved.error, "");
-  const CommandResult read = runCommand(
-      joined(joined({"probe", "merge"}, files), {"--response", curve, "-o", again}));
+  const CommandResult read =
+      runCommand(joined(joined({"probe", "merge"}, files), {"--response", curve, "-o", again}));
   EXPECT_EQ(read.status, 0) << read.error;
   const Image a = readImage(out_), b = readImage(again);
   for (size_t i = 0; i < a.texels.size(); ++i)
@@ -131,22 +131,22 @@ TEST_F(SlowCommandCapture, SolvesWritesAndReadsAResponse) {
 
 TEST_F(SlowCommandCapture, WarnsOfExposuresThatDisagree) {
   const Words files = series(radiance_);
-  const CommandResult result = runCommand(joined(
-      joined({"probe", "merge"}, files), {"--exposures", "1,1/4,1/20", "-o", out_}));
+  const CommandResult result = runCommand(
+      joined(joined({"probe", "merge"}, files), {"--exposures", "1,1/4,1/20", "-o", out_}));
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.error.find("16.png disagree by 2"), std::string::npos) << result.error;
   EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-  const CommandResult unused = runCommand({"probe", "merge", files[0],
-                                           write("white.png", constantProbe({64, 32}, Rgb(2))),
-                                           "--exposures", "1,10", "-o", out_});
+  const CommandResult unused =
+      runCommand({"probe", "merge", files[0], write("white.png", constantProbe({64, 32}, Rgb(2))),
+                  "--exposures", "1,10", "-o", out_});
   EXPECT_NE(unused.error.find("white.png: is not used"), std::string::npos) << unused.error;
 }
 
 TEST_F(SlowCommandCapture, CalibratesAFilter) {
   Image with = radiance_;
   multiply(with, Rgb(0.00105f, 0.00098f, 0.00091f));
-  const CommandResult result = runCommand(
-      {"probe", "merge", "--calibrate-filter", write("with.exr", with), write("out.exr", radiance_)});
+  const CommandResult result = runCommand({"probe", "merge", "--calibrate-filter",
+                                           write("with.exr", with), write("out.exr", radiance_)});
   EXPECT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error, "");
   EXPECT_EQ(result.out, "transmission    0.00105,0.00098,0.00091 of 2048 pixels\n");
@@ -263,8 +263,8 @@ class SlowCommandSun : public SlowCommandCapture {
 
 TEST_F(SlowCommandSun, RestoresTheIrradianceOfTheSky) {
   const std::string full = folder_ / "full.exr", lights = folder_ / "sun.json";
-  const CommandResult result = runCommand(sun({"-o", full, "--lights", lights, "--residual",
-                                               folder_ / "r.exr", "--json"}));
+  const CommandResult result =
+      runCommand(sun({"-o", full, "--lights", lights, "--residual", folder_ / "r.exr", "--json"}));
   ASSERT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error, "");
   const json report = json::parse(result.out);
@@ -344,7 +344,8 @@ TEST_F(SlowCommandSun, BadInputIsRejected) {
   expectError(sun({"--direction", "0,0,-1"}), "lights less than the rim");
   expectError(sun({"--lights", folder_ / "sun.csv"}), ".json");
   expectError(sun({"-o", folder_ / "clipped.exr"}), "would overwrite");
-  expectError(sun({"--mask", write("small.png", Image(4, 4, 3))}), "a mask has the photograph's size");
+  expectError(sun({"--mask", write("small.png", Image(4, 4, 3))}),
+              "a mask has the photograph's size");
   expectError(sun({"--mask", write("none.png", Image(64, 64, 3))}), "at least 100 are needed");
 }
 

@@ -55,12 +55,16 @@ inline std::string bigEndian(size_t value, int bytes) {
 // The JPEG or PNG with the block before its other segments or chunks.
 inline std::string withExif(const std::string& file, const std::string& block) {
   const std::string name("Exif\0\0", 6);
-  if (file.starts_with("\xff\xd8"))
-    return file.substr(0, 2) + "\xff\xe1" + bigEndian(2 + name.size() + block.size(), 2) + name +
-           block + file.substr(2);
-  constexpr size_t kEndOfHeader = 8 + 25;
-  return file.substr(0, kEndOfHeader) + bigEndian(block.size(), 4) + "eXIf" + block + "\1\2\3\4" +
-         file.substr(kEndOfHeader);
+  const bool isJpeg = file[0] == '\xff';
+  const size_t at = isJpeg ? 2 : 8 + 25;  // after the start of the image, or signature and header
+  std::string result(file, 0, at);
+  if (isJpeg)
+    result.append("\xff\xe1").append(bigEndian(2 + name.size() + block.size(), 2)).append(name);
+  else
+    result.append(bigEndian(block.size(), 4)).append("eXIf");
+  result.append(block);
+  if (!isJpeg) result.append("\1\2\3\4");  // a checksum that nobody checks
+  return result.append(file, at);
 }
 
 }  // namespace chromeball

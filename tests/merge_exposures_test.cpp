@@ -102,8 +102,8 @@ TEST(MergeExposures, WhatIsNoNumberTellsNothing) {
   EXPECT_EQ(merged.radiance.rgb(1, 0), Rgb(0.5f));
 }
 
-// HDRI book, section 9.3.5: f/4 lets 16.63 times as much light pass as f/16, not 16 times. Where one
-// aperture shows what the other cannot, radiance steps by 16.63 / 16.
+// HDRI book, section 9.3.5: f/4 lets 16.63 times as much light pass as f/16, not 16 times. Where
+// one aperture shows what the other cannot, radiance steps by 16.63 / 16.
 TEST(MergeExposures, AWrongApertureRatioLeavesAStep) {
   Image radiance(2, 1, 3);
   radiance.setRgb(0, 0, Rgb(0.1f));  // black at f/16
@@ -114,7 +114,8 @@ TEST(MergeExposures, AWrongApertureRatioLeavesAStep) {
     const std::vector<double> factors = exposureFactors(settings, ratios);
     const double f4 = 1. / 16;
     std::vector<Exposure> exposures;
-    exposures.push_back({"f/4", photographed(radiance, dvec3(f4), encodeLinear, 0), dvec3(factors[0])});
+    exposures.push_back(
+        {"f/4", photographed(radiance, dvec3(f4), encodeLinear, 0), dvec3(factors[0])});
     exposures.push_back({"f/16", photographed(radiance, dvec3(f4 / 16.63 / 64), encodeLinear, 0),
                          dvec3(factors[1])});
     exposures[0].levels.setRgb(1, 0, Rgb(1));
@@ -179,11 +180,12 @@ TEST(ExposureAgreement, FindsTheTrueRatio) {
 
 // Texture whose radiance is a function of position.
 Image texture(int dx, int dy) {
-  Image image(200, 150, 3);
+  Image image(320, 280, 3);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const double u = (x - dx) * 0.11, v = (y - dy) * 0.13;
-      const double wave = std::sin(u) + std::sin(v + 1.7 * std::sin(u * 0.37)) + std::sin(0.3 * (u - v));
+      const double wave =
+          std::sin(u) + std::sin(v + 1.7 * std::sin(u * 0.37)) + std::sin(0.3 * (u - v));
       image.setRgb(x, y, Rgb(float(std::exp(1.2 * wave))));
     }
   return image;

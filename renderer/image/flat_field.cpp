@@ -11,6 +11,9 @@
 namespace chromeball {
 namespace {
 
+// How far the polynomial is continued: a source is inside the image, so no sample is in a corner.
+constexpr double kReach = 1.1;
+
 dvec2 pixelCentre(int x, int y) { return {x + 0.5, y + 0.5}; }
 
 double radiusOf(const FlatField& field, const dvec2& position) {
@@ -101,7 +104,7 @@ SourceSample measureSource(const Image& photograph, const dvec2& position, doubl
 }
 
 dvec3 FlatField::at(const dvec2& position) const {
-  const double r2 = std::pow(std::min(radiusOf(*this, position), largest), 2);
+  const double r2 = std::pow(std::min(radiusOf(*this, position), kReach * largest), 2);
   return 1.0 + r2 * (a2 + r2 * (a4 + r2 * a6));
 }
 
@@ -122,10 +125,11 @@ FlatField fitFlatField(std::span<const SourceSample> samples, int width, int hei
   for (int channel = 0; channel < 3; ++channel) fitChannel(samples, channel, field);
   constexpr int kSteps = 1000;
   for (int i = 0; i <= kSteps; ++i) {
-    const dvec3 v = field.at(centre + dvec2(field.unit * field.largest * i / kSteps, 0));
+    const dvec3 v = field.at(centre + dvec2(field.unit * kReach * field.largest * i / kSteps, 0));
     if (!(std::min({v.x, v.y, v.z}) > 0))
-      throwInput("flat-field: the fitted response is not above 0 everywhere; is the source's place "
-                 "right in each photograph, and the source constant?");
+      throwInput(
+          "flat-field: the fitted response is not above 0 everywhere; is the source's place "
+          "right in each photograph, and the source constant?");
   }
   return field;
 }

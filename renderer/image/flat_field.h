@@ -21,8 +21,8 @@ struct SourceSample {
 dvec2 findSource(const Image& photograph);
 
 // The mean of the pixels whose centres are within `radius` of `position`, or of the pixel there.
-// Throws InputError, begun by `name`, if the disc is not inside the image or a channel is not finite
-// and above 0.
+// Throws InputError, begun by `name`, if the disc is not inside the image or a channel is not
+// finite and above 0.
 SourceSample measureSource(const Image& photograph, const dvec2& position, double radius,
                            const std::string& name);
 
@@ -31,7 +31,7 @@ struct FlatField {
   dvec2 centre;        // pixels
   double unit;         // pixels: half of the image's diagonal
   dvec3 a2, a4, a6;    // of the channels
-  double largest = 0;  // the largest r of a sample: beyond it v keeps its value there
+  double largest = 0;  // the largest r of a sample: beyond 1.1 times that, v keeps its value there
   dvec3 rmsError;      // of the samples, relative to the fit
 
   dvec3 at(const dvec2& position) const;

@@ -46,9 +46,8 @@ Series measure(const Arguments& arguments) {
       throwInput("{}: is {} x {}, but {} is {} x {}; photographs of a series have one size", file,
                  image.width, image.height, arguments.files.front(), series.size.width,
                  series.size.height);
-    const dvec2 position = arguments.positions.empty()
-                               ? findSource(image)
-                               : parsePoint(arguments.positions[i], "--at");
+    const dvec2 position = arguments.positions.empty() ? findSource(image)
+                                                       : parsePoint(arguments.positions[i], "--at");
     series.samples.push_back(measureSource(image, position, arguments.radius, file));
     if (hasWhite && maxComponent(Rgb(series.samples.back().radiance)) > kSaturated)
       throwInput("{}: the source at {:.1f},{:.1f} is saturated; expose less", file, position.x,
@@ -75,15 +74,15 @@ Json toJson(const FlatField& field, const Series& series) {
 }
 
 void print(const FlatField& field, const Series& series) {
-  for (const auto& [name, a] :
-       {std::pair{"a2", field.a2}, {"a4", field.a4}, {"a6", field.a6}})
+  for (const auto& [name, a] : {std::pair{"a2", field.a2}, {"a4", field.a4}, {"a6", field.a6}})
     fmt::print("{:<12}{:.5g} {:.5g} {:.5g}\n", name, a.x, a.y, a.z);
   const dvec3 corner = field.at(field.centre + dvec2(field.unit, 0));
   fmt::print("r = 1       at {:.5g} pixels from {:.5g},{:.5g}: response {:.4g} {:.4g} {:.4g}\n",
              field.unit, field.centre.x, field.centre.y, corner.x, corner.y, corner.z);
   fmt::print("samples     {}, r up to {:.3g}\n", series.samples.size(), field.largest);
   const dvec3 error = 100.0 * field.rmsError;
-  fmt::print("error       {:.2g}% {:.2g}% {:.2g}% of the samples, RMS\n", error.x, error.y, error.z);
+  fmt::print("error       {:.2g}% {:.2g}% {:.2g}% of the samples, RMS\n", error.x, error.y,
+             error.z);
 }
 
 void run(const Arguments& arguments) {
@@ -101,14 +100,16 @@ void run(const Arguments& arguments) {
                                                 : parsePoint(arguments.centre, "--centre");
   const FlatField field = fitFlatField(series.samples, width, height, centre);
   if (field.largest < kReaches)
-    warn(fmt::format("the source is never further from the centre than {:.2g} of half the "
-                     "diagonal: beyond, the response stays at its value there",
-                     field.largest));
+    warn(
+        fmt::format("the source is never further from the centre than {:.2g} of half the "
+                    "diagonal: far beyond, the response stays constant",
+                    field.largest));
   if (const double error = std::max({field.rmsError.x, field.rmsError.y, field.rmsError.z});
       error > kPoorFit)
-    warn(fmt::format("the samples differ from the fit by {:.2g}%: is the source constant, and of "
-                     "even radiance within --radius?",
-                     100 * error));
+    warn(
+        fmt::format("the samples differ from the fit by {:.2g}%: is the source constant, and of "
+                    "even radiance within --radius?",
+                    100 * error));
   if (arguments.json)
     fmt::print("{}\n", toJson(field, series).dump(2));
   else
@@ -134,9 +135,10 @@ void addImageFlatFieldCommand(CLI::App& image) {
                    "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png")
       ->required();
   command
-      ->add_option("--at", arguments->positions,
-                   "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
-                   "it the brightest spot of each")
+      ->add_option(
+          "--at", arguments->positions,
+          "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
+          "it the brightest spot of each")
       ->allow_extra_args(false);
   command->add_option("--radius", arguments->radius, "of the disc that is averaged, in pixels")
       ->capture_default_str();

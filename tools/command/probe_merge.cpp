@@ -130,9 +130,10 @@ void calibrate(const MergeArguments& arguments) {
   const dvec3& t = filter.transmission;
   for (int c = 0; c < 3; ++c)
     if (!(std::abs(filter.median[c] / t[c] - 1) <= kTolerance)) {
-      warn(fmt::format("the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
-                       "of their sums: is the light or the scene another, or dark noise strong?",
-                       filter.median.x, filter.median.y, filter.median.z));
+      warn(
+          fmt::format("the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
+                      "of their sums: is the light or the scene another, or dark noise strong?",
+                      filter.median.x, filter.median.y, filter.median.z));
       break;
     }
   if (arguments.json)

@@ -72,9 +72,10 @@ void MergeArguments::addTo(CLI::App& command) {
                      "photographs of one view, of one size: JPEG, PNG, TIFF, .exr, .hdr or .pfm");
   command.add_option("-o,--output", output,
                      "the image to write: .exr (with the layer `clipped`), .hdr or .pfm");
-  command.add_option("--exposures", exposures,
-                     "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
-                     "of EXIF's time, aperture and ISO");
+  command.add_option(
+      "--exposures", exposures,
+      "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
+      "of EXIF's time, aperture and ISO");
   command.add_option("--apertures", apertures,
                      "f-numbers, one for each photograph, in place of EXIF's");
   command
@@ -94,15 +95,17 @@ void MergeArguments::addTo(CLI::App& command) {
                      "bits, else linear");
   command.add_option("--write-response", responseOutput,
                      "the response as text: 256 levels and their exposures");
-  command.add_option("--smoothness", smoothness,
-                     fmt::format("of the solved response, default {:g}",
-                                 PhotographSeries{}.smoothness));
-  command.add_option("--white", white,
-                     "where floats saturate; without it 1, or the largest number if that is higher");
+  command.add_option(
+      "--smoothness", smoothness,
+      fmt::format("of the solved response, default {:g}", PhotographSeries{}.smoothness));
+  command.add_option(
+      "--white", white,
+      "where floats saturate; without it 1, or the largest number if that is higher");
   command.add_flag("--unaligned", unaligned, "accept photographs that seem shifted");
   command
-      .add_option("--calibrate-filter", calibration,
-                  "WITH WITHOUT: instead, print the transmission of a filter from two merged images")
+      .add_option(
+          "--calibrate-filter", calibration,
+          "WITH WITHOUT: instead, print the transmission of a filter from two merged images")
       ->expected(2);
   command.add_flag("--json", json, "print JSON");
 }
@@ -113,8 +116,7 @@ PhotographSeries MergeArguments::series() const {
   series.times = parsePositives(exposures, "--exposures");
   series.apertures = parsePositives(apertures, "--apertures");
   for (const std::string& text : ratios) series.apertureRatios.push_back(parseRatio(text));
-  for (const std::string& text : filters)
-    series.filters.push_back(parseFilter(text, files.size()));
+  for (const std::string& text : filters) series.filters.push_back(parseFilter(text, files.size()));
   for (const std::string& text : flatFields) series.flatFields.push_back(parseFlatField(text));
   series.response = response;
   if (!smoothness.empty()) series.smoothness = parsePositive(smoothness, "--smoothness");

@@ -78,8 +78,8 @@ BallSamples readBall(const Arguments& arguments, const DiffuseBall& ball) {
   if (file.integers)
     warn(fmt::format("{}: has integer texels, decoded as sRGB; a merged .exr is linear",
                      arguments.ball));
-  BallSamples samples = sampleBall(ball, photograph, excludedPixels(arguments, file, photograph),
-                                   arguments.ball);
+  BallSamples samples =
+      sampleBall(ball, photograph, excludedPixels(arguments, file, photograph), arguments.ball);
   if (samples.invalid > 0)
     warn(fmt::format("{}: left out {} pixels that are not finite, or negative", arguments.ball,
                      samples.invalid));
@@ -104,13 +104,15 @@ Direction directionOf(const Arguments& arguments, const LoadedProbe& probe) {
   const ClippedSun sun =
       findClippedSun(probe.latLong, clipped ? &*clipped : nullptr, arguments.probe);
   if (sun.width > kWide)
-    warn(fmt::format("{}: what is clipped around the sun is {:.2g} degrees wide, so that its "
-                     "direction is uncertain; give --direction",
-                     arguments.probe, sun.width));
+    warn(
+        fmt::format("{}: what is clipped around the sun is {:.2g} degrees wide, so that its "
+                    "direction is uncertain; give --direction",
+                    arguments.probe, sun.width));
   if (sun.rivals > 0)
-    warn(fmt::format("{}: {} other clipped region{} half as large as the sun's or larger; give "
-                     "--direction if the sun is another one",
-                     arguments.probe, sun.rivals, sun.rivals == 1 ? " is" : "s are"));
+    warn(
+        fmt::format("{}: {} other clipped region{} half as large as the sun's or larger; give "
+                    "--direction if the sun is another one",
+                    arguments.probe, sun.rivals, sun.rivals == 1 ? " is" : "s are"));
   return {sun.direction, sun.width};
 }
 
@@ -179,8 +181,7 @@ void run(const Arguments& arguments) {
   LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
-  const SunFromBall result =
-      solveSun(probe.latLong, samples, direction.direction, arguments.angle);
+  const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
   if (arguments.json)
     fmt::print("{}\n", toJson(result, direction, samples).dump(2));
   else
@@ -188,12 +189,11 @@ void run(const Arguments& arguments) {
   const Sun& sun = result.sun;
   if (!arguments.residual.empty()) writeResidual(arguments.residual, result, samples);
   if (!arguments.lights.empty())
-    writeLights(
-        arguments.lights,
-        LightRig{.probe = arguments.probe,
-                 .method = "sun",
-                 .ambient = {},
-                 .lights = {{vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)}}});
+    writeLights(arguments.lights,
+                LightRig{.probe = arguments.probe,
+                         .method = "sun",
+                         .ambient = {},
+                         .lights = {{vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)}}});
   if (!arguments.output.empty()) {
     addSunDisc(probe.latLong, sun.direction, sun.angle, sun.irradiance);
     writeProbe(arguments.output, probe.latLong);
@@ -204,10 +204,11 @@ void run(const Arguments& arguments) {
 
 void addProbeSunCommand(CLI::App& probe) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = probe.add_subcommand(
-      "sun",
-      "Find the irradiance of a sun that a probe's photographs have clipped, from a photograph of a "
-      "diffuse ball in the same light and with the same exposure.");
+  CLI::App* command =
+      probe.add_subcommand("sun",
+                           "Find the irradiance of a sun that a probe's photographs have clipped, "
+                           "from a photograph of a "
+                           "diffuse ball in the same light and with the same exposure.");
   command->add_option("CLIPPED", arguments->probe, "the probe's image")->required();
   command->add_option("--diffuse", arguments->ball, "the photograph of the ball, linear")
       ->required();

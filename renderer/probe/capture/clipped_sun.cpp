@@ -24,8 +24,9 @@ Image marked(const Image& latLong, const Image* clipped) {
   Image marks(latLong.width, latLong.height, 3);
   for (int y = 0; y < marks.height; ++y)
     for (int x = 0; x < marks.width; ++x) {
-      const bool isMarked = clipped ? *clipped->at(x, y) > 0.5f
-                                    : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
+      const bool isMarked = clipped
+                                ? *clipped->at(x, y) > 0.5f
+                                : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
       marks.setRgb(x, y, Rgb(isMarked ? 1 : 0));
     }
   return marks;
@@ -58,8 +59,7 @@ std::optional<Image> loadClippedLayer(const std::filesystem::path& path, const L
   if (!layer) return std::nullopt;
   Image marks(layer->width, layer->height, 3);
   for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x)
-      marks.setRgb(x, y, Rgb(*layer->at(x, y) > 0.5f ? 1 : 0));
+    for (int x = 0; x < marks.width; ++x) marks.setRgb(x, y, Rgb(*layer->at(x, y) > 0.5f ? 1 : 0));
   const Image map = convert(marks, probe.mapping, Mapping::LatLong,
                             {probe.latLong.width, probe.latLong.height}, probe.turned ? 180 : 0);
   Image clipped(map.width, map.height, 1);
@@ -86,12 +86,13 @@ ClippedSun findClippedSun(const Image& latLong, const Image* clipped, const std:
   ClippedSun sun{glm::normalize(sum), 180.0 / size.height};
   double furthest = 0;  // half of the chord
   for (const Texel t : largest.texels)
-    furthest = std::max(furthest,
-                        glm::distance(sun.direction, texelDirection(size, t.x, t.y)) / 2);
+    furthest = std::max(furthest, glm::distance(sun.direction, texelDirection(size, t.x, t.y)) / 2);
   sun.width += 4 * std::asin(std::min(furthest, 1.0)) * 180 / kPiD;
-  sun.rivals = size_t(std::ranges::count_if(regions, [&](const Region& region) {
-                 return region.solidAngle >= largest.solidAngle / 2;
-               })) - 1;
+  sun.rivals = size_t(std::ranges::count_if(regions,
+                                            [&](const Region& region) {
+                                              return region.solidAngle >= largest.solidAngle / 2;
+                                            })) -
+               1;
   return sun;
 }
 

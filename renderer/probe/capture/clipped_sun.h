@@ -11,9 +11,9 @@ namespace chromeball {
 
 // A connected region of texels that are as bright as the probe can show.
 struct ClippedSun {
-  dvec3 direction;     // unit, towards the centroid of its solid angle
-  double width;        // degrees, twice from the centroid to the furthest texel
-  size_t rivals = 0;   // other regions with at least half of its solid angle
+  dvec3 direction;    // unit, towards the centroid of its solid angle
+  double width;       // degrees, twice from the centroid to the furthest texel
+  size_t rivals = 0;  // other regions with at least half of its solid angle
 };
 
 // The layer `clipped` of an .exr, which `probe merge` writes, as the map that the probe was loaded

@@ -30,8 +30,7 @@ class Blocks {
   std::optional<BallSample> sample(int x, int y, size_t& invalid) const {
     const dvec2 corner(left_ + x * size_, top_ + y * size_);
     for (int i = 0; i < 4; ++i)
-      if (glm::distance(corner + double(size_) * dvec2(i & 1, i >> 1), ball_.centre) >
-          ball_.radius)
+      if (glm::distance(corner + double(size_) * dvec2(i & 1, i >> 1), ball_.centre) > ball_.radius)
         return std::nullopt;
     dvec3 sum(0);
     size_t invalidHere = 0;
@@ -89,7 +88,8 @@ BallSamples sampleBall(const DiffuseBall& ball, const Image& photograph, const I
   BallSamples result{.side = blocks.side(), .block = blocks.size()};
   for (int y = 0; y < result.side; ++y)
     for (int x = 0; x < result.side; ++x)
-      if (const auto sample = blocks.sample(x, y, result.invalid)) result.samples.push_back(*sample);
+      if (const auto sample = blocks.sample(x, y, result.invalid))
+        result.samples.push_back(*sample);
   if (result.samples.size() < kMinSamples)
     throwInput("{}: {} pixels of the ball are left; at least {} are needed", name,
                result.samples.size(), kMinSamples);

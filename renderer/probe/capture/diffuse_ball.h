@@ -34,9 +34,9 @@ struct BallSample {
 
 struct BallSamples {
   std::vector<BallSample> samples;
-  int side = 0;            // blocks across the circle's square
-  int block = 1;           // pixels across a block: the circle's radius is at most 128 blocks
-  size_t invalid = 0;      // pixels that are not finite or negative: their blocks are left out
+  int side = 0;        // blocks across the circle's square
+  int block = 1;       // pixels across a block: the circle's radius is at most 128 blocks
+  size_t invalid = 0;  // pixels that are not finite or negative: their blocks are left out
 };
 
 // The blocks that are inside the circle. `photograph` is linear; `excluded` (one channel, of its

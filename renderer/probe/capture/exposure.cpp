@@ -19,9 +19,10 @@ class Transmissions {
   }
 
   double of(double aperture) const {
-    return std::ranges::find_if(entries_, [&](const Entry& entry) {
-             return isSameAperture(entry.aperture, aperture);
-           })->transmission;
+    return std::ranges::find_if(
+               entries_,
+               [&](const Entry& entry) { return isSameAperture(entry.aperture, aperture); })
+        ->transmission;
   }
 
   void apply(const ApertureRatio& ratio) {

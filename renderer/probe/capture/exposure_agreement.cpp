@@ -61,9 +61,8 @@ std::vector<Agreement> exposureAgreement(std::span<const Exposure> exposures,
                                          const ResponseCurve& response) {
   std::vector<size_t> order(exposures.size());
   std::iota(order.begin(), order.end(), size_t(0));
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) {
-    return exposures[a].factor.y > exposures[b].factor.y;
-  });
+  std::ranges::stable_sort(
+      order, [&](size_t a, size_t b) { return exposures[a].factor.y > exposures[b].factor.y; });
   std::vector<Agreement> agreements;
   for (size_t i = 0; i + 1 < order.size(); ++i) {
     const Exposure &longer = exposures[order[i]], &shorter = exposures[order[i + 1]];

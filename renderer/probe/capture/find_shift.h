@@ -19,9 +19,10 @@ struct Shift {
 
 // Ward (2003), "Fast, robust image registration for compositing high dynamic range photographs from
 // handheld exposures": bitmaps of what is brighter than a percentile, which neither exposure nor
-// response changes, compared from coarse to fine, for shifts of up to 63 pixels. In place of the
-// median, the percentile is in the middle of those that both photographs show well, in green. No
-// shift if there is none. `from` and `to` are levels, white at 1, of one size.
+// response changes, compared from coarse to fine, for shifts of up to 63 pixels and an eighth of
+// the shorter side. In place of the median, the percentile is in the middle of those that both
+// photographs show well, in green. No shift if there is none. `from` and `to` are levels, white at
+// 1, of one size.
 Shift findShift(const Image& from, const Image& to);
 
 }  // namespace chromeball

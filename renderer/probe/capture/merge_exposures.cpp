@@ -42,9 +42,9 @@ class Merger {
     Channel bound{Channel::State::Underexposed, 0};
     for (const Exposure& exposure : exposures_)
       if (exposure.levels.at(x, y)[channel] >= kSaturated)
-        bound = {Channel::State::Clipped,
-                 std::max(bound.radiance,
-                          std::exp(logRadiance(exposure, x, y, channel, kSaturated)))};
+        bound = {
+            Channel::State::Clipped,
+            std::max(bound.radiance, std::exp(logRadiance(exposure, x, y, channel, kSaturated)))};
     return bound;
   }
 

@@ -11,7 +11,7 @@ namespace chromeball {
 
 struct MergedExposures {
   Image radiance;  // three channels
-  Image clipped;   // one channel: 1 where the radiance is only a lower bound in some channel, else 0
+  Image clipped;  // one channel: 1 where the radiance is only a lower bound in some channel, else 0
   size_t clippedPixels = 0, underexposedPixels = 0;  // in some channel
 
   struct Use {
@@ -22,8 +22,9 @@ struct MergedExposures {
 };
 
 // Debevec and Malik (1997), eq. 6: ln L is the mean of g(level) - ln k over the exposures, weighted
-// by a hat. A channel that is saturated where it is not black is a lower bound: that of the shortest
-// exposure that is saturated. One that is black in all exposures, or NaN, is under-exposed: 0.
+// by a hat. A channel that is saturated where it is not black is a lower bound: that of the
+// shortest exposure that is saturated. One that is black in all exposures, or NaN, is
+// under-exposed: 0.
 //
 // All images have the same size; there is at least one. Parallel; the same bits for any number of
 // threads.

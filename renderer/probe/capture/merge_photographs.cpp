@@ -59,7 +59,8 @@ class FlatFields {
         isUsed = true;
       }
       if (!isUsed)
-        throwInput("--flat-field {}: no photograph was taken at f/{:g}", file, aperture.value_or(0));
+        throwInput("--flat-field {}: no photograph was taken at f/{:g}", file,
+                   aperture.value_or(0));
     }
   }
 
@@ -98,8 +99,8 @@ void checkShifts(std::span<const Exposure> exposures) {
   }
 }
 
-ResponseCurve responseOf(const PhotographSeries& series, int bits, std::span<const Exposure> exposures,
-                         std::string& name) {
+ResponseCurve responseOf(const PhotographSeries& series, int bits,
+                         std::span<const Exposure> exposures, std::string& name) {
   name = series.response;
   if (name.empty()) name = bits == 8 ? "srgb" : "linear";
   if (name == "linear") return ResponseCurve::linear();
@@ -126,8 +127,8 @@ void addWarnings(const PhotographSeries& series, MergedPhotographs& merged) {
       warn(fmt::format("{} and {} show too few pixels both well to compare their exposures", longer,
                        shorter));
     else if (*error > kTolerance)
-      warn(fmt::format("{} and {} disagree by {:.1f}%: wrong exposures, or another response", longer,
-                       shorter, 100 * *error));
+      warn(fmt::format("{} and {} disagree by {:.1f}%: wrong exposures, or another response",
+                       longer, shorter, 100 * *error));
   }
   for (size_t i = 0; i < series.files.size(); ++i)
     if (merged.image.uses[i].weighted == 0)
@@ -147,8 +148,8 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   const FlatFields flatFields(series, merged.settings, photographs.levels.front());
   std::vector<Exposure> exposures;
   for (size_t i = 0; i < series.files.size(); ++i)
-    exposures.push_back({series.files[i], std::move(photographs.levels[i]), merged.factors[i],
-                         flatFields.of(i)});
+    exposures.push_back(
+        {series.files[i], std::move(photographs.levels[i]), merged.factors[i], flatFields.of(i)});
   if (series.checkAlignment) checkShifts(exposures);
   merged.response = responseOf(series, photographs.bits, exposures, merged.responseName);
   merged.image = mergeExposures(exposures, merged.response);

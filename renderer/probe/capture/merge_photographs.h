@@ -31,7 +31,7 @@ struct PhotographSeries {
   // linear, srgb, solve (solve_response.h) or a file (response_curve.h). Empty: srgb for 8 bits,
   // else linear.
   std::string response;
-  double smoothness = 10;      // of solve
+  double smoothness = 20;      // of solve
   std::optional<float> white;  // of float files (read_levels.h)
   bool checkAlignment = true;  // find_shift.h
 };
@@ -48,8 +48,8 @@ struct MergedPhotographs {
 };
 
 // Throws InputError if files, settings or options do not fit together, if the exposures are all the
-// same, if photographs are shifted against each other, and if all pixels are saturated, or black, in
-// all of them.
+// same, if photographs are shifted against each other, and if all pixels are saturated, or black,
+// in all of them.
 MergedPhotographs mergePhotographs(const PhotographSeries& series);
 
 }  // namespace chromeball

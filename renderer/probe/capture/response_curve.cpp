@@ -78,8 +78,7 @@ ResponseCurve ResponseCurve::read(const std::filesystem::path& path) {
                    level, level - 1);
     }
   }
-  if (nextLine(text, line))
-    throwInput("{}: has more than {} levels", path.string(), kLevels);
+  if (nextLine(text, line)) throwInput("{}: has more than {} levels", path.string(), kLevels);
   return ResponseCurve(std::move(logs));
 }
 

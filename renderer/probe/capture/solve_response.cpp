@@ -21,7 +21,8 @@ double weightOf(int level) { return hatWeight(float(level) / (kLevels - 1)); }
 class PixelEquations {
  public:
   PixelEquations(std::span<const Exposure> exposures, int channel) {
-    for (const Exposure& exposure : exposures) logFactors_.push_back(std::log(exposure.factor[channel]));
+    for (const Exposure& exposure : exposures)
+      logFactors_.push_back(std::log(exposure.factor[channel]));
     const Image& first = exposures.front().levels;
     const int step = sampleStep(first);
     std::vector<int> levels(exposures.size());

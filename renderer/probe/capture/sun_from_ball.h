@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sun that photographs of a probe have clipped, from a photograph of a diffuse ball in its light.
+// The sun that photographs of a probe have clipped, from a photograph of a diffuse ball in its
+// light.
 #pragma once
 
 #include "probe/capture/diffuse_ball.h"
@@ -29,8 +30,8 @@ inline constexpr double kExplained = 0.02;
 // mean of the latter is 2/(3 pi) (sin g + (pi - g) cos g).
 //
 // `clipped` is lat-long, finite and not negative; `direction` is unit; `angle` is the diameter of
-// the sun in degrees. Throws InputError if the sun lights hardly any of the samples, and if the ball
-// is darker than the probe alone would make it.
+// the sun in degrees. Throws InputError if the sun lights hardly any of the samples, and if the
+// ball is darker than the probe alone would make it.
 SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3& direction,
                      double angle);
 
