@@ -13,6 +13,8 @@ void addProbeCommand(CLI::App& app) {
   addProbeReflectivityCommand(*probe);
   addProbeSynthCommand(*probe);
   addProbeEditCommand(*probe);
+  addProbeMergeCommand(*probe);
+  addProbeSunCommand(*probe);
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
   addProbeAlignCommand(*probe);
