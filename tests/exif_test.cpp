@@ -92,6 +92,7 @@ TEST(Exif, RealPhotographs) {
     EXPECT_NEAR(exif.exposureTime.value_or(0) * inverse, 1, 1e-3) << name;
     EXPECT_NEAR(exif.aperture.value_or(0), 1.8, 1e-9) << name;
     EXPECT_EQ(exif.iso, 100) << name;
+    EXPECT_EQ(exif.focalLength35, 28) << name;
   }
 }
 

@@ -56,6 +56,17 @@ void addPlate(const std::string& path, Collector& messages) {
   if (!isLinear) messages.note(fmt::format("{}: decoded from sRGB", path));
 }
 
+std::string plateScaleText(const CompositeEntry& composite, const PlateScale& found) {
+  const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
+  const double grey = luminance(glm::dvec3(assumed));
+  const vec2& range = composite.groundReflectanceRange;
+  return fmt::format(
+      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance {:.3g}; "
+      "they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} times that",
+      scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
+      grey / double(range.y), grey / double(range.x));
+}
+
 }  // namespace
 
 Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
@@ -75,6 +86,8 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
     addProbe(*probe, loaded.loadedProbe, messages);
   else
     addLights(job, scene, messages);
+  if (const auto& scale = loaded.plateScale)
+    messages.note(plateScaleText(*job.file.composite, *scale));
   if (job.composite) addPlate(settings.get<std::string>("composite.plate"), messages);
   return messages.take();
 }

@@ -5,15 +5,14 @@
 
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
-#include "probe/irradiance.h"
+#include "job/scene_lighting.h"
 
 namespace chromeball {
 namespace {
 
 // Irradiance of the flat local scene.
 Rgb flatIrradiance(const LoadedScene& loaded) {
-  const vec3 normal = loaded.probe.rotation().back(*flatNormal(loaded.scene, loaded.isObject));
-  return Rgb(exactIrradiance(loaded.probe.latLong(), {&normal, 1})[0]);
+  return irradianceOn(loaded.probe, *flatNormal(loaded.scene, loaded.isObject));
 }
 
 // Fills loaded.projection with the local scene's reflectance.
@@ -87,6 +86,8 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   finished.composite->reflectance = reflectance;
   Messages messages =
       warningsOf(*finished.composite, job.file.settings.get<std::vector<double>>("probe.scale"));
+  if (loaded.plateScale)  // nothing better is known
+    for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 

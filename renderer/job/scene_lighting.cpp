@@ -12,6 +12,7 @@
 #include "lighting/finite_surroundings.h"
 #include "lighting/scene_suns.h"
 #include "lighting/split_probe.h"
+#include "probe/irradiance.h"
 
 namespace chromeball {
 namespace {
@@ -100,6 +101,18 @@ Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
               colorOf(job.file.settings.get<std::vector<double>>("probe.scale")));
   loaded.latLong = {};
   return probe;
+}
+
+Probe scaled(const Probe& probe, const Rgb& factor) {
+  Image map = probe.latLong();
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, factor * map.rgb(x, y));
+  return Probe(map, probe.rotation());
+}
+
+Rgb irradianceOn(const Probe& probe, const vec3& normal) {
+  const vec3 turned = probe.rotation().back(normal);
+  return Rgb(exactIrradiance(probe.latLong(), {&turned, 1})[0]);
 }
 
 std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,

@@ -73,6 +73,12 @@ void addCamera(std::vector<Setting>& rows) {
        .type = Name,
        .absent = "the model's first camera",
        .help = "One of the model's cameras, by its own name or that of its node."});
+  add({.key = "file",
+       .option = "camera-file",
+       .argument = "FILE.toml",
+       .type = File,
+       .absent = "none",
+       .help = "A file with a [camera] of its own, as `chromeball camera solve` writes it."});
   add({.key = "position",
        .type = Compound,
        .form = "three numbers",
@@ -118,6 +124,21 @@ void addCamera(std::vector<Setting>& rows) {
        .unit = "metres",
        .absent = "none",
        .help = "Distance of the plane in focus, along the camera's axis."});
+  add({.key = "principal_point",
+       .type = Compound,
+       .form = "two numbers",
+       .range = {.min = -10, .max = 10},
+       .unit = "fractions of the image's width and height",
+       .absent = "0.5, 0.5: the middle",
+       .help = "Where the lens's axis meets the image, from the top left: a lens that is shifted, "
+               "or a photograph that was cropped."});
+  add({.key = "distortion",
+       .type = Compound,
+       .form = "a number, k1, or two, [k1, k2]",
+       .absent = "none",
+       .help = "The lens's radial distortion: what a pinhole would show at (x, y) focal lengths "
+               "from the principal point appears at (1 + k1 r^2 + k2 r^4) (x, y), r^2 = x^2 + y^2. "
+               "`fov` is that of the pinhole."});
 }
 
 void addProbe(std::vector<Setting>& rows) {
@@ -163,7 +184,9 @@ void addProbe(std::vector<Setting>& rows) {
        .counts = {1, 3},
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the probe's radiance, or on each of its channels."});
+       .help = "Factor on the probe's radiance, or on each of its channels. In the scene file also "
+               "\"plate\": for each channel, what a composite's ground needs to look as in the plate "
+               "(`ground_reflectance`)."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

@@ -17,7 +17,8 @@ enum Tag : uint16_t {
   kExposureTime = 0x829a,
   kFNumber = 0x829d,
   kExifDirectory = 0x8769,
-  kPhotographicSensitivity = 0x8827
+  kPhotographicSensitivity = 0x8827,
+  kFocalLengthIn35mmFilm = 0xa405
 };
 
 enum Type : uint16_t { kShort = 3, kLong = 4, kRational = 5 };
@@ -80,7 +81,8 @@ Exif parse(const Block& block) {
   const auto pointer = block.find(block.firstDirectory(), kExifDirectory);
   if (!pointer) return {};
   const auto find = [&](Tag tag) { return block.find(uint64_t(*pointer), tag); };
-  return {find(kExposureTime), find(kFNumber), find(kPhotographicSensitivity)};
+  return {find(kExposureTime), find(kFNumber), find(kPhotographicSensitivity),
+          find(kFocalLengthIn35mmFilm)};
 }
 
 // OpenImageIO renames the attributes.
@@ -91,7 +93,7 @@ Exif fromAttributes(const Metadata& metadata) {
     const auto* number = std::get_if<float>(&found->second);
     return number ? positive(*number) : std::nullopt;
   };
-  return {find("ExposureTime"), find("FNumber"), find("Exif:ISOSpeedRatings")};
+  return {find("ExposureTime"), find("FNumber"), find("Exif:ISOSpeedRatings"), {}};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct Exif {
   std::optional<double> exposureTime;  // seconds
   std::optional<double> aperture;      // f-number
   std::optional<double> iso;
+  std::optional<double> focalLength35;  // mm, of the same diagonal field of view on 35 mm film
 };
 
 // From a JPEG, PNG or TIFF; from the attributes expTime, aperture and isoSpeed of an .exr
