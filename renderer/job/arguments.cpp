@@ -78,7 +78,7 @@ Rgb parseColor(std::string_view text, std::string_view location) {
   const std::vector<double> channels = parseNumbers(text, size_t(commas) + 1, location);
   for (const double channel : channels)
     if (channel != 0 && !isPositiveFloat(channel))
-      throwInput("{}: {} should be not negative: 0, or {}", location, channel, kPositiveFloats);
+      throwInput("{}: {} should be not negative: 0, or {}", location, text, kPositiveFloats);
   return colorOf(channels);
 }
 

@@ -178,7 +178,7 @@ void addProbe(std::vector<Setting>& rows) {
                "and --animation-time."});
   add({.key = "scale",
        .option = "probe-scale",
-       .argument = "X|R,G,B",
+       .argument = "R[,G,B]",
        .type = Numbers,
        .form = "a number, or three (r, g, b)",
        .counts = {1, 3},

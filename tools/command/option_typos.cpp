@@ -27,7 +27,7 @@ constexpr auto kEquivalents = std::to_array<Equivalents>({
      "world light infinite-light environment-image "},
     {"--probe-rotation YAW[,PITCH,ROLL]",
      " rotation rotate env-rotation envmap-rotation hdri-rotation environment-rotation yaw "},
-    {"--probe-scale X|R,G,B",
+    {"--probe-scale R[,G,B]",
      " env-strength env-intensity envmap-scale hdri-strength intensity strength "
      "environment-intensity brightness scale "},
     {"--max-depth N",
