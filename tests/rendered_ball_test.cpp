@@ -58,8 +58,10 @@ TEST(SlowRenderedBall, ReturnsTheProbe) {
       views.emplace_back(photographs.back(), noMask, circle, optics, camera);
       const std::optional<FoundCircle> found = findCircle(photographs.back());
       ASSERT_TRUE(found);
-      EXPECT_LT(glm::distance(found->circle.centre, circle.centre), 0.5);
-      EXPECT_NEAR(found->circle.radius, circle.radius, 0.5);
+      // The probe is around the ball, and the rim, whose reflectance is 1, continues it: the edge
+      // is one of detail alone.
+      EXPECT_LT(glm::distance(found->circle.centre, circle.centre), 1.5);
+      EXPECT_NEAR(found->circle.radius, circle.radius, 1.5);
     }
     const IrradianceError error = irradianceError(assemble(views, kSize).latLong, map);
     EXPECT_LT(error.mean, 0.005) << distance;

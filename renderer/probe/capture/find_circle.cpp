@@ -100,29 +100,46 @@ Circle fitted(Circle circle, const std::vector<dvec2>& points, double width) {
   return circle;
 }
 
-// The point of the largest step across the circle along each of many radii, within `reach` of it.
+// Where steps of at least a share of the largest have their outermost maximum, as an index; else
+// that of the largest. Inside the rim of a ball the reflected scene is compressed to strong edges,
+// and the rim itself may be the weaker step: it is the last one.
+size_t outermostStep(const std::vector<double>& steps) {
+  constexpr double kShare = 0.35;
+  const auto largest = std::max_element(steps.begin(), steps.end());
+  for (size_t k = steps.size() - 2; k > 0; --k)
+    if (steps[k] >= kShare * *largest && steps[k] >= steps[k - 1] && steps[k] > steps[k + 1])
+      return k;
+  return size_t(largest - steps.begin());
+}
+
+// The point of the outermost step across the circle along each of many radii, within `reach` of it.
 std::vector<dvec2> stepsAcross(const Image& channel, const Circle& circle, double reach) {
-  constexpr double kStep = 0.25;
+  constexpr double kStep = 0.25, kLeast = 0.05;
   const int radii = std::clamp(int(2 * kPiD * circle.radius), 64, 2000);
+  const int half = int(reach / kStep);
+  std::vector<double> steps(size_t(2 * half + 1));
   std::vector<dvec2> points;
   for (int i = 0; i < radii; ++i) {
     const dvec2 normal = outward(2 * kPiD * i / radii);
-    double best = 0, at = 0;
-    for (double r = -reach; r <= reach; r += kStep) {
-      const dvec2 p = circle.centre + (circle.radius + r) * normal;
-      if (p.x < 1 || p.y < 1 || p.x > channel.width - 1 || p.y > channel.height - 1) continue;
-      const double step =
-          std::fabs(interpolate(channel, p + normal) - interpolate(channel, p - normal));
-      if (step > best) best = step, at = r;
+    const auto at = [&](size_t k) {
+      return circle.centre + (circle.radius + (double(k) - half) * kStep) * normal;
+    };
+    for (size_t k = 0; k < steps.size(); ++k) {
+      const dvec2 p = at(k);
+      const bool isShown =
+          p.x >= 1 && p.y >= 1 && p.x <= channel.width - 1 && p.y <= channel.height - 1;
+      steps[k] =
+          isShown ? std::fabs(interpolate(channel, p + normal) - interpolate(channel, p - normal))
+                  : 0;
     }
-    constexpr double kLeast = 0.05;
-    if (best > kLeast) points.push_back(circle.centre + (circle.radius + at) * normal);
+    if (*std::max_element(steps.begin(), steps.end()) > kLeast)
+      points.push_back(at(outermostStep(steps)));
   }
   return points;
 }
 
 Circle refined(const Image& channel, Circle circle) {
-  for (double reach = 3; reach > 0.9; reach *= 0.6)
+  for (double reach = 6; reach > 0.9; reach *= 0.6)
     circle = fitted(circle, stepsAcross(channel, circle, reach), reach);
   return circle;
 }
