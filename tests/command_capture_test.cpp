@@ -213,7 +213,7 @@ TEST_F(SlowCommandCapture, ShiftedPhotographsAreRejected) {
     Image image(128, 96, 3);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x)
-        image.setRgb(x, y, Rgb(float(std::exp(std::sin((x - dx) * 0.13) + std::cos(y * 0.17)))));
+        image.setRgb(x, y, Rgb(float(std::exp(std::sin((x - dx) * 0.41) + std::cos(y * 0.37)))));
     return image;
   };
   const Words files = {photograph("a.png", texture(0), 0.3, {exposureTime(1, 3)}),
@@ -305,12 +305,16 @@ TEST_F(SlowCommandSun, UsesLayerDirectionAndMask) {
   Image clipped = readImage(folder_ / "clipped.exr"), marks(256, 128, 1);
   const dvec2 uv = directionToUv(Mapping::LatLong, d);
   *marks.at(int(uv.x * 256), int(uv.y * 128)) = 1;
-  clipped.setRgb(3, 20, Rgb(1e6f));  // brighter, but not clipped
+  // Brighter than the sun, with little light, and not clipped.
+  const float white = float(16 * luminance(meanRadiance(sky_)));
+  clipped.setRgb(3, 20, Rgb(1.5f * white));
   const std::string marked = folder_ / "marked.exr";
   writeImage(marked, OutputImage{{{"", "RGB", clipped}, {"clipped", "", marks}}, {}, {}, {}});
   Words words = sun({"--json"});
   words[2] = marked;
-  const json found = json::parse(runCommand(words).out);
+  const CommandResult result = runCommand(words);
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json found = json::parse(result.out);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found["direction"][size_t(c)].get<double>(), d[c], 0.03);
 }
 

@@ -220,13 +220,6 @@ TEST(SlowSunFromBall, ClosedLoopsOnRealSkies) {
     const auto path = sharedData(std::string("probes/polyhaven/") + sky.file);
     if (!path) continue;
     const Loop loop = closedLoop(loadProbe(*path).latLong, 16);
-    const auto text = [](const dvec3& v) {
-      return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
-    };
-    std::cout << sky.file << ": E " << text(loop.found.sun.irradiance) << ", true "
-              << text(loop.truth) << ", RMS " << loop.found.rms << ", clipped only "
-              << loop.found.rmsOfProbe << ", explained " << loop.found.explained << ", plateau "
-              << loop.direction.width << "\n";
     EXPECT_LT(loop.found.rms, sky.largestRms) << sky.file;
     EXPECT_LT(glm::distance(loop.found.sun.irradiance / loop.truth, dvec3(1)), 0.02) << sky.file;
     ++found;

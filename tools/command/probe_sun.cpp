@@ -116,8 +116,8 @@ Direction directionOf(const Arguments& arguments, const LoadedProbe& probe) {
   return {sun.direction, sun.width};
 }
 
-// Absolute over the mean of .exr; a .png shows a residual of 0 as middle grey, and of 10% of the
-// mean as black or white.
+// An .exr holds the residual itself; in a .png 0 is middle grey, and 10% of the mean black or
+// white.
 void writeResidual(const std::string& path, const SunFromBall& result, const BallSamples& ball) {
   Image image = result.residual;
   if (lowerExtension(path) == ".png") {
@@ -179,6 +179,7 @@ void run(const Arguments& arguments) {
                 {arguments.probe, arguments.ball, arguments.mask});
 
   LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
