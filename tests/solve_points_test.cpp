@@ -47,10 +47,10 @@ TEST(SolvePoints, ExactPointsGiveTheCamera) {
     dvec3 half;
   };
   std::mt19937 random(5);
-  for (const Case& c : {Case{12, false, 0, kRoom}, Case{12, false, -0.05, kRoom},
-                        Case{12, false, 0.08, kRoom}, Case{6, false, 0, kRoom},
-                        Case{6, true, 0, kRoom}, Case{8, false, 0, kTable},
-                        Case{5, true, 0, kTable}, Case{40, false, -0.05, kTable}})
+  for (const Case& c :
+       {Case{12, false, 0, kRoom}, Case{12, false, -0.05, kRoom}, Case{12, false, 0.08, kRoom},
+        Case{6, false, 0, kRoom}, Case{6, true, 0, kRoom}, Case{8, false, 0, kTable},
+        Case{5, true, 0, kTable}, Case{40, false, -0.05, kTable}})
     for (int trial = 0; trial < 10; ++trial) {
       SolvedCamera truth = randomCamera(random, c.k1);
       truth.principalPoint = {0.45, 0.56};
@@ -161,8 +161,9 @@ TEST(SolvePoints, RefusesPointsThatLeaveTheCameraOpen) {
   const auto some = [&](size_t count) {
     return std::vector(points.begin(), points.begin() + ptrdiff_t(count));
   };
-  expectError(some(5), open, "P.csv: 5 points are too few for a camera and its field of view; it "
-                             "takes 6, or 4 if the field of view is given");
+  expectError(some(5), open,
+              "P.csv: 5 points are too few for a camera and its field of view; it "
+              "takes 6, or 4 if the field of view is given");
   expectError(some(3), given, "3 points are too few for a camera's position and rotation");
   EXPECT_NO_THROW(solveByPoints(some(4), given, "P.csv"));
 

@@ -37,7 +37,8 @@ void planReflectance(const RenderJob& job, CompositePlan& composite) {
 Ground clipped(Ground ground, const Surroundings& around, const std::string& location) {
   const bool isBox = around.shape == Surroundings::Shape::Box;
   const float above = ground.height - around.center.y;
-  const float side = std::sqrt(std::max(0.5f * (around.radius * around.radius - above * above), 0.0f));
+  const float side =
+      std::sqrt(std::max(0.5f * (around.radius * around.radius - above * above), 0.0f));
   const vec2 centre(around.center.x, around.center.z);
   const vec2 min = isBox ? vec2(around.min.x, around.min.z) : centre - side;
   const vec2 max = isBox ? vec2(around.max.x, around.max.z) : centre + side;
@@ -53,13 +54,14 @@ void addGround(const RenderJob& job, LoadedScene& loaded) {
   const Settings& settings = job.file.settings;
   const std::string location = settings.location("composite.ground");
   if (loaded.surroundings && loaded.room)
-    throwInput("{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
-               location);
+    throwInput(
+        "{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
+        location);
   const double height = settings.get<double>("composite.ground_height") - loaded.origin.y;
   const Bounds objects = bounds(loaded.scene);
-  Ground ground = groundSeenBy(loaded.camera,
-                               float(job.settings.width) / float(job.settings.height), objects,
-                               float(height), location);
+  Ground ground =
+      groundSeenBy(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
+                   float(height), location);
   if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
@@ -133,13 +135,13 @@ void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
   const auto& location = job.file.plateScale;
   if (!location) return;
   if (!loaded.scene.lights.empty())
-    throwInput("{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
-               "own: leave them out with `lights = \"off\"` in [lighting]",
-               *location);
+    throwInput(
+        "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
+        "own: leave them out with `lights = \"off\"` in [lighting]",
+        *location);
   Scene local = loaded.scene;
-  std::erase_if(local.instances, [&, i = size_t(0)](const Instance&) mutable {
-    return bool(loaded.isObject[i++]);
-  });
+  std::erase_if(local.instances,
+                [&, i = size_t(0)](const Instance&) mutable { return bool(loaded.isObject[i++]); });
   const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
   const std::vector<size_t> pixels =
       pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
@@ -153,7 +155,8 @@ void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
   PlateScale scale =
       scaleByPlate(job.composite->plate, pixels, irradiance, entry.groundReflectance);
   if (!isPositive(scale.scale) || !isFinite(scale.scale))
-    throwInput("{}: the plate is black where it shows the ground, in one channel or all", *location);
+    throwInput("{}: the plate is black where it shows the ground, in one channel or all",
+               *location);
   loaded.probe = scaled(loaded.probe, scale.scale);
   loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
   loaded.plateScale = scale;

@@ -24,8 +24,9 @@ void addComposite(std::vector<Setting>& rows) {
                "other nodes of the model are synthetic objects."});
   add({.key = "ground",
        .type = Flag,
-       .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
-               "the objects matter."});
+       .help =
+           "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
+           "the objects matter."});
   add({.key = "ground_height",
        .type = Number,
        .unit = "metres",

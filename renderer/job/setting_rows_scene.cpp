@@ -184,9 +184,10 @@ void addProbe(std::vector<Setting>& rows) {
        .counts = {1, 3},
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the probe's radiance, or on each of its channels. In the scene file also "
-               "\"plate\": for each channel, what a composite's ground needs to look as in the plate "
-               "(`ground_reflectance`)."});
+       .help =
+           "Factor on the probe's radiance, or on each of its channels. In the scene file also "
+           "\"plate\": for each channel, what a composite's ground needs to look as in the plate "
+           "(`ground_reflectance`)."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

@@ -34,22 +34,21 @@ std::vector<std::string> reportLines(const CameraReport& report) {
     position += fmt::format(" +- {:.2g} {:.2g} {:.2g}", e->x, e->y, e->z);
   lines.push_back(fmt::format("{:<12}{} m", "position", position));
   const dvec3 view = -camera.axes[2];
-  lines.push_back(
-      fmt::format("{:<12}{:.5f} {:.5f} {:.5f}", "looks along", view.x, view.y, view.z));
+  lines.push_back(fmt::format("{:<12}{:.5f} {:.5f} {:.5f}", "looks along", view.x, view.y, view.z));
   if (report.fit) {
     const dvec3 e = glm::degrees(errors.rotation);
     const auto text = [](double x) {
       return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown");
     };
-    lines.push_back(
-        fmt::format("{:<12}+- {} {} {} degrees about the right, up and back axes", "rotation",
-                    text(e.x), text(e.y), text(e.z)));
+    lines.push_back(fmt::format("{:<12}+- {} {} {} degrees about the right, up and back axes",
+                                "rotation", text(e.x), text(e.y), text(e.z)));
   }
   const auto fovError = errors.fov ? std::optional(glm::degrees(*errors.fov)) : std::nullopt;
-  lines.push_back(fmt::format(
-      "{:<12}{} degrees vertically, {:.4g} mm on 35 mm film{}", "fov",
-      withError(fmt::format("{:.5g}", glm::degrees(camera.fov())), fovError),
-      equivalentOn35mm(camera.size, camera.focalLength), report.fit && !fovError ? " (given)" : ""));
+  lines.push_back(
+      fmt::format("{:<12}{} degrees vertically, {:.4g} mm on 35 mm film{}", "fov",
+                  withError(fmt::format("{:.5g}", glm::degrees(camera.fov())), fovError),
+                  equivalentOn35mm(camera.size, camera.focalLength),
+                  report.fit && !fovError ? " (given)" : ""));
   if (camera.distortion)
     lines.push_back(fmt::format("{:<12}{}", "k1",
                                 withError(fmt::format("{:.5g}", camera.distortion.k1), errors.k1)));

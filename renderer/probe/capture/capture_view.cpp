@@ -5,9 +5,7 @@ namespace chromeball {
 
 CaptureView::CaptureView(const Image& image, const Image& mask, const Circle& circle,
                          std::shared_ptr<const CaptureOptics> optics, const CameraPosition& camera)
-    : disc_(image, circle, mask),
-      radius_(circle.radius),
-      optics_(std::move(optics)) {
+    : disc_(image, circle, mask), radius_(circle.radius), optics_(std::move(optics)) {
   setCamera(camera);
 }
 

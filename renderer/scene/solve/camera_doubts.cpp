@@ -52,9 +52,9 @@ Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model) {
   dvec2 min(INFINITY), max(-INFINITY);
   int behind = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const auto seen = view.at({(corner & 1 ? model.max : model.min).x,
-                               (corner & 2 ? model.max : model.min).y,
-                               (corner & 4 ? model.max : model.min).z});
+    const auto seen =
+        view.at({(corner & 1 ? model.max : model.min).x, (corner & 2 ? model.max : model.min).y,
+                 (corner & 4 ? model.max : model.min).z});
     if (!seen) {
       ++behind;
       continue;

@@ -81,8 +81,8 @@ void PictureLines::line(dvec2 from, dvec2 to, const Rgb& color) {
   for (int step = bound(std::min(from[axis], to[axis]) - reach, axis);
        step < bound(std::max(from[axis], to[axis]) + reach + 1, axis); ++step) {
     const double middle = from[1 - axis] + slope * (step + 0.5 - from[axis]);
-    for (int other = bound(middle - across, 1 - axis);
-         other < bound(middle + across + 1, 1 - axis); ++other) {
+    for (int other = bound(middle - across, 1 - axis); other < bound(middle + across + 1, 1 - axis);
+         ++other) {
       const int x = axis == 0 ? step : other, y = axis == 0 ? other : step;
       const dvec2 offset = dvec2(x + 0.5, y + 0.5) - from;
       const double t = length2 > 0 ? std::clamp(glm::dot(offset, along) / length2, 0.0, 1.0) : 0;
