@@ -70,8 +70,9 @@ std::vector<Row> readRows(const std::filesystem::path& path, const Fields& colum
     if (start.empty() || start.starts_with('#')) continue;
     Row row{split(line), fmt::format("{}:{}", path.string(), number)};
     const std::span<const std::string> values = std::span(row.fields).subspan(1);
-    const bool isNames =
-        isFirst && std::ranges::none_of(values, [](const auto& f) { return numberIn(f); });
+    const bool isNames = isFirst && std::ranges::none_of(values, [](const auto& f) {
+                           return numberIn(f).has_value();
+                         });
     isFirst = false;
     if (row.fields.size() < required || row.fields.size() > columns.size() ||
         (isNames && !std::equal(row.fields.begin(), row.fields.end(), columns.begin())))
