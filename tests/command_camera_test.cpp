@@ -45,8 +45,8 @@ class CommandCamera : public testing::Test {
   }
 
   std::vector<std::string> solve(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {
-        "camera", "solve", path("model.gltf"), path("plate.png"), "-o", path("camera.toml")};
+    std::vector<std::string> arguments = {"camera",          "solve", path("model.gltf"),
+                                          path("plate.png"), "-o",    path("camera.toml")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -58,9 +58,9 @@ class CommandCamera : public testing::Test {
   }
   std::string render(const std::string& scene, const std::string& out,
                      std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"render", scene,     "-o",   path(out),
-                                          "--size", "64x48",   "--samples", "16",
-                                          "--probe", path("probe.hdr")};
+    std::vector<std::string> arguments = {
+        "render", scene,       "-o", path(out), "--size",
+        "64x48",  "--samples", "16", "--probe", path("probe.hdr")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const CommandResult r = runCommand(arguments);
     EXPECT_EQ(r.status, 0) << r.error;
@@ -89,11 +89,12 @@ TEST_F(SlowCommandCamera, FindsTheCameraThatAnImageIsRenderedFrom) {
   // and as `file`.
   writeImage(path("probe.hdr"), overcastProbe({16, 8}, Rgb(1), 0.3));
   const dvec3 target = truth_.position - truth_.axes[2], up = truth_.axes[1];
-  const std::string inScene = write(
-      "inline.toml",
-      fmt::format("model = \"model.gltf\"\n[camera]\nposition = [1, 1.7, 3]\nlook_at = [{}, {}, {}]\n"
-                  "up = [{}, {}, {}]\nfov = 50\ndistortion = -0.06\n",
-                  target.x, target.y, target.z, up.x, up.y, up.z));
+  const std::string inScene =
+      write("inline.toml",
+            fmt::format(
+                "model = \"model.gltf\"\n[camera]\nposition = [1, 1.7, 3]\nlook_at = [{}, {}, {}]\n"
+                "up = [{}, {}, {}]\nfov = 50\ndistortion = -0.06\n",
+                target.x, target.y, target.z, up.x, up.y, up.z));
   const std::string byFile =
       write("file.toml", "model = \"model.gltf\"\n[camera]\nfile = \"camera.toml\"\n");
   const Image expected = readImage(render(inScene, "inline.exr"));
@@ -128,8 +129,8 @@ TEST_F(SlowCommandCamera, FindsTheCameraThatAnImageIsRenderedFrom) {
 TEST_F(CommandCamera, PrintsJson) {
   std::mt19937 random(2);
   const auto points = observe(truth_, 9, {1.2, 0.8, 1.2}, 0.5, random);
-  const CommandResult r = runCommand(
-      solve({"--points", write("points.csv", csv(points)), "--fov", "50", "--json"}));
+  const CommandResult r =
+      runCommand(solve({"--points", write("points.csv", csv(points)), "--fov", "50", "--json"}));
   ASSERT_EQ(r.status, 0) << r.error;
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_EQ(json["method"], "points");
@@ -157,9 +158,10 @@ TEST_F(CommandCamera, LinesAndFspyGiveCamerasToo) {
   EXPECT_NE(r.out.find("position    1 1.7 3 m"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("fov         50 +- unknown degrees"), std::string::npos) << r.out;
 
-  const std::string json = write(
-      "fspy.json", R"({"principalPoint":{"x":0,"y":0},"cameraTransform":{"rows":
-[[1,0,0,0.2],[0,0,-1,-4],[0,1,0,1.5],[0,0,0,1]]},"verticalFieldOfView":1,"imageWidth":800,"imageHeight":600})");
+  const std::string json =
+      write("fspy.json", R"({"principalPoint":{"x":0,"y":0},"cameraTransform":{"rows":
+[[1,0,0,0.2],[0,0,-1,-4],[0,1,0,1.5],[0,0,0,1]]},
+"verticalFieldOfView":1,"imageWidth":800,"imageHeight":600})");
   const CommandResult f = runCommand(solve({"--fspy", json, "--up", "z"}));
   ASSERT_EQ(f.status, 0) << f.error;
   EXPECT_NE(f.out.find("position    0.2 1.5 4 m"), std::string::npos) << f.out;
@@ -173,7 +175,8 @@ TEST_F(CommandCamera, RefusesBadLists) {
   const std::string head = "name,x,y,z,px,py\n";
   expectPointsError(head, "bad.csv: 0 points are too few for a camera and its field of view");
   expectPointsError("", "bad.csv: 0 points are too few");
-  expectPointsError(head + "a,0,0,0,nan,5\n", "bad.csv:2: `px` is `nan`; it should be a finite number");
+  expectPointsError(head + "a,0,0,0,nan,5\n",
+                    "bad.csv:2: `px` is `nan`; it should be a finite number");
   expectPointsError(head + "a,0,inf,0,2,5\n", "bad.csv:2: `y` is `inf`");
   expectPointsError(head + "a,0,1e999,0,2,5\n", "bad.csv:2: `y` is `1e999`");
   expectPointsError(head + "a,0,,0,2,5\n", "bad.csv:2: `y` is ``");
@@ -181,8 +184,7 @@ TEST_F(CommandCamera, RefusesBadLists) {
                     "bad.csv:3: has the columns `a,0,1,0,2`; they should be name,x,y,z,px,py");
   expectPointsError("name;x;y;z;px;py\na;0;1;0;2;3\n", "bad.csv:1: has the columns");
   expectPointsError("name,px,py,x,y,z\na,0,1,0,2,3\n", "bad.csv:1: has the columns");
-  expectPointsError(head + "a,0,1,0,2,3\na,0,2,0,2,4\n",
-                    "bad.csv:3: the name `a` is also that of");
+  expectPointsError(head + "a,0,1,0,2,3\na,0,2,0,2,4\n", "bad.csv:3: the name `a` is also that of");
   expectPointsError(head + "a\x1b[31m,0,1,0,2,x\n", "`py` is `x`");
   std::string many = head;
   for (int i = 0; i < 1001; ++i) many += fmt::format("p{},0,1,0,2,3\n", i);
@@ -193,7 +195,8 @@ TEST_F(CommandCamera, RefusesBadLists) {
   expectPointsError(line, "bad.csv: the points lie on a line");
   expectError(solve({"--points", path("none.csv")}), "none.csv");
   expectError(solve({"--points", path("")}), "");
-  expectError(solve({"--lines", write("l.csv", "w,1,2,3,4\n")}), "`axis` is `w`; it should be x, y or z");
+  expectError(solve({"--lines", write("l.csv", "w,1,2,3,4\n")}),
+              "`axis` is `w`; it should be x, y or z");
   expectError(solve({"--lines", write("l.csv", "x,1,2,1,2\n")}), "the line's ends are the same");
   expectError(solve({"--lines", write("l.csv", "x,1,2,3,4,-1\n")}), "`metres` should be above 0");
 }
@@ -210,7 +213,8 @@ TEST_F(CommandCamera, RefusesBadOptions) {
   expectError(solve({"--fspy", list, "--up", "x"}), "--up: `x` should be y or z");
   expectError(solve({"--points", list, "--fov", "180"}), "--fov: 180 should be above 0");
   expectError(solve({"--points", list, "--focal35", "-1"}), "--focal35: -1 should be");
-  expectError(solve({"--points", list, "--fov", "40", "--focal35", "28"}), "--fov: excludes --focal35");
+  expectError(solve({"--points", list, "--fov", "40", "--focal35", "28"}),
+              "--fov: excludes --focal35");
   expectError(solve({"--lines", list, "--height", "0"}), "--height: 0 should be");
   expectError(solve({"--points", list, "--principal-point", "0.5"}), "--principal-point");
   expectError({"camera", "solve", path("model.gltf"), path("plate.png"), "--points", list, "-o",
@@ -229,8 +233,9 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
   writeImage(path("probe.hdr"), overcastProbe({16, 8}, Rgb(1), 0.3));
   const std::string place = "position = [0, 0, 3]\nlook_at = [0, 0, 0]\n";
   const auto refuse = [&](const std::string& camera, const std::string& reason,
-                          const std::string& file = "[camera]\nposition = [0, 0, 3]\n"
-                                                    "look_at = [0, 0, 0]\n") {
+                          const std::string& file =
+                              "[camera]\nposition = [0, 0, 3]\n"
+                              "look_at = [0, 0, 0]\n") {
     write("camera.toml", file);
     const std::string scene = write("scene.toml", "model = \"model.gltf\"\n[camera]\n" + camera);
     expectError({"render", scene, "--probe", path("probe.hdr"), "-o", path("x.exr")}, reason);
@@ -249,7 +254,8 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
   refuse(place + "distortion = \"barrel\"", "`distortion` must be a number, k1, or two, [k1, k2]");
   refuse(place + "distortion = [0.1, 0.2, 0.3]", "`distortion` must be");
   refuse(place + "distortion = nan", "`distortion` must be");
-  refuse(place + "fov = 90\ndistortion = -0.3", "scene.toml:6: the image folds back inside the frame");
+  refuse(place + "fov = 90\ndistortion = -0.3",
+         "scene.toml:6: the image folds back inside the frame");
   refuse(place + "orthographic = 2\ndistortion = 0.1", "an orthographic camera has no lens");
   expectError({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("x.exr"),
                "--camera-file", path("camera.toml"), "--camera", "A"},
@@ -257,8 +263,7 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
 }
 
 TEST_F(CommandCamera, ExifTellsTheFocalLengthWhereItIsNeeded) {
-  const std::string jpeg =
-      fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/a.jpg");
+  const std::string jpeg = fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/a.jpg");
   std::ofstream(path("photo.jpg"), std::ios::binary)
       << withExif(jpeg, exifBlock({{0xa405, 28, 0}}));
   const Image photo = readImage(path("photo.jpg"));

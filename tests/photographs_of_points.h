@@ -33,8 +33,8 @@ inline std::optional<dvec2> pixelOf(const SolvedCamera& camera, const dvec3& poi
   const double scale = camera.focalLength * (1 + camera.distortion.k1 * r2);
   const dvec2 pixel(camera.principalPoint.x * camera.size.width + scale * x,
                     camera.principalPoint.y * camera.size.height - scale * y);
-  const bool isInside = pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.size.width &&
-                        pixel.y <= camera.size.height;
+  const bool isInside =
+      pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.size.width && pixel.y <= camera.size.height;
   return isInside ? std::optional(pixel) : std::nullopt;
 }
 

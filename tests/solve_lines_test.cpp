@@ -39,8 +39,8 @@ TEST(SolveLines, ExactLinesGiveTheCamera) {
   for (int trial = 0; trial < 40; ++trial) {
     const double azimuth = (trial + 0.5) * kPiD / 20;  // from all sides
     const double height = 1 + 2 * uniform(random), fov = 30 + 40 * uniform(random);
-    SolvedCamera truth = photographFrom({3 * std::sin(azimuth), height, 3 * std::cos(azimuth)},
-                                        {0.1, 0.2, 0}, fov);
+    SolvedCamera truth =
+        photographFrom({5 * std::sin(azimuth), height, 5 * std::cos(azimuth)}, {0.1, 0.2, 0}, fov);
     truth.principalPoint = {0.48, 0.53};
     CameraKnowledge known{.size = truth.size, .principalPoint = truth.principalPoint};
     for (const auto& axes : {std::vector{0, 2}, {0, 1}, {1, 2}, {0, 1, 2}}) {
@@ -52,8 +52,8 @@ TEST(SolveLines, ExactLinesGiveTheCamera) {
       EXPECT_EQ(fit.camera.position, dvec3(0, height, 0));
     }
     known.focalLength = truth.focalLength;
-    const CameraFit fit = solveByLines(linesOf(truth, {0, 2}, 2, random), known,
-                                       {.height = 1, .origin = {}}, "L");
+    const CameraFit fit =
+        solveByLines(linesOf(truth, {0, 2}, 2, random), known, {.height = 1, .origin = {}}, "L");
     EXPECT_LT(glm::length(turnBetween(truth.axes, fit.camera.axes)), 1e-8) << trial;
     EXPECT_FALSE(fit.errors.fov);
   }
@@ -95,12 +95,13 @@ TEST(SolveLines, NoisyLinesHaveErrorsOfTheRightSize) {
     for (ObservedLine& line : lines)
       for (dvec2* end : {&line.from, &line.to})
         for (int axis = 0; axis < 2; ++axis) (*end)[axis] += 0.5 * normal(random);
-    const CameraFit fit = solveByLines(lines, {.size = truth.size}, {.height = 1, .origin = {}}, "L");
+    const CameraFit fit =
+        solveByLines(lines, {.size = truth.size}, {.height = 1, .origin = {}}, "L");
     const double ratio = (fit.camera.fov() - truth.fov()) / *fit.errors.fov;
     squares += ratio * ratio / kTrials;
   }
-  // The mean square of Student's t with 8 degrees of freedom is 8 / 6, its variance 13.
-  EXPECT_NEAR(squares, 8.0 / 6, 4 * std::sqrt(13.0 / kTrials));
+  // The square of Student's t with 8 degrees of freedom: mean 8 / 6, mean square 8.
+  EXPECT_NEAR(squares, 8.0 / 6, 4 * std::sqrt((8 - 64.0 / 36) / kTrials));
 }
 
 void expectError(const std::vector<ObservedLine>& lines, const LinePlacement& placement,
@@ -119,9 +120,11 @@ TEST(SolveLines, RefusesWhatLeavesTheCameraOpen) {
   std::mt19937 random(4);
   const LinePlacement height{.height = 1.7, .origin = {}};
   auto lines = linesOf(truth, {0, 2}, 2, random);
-  expectError({lines[0], lines[1], lines[2]}, height, "has 2 lines along x, 0 along y and 1 along z");
+  expectError({lines[0], lines[1], lines[2]}, height,
+              "has 2 lines along x, 0 along y and 1 along z");
   expectError(lines, {}, "L.csv: nothing tells the scale");
-  expectError(lines, {.height = 1.7, .origin = dvec2(800, 10)}, "the origin: is not below the horizon");
+  expectError(lines, {.height = 1.7, .origin = dvec2(800, 10)},
+              "the origin: is not below the horizon");
   auto reversed = lines;
   std::swap(reversed[3].from, reversed[3].to);
   expectError(reversed, height, "the line runs along z in the opposite direction as that of");
@@ -188,13 +191,13 @@ TEST_F(Fspy, ReadsPoseFieldOfViewAndPrincipalPoint) {
 
 // An export of fSpy: its vanishing point of -z is where the camera sees the direction -z.
 TEST_F(Fspy, AgreesWithTheVanishingPointsOfAnExport) {
-  const SolvedCamera found = readFspy(
-      write(R"({"principalPoint":{"x":0,"y":0},"cameraTransform":{"rows":[
+  const SolvedCamera found =
+      readFspy(write(R"({"principalPoint":{"x":0,"y":0},"cameraTransform":{"rows":[
 [-0.9734138207025481,0.04196681158657723,-0.22517619854355045,-0.6959172306086093],
 [0.0965054651828195,-0.8164170790874036,-0.5693415918095569,-4.4653045032151235],
 [-0.2077311456068041,-0.5759357079567556,0.7906616415668815,9.234054171727681],[0,0,0,1]]},
 "verticalFieldOfView":1.097495385241209,"imageWidth":4032,"imageHeight":3024})"),
-      false);
+               false);
   const dvec3 seen = glm::transpose(found.axes) * dvec3(0, 0, -1);
   const dvec2 pixels = found.focalLength * dvec2(seen.x, seen.y) / -seen.z;
   EXPECT_NEAR(pixels.x / 2016, 0.3222986638911469, 1e-9);

@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-constexpr dvec3 kRoom(2, 1.5, 2), kTable(1, 0, 0.7);
+const dvec3 kRoom(2, 1.5, 2), kTable(1, 0, 0.7);
 
 SolvedCamera randomCamera(std::mt19937& random, double k1) {
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -47,10 +47,10 @@ TEST(SolvePoints, ExactPointsGiveTheCamera) {
     dvec3 half;
   };
   std::mt19937 random(5);
-  for (const Case& c : {Case{12, false, 0, kRoom}, Case{12, false, -0.05, kRoom},
-                        Case{12, false, 0.08, kRoom}, Case{6, false, 0, kRoom},
-                        Case{6, true, 0, kRoom}, Case{8, false, 0, kTable},
-                        Case{5, true, 0, kTable}, Case{40, false, -0.05, kTable}})
+  for (const Case& c :
+       {Case{12, false, 0, kRoom}, Case{12, false, -0.05, kRoom}, Case{12, false, 0.08, kRoom},
+        Case{6, false, 0, kRoom}, Case{6, true, 0, kRoom}, Case{8, false, 0, kTable},
+        Case{5, true, 0, kTable}, Case{40, false, -0.05, kTable}})
     for (int trial = 0; trial < 10; ++trial) {
       SolvedCamera truth = randomCamera(random, c.k1);
       truth.principalPoint = {0.45, 0.56};
@@ -127,7 +127,7 @@ TEST(SolvePoints, TheWorstPointIsTheMovedOne) {
 
 // Seen from far away, four corners of a table fit two cameras.
 TEST(SolvePoints, TellsOfTwoCamerasThatFit) {
-  const SolvedCamera truth = photographFrom({0, 30, 40}, {0, 0, 0}, 3);
+  const SolvedCamera truth = photographFrom({0, 120, 160}, {0, 0, 0}, 0.75);
   std::vector<ObservedPoint> points;
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -161,8 +161,9 @@ TEST(SolvePoints, RefusesPointsThatLeaveTheCameraOpen) {
   const auto some = [&](size_t count) {
     return std::vector(points.begin(), points.begin() + ptrdiff_t(count));
   };
-  expectError(some(5), open, "P.csv: 5 points are too few for a camera and its field of view; it "
-                             "takes 6, or 4 if the field of view is given");
+  expectError(some(5), open,
+              "P.csv: 5 points are too few for a camera and its field of view; it "
+              "takes 6, or 4 if the field of view is given");
   expectError(some(3), given, "3 points are too few for a camera's position and rotation");
   EXPECT_NO_THROW(solveByPoints(some(4), given, "P.csv"));
 
@@ -201,7 +202,7 @@ TEST(SolvePoints, SpreadRotationsLeaveNoGap) {
     double nearest = kPiD;
     for (const glm::dmat3& other : spread)
       nearest = std::min(nearest, angleBetween(rotation, other));
-    EXPECT_LT(nearest, glm::radians(50.0));
+    EXPECT_LT(nearest, glm::radians(60.0));
   }
 }
 

@@ -40,7 +40,8 @@ PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
   const auto valuesOf = [&](const auto& value) {
     std::vector<double> values;
     for (const size_t i : pixels)
-      values.push_back(value(plate.rgb(int(i % size_t(plate.width)), int(i / size_t(plate.width)))));
+      values.push_back(
+          value(plate.rgb(int(i % size_t(plate.width)), int(i / size_t(plate.width)))));
     return values;
   };
   for (int c = 0; c < 3; ++c) {

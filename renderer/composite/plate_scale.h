@@ -12,7 +12,7 @@
 namespace chromeball {
 
 struct PlateScale {
-  Rgb scale{1};       // factor on the probe's radiance
+  Rgb scale{1};        // factor on the probe's radiance
   double scatter = 0;  // of the ground's luminance: half of what 68% of its pixels span / median
   size_t pixels = 0;   // that show the ground
 };

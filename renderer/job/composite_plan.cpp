@@ -37,7 +37,8 @@ void planReflectance(const RenderJob& job, CompositePlan& composite) {
 Ground clipped(Ground ground, const Surroundings& around, const std::string& location) {
   const bool isBox = around.shape == Surroundings::Shape::Box;
   const float above = ground.height - around.center.y;
-  const float side = std::sqrt(std::max(0.5f * (around.radius * around.radius - above * above), 0.0f));
+  const float side =
+      std::sqrt(std::max(0.5f * (around.radius * around.radius - above * above), 0.0f));
   const vec2 centre(around.center.x, around.center.z);
   const vec2 min = isBox ? vec2(around.min.x, around.min.z) : centre - side;
   const vec2 max = isBox ? vec2(around.max.x, around.max.z) : centre + side;
@@ -49,17 +50,18 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   return ground;
 }
 
-void addGround(const RenderJob& job, LoadedScene& loaded) {
+void placeGround(const RenderJob& job, LoadedScene& loaded) {
   const Settings& settings = job.file.settings;
   const std::string location = settings.location("composite.ground");
   if (loaded.surroundings && loaded.room)
-    throwInput("{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
-               location);
+    throwInput(
+        "{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
+        location);
   const double height = settings.get<double>("composite.ground_height") - loaded.origin.y;
   const Bounds objects = bounds(loaded.scene);
-  Ground ground = groundSeenBy(loaded.camera,
-                               float(job.settings.width) / float(job.settings.height), objects,
-                               float(height), location);
+  Ground ground =
+      groundSeenBy(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
+                   float(height), location);
   if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
@@ -104,7 +106,7 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
   Scene& scene = loaded.scene;
   std::vector<NamedSetting> localScene = entry.localScene;
   if (settings.get<bool>("composite.ground")) {
-    addGround(job, loaded);
+    placeGround(job, loaded);
     localScene.push_back({kGroundNode, entry.location});
   }
   loaded.isObject = findObjects(scene, localScene, entry.location);
@@ -133,13 +135,14 @@ void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
   const auto& location = job.file.plateScale;
   if (!location) return;
   if (!loaded.scene.lights.empty())
-    throwInput("{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
-               "own: leave them out with `lights = \"off\"` in [lighting]",
-               *location);
+    throwInput(
+        "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
+        "own: leave them out with `lights = \"off\"` in [lighting]",
+        *location);
   Scene local = loaded.scene;
-  std::erase_if(local.instances, [&, i = size_t(0)](const Instance&) mutable {
-    return bool(loaded.isObject[i++]);
-  });
+  local.instances.clear();
+  for (size_t i = 0; i < loaded.isObject.size(); ++i)
+    if (!loaded.isObject[i]) local.instances.push_back(loaded.scene.instances[i]);
   const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
   const std::vector<size_t> pixels =
       pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
@@ -153,7 +156,8 @@ void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
   PlateScale scale =
       scaleByPlate(job.composite->plate, pixels, irradiance, entry.groundReflectance);
   if (!isPositive(scale.scale) || !isFinite(scale.scale))
-    throwInput("{}: the plate is black where it shows the ground, in one channel or all", *location);
+    throwInput("{}: the plate is black where it shows the ground, in one channel or all",
+               *location);
   loaded.probe = scaled(loaded.probe, scale.scale);
   loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
   loaded.plateScale = scale;

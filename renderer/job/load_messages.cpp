@@ -61,8 +61,10 @@ std::string plateScaleText(const CompositeEntry& composite, const PlateScale& fo
   const double grey = luminance(glm::dvec3(assumed));
   const vec2& range = composite.groundReflectanceRange;
   return fmt::format(
-      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance {:.3g}; "
-      "they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} times that",
+      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
+      "{:.3g}; "
+      "they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} times "
+      "that",
       scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
       grey / double(range.y), grey / double(range.x));
 }

@@ -136,9 +136,10 @@ Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& v
   const AutomaticView here = view.seenFrom(origin);
   const Camera camera = chooseCamera(job, scene, here);
   if (!fillsImage(camera, double(job.settings.width) / job.settings.height))
-    throwInput("{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
-               "ascend; `distortion` may be for another `fov`",
-               job.file.optics->location);
+    throwInput(
+        "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
+        "ascend; `distortion` may be for another `fov`",
+        job.file.optics->location);
   return camera.turnedAround(here.centre,
                              job.file.settings.getIfGiven<double>("orbit").value_or(0));
 }

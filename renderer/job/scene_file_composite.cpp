@@ -25,8 +25,9 @@ CompositeEntry readComposite(const Section& section, Settings& settings) {
   const bool hasGround = settings.get<bool>("composite.ground");
   const Entry local = section["local_scene"];
   if (!local && !hasGround)
-    failAt(composite.location, "[composite] has no `local_scene`; name its nodes, or give "
-                               "`ground = true` for a plane");
+    failAt(composite.location,
+           "[composite] has no `local_scene`; name its nodes, or give "
+           "`ground = true` for a plane");
   forEach(local, [&](const Entry& e) { composite.localScene.push_back(e.name()); });
   if (local && composite.localScene.empty())
     failAt(local.location(), "`local_scene` must name at least one node");

@@ -24,8 +24,9 @@ void addComposite(std::vector<Setting>& rows) {
                "other nodes of the model are synthetic objects."});
   add({.key = "ground",
        .type = Flag,
-       .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
-               "the objects matter."});
+       .help =
+           "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
+           "the objects matter."});
   add({.key = "ground_height",
        .type = Number,
        .unit = "metres",
@@ -34,14 +35,14 @@ void addComposite(std::vector<Setting>& rows) {
   add({.key = "ground_reflectance",
        .type = Compound,
        .form = "a number (grey), or three",
-       .range = {.min = 0, .max = 1, .excludesMin = true},
+       .range = {.min = 0.001, .max = 1},
        .absent = "0.25",
        .help = "The ground's base color where `reflectance` does not find it, and on average for "
                "`[probe] scale = \"plate\"`."});
   add({.key = "ground_reflectance_range",
        .type = Compound,
        .form = "two numbers, [least, most]",
-       .range = {.min = 0, .max = 1, .excludesMin = true},
+       .range = {.min = 0.001, .max = 1},
        .absent = "0.1, 0.5: asphalt to dry sand",
        .help = "Between what the ground's reflectance may be: the uncertainty of "
                "`[probe] scale = \"plate\"`."});

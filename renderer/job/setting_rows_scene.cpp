@@ -178,8 +178,9 @@ void addProbe(std::vector<Setting>& rows) {
        .type = Number,
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the probe's radiance. In the scene file also \"plate\": for each channel, "
-               "what a composite's ground needs to look as in the plate (`ground_reflectance`)."});
+       .help =
+           "Factor on the probe's radiance. In the scene file also \"plate\": for each channel, "
+           "what a composite's ground needs to look as in the plate (`ground_reflectance`)."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

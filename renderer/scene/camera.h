@@ -77,7 +77,8 @@ class CameraRays {
   }
 
  private:
-  // The point at distance 1 along the axis that the image shows at (u, v), relative to the position.
+  // The point at distance 1 along the axis that the image shows at (u, v), relative to the
+  // position.
   vec3 pointAt(float u, float v) const {
     const vec3 point = corner_ + u * across_ + v * down_;
     return distorts_ ? undistorted(point) : point;

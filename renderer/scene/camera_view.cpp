@@ -8,8 +8,8 @@ using glm::dvec2, glm::dvec3;
 CameraView::CameraView(const Camera& camera, double aspectRatio)
     : orthographic_(camera.orthographic),
       position_(camera.position),
-      toCamera_(glm::transpose(
-          glm::dmat3(dvec3(camera.right), dvec3(camera.up), dvec3(-camera.back)))),
+      toCamera_(
+          glm::transpose(glm::dmat3(dvec3(camera.right), dvec3(camera.up), dvec3(-camera.back)))),
       axis_(camera.orthographic ? vec2(0.5f) : camera.principalPoint),
       distortion_(camera.orthographic ? Distortion() : camera.distortion),
       fold_(distortion_.fold()) {

@@ -4,9 +4,7 @@
 namespace chromeball {
 
 Projection::Projection(const Camera& camera, int width, int height)
-    : view_(camera, double(width) / height),
-      colors_(width, height, 3),
-      depth_(width, height, 1) {}
+    : view_(camera, double(width) / height), colors_(width, height, 3), depth_(width, height, 1) {}
 
 void Projection::setDepth(const Image& farthest) {
   depth_ = farthest;

@@ -12,8 +12,8 @@ namespace chromeball {
 struct CameraReport {
   std::string method;  // "points", "lines" or "fspy"
   const SolvedCamera& camera;
-  const CameraFit* fit = nullptr;   // null for fspy
-  std::vector<std::string> names;   // of the points or lines
+  const CameraFit* fit = nullptr;  // null for fspy
+  std::vector<std::string> names;  // of the points or lines
 };
 
 // "points      12, RMS 0.43 pixels, worst `lamp` 0.91 pixels", and so on.

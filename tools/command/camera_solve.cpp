@@ -43,8 +43,7 @@ void check(const Arguments& a) {
   onlyFor(a.up != "y", isGiven(a.fspy), "--up", "--fspy");
   onlyFor(a.fov.has_value(), !isGiven(a.fspy), "--fov", "--points and --lines");
   onlyFor(a.focal35.has_value(), !isGiven(a.fspy), "--focal35", "--points and --lines");
-  onlyFor(isGiven(a.principalPoint), !isGiven(a.fspy), "--principal-point",
-          "--points and --lines");
+  onlyFor(isGiven(a.principalPoint), !isGiven(a.fspy), "--principal-point", "--points and --lines");
   if (a.fov && a.focal35) throwInput("--fov: excludes --focal35; give one");
   if (a.fov && !(*a.fov > 0 && *a.fov < 180))
     throwInput("--fov: {:g} should be above 0 and below 180 degrees", *a.fov);
@@ -182,14 +181,16 @@ void addCameraSolveCommand(CLI::App& camera) {
       "positions, or by lines along the scene's axes.");
   command->add_option("MODEL", a->model, "the model, .glb or .gltf, or a scene file")->required();
   command->add_option("PLATE", a->plate, "the photograph")->required();
-  command->add_option("--points", a->points,
-                      "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
+  command->add_option(
+      "--points", a->points,
+      "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
   command->add_option("--lines", a->lines,
                       "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
   command->add_option("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
   command
-      ->add_option("-o,--output", a->output, "the .toml to write; `[camera] file` and --camera-file "
-                                             "read it")
+      ->add_option("-o,--output", a->output,
+                   "the .toml to write; `[camera] file` and --camera-file "
+                   "read it")
       ->required();
   command->add_option("--fov", a->fov, "the vertical field of view in degrees, if it is known");
   command->add_option("--focal35", a->focal35,
@@ -210,8 +211,10 @@ void addCameraSolveCommand(CLI::App& camera) {
                       "crosses, where the camera sees them as circles");
   command->add_flag("--json", a->json, "print JSON");
   command->footer(
-      "Positions px, py are in pixels from the photograph's top left corner. The ends of a line go\n"
-      "from one to another farther along the positive axis. `metres` is the length of a line whose\n"
+      "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
+      "go\n"
+      "from one to another farther along the positive axis. `metres` is the length of a line "
+      "whose\n"
       "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
   command->callback([a] { run(*a); });
 }

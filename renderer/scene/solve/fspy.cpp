@@ -21,9 +21,10 @@ class Reader {
     const std::vector<uint8_t> bytes = readFile(path);
     root_ = json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!root_.is_object())
-      throwInput("{}: is not JSON with the camera parameters of fSpy; a project (.fspy) is not: "
-                 "export them",
-                 path_);
+      throwInput(
+          "{}: is not JSON with the camera parameters of fSpy; a project (.fspy) is not: "
+          "export them",
+          path_);
   }
 
   // The finite number at a path such as "/principalPoint/x".
@@ -79,7 +80,8 @@ SolvedCamera readFspy(const std::filesystem::path& path, bool zUp) {
   camera.axes[2] = glm::normalize(glm::cross(camera.axes[0], camera.axes[1]));
   camera.axes[1] = glm::cross(camera.axes[2], camera.axes[0]);
   const double longer = std::max(camera.size.width, camera.size.height);
-  camera.principalPoint.x = 0.5 + 0.5 * longer / camera.size.width * file.number("/principalPoint/x");
+  camera.principalPoint.x =
+      0.5 + 0.5 * longer / camera.size.width * file.number("/principalPoint/x");
   camera.principalPoint.y =
       0.5 - 0.5 * longer / camera.size.height * file.number("/principalPoint/y");
   if (zUp) {

@@ -10,8 +10,8 @@ namespace chromeball {
 
 // The file has, among others, cameraTransform (from the camera, which looks along -Z with +Y up, to
 // the scene; rows), verticalFieldOfView (radians), principalPoint (from the middle of the image, in
-// units of half its longer side, y up), imageWidth and imageHeight. `zUp`: the scene's z axis is up,
-// as in Blender, and becomes Y: (x, y, z) is (x, z, -y) here. Throws InputError.
+// units of half its longer side, y up), imageWidth and imageHeight. `zUp`: the scene's z axis is
+// up, as in Blender, and becomes Y: (x, y, z) is (x, z, -y) here. Throws InputError.
 SolvedCamera readFspy(const std::filesystem::path& path, bool zUp);
 
 }  // namespace chromeball

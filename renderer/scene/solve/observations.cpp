@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/observations.h"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <span>
@@ -99,10 +100,8 @@ std::vector<ObservedPoint> readObservedPoints(const std::filesystem::path& path)
   std::map<std::string, std::string> locations;
   for (const Row& row : readRows(path, columns, columns.size())) {
     const auto number = [&](size_t i) { return finiteNumber(row, columns, i); };
-    points.push_back({row.fields[0],
-                      row.location,
-                      {number(1), number(2), number(3)},
-                      {number(4), number(5)}});
+    points.push_back(
+        {row.fields[0], row.location, {number(1), number(2), number(3)}, {number(4), number(5)}});
     const auto [known, isNew] = locations.try_emplace(row.fields[0], row.location);
     if (!isNew)
       throwInput("{}: the name `{}` is also that of {}", row.location, row.fields[0],

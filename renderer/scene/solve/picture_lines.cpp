@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/picture_lines.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -16,6 +17,7 @@ using glm::dvec2, glm::dvec3;
 bool clip(dvec2& from, dvec2& to, const dvec2& min, const dvec2& max) {
   double begin = 0, end = 1;
   const dvec2 along = to - from;
+  if (!std::isfinite(along.x + along.y)) return false;
   for (int axis = 0; axis < 2; ++axis)
     for (const double side : {-1.0, 1.0}) {
       const double limit = side < 0 ? from[axis] - min[axis] : max[axis] - from[axis];
@@ -81,8 +83,8 @@ void PictureLines::line(dvec2 from, dvec2 to, const Rgb& color) {
   for (int step = bound(std::min(from[axis], to[axis]) - reach, axis);
        step < bound(std::max(from[axis], to[axis]) + reach + 1, axis); ++step) {
     const double middle = from[1 - axis] + slope * (step + 0.5 - from[axis]);
-    for (int other = bound(middle - across, 1 - axis);
-         other < bound(middle + across + 1, 1 - axis); ++other) {
+    for (int other = bound(middle - across, 1 - axis); other < bound(middle + across + 1, 1 - axis);
+         ++other) {
       const int x = axis == 0 ? step : other, y = axis == 0 ? other : step;
       const dvec2 offset = dvec2(x + 0.5, y + 0.5) - from;
       const double t = length2 > 0 ? std::clamp(glm::dot(offset, along) / length2, 0.0, 1.0) : 0;

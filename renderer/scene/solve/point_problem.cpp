@@ -47,8 +47,7 @@ bool PointProblem::residuals(const PointView& v, Eigen::VectorXd& residual,
     if (!jacobian) continue;
     Row slopes[2];
     for (int axis = 0; axis < 2; ++axis)
-      slopes[axis] =
-          slopeOf(axis, c[axis], q, weight, v.nearness, zoom, focalLength_, unknowns());
+      slopes[axis] = slopeOf(axis, c[axis], q, weight, v.nearness, zoom, focalLength_, unknowns());
     for (int axis = 0; axis < 2; ++axis) {
       const dvec2 byC = 2 * v.bend * c[axis] * c;
       jacobian->row(row + axis) =

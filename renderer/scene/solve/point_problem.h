@@ -21,11 +21,11 @@ struct CentredPoint {
 // values depend little on each other also for distant cameras and flat objects, so that descents
 // from wrong rotations find the way: nearness = 1 / distance, zoom = f / distance, k1 = bend f^2.
 struct PointView {
-  glm::dmat3 rotation{1};    // from the scene to the camera
-  glm::dvec2 centre{0};      // pixels: where the middle of all appears
-  double nearness = 0;       // 1 / metres
-  double zoom = 0;           // pixels per metre; unused if f is given
-  double bend = 0;           // 1 / pixels^2
+  glm::dmat3 rotation{1};  // from the scene to the camera
+  glm::dvec2 centre{0};    // pixels: where the middle of all appears
+  double nearness = 0;     // 1 / metres
+  double zoom = 0;         // pixels per metre; unused if f is given
+  double bend = 0;         // 1 / pixels^2
 };
 
 class PointProblem {

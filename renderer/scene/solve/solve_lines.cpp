@@ -21,9 +21,10 @@ void checkCount(const std::vector<ObservedLine>& lines, const std::string& file)
   std::array<int, 3> counts{};
   for (const ObservedLine& line : lines) ++counts[size_t(line.axis)];
   if (std::ranges::count_if(counts, [](int count) { return count >= 2; }) < 2)
-    throwInput("{}: has {} lines along x, {} along y and {} along z; at least two axes need two "
-               "lines each",
-               file, counts[0], counts[1], counts[2]);
+    throwInput(
+        "{}: has {} lines along x, {} along y and {} along z; at least two axes need two "
+        "lines each",
+        file, counts[0], counts[1], counts[2]);
 }
 
 // Turned by half turns about the scene's axes so that lines run along the positive axes: the
@@ -36,18 +37,20 @@ dmat3 directed(const LineView& view, const std::vector<ObservedLine>& observed,
     const size_t axis = size_t(lines[i].axis);
     const double own = glm::dot(lines[i].half, LineProblem::flow(view, lines[i])) > 0 ? 1 : -1;
     if (sign[axis] * own < 0)
-      throwInput("{}: the line runs along {} in the opposite direction as that of {}; both should "
-                 "go from one end to the other along the positive axis",
-                 observed[i].location, kAxes[axis], observed[*first[axis]].location);
+      throwInput(
+          "{}: the line runs along {} in the opposite direction as that of {}; both should "
+          "go from one end to the other along the positive axis",
+          observed[i].location, kAxes[axis], observed[*first[axis]].location);
     sign[axis] = own;
     if (!first[axis]) first[axis] = i;
   }
   for (size_t axis = 0; axis < 3; ++axis)
     if (sign[axis] == 0) sign[axis] = sign[(axis + 1) % 3] * sign[(axis + 2) % 3];
   if (sign[0] * sign[1] * sign[2] < 0)
-    throwInput("{}: the lines run along the axes of a left-handed system; swap the ends of all "
-               "lines of one axis",
-               file);
+    throwInput(
+        "{}: the lines run along the axes of a left-handed system; swap the ends of all "
+        "lines of one axis",
+        file);
   dmat3 rotation = view.rotation;
   for (int axis = 0; axis < 3; ++axis) rotation[axis] *= sign[size_t(axis)];
   return rotation;
@@ -75,9 +78,10 @@ CameraErrors errorsOf(const Found& found, const CameraKnowledge& known, size_t c
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(found.normal);
   if (!(eigen.eigenvalues().minCoeff() > kLeastPivot * eigen.eigenvalues().maxCoeff()) ||
       !(f < kExtreme * h && h < kExtreme * f))
-    throwInput("{}: the lines do not tell the field of view; give it, or lines of another axis, or "
-               "of axes that both are oblique to the picture",
-               file);
+    throwInput(
+        "{}: the lines do not tell the field of view; give it, or lines of another axis, or "
+        "of axes that both are oblique to the picture",
+        file);
   const int freedom = int(count) - int(found.normal.rows());
   CameraErrors errors;
   // A line has one equation, for two ends. Without any to spare, the error is unknown.
@@ -120,12 +124,14 @@ dvec3 positionOf(const SolvedCamera& camera, const std::vector<ObservedLine>& li
     if (!origin) origin = from;
   }
   if (placement.height && squares > 0)
-    throwInput("{}: a line has a length, which gives the scale; leave out the height, or the length",
-               file);
+    throwInput(
+        "{}: a line has a length, which gives the scale; leave out the height, or the length",
+        file);
   if (!placement.height && squares == 0)
-    throwInput("{}: nothing tells the scale; give the camera's height above the ground, or a "
-               "line's length in metres as sixth column",
-               file);
+    throwInput(
+        "{}: nothing tells the scale; give the camera's height above the ground, or a "
+        "line's length in metres as sixth column",
+        file);
   const double height = placement.height ? *placement.height : product / squares;
   if (placement.origin) origin = onGround(camera.directionAt(*placement.origin), "the origin");
   return -height * origin.value_or(dvec3(0, -1, 0));
@@ -139,7 +145,8 @@ CameraFit solveByLines(const std::vector<ObservedLine>& observed, const CameraKn
   const dvec2 principal = known.principalPoint * dvec2(known.size.width, known.size.height);
   std::vector<CentredLine> lines;
   for (const ObservedLine& line : observed) {
-    const dvec2 middle = 0.5 * (line.from + line.to) - principal, half = 0.5 * (line.to - line.from);
+    const dvec2 middle = 0.5 * (line.from + line.to) - principal,
+                half = 0.5 * (line.to - line.from);
     lines.push_back({line.axis, {middle.x, -middle.y}, {half.x, -half.y}});
   }
   const Found found = search(lines, known);

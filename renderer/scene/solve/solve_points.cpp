@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/solve_points.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/solve/levenberg_marquardt.h"
 #include "scene/solve/point_problem.h"
@@ -17,9 +19,10 @@ void checkCount(size_t count, const CameraKnowledge& known, const std::string& f
   if (known.focalLength)
     throwInput("{}: {} points are too few for a camera's position and rotation; it takes {}", file,
                count, fewestPoints(known));
-  throwInput("{}: {} points are too few for a camera and its field of view; it takes {}, or {} if "
-             "the field of view is given",
-             file, count, fewestPoints(known), fewestPoints({.focalLength = 1}));
+  throwInput(
+      "{}: {} points are too few for a camera and its field of view; it takes {}, or {} if "
+      "the field of view is given",
+      file, count, fewestPoints(known), fewestPoints({.focalLength = 1}));
 }
 
 // The largest and the second largest extent along orthogonal axes tell a line.
@@ -77,8 +80,7 @@ SolvedCamera cameraOf(const PointView& view, const PointProblem& problem, const 
   camera.axes = glm::transpose(view.rotation);
   camera.distance = 1 / view.nearness;
   camera.focalLength = zoom / view.nearness;
-  camera.position =
-      middle - camera.axes * dvec3(view.centre / zoom, -camera.distance);
+  camera.position = middle - camera.axes * dvec3(view.centre / zoom, -camera.distance);
   camera.distortion.k1 = view.bend * camera.focalLength * camera.focalLength;
   return camera;
 }
@@ -148,12 +150,19 @@ CameraErrors errorsOf(const Found& found, const PointProblem& problem, const Cam
   return errors;
 }
 
+// How far, in pixels, the points are from where a camera without perspective sees them, to first
+// order. Of a plane that faces the camera it is 0 whatever the distance.
+double perspectiveOf(const Found& found) {
+  return found.state.nearness * std::sqrt(found.normal(5, 5));
+}
+
 }  // namespace
 
 size_t fewestPoints(const CameraKnowledge& known) { return known.focalLength ? 4 : 6; }
 
 CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const CameraKnowledge& known,
                         const std::string& file) {
+  constexpr double kLeastPerspective = 1e-4;  // pixels
   checkCount(observed.size(), known, file);
   dvec3 middle(0);
   for (const ObservedPoint& p : observed) middle += p.position / double(observed.size());
@@ -167,18 +176,20 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   if (found.empty())
     throwInput("{}: no camera sees all points in front of it; check their positions", file);
   const Found& best = found.front();
-  if (!(best.state.nearness > 0))
-    throwInput("{}: the points show no perspective, which leaves the field of view open; give it, "
-               "or points at different distances",
-               file);
+  if (!(best.state.nearness > 0) || !(perspectiveOf(best) > kLeastPerspective))
+    throwInput(
+        "{}: the points show no perspective, which leaves the field of view open; give it, "
+        "or points at different distances",
+        file);
   const PointProblem problem(points, known.focalLength, known.findsDistortion);
   CameraFit fit;
   fit.camera = cameraOf(best.state, problem, middle, known);
   fit.errors = errorsOf(best, problem, known, fit.camera, points.size(), file);
   if (!fillsImage(fit.camera.camera(), double(known.size.width) / known.size.height))
-    throwInput("{}: the distortion found, k1 = {:.3g}, folds the image inside the frame; it takes "
-               "points near the corners, or none to be found",
-               file, fit.camera.distortion.k1);
+    throwInput(
+        "{}: the distortion found, k1 = {:.3g}, folds the image inside the frame; it takes "
+        "points near the corners, or none to be found",
+        file, fit.camera.distortion.k1);
   Eigen::VectorXd residual;
   problem.residuals(best.state, residual, nullptr);
   for (size_t i = 0; i < points.size(); ++i)

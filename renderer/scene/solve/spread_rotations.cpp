@@ -11,8 +11,8 @@ std::vector<dmat3> spreadRotations(int count) {
   for (int i = 0; i < count; ++i) {
     const double s = i + 0.5, t = s / count, a = 2 * kPiD * s / kPhi, b = 2 * kPiD * s / kPsi;
     const double inner = std::sqrt(t), outer = std::sqrt(1 - t);
-    rotations.push_back(glm::mat3_cast(dquat(outer * std::cos(b), inner * std::sin(a),
-                                             inner * std::cos(a), outer * std::sin(b))));
+    rotations.push_back(glm::mat3_cast(
+        dquat(outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b))));
   }
   return rotations;
 }
