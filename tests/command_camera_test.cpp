@@ -160,7 +160,8 @@ TEST_F(CommandCamera, LinesAndFspyGiveCamerasToo) {
 
   const std::string json =
       write("fspy.json", R"({"principalPoint":{"x":0,"y":0},"cameraTransform":{"rows":
-[[1,0,0,0.2],[0,0,-1,-4],[0,1,0,1.5],[0,0,0,1]]},"verticalFieldOfView":1,"imageWidth":800,"imageHeight":600})");
+[[1,0,0,0.2],[0,0,-1,-4],[0,1,0,1.5],[0,0,0,1]]},
+"verticalFieldOfView":1,"imageWidth":800,"imageHeight":600})");
   const CommandResult f = runCommand(solve({"--fspy", json, "--up", "z"}));
   ASSERT_EQ(f.status, 0) << f.error;
   EXPECT_NE(f.out.find("position    0.2 1.5 4 m"), std::string::npos) << f.out;

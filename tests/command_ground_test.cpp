@@ -2,6 +2,7 @@
 // Composites without a modelled local scene, and through distorted lenses.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 
 #include "base/hash.h"
@@ -69,9 +70,11 @@ class SlowCommandGround : public testing::Test {
     return path("scene.toml");
   }
   ImageFile render(const std::string& scene, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"render",    scene, "-o",    path("out.exr"),
-                                          "--samples", "64",  "--aov", "difference,alpha,l_noobj"};
+    std::vector<std::string> arguments = {"render",     scene, "-o",    path("out.exr"),
+                                          "--adaptive", "off", "--aov", "difference,alpha,l_noobj"};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    if (std::count(more.begin(), more.end(), "--samples") == 0)
+      arguments.insert(arguments.end(), {"--samples", "64"});
     const CommandResult r = runCommand(arguments);
     EXPECT_EQ(r.status, 0) << r.error;
     messages_ = r.error;
@@ -100,7 +103,8 @@ class SlowCommandGround : public testing::Test {
   std::string messages_;
 };
 
-// Both renders have the same random numbers, so that only rounding and the floor's edges differ.
+// Both renders have the same random numbers, so that only rounding, by which a sample sees the sun
+// or not, and the floor's far edges differ.
 TEST_F(SlowCommandGround, HasTheShadowsOfAModelledPlane) {
   const Image automatic =
       *findLayer(render(scene("ground = true\nreflectance = \"model\"")), "difference");
@@ -112,7 +116,7 @@ TEST_F(SlowCommandGround, HasTheShadowsOfAModelledPlane) {
     difference += std::abs(modelled.texels[i] - automatic.texels[i]);
   }
   EXPECT_GT(shadow / double(automatic.texels.size()), 1e-3);
-  EXPECT_LT(difference, 2e-3 * shadow);
+  EXPECT_LT(difference, 2e-2 * shadow);
 }
 
 // With nothing but plate, probe, camera and model, the ground alone looks as in the plate, if the

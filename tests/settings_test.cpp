@@ -140,8 +140,9 @@ TEST(Settings, EveryOptionAcceptsExactlyItsRange) {
 class SettingsInAFile : public testing::Test {
  protected:
   SettingsInAFile() {
-    for (const char* name : {"ball.glb", "sky.exr", "something"})
-      std::ofstream(folder_ / name) << "x";
+    for (const char* name : {"ball.glb", "sky.exr"}) std::ofstream(folder_ / name) << "x";
+    std::ofstream(folder_ / "something")  // also a camera's file
+        << "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
   }
 
   // The error message, or "" without an error.
@@ -168,7 +169,7 @@ class SettingsInAFile : public testing::Test {
     const auto add = [&](const char* other, const char* line) {
       if (s.key != other) toml += fmt::format("{} = {}\n", other, line);
     };
-    if (s.section == "camera" && s.key != "name") {
+    if (s.section == "camera" && s.key != "name" && s.key != "file") {
       add("position", "[0, 0, 5]"), add("look_at", "[0, 0, 0]");
       if (s.key == "aperture" || s.key == "focus") add("aperture", "1"), add("focus", "1");
     }
@@ -186,6 +187,7 @@ class SettingsInAFile : public testing::Test {
     }
     if (s.section == "source" && s.key != "file") add("probe_polygon", "[[0, 0], [1, 0], [0, 1]]");
     if (s.section == "composite") add("plate", "'sky.exr'"), add("local_scene", "'ground'");
+    if (s.section == "composite" && s.key.starts_with("ground_")) add("ground", "true");
     if (s.section == "surroundings") {
       const bool sphere = s.key == "radius" || s.key == "center", room = s.key == "file";
       add("shape", sphere ? "'sphere'" : room ? "'model'" : "'box'");

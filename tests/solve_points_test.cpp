@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-constexpr dvec3 kRoom(2, 1.5, 2), kTable(1, 0, 0.7);
+const dvec3 kRoom(2, 1.5, 2), kTable(1, 0, 0.7);
 
 SolvedCamera randomCamera(std::mt19937& random, double k1) {
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -127,7 +127,7 @@ TEST(SolvePoints, TheWorstPointIsTheMovedOne) {
 
 // Seen from far away, four corners of a table fit two cameras.
 TEST(SolvePoints, TellsOfTwoCamerasThatFit) {
-  const SolvedCamera truth = photographFrom({0, 30, 40}, {0, 0, 0}, 3);
+  const SolvedCamera truth = photographFrom({0, 120, 160}, {0, 0, 0}, 0.75);
   std::vector<ObservedPoint> points;
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -202,7 +202,7 @@ TEST(SolvePoints, SpreadRotationsLeaveNoGap) {
     double nearest = kPiD;
     for (const glm::dmat3& other : spread)
       nearest = std::min(nearest, angleBetween(rotation, other));
-    EXPECT_LT(nearest, glm::radians(50.0));
+    EXPECT_LT(nearest, glm::radians(60.0));
   }
 }
 

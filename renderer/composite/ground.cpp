@@ -1,26 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/ground.h"
 
+#include <algorithm>
+
 #include "base/error.h"
+#include "trace/ray.h"
 
 namespace chromeball {
 namespace {
 
 // The points of the plane that a grid of pixels sees, at most `reach` from the middle along an
-// axis.
+// axis. Where neighbouring rays have the horizon between them, the upper one sees it at the reach.
+// Empty if no ray points down.
 std::vector<vec2> seenPoints(const Camera& camera, float aspectRatio, float height,
                              const vec2& middle, float reach) {
   constexpr int kGrid = 64;
   const CameraRays rays(camera, aspectRatio);
-  std::vector<vec2> points;
+  std::vector<Ray> all;
+  float step = 0;  // the largest change of a direction between neighbours
   for (int i = 0; i <= kGrid; ++i)
     for (int k = 0; k <= kGrid; ++k) {
-      vec3 origin, direction;
-      rays.ray(float(i) / kGrid, float(k) / kGrid, origin, direction);
-      if (!(direction.y < 0)) continue;
-      const vec3 point = origin + (height - origin.y) / direction.y * direction;
-      points.push_back(glm::clamp(vec2(point.x, point.z), middle - reach, middle + reach));
+      Ray& ray = all.emplace_back();
+      rays.ray(float(i) / kGrid, float(k) / kGrid, ray.origin, ray.direction);
+      if (k > 0) step = std::max(step, glm::distance(ray.direction, all[all.size() - 2].direction));
     }
+  std::vector<vec2> points;
+  if (std::ranges::none_of(all, [](const Ray& ray) { return ray.direction.y < 0; })) return points;
+  for (const Ray& ray : all) {
+    const vec3& direction = ray.direction;
+    if (!(direction.y < step)) continue;
+    const float distance = direction.y < 0 ? (height - ray.origin.y) / direction.y : 4 * reach;
+    const vec3 point = ray.origin + std::min(distance, 4 * reach) * direction;
+    points.push_back(glm::clamp(vec2(point.x, point.z), middle - reach, middle + reach));
+  }
   return points;
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "job/output_file.h"
 
 namespace chromeball {
@@ -20,7 +22,7 @@ void writeCameraFile(const std::string& path, const SolvedCamera& camera,
   std::string text;
   for (std::string comment : comments) {
     std::ranges::replace_if(
-        comment, [](char c) { return uint8_t(c) < ' ' || c == '\x7f'; }, '?');
+        comment, [](char c) { return c < ' ' || c > '~'; }, '?');  // it may not be UTF-8
     text += "# " + comment + "\n";
   }
   text += fmt::format("[camera]\nposition = {}\nlook_at = {}\nup = {}\nfov = {:.10g}\n",

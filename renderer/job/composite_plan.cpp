@@ -50,7 +50,7 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   return ground;
 }
 
-void addGround(const RenderJob& job, LoadedScene& loaded) {
+void placeGround(const RenderJob& job, LoadedScene& loaded) {
   const Settings& settings = job.file.settings;
   const std::string location = settings.location("composite.ground");
   if (loaded.surroundings && loaded.room)
@@ -106,7 +106,7 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
   Scene& scene = loaded.scene;
   std::vector<NamedSetting> localScene = entry.localScene;
   if (settings.get<bool>("composite.ground")) {
-    addGround(job, loaded);
+    placeGround(job, loaded);
     localScene.push_back({kGroundNode, entry.location});
   }
   loaded.isObject = findObjects(scene, localScene, entry.location);
@@ -140,8 +140,9 @@ void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
         "own: leave them out with `lights = \"off\"` in [lighting]",
         *location);
   Scene local = loaded.scene;
-  std::erase_if(local.instances,
-                [&, i = size_t(0)](const Instance&) mutable { return bool(loaded.isObject[i++]); });
+  local.instances.clear();
+  for (size_t i = 0; i < loaded.isObject.size(); ++i)
+    if (!loaded.isObject[i]) local.instances.push_back(loaded.scene.instances[i]);
   const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
   const std::vector<size_t> pixels =
       pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,

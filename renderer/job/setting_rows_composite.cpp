@@ -35,14 +35,14 @@ void addComposite(std::vector<Setting>& rows) {
   add({.key = "ground_reflectance",
        .type = Compound,
        .form = "a number (grey), or three",
-       .range = {.min = 0, .max = 1, .excludesMin = true},
+       .range = {.min = 0.001, .max = 1},
        .absent = "0.25",
        .help = "The ground's base color where `reflectance` does not find it, and on average for "
                "`[probe] scale = \"plate\"`."});
   add({.key = "ground_reflectance_range",
        .type = Compound,
        .form = "two numbers, [least, most]",
-       .range = {.min = 0, .max = 1, .excludesMin = true},
+       .range = {.min = 0.001, .max = 1},
        .absent = "0.1, 0.5: asphalt to dry sand",
        .help = "Between what the ground's reflectance may be: the uncertainty of "
                "`[probe] scale = \"plate\"`."});

@@ -185,9 +185,8 @@ void addProbe(std::vector<Setting>& rows) {
        .range = kNotNegative,
        .fallback = "1",
        .help =
-           "Factor on the probe's radiance, or on each of its channels. In the scene file also "
-           "\"plate\": for each channel, what a composite's ground needs to look as in the plate "
-           "(`ground_reflectance`)."});
+           "Factor on the probe's radiance. In the scene file also \"plate\": for each channel, "
+           "what a composite's ground needs to look as in the plate (`ground_reflectance`)."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

@@ -33,7 +33,7 @@ std::vector<std::string> reportLines(const CameraReport& report) {
   if (const auto& e = errors.position)
     position += fmt::format(" +- {:.2g} {:.2g} {:.2g}", e->x, e->y, e->z);
   lines.push_back(fmt::format("{:<12}{} m", "position", position));
-  const dvec3 view = -camera.axes[2];
+  const dvec3 view = dvec3(0) - camera.axes[2];  // without a negative 0
   lines.push_back(fmt::format("{:<12}{:.5f} {:.5f} {:.5f}", "looks along", view.x, view.y, view.z));
   if (report.fit) {
     const dvec3 e = glm::degrees(errors.rotation);
@@ -57,18 +57,18 @@ std::vector<std::string> reportLines(const CameraReport& report) {
 
 std::string reportJson(const CameraReport& report) {
   const SolvedCamera& camera = report.camera;
-  Json json{{"method", report.method},
-            {"size", {camera.size.width, camera.size.height}},
-            {"position", toJson(camera.position)},
-            {"look_at", toJson(lookAt(camera))},
-            {"up", toJson(camera.axes[1])},
-            {"fov", glm::degrees(camera.fov())},
-            {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
-            {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
-            {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
+  Json json = {{"method", report.method},
+               {"size", {camera.size.width, camera.size.height}},
+               {"position", toJson(camera.position)},
+               {"look_at", toJson(lookAt(camera))},
+               {"up", toJson(camera.axes[1])},
+               {"fov", glm::degrees(camera.fov())},
+               {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
+               {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
+               {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
   const CameraFit* fit = report.fit;
   if (!fit) return jsonText(json, 2);
-  Json errors{{"rotation", toJson(glm::degrees(fit->errors.rotation))}};
+  Json errors = {{"rotation", toJson(glm::degrees(fit->errors.rotation))}};
   if (const auto& e = fit->errors.position) errors["position"] = toJson(*e);
   if (const auto& e = fit->errors.fov) errors["fov"] = glm::degrees(*e);
   if (const auto& e = fit->errors.k1) errors["k1"] = *e;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/camera_doubts.h"
 
-#include <algorithm>
-
 #include "scene/camera_view.h"
 
 namespace chromeball {
@@ -29,9 +27,8 @@ Messages doubtsAbout(const CameraFit& fit) {
         "not on one plane, tell which is right",
         *fit.rivalRms, rms)));
   if (fit.errors.fov && *fit.errors.fov > kUncertain * fit.camera.fov())
-    messages.push_back(warning(
-        "the field of view is uncertain by more than a tenth; give it if you know it, with --fov "
-        "or --focal35"));
+    messages.push_back(
+        warning("the field of view is uncertain by more than a tenth; give it if it is known"));
   return messages;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/observations.h"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <span>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/picture_lines.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -16,6 +17,7 @@ using glm::dvec2, glm::dvec3;
 bool clip(dvec2& from, dvec2& to, const dvec2& min, const dvec2& max) {
   double begin = 0, end = 1;
   const dvec2 along = to - from;
+  if (!std::isfinite(along.x + along.y)) return false;
   for (int axis = 0; axis < 2; ++axis)
     for (const double side : {-1.0, 1.0}) {
       const double limit = side < 0 ? from[axis] - min[axis] : max[axis] - from[axis];

@@ -8,8 +8,8 @@ namespace chromeball {
 
 // What places the camera, once its rotation is known. The ground is the plane y = 0.
 struct LinePlacement {
-  std::optional<double> height;      // of the camera above the ground, metres, > 0
-  std::optional<glm::dvec2> origin;  // the pixel that shows (0, 0, 0)
+  std::optional<double> height = {};      // of the camera above the ground, metres, > 0
+  std::optional<glm::dvec2> origin = {};  // the pixel that shows (0, 0, 0)
 };
 
 // Rotation and focal length from at least two axes with two lines each: lines along an axis meet at

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/solve_points.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/solve/levenberg_marquardt.h"
 #include "scene/solve/point_problem.h"
@@ -148,12 +150,19 @@ CameraErrors errorsOf(const Found& found, const PointProblem& problem, const Cam
   return errors;
 }
 
+// How far, in pixels, the points are from where a camera without perspective sees them, to first
+// order. Of a plane that faces the camera it is 0 whatever the distance.
+double perspectiveOf(const Found& found) {
+  return found.state.nearness * std::sqrt(found.normal(5, 5));
+}
+
 }  // namespace
 
 size_t fewestPoints(const CameraKnowledge& known) { return known.focalLength ? 4 : 6; }
 
 CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const CameraKnowledge& known,
                         const std::string& file) {
+  constexpr double kLeastPerspective = 1e-4;  // pixels
   checkCount(observed.size(), known, file);
   dvec3 middle(0);
   for (const ObservedPoint& p : observed) middle += p.position / double(observed.size());
@@ -167,7 +176,7 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   if (found.empty())
     throwInput("{}: no camera sees all points in front of it; check their positions", file);
   const Found& best = found.front();
-  if (!(best.state.nearness > 0))
+  if (!(best.state.nearness > 0) || !(perspectiveOf(best) > kLeastPerspective))
     throwInput(
         "{}: the points show no perspective, which leaves the field of view open; give it, "
         "or points at different distances",

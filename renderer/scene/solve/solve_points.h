@@ -8,10 +8,10 @@
 namespace chromeball {
 
 struct CameraKnowledge {
-  ImageSize size{};                   // of the photograph
-  glm::dvec2 principalPoint{0.5};     // as Camera::principalPoint
-  std::optional<double> focalLength;  // in pixels; nullopt: to be found
-  bool findsDistortion = false;       // k1
+  ImageSize size{};                        // of the photograph
+  glm::dvec2 principalPoint{0.5};          // as Camera::principalPoint
+  std::optional<double> focalLength = {};  // in pixels; nullopt: to be found
+  bool findsDistortion = false;            // k1
 };
 
 // The fewest points: 4 for position and rotation, 6 if the focal length is to be found too.
