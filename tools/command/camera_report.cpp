@@ -22,7 +22,8 @@ Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 std::vector<std::string> reportLines(const CameraReport& report) {
   const SolvedCamera& camera = report.camera;
-  const CameraErrors errors = report.fit ? report.fit->errors : CameraErrors();
+  static const CameraErrors none;  // a reference: GCC 12 warns wrongly of a copy's members
+  const CameraErrors& errors = report.fit ? report.fit->errors : none;
   std::vector<std::string> lines;
   if (const CameraFit* fit = report.fit)
     lines.push_back(fmt::format("{:<12}{}, RMS {:.3g} pixels, worst `{}` {:.3g} pixels",
