@@ -2,6 +2,8 @@
 // Cameras of known truth, and what they see of points: written out here, apart from the library.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <random>
 
 #include "scene/solve/observations.h"
@@ -51,7 +53,7 @@ inline std::vector<ObservedPoint> observe(const SolvedCamera& camera, size_t cou
     const auto pixel = pixelOf(camera, position);
     if (!pixel) continue;
     const double right = noise * normal(random), down = noise * normal(random);
-    const std::string name = "p" + std::to_string(points.size());
+    const std::string name = fmt::format("p{}", points.size());
     points.push_back({name, "points.csv:1", position, *pixel + dvec2(right, down)});
   }
   return points;

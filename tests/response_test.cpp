@@ -53,7 +53,7 @@ ResponseCurve solved(std::span<const Exposure> exposures) {
 
 TEST(SolveResponse, IsRecoveredWithinALevel) {
   const Image radiance = ramp(512, 256, 0.003, 60);
-  for (const Encoding& encode : {encodeSrgb, encodeFilm, encodeShoulder})
+  for (const auto encode : {encodeSrgb, encodeFilm, encodeShoulder})
     EXPECT_LT(largestError(solved(bracket(radiance, kFive, encode)), encode), 1);
   EXPECT_LT(largestError(solved(bracket(radiance, {4, 1.3, 0.3, 0.11, 0.02}, encodeLinear)),
                          encodeLinear),
@@ -64,12 +64,13 @@ TEST(SolveResponse, IsRecoveredFromNoisyPhotographs) {
   const Image radiance = ramp(512, 256, 0.003, 60);
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0, 1.5f / 255);
-  for (const Encoding& encode : {encodeSrgb, encodeFilm, encodeShoulder}) {
+  constexpr double kBound = 3;  // twice the noise
+  for (const auto encode : {encodeSrgb, encodeFilm, encodeShoulder}) {
     auto exposures = bracket(radiance, kFive, encode, 0);
     for (Exposure& exposure : exposures)
       for (float& level : exposure.levels.texels)
         level = std::round(255 * std::clamp(level + noise(random), 0.f, 1.f)) / 255;
-    EXPECT_LT(largestError(solved(exposures), encode), 1);
+    EXPECT_LT(largestError(solved(exposures), encode), kBound);
   }
 }
 

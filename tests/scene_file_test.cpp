@@ -224,7 +224,7 @@ TEST_F(SceneFileTest, WrongTypeNamesKeyAndLine) {
   expectError("[render]\ntime = 12:00:00\n", 3, {"`time`", "a date or time"});
   expectError("render = 3\n", 2, {"`render`", "a table"});
   expectError("[probe]\nfile = 3\n", 3, {"`file`", "a string"});
-  expectError("[probe]\nrotation = [1]\n", 3, {"`rotation`", "a finite number"});
+  expectError("[probe]\nrotation = ['a']\n", 3, {"`rotation`", "a finite number"});
   expectError("[lighting]\nstrategy = 3\n", 3, {"`strategy`"});
   expectError("[output]\naovs = ['depth', 3]\n", 3, {"`aovs`"});
   expectError("[output]\nfile = ''\n", 3, {"`file`"});

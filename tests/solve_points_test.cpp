@@ -2,6 +2,7 @@
 // Cameras found from points of known positions.
 #include "scene/solve/solve_points.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -68,7 +69,7 @@ TEST(SolvePoints, StandardErrorsAreRight) {
   constexpr int kTrials = 200, kBins = 10, kPoints = 12;
   for (const double k1 : {0.0, -0.05}) {
     const int unknowns = k1 == 0 ? 7 : 8, freedom = 2 * kPoints - unknowns;
-    std::vector<std::vector<double>> bins(size_t(unknowns), std::vector<double>(kBins));
+    std::vector<std::vector<double>> bins(unknowns, std::vector<double>(kBins));
     std::vector<int> beyond(size_t(unknowns), 0);
     std::mt19937 random(11);
     double squares = 0;
@@ -133,7 +134,7 @@ TEST(SolvePoints, TellsOfTwoCamerasThatFit) {
   std::normal_distribution<double> normal;
   for (const dvec3& corner : {dvec3(-1, 0, -1), dvec3(1, 0, -1), dvec3(1, 0, 1), dvec3(-1, 0, 1)}) {
     const double right = normal(random), down = normal(random);
-    points.push_back({"c" + std::to_string(points.size()), "P:1", corner,
+    points.push_back({fmt::format("c{}", points.size()), "P:1", corner,
                       *pixelOf(truth, corner) + dvec2(right, down)});
   }
   const CameraFit fit = solveByPoints(points, knowledge(truth, true), "P");
