@@ -39,7 +39,8 @@ TEST(Ground, CoversWhatTheCameraSees) {
 
   // A wide lens sees more than the pinhole.
   Camera barrel = above;
-  barrel.distortion = {-0.02, 0};  // in the corners 2.5793 focal lengths of a pinhole appear at 2.2361
+  barrel.distortion = {-0.02,
+                       0};  // in the corners 2.5793 focal lengths of a pinhole appear at 2.2361
   EXPECT_NEAR(groundSeenBy(barrel, 2, ball, 0, "").min.x, -20 * 2.5793 / std::sqrt(5.0), 0.01);
 }
 

@@ -123,7 +123,7 @@ TEST(SolveLines, RefusesWhatLeavesTheCameraOpen) {
   expectError({lines[0], lines[1], lines[2]}, height,
               "has 2 lines along x, 0 along y and 1 along z");
   expectError(lines, {}, "L.csv: nothing tells the scale");
-  expectError(lines, {.height = 1.7, .origin = dvec2(800, 10)},
+  expectError(lines, {.height = 1.7, .origin = dvec2(800, -100)},
               "the origin: is not below the horizon");
   auto reversed = lines;
   std::swap(reversed[3].from, reversed[3].to);

@@ -56,6 +56,8 @@ TEST(SolvePoints, ExactPointsGiveTheCamera) {
       SolvedCamera truth = randomCamera(random, c.k1);
       truth.principalPoint = {0.45, 0.56};
       const auto points = observe(truth, c.count, c.half, 0, random);
+      SCOPED_TRACE(
+          fmt::format("{} points, trial {}, k1 {}, flat {}", c.count, trial, c.k1, c.half.y == 0));
       const CameraFit fit = solveByPoints(points, knowledge(truth, c.knowsFocalLength), "P");
       EXPECT_LT(errorOf(fit.camera, truth), 1e-8) << c.count << " points, k1 " << c.k1;
       EXPECT_LT(fit.rms(), 1e-7);

@@ -62,7 +62,7 @@ class Block {
       case kShort:
         return positive(double(number(at, 2)));
       case kLong:
-        return positive(double(number(at, 4)));
+        return positive(double(uint32_t(number(at, 4))));
       case kRational: {
         const uint64_t rational = number(at, 4);
         return positive(double(number(rational, 4)) / double(number(rational + 4, 4)));
