@@ -16,8 +16,7 @@ struct CompositePlan {
   CompositeMode mode = CompositeMode::Difference;
   // The source of the local scene's reflectance.
   enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
-  bool choosesReflectance = false;  // Flat may become Plate
-  int iterations = 1;               // of Reflectance::Plate
+  int iterations = 1;  // of Reflectance::Plate
   Passes passes = Passes::One;
   std::vector<std::string> layers;  // names of all that were requested
 };
@@ -26,12 +25,8 @@ struct CompositePlan {
 // has another. Throws InputError.
 void planComposite(RenderJob& job);
 
-// Adds the ground if the job asks for it, determines the objects and the local scene, and sets the
-// local scene's reflectance and gloss. Throws InputError.
-void prepareLocalScene(RenderJob& job, LoadedScene& loaded);
-
-// Scales the probe as the plate tells, if the job asks for it, after prepareLocalScene(). Throws
-// InputError.
-void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded);
+// Determines the objects and the local scene, and sets the local scene's reflectance and gloss.
+// Throws InputError.
+void prepareLocalScene(const RenderJob& job, LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -5,14 +5,17 @@
 
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
-#include "job/scene_lighting.h"
+#include "probe/irradiance.h"
 
 namespace chromeball {
 namespace {
 
 // Irradiance of the flat local scene.
 Rgb flatIrradiance(const LoadedScene& loaded) {
-  return irradianceOn(loaded.probe, *flatNormal(loaded.scene, loaded.isObject));
+  const glm::quat back =
+      glm::angleAxis(-glm::radians(loaded.probe.rotationDegrees()), vec3(0, 1, 0));
+  const vec3 normal = back * *flatNormal(loaded.scene, loaded.isObject);
+  return Rgb(exactIrradiance(loaded.probe.latLong(), {&normal, 1})[0]);
 }
 
 // Fills loaded.projection with the local scene's reflectance.
@@ -37,12 +40,7 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
 }
 
-std::string scaledText(std::vector<double> scale, double factor) {
-  for (double& channel : scale) channel *= factor;
-  return fmt::format("{:.2g}", fmt::join(scale, ","));
-}
-
-Messages warningsOf(const CompositeReport& report, const std::vector<double>& scale) {
+Messages warningsOf(const CompositeReport& report, double probeScale) {
   constexpr double kMinClamped = 0.01;
   Messages messages;
   if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped)
@@ -52,7 +50,7 @@ Messages warningsOf(const CompositeReport& report, const std::vector<double>& sc
                      "the plate is {:.3g} times as bright as the model's own reflectance makes it; "
                      "plate and probe may differ in exposure",
                      100 * r->clampedFraction, r->exposureRatio),
-         Remedy{"probe.scale", scaledText(scale, r->exposureRatio)}});
+         Remedy{"probe.scale", fmt::format("{:.2g}", probeScale * r->exposureRatio)}});
   if (report.darkerThanBlack)
     messages.push_back(
         {Message::Kind::Warning,
@@ -84,10 +82,7 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   FinishedImage finished =
       finishComposite(finishPlan(job, loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
-  Messages messages =
-      warningsOf(*finished.composite, job.file.settings.get<std::vector<double>>("probe.scale"));
-  if (loaded.plateScale)  // nothing better is known
-    for (Message& message : messages) message.remedy.reset();
+  Messages messages = warningsOf(*finished.composite, job.file.settings.get<double>("probe.scale"));
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 

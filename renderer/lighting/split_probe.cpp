@@ -4,13 +4,13 @@
 namespace chromeball {
 
 SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const Probe& probe)
-    : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotation()) {}
+    : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotationDegrees()) {}
 
 SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
-                       const Rotation& rotation)
+                       float rotationDegrees)
     : strategy_(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),
-      rest_(extraction.remainder, rotation) {}
+      rest_(extraction.remainder, rotationDegrees) {}
 
 std::vector<std::string> SplitProbe::groups() const {
   if (!hasSuns_) return {"rest"};

@@ -41,7 +41,7 @@ class SplitProbe : public LightingStrategy {
 
  private:
   SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
-             const Rotation& rotation);
+             float rotationDegrees);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
   std::unique_ptr<LightingStrategy> strategy_;

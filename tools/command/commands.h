@@ -10,9 +10,8 @@ namespace chromeball {
 void addRenderCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
-void addProbeCommand(CLI::App& app);   // info, convert, synth, irradiance
-void addImageCommand(CLI::App& app);   // view, error
-void addCameraCommand(CLI::App& app);  // solve
+void addProbeCommand(CLI::App& app);  // info, convert, synth, irradiance
+void addImageCommand(CLI::App& app);  // view, error
 void addLightsCommand(CLI::App& app);
 void addLightsErrorCommand(CLI::App& app);
 void addReferenceCommand(CLI::App& app);

@@ -11,7 +11,6 @@
 #include "probe/load.h"
 #include "probe/random_rays.h"
 #include "probe_commands.h"
-#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -20,7 +19,6 @@ using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string file, mapping = "auto", size;
-  Rotation rotation;
   double error = 0.1;
   bool json = false;
 };
@@ -43,11 +41,11 @@ struct Normals {
   std::vector<RayVariance> lit;  // of the icosphere's, those with light
   size_t count = 0;
 
-  Normals(const Image& latLong, const Rotation& rotation) {
+  explicit Normals(const Image& latLong) {
     constexpr int kSubdivisions = 3;  // 1280 normals
     std::vector<vec3> normals = icosphereNormals(kSubdivisions);
     count = normals.size();
-    normals.push_back(rotation.back(vec3(0, 1, 0)));
+    normals.emplace_back(0, 1, 0);
     lit = rayVariances(latLong, normals);
     upward = lit.back();
     lit.pop_back();
@@ -121,7 +119,7 @@ void run(const Arguments& arguments) {
   LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.file)) warn(warning);
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
-  const Normals normals(probe.latLong, arguments.rotation);
+  const Normals normals(probe.latLong);
   if (arguments.json)
     fmt::print("{}\n",
                toJson(arguments, normals).dump(2, ' ', false, Json::error_handler_t::replace));
@@ -144,7 +142,6 @@ void addProbeRaysCommand(CLI::App& probe) {
       ->capture_default_str();
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
-  addRotationOption(*command, arguments->rotation);
   command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->add_flag("--json", arguments->json, "print JSON");
   command->footer(
