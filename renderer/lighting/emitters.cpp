@@ -94,6 +94,7 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   const vec3 to = emitter.position - point.position;
   const float distance = glm::length(to);
   const vec3 wi = to / distance;
+  // Plain BSDFs transmit no light: saves the surface of a sample that they would drop.
   if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || point.bsdf->isLayered())) return;
   const Instance& instance = scene_.instances[emitter.instance];
   const Surface surface = surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi);
