@@ -270,9 +270,9 @@ TEST(EnvelopeProbe, HalfFloatInfinitiesAreRepairedAndReported) {
 
 TEST(EnvelopeProbe, ScalesBeyondTheRangeOfFloatAreRejected) {
   const Image bright = constantProbe({4, 2}, Rgb(1e30f));
-  EXPECT_THROW(Probe(bright, 0, 1e10f), InputError);
+  EXPECT_THROW(Probe(bright, 0, Rgb(1e10f)), InputError);
   EXPECT_THROW(Probe(bright, NAN), InputError);
-  EXPECT_THROW(Probe(bright, 0, -1), InputError);
+  EXPECT_THROW(Probe(bright, 0, Rgb(-1)), InputError);
 }
 
 }  // namespace

@@ -44,13 +44,13 @@ TEST(Probe, rotationIsCounterClockwiseSeenFromAbove) {
 
 TEST(Probe, latLongReturnsTheImage) {
   const Image image = gradientProbe({16, 8}, Rgb(1, 2, 3), {0.3, 0.5, 0.1});
-  const Probe probe(image, -450, 4);
+  const Probe probe(image, -450, Rgb(4));
   const Image copy = probe.latLong();
   ASSERT_EQ(copy.width, 16);
   ASSERT_EQ(copy.height, 8);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 16; ++x) EXPECT_EQ(copy.rgb(x, y), 4.0f * image.rgb(x, y));
-  EXPECT_EQ(probe.rotationDegrees(), -450);
+  EXPECT_EQ(probe.rotation().yaw(), -450);
 }
 
 TEST(Probe, locateInvertsDirectionEverywhere) {
@@ -74,9 +74,9 @@ TEST(Probe, locateInvertsDirectionEverywhere) {
 }
 
 TEST(Probe, rejectsScalesThatLeaveTheRangeOfFloat) {
-  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1e30f)), 0, 1e20f), std::runtime_error);
-  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), 0, -1), std::runtime_error);
-  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN, 1), std::runtime_error);
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1e30f)), 0, Rgb(1e20f)), std::runtime_error);
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), 0, Rgb(1, -1, 1)), std::runtime_error);
+  EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN), std::runtime_error);
 }
 
 TEST(SlowImportance, samplesFollowThePdfOnEveryProbe) {

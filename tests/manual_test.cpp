@@ -33,7 +33,7 @@ void readHelp(const Words& command, std::map<std::string, Names>& commands) {
   arguments.push_back("--help");
   std::istringstream help(runCommand(arguments).out);
   Names& names = commands[joined(command)];
-  static const std::regex kOption("  (?:-\\w,)?(--[a-z-]+).*"), kSubcommand("  ([a-z-]+) .*");
+  static const std::regex kOption("  (?:-\\w,)?(--[a-z0-9-]+).*"), kSubcommand("  ([a-z-]+) .*");
   std::smatch match;
   std::string section;
   for (std::string line; std::getline(help, line);) {

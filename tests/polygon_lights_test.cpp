@@ -91,7 +91,7 @@ std::unique_ptr<CombinedLight> withWindow(const PolygonExtraction& extraction,
   parts.push_back(makeStrategy("importance", remainder, Mis::Balance, "test"));
   parts.push_back(std::make_unique<PolygonLights>(
       std::vector<PolygonLight>{{extraction.sources.front(), isIllum, "w"}}, hidden,
-      remainder.rotationDegrees()));
+      remainder.rotation()));
   return std::make_unique<CombinedLight>(std::move(parts));
 }
 

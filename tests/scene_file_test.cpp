@@ -152,8 +152,8 @@ aovs = ["albedo", "depth"]
   const auto count = [&](const char* name) { return s.get<uint64_t>(name); };
   EXPECT_EQ(text("probe.file"), (root_ / "sky.exr").string());
   EXPECT_EQ(text("probe.mapping"), "lat-long");
-  EXPECT_EQ(number("probe.rotation"), -30);
-  EXPECT_EQ(number("probe.scale"), 2.5);
+  EXPECT_EQ(s.get<std::vector<double>>("probe.rotation"), std::vector<double>{-30});
+  EXPECT_EQ(s.get<std::vector<double>>("probe.scale"), std::vector<double>{2.5});
   EXPECT_EQ(text("lighting.strategy"), "median-cut:64");
   EXPECT_EQ(s.location("lighting.strategy"), scenePath() + ":12");
   EXPECT_EQ(text("lighting.mis"), "power");
@@ -224,7 +224,7 @@ TEST_F(SceneFileTest, WrongTypeNamesKeyAndLine) {
   expectError("[render]\ntime = 12:00:00\n", 3, {"`time`", "a date or time"});
   expectError("render = 3\n", 2, {"`render`", "a table"});
   expectError("[probe]\nfile = 3\n", 3, {"`file`", "a string"});
-  expectError("[probe]\nrotation = [1]\n", 3, {"`rotation`", "a finite number"});
+  expectError("[probe]\nrotation = ['a']\n", 3, {"`rotation`", "a finite number"});
   expectError("[lighting]\nstrategy = 3\n", 3, {"`strategy`"});
   expectError("[output]\naovs = ['depth', 3]\n", 3, {"`aovs`"});
   expectError("[output]\nfile = ''\n", 3, {"`file`"});

@@ -267,7 +267,7 @@ TEST(Sequence, BuildsNothingTwiceWhereTheProbeTurns) {
   scene.show(first);
   const std::shared_ptr<BuiltGeometry> built = scene.prepared().world->accel.built();
   scene.show(later);
-  EXPECT_EQ(scene.loaded().probe.rotationDegrees(), 10);
+  EXPECT_EQ(scene.loaded().probe.rotation().yaw(), 10);
   EXPECT_EQ(scene.prepared().world->accel.built(), built);
   EXPECT_EQ(built->builds(), 1);
 }

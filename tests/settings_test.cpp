@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -62,6 +63,14 @@ std::vector<OptionValue> valuesOf(const Setting& s) {
       for (const char* text : {"nan", "inf", "1e300", "much", "", "1 2"})
         values.push_back({text, false});
       break;
+    case SettingType::Numbers:
+      limit(s.range.min, s.range.excludesMin, -0.001);
+      values.push_back({"0.25", true});
+      values.push_back({"0.25,0,0.5", true});
+      values.push_back({"0,0,0,1", std::ranges::count(s.counts, 4) == 1});
+      for (const char* text : {"0,0", "0,0,0,0,0", "0,0,nan", "1e300", "0,,0", "0,0,", "", "1 2"})
+        values.push_back({text, false});
+      break;
     case SettingType::Choice:
     case SettingType::Choices:
       for (const std::string_view name : s.choices()) values.push_back({std::string(name), true});
@@ -91,7 +100,9 @@ TEST(Settings, EveryRowIsComplete) {
     EXPECT_TRUE(s.help.ends_with('.'));
     EXPECT_EQ(s.section.empty(), s.key.empty());
     EXPECT_FALSE(s.key.empty() && s.option.empty());
-    EXPECT_EQ(s.type == SettingType::Compound, !s.form.empty());
+    const bool isNumbers = s.type == SettingType::Numbers;
+    EXPECT_EQ(s.type == SettingType::Compound || isNumbers, !s.form.empty());
+    EXPECT_EQ(isNumbers, !s.counts.empty());
     if (s.type == SettingType::Choice || s.type == SettingType::Choices) {
       EXPECT_TRUE(s.choices);
     }
@@ -129,8 +140,9 @@ TEST(Settings, EveryOptionAcceptsExactlyItsRange) {
 class SettingsInAFile : public testing::Test {
  protected:
   SettingsInAFile() {
-    for (const char* name : {"ball.glb", "sky.exr", "something"})
-      std::ofstream(folder_ / name) << "x";
+    for (const char* name : {"ball.glb", "sky.exr"}) std::ofstream(folder_ / name) << "x";
+    std::ofstream(folder_ / "something")  // also a camera's file
+        << "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
   }
 
   // The error message, or "" without an error.
@@ -157,7 +169,7 @@ class SettingsInAFile : public testing::Test {
     const auto add = [&](const char* other, const char* line) {
       if (s.key != other) toml += fmt::format("{} = {}\n", other, line);
     };
-    if (s.section == "camera" && s.key != "name") {
+    if (s.section == "camera" && s.key != "name" && s.key != "file") {
       add("position", "[0, 0, 5]"), add("look_at", "[0, 0, 0]");
       if (s.key == "aperture" || s.key == "focus") add("aperture", "1"), add("focus", "1");
     }
@@ -175,6 +187,7 @@ class SettingsInAFile : public testing::Test {
     }
     if (s.section == "source" && s.key != "file") add("probe_polygon", "[[0, 0], [1, 0], [0, 1]]");
     if (s.section == "composite") add("plate", "'sky.exr'"), add("local_scene", "'ground'");
+    if (s.section == "composite" && s.key.starts_with("ground_")) add("ground", "true");
     if (s.section == "surroundings") {
       const bool sphere = s.key == "radius" || s.key == "center", room = s.key == "file";
       add("shape", sphere ? "'sphere'" : room ? "'model'" : "'box'");
@@ -193,6 +206,11 @@ std::string asToml(const Setting& s, const std::string& text) {
   switch (s.type) {
     case SettingType::Size:
       return text == "1x1" ? "[1, 1]" : text == "800x600" ? "[800, 600]" : "'" + text + "'";
+    case SettingType::Numbers:
+      if (text.find(',') != std::string::npos && text.find(",,") == std::string::npos &&
+          !text.ends_with(','))
+        return '[' + text + ']';
+      [[fallthrough]];
     case SettingType::Flag:
       if (text == "true" || text == "false") return text;
       [[fallthrough]];

@@ -57,13 +57,16 @@ double PixelRenderer::fractionOfHits() const {
 
 void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
                            const Beam& beam) const {
+  const float u = (float(window_.x + x) + 0.5f) / float(settings_.width);
+  const float v = (float(window_.y + y) + 0.5f) / float(settings_.height);
+  const Beam own = cameraRays_.beamAt(beam, u, v);
   for (int half = 0; half < Film::kHalves; ++half)
     sequence_.forRuns(
         half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
           worker.context.sampler.startPixel(uint32_t(window_.x + x), uint32_t(window_.y + y),
                                             Film::kHalves * run.table + uint64_t(half), run.first,
                                             run.stride);
-          result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, beam));
+          result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, own));
         });
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/arguments.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/suggest.h"
@@ -59,6 +61,54 @@ std::vector<double> parseNumbers(std::string_view text, size_t count, std::strin
   if (valid && rest.empty()) return numbers;
   if (count == 1) throwInput("{}: `{}` is not a number", location, text);
   throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
+}
+
+bool isPositiveFloat(double number) {
+  return float(number) > 0 && number <= double(std::numeric_limits<float>::max());
+}
+
+Rgb colorOf(const std::vector<double>& numbers) {
+  return glm::dvec3(numbers.front(), numbers[numbers.size() / 2], numbers.back());
+}
+
+Rgb parseColor(std::string_view text, std::string_view location) {
+  const auto commas = std::ranges::count(text, ',');
+  if (commas != 0 && commas != 2)
+    throwInput("{}: `{}` should be one number, or three with commas between them", location, text);
+  const std::vector<double> channels = parseNumbers(text, size_t(commas) + 1, location);
+  for (const double channel : channels)
+    if (channel != 0 && !isPositiveFloat(channel))
+      throwInput("{}: {} should be not negative: 0, or {}", location, text, kPositiveFloats);
+  return colorOf(channels);
+}
+
+Rotation parseRotation(const std::vector<double>& numbers, std::string_view location) {
+  if (numbers.size() == 1) return Rotation(float(numbers[0]));
+  if (numbers.size() == 3) return Rotation::ofAngles({numbers[0], numbers[1], numbers[2]});
+  const glm::dquat quaternion(numbers[3], numbers[0], numbers[1], numbers[2]);
+  constexpr double kRounding = 0.01;
+  if (!(std::abs(glm::length(quaternion) - 1) <= kRounding))
+    throwInput("{}: the quaternion ({}) has the length {:.4g}; it should be 1", location,
+               fmt::join(numbers, ", "), glm::length(quaternion));
+  return Rotation::ofQuaternion(quaternion);
+}
+
+Rotation parseRotation(std::string_view text, std::string_view location) {
+  const size_t count = size_t(std::ranges::count(text, ',')) + 1;
+  if (count != 1 && count != 3 && count != 4)
+    throwInput("{}: `{}` should be YAW or YAW,PITCH,ROLL in degrees, or a quaternion X,Y,Z,W",
+               location, text);
+  const std::vector<double> numbers = parseNumbers(text, count, location);
+  for (const double number : numbers)
+    if (!(std::abs(number) <= double(std::numeric_limits<float>::max())))
+      throwInput("{}: {} is too large", location, number);
+  return parseRotation(numbers, location);
+}
+
+std::vector<double> numbersOf(const Rotation& rotation) {
+  if (!rotation.isTilted()) return {double(rotation.yaw())};
+  const glm::dquat q = rotation.quaternion();
+  return {q.x, q.y, q.z, q.w};
 }
 
 }  // namespace chromeball

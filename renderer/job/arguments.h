@@ -4,8 +4,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/named_setting.h"
+#include "math/rotation.h"
 #include "probe/mapping.h"
 #include "scene/gltf/load_gltf.h"
 
@@ -19,5 +21,23 @@ LightUnits parseLightUnits(const NamedSetting& setting);
 
 // "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError, begun by `location`.
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location);
+
+// The positive floats, for messages; and whether a number is one of them.
+inline constexpr const char* kPositiveFloats = "1.4e-45 to 3.4e38, the range of a float";
+bool isPositiveFloat(double number);
+
+// A number for all channels, or three; and from the text "X" or "R,G,B", each 0 or a positive
+// float. Throws InputError, begun by `location`.
+Rgb colorOf(const std::vector<double>& numbers);
+Rgb parseColor(std::string_view text, std::string_view location);
+
+// A yaw in degrees; or yaw, pitch and roll; or a quaternion x, y, z, w, whose length should be 1 to
+// 1%: four angles by mistake are not one. Throws InputError, begun by `location`.
+Rotation parseRotation(const std::vector<double>& numbers, std::string_view location);
+// The same from numbers with commas between.
+Rotation parseRotation(std::string_view text, std::string_view location);
+
+// The least numbers that parseRotation() reads as this rotation.
+std::vector<double> numbersOf(const Rotation& rotation);
 
 }  // namespace chromeball

@@ -37,6 +37,18 @@ Camera withLens(const RenderJob& job, Camera camera) {
   return camera;
 }
 
+Camera withOptics(const RenderJob& job, Camera camera) {
+  const auto& optics = job.file.optics;
+  if (!optics) return camera;
+  if (camera.orthographic)
+    throwInput(
+        "{}: an orthographic camera has no lens; leave out `principal_point` and `distortion`",
+        optics->location);
+  if (optics->principalPoint) camera.principalPoint = *optics->principalPoint;
+  camera.distortion = optics->distortion;
+  return camera;
+}
+
 }  // namespace
 
 AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
@@ -61,7 +73,7 @@ AutomaticView automaticView(const RenderJob& job, const Scene& scene, const glm:
 }
 
 Camera chooseCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
-  return withLens(job, chooseWithoutLens(job, scene, view));
+  return withOptics(job, withLens(job, chooseWithoutLens(job, scene, view)));
 }
 
 }  // namespace chromeball

@@ -16,7 +16,8 @@ struct CompositePlan {
   CompositeMode mode = CompositeMode::Difference;
   // The source of the local scene's reflectance.
   enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
-  int iterations = 1;  // of Reflectance::Plate
+  bool choosesReflectance = false;  // Flat may become Plate
+  int iterations = 1;               // of Reflectance::Plate
   Passes passes = Passes::One;
   std::vector<std::string> layers;  // names of all that were requested
 };
@@ -25,8 +26,12 @@ struct CompositePlan {
 // has another. Throws InputError.
 void planComposite(RenderJob& job);
 
-// Determines the objects and the local scene, and sets the local scene's reflectance and gloss.
-// Throws InputError.
-void prepareLocalScene(const RenderJob& job, LoadedScene& loaded);
+// Adds the ground if the job asks for it, determines the objects and the local scene, and sets the
+// local scene's reflectance and gloss. Throws InputError.
+void prepareLocalScene(RenderJob& job, LoadedScene& loaded);
+
+// Scales the probe as the plate tells, if the job asks for it, after prepareLocalScene(). Throws
+// InputError.
+void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -7,10 +7,9 @@ namespace chromeball {
 
 void FrameScene::show(RenderJob& job) {
   if (!loaded_ || job.composite) return load(job);
-  const Settings& settings = job.file.settings;
-  const float rotation = float(settings.get<double>("probe.rotation"));
-  const bool turns = rotation != loaded_->probe.rotationDegrees();
-  if (turns && !settings.has("probe.file")) return load(job);  // the model's own environment
+  const bool turns = !(rotationOf(job) == loaded_->probe.rotation());
+  if (turns && !job.file.settings.has("probe.file"))
+    return load(job);  // the model's own environment
   job.view = loaded_->view;
   const FrameChange change = loadFrame(job, *loaded_, models_);
   if (change.geometry) {

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Contents of files are compared instead.
-constexpr std::array kPaths = {"scene", "probe", "files"};
+constexpr std::array kPaths = {"scene", "probe", "camera-file", "files"};
 constexpr std::array kLimits = {"noise-limit", "time-limit"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
@@ -26,6 +26,8 @@ Json toJson(const SettingValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
   if (const auto* number = std::get_if<uint64_t>(&value)) return *number;
   if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+    if (numbers->size() == 1) return numbers->front();
   return toText(value);
 }
 
@@ -54,9 +56,9 @@ glm::dmat4 worldToCamera(const Camera& camera, const glm::dvec3& position) {
   return glm::inverse(toWorld);
 }
 
-// The point (x, y, z) of camera space has the image position u = 1/2 + x / (2 a h z),
-// v = 1/2 - y / (2 h z), with h half the image's height at distance 1 and a its aspect ratio. The
-// third coordinate increases with z.
+// The point (x, y, z) of camera space has the image position u = p + x / (2 a h z),
+// v = q - y / (2 h z), with h half the image's height at distance 1, a its aspect ratio and (p, q)
+// the principal point. The third coordinate increases with z. The lens's distortion is not in it.
 glm::dmat4 cameraToNdc(const Camera& camera, double aspect) {
   const double h = camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
   glm::dmat4 m(0);
@@ -66,7 +68,7 @@ glm::dmat4 cameraToNdc(const Camera& camera, double aspect) {
     m[2][2] = 1;
     m[3] = glm::dvec4(0.5, 0.5, 0, 1);
   } else {
-    m[2] = glm::dvec4(0.5, 0.5, 1, 1);
+    m[2] = glm::dvec4(camera.principalPoint, 1, 1);
     m[3][2] = -1e-3;  // depth 1 - 0.001 / z
   }
   return m;
@@ -82,6 +84,7 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
     d["lensRadius"] = camera.lensRadius;
     d["focus"] = camera.focus;
   }
+  if (camera.distortion) d["distortion"] = {camera.distortion.k1, camera.distortion.k2};
   d["worldToCamera"] = rows(toCamera);
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
@@ -109,6 +112,8 @@ Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
     d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
   else
     d.erase("probe-mapping");
+  if (const auto& found = loaded.plateScale)
+    d["probe-scale"] = fmt::format("{},{},{}", found->scale.x, found->scale.y, found->scale.z);
   d["size"] = fmt::format("{}x{}", job.settings.width, job.settings.height);
   if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
   d["strategy"] = resolveStrategy(job.strategy.name);

@@ -95,6 +95,10 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
   if (const auto& d = result.denoised)
     j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
   if (result.composite) j.update(describe(*result.composite));
+  if (const auto& found = loaded.plateScale)
+    j["probe_scale"] = {{"scale", {found->scale.x, found->scale.y, found->scale.z}},
+                        {"scatter", found->scatter},
+                        {"pixels", found->pixels}};
   return j;
 }
 

@@ -44,7 +44,7 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
 void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
   for (const std::string& line : warnings(probe, path)) messages.warn(line);
   if (!probe.detected) return;
-  const std::string_view mapping = mappingName(probe.mapping);
+  const std::string mapping = mappingName(probe.mapping);
   messages.note(fmt::format("{}: detected as {} {} probe because {}", path,
                             mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
 }
@@ -54,6 +54,19 @@ void addPlate(const std::string& path, Collector& messages) {
   const bool isLinear =
       extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".pfm";
   if (!isLinear) messages.note(fmt::format("{}: decoded from sRGB", path));
+}
+
+std::string plateScaleText(const CompositeEntry& composite, const PlateScale& found) {
+  const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
+  const double grey = luminance(glm::dvec3(assumed));
+  const vec2& range = composite.groundReflectanceRange;
+  return fmt::format(
+      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
+      "{:.3g}; "
+      "they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} times "
+      "that",
+      scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
+      grey / double(range.y), grey / double(range.x));
 }
 
 }  // namespace
@@ -75,6 +88,8 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
     addProbe(*probe, loaded.loadedProbe, messages);
   else
     addLights(job, scene, messages);
+  if (const auto& scale = loaded.plateScale)
+    messages.note(plateScaleText(*job.file.composite, *scale));
   if (job.composite) addPlate(settings.get<std::string>("composite.plate"), messages);
   return messages.take();
 }

@@ -134,8 +134,14 @@ AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCa
 Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& view,
                 const glm::dvec3& origin) {
   const AutomaticView here = view.seenFrom(origin);
-  return chooseCamera(job, scene, here)
-      .turnedAround(here.centre, job.file.settings.getIfGiven<double>("orbit").value_or(0));
+  const Camera camera = chooseCamera(job, scene, here);
+  if (!fillsImage(camera, double(job.settings.width) / job.settings.height))
+    throwInput(
+        "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
+        "ascend; `distortion` may be for another `fov`",
+        job.file.optics->location);
+  return camera.turnedAround(here.centre,
+                             job.file.settings.getIfGiven<double>("orbit").value_or(0));
 }
 
 PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
@@ -191,6 +197,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   files.insert(files.end(), lists.begin(), lists.end());
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
+  if (const auto path = settings.getIfGiven<std::string>("camera.file")) files.push_back(*path);
   if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.file.surroundings && !room)
@@ -212,16 +219,20 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      settings.getIfGiven<double>("lighting.sun_angle"),
                      settings.get<bool>("lighting.show_lights"),
                      std::move(files)};
-  if (job.composite) prepareLocalScene(job, result);
+  if (job.composite) {
+    prepareLocalScene(job, result);
+    scaleProbeByPlate(job, result);
+  }
   checkMemory(job, result);
-  result.messages = loadMessages(job, result, models.warnings);
+  const Messages found = loadMessages(job, result, models.warnings);
+  result.messages.insert(result.messages.end(), found.begin(), found.end());
   return result;
 }
 
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
   FrameChange change;
-  if (loaded.probe.rotationDegrees() != float(job.file.settings.get<double>("probe.rotation"))) {
+  if (!(loaded.probe.rotation() == rotationOf(job))) {
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
     loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);

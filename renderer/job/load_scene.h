@@ -4,6 +4,7 @@
 
 #include "base/message.h"
 #include "composite/objects.h"
+#include "composite/plate_scale.h"
 #include "job/render_job.h"
 #include "job/scene_lighting.h"
 #include "lighting/strategy.h"
@@ -34,6 +35,7 @@ struct LoadedScene {
   // For composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
   std::unique_ptr<Projection> projection;  // of the local scene's reflectance, where it is solved
+  std::optional<PlateScale> plateScale;    // by which the probe was scaled
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the job leaves it to the

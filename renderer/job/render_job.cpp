@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "composite/layers.h"
 #include "job/arguments.h"
+#include "job/scene_file_camera.h"
 
 namespace chromeball {
 namespace {
@@ -67,24 +68,46 @@ void applyToModels(const Settings& over, SceneFile& file) {
   }
 }
 
-// Between the keys linear, before and after them constant.
-double rotationAt(const std::vector<std::pair<double, double>>& keys, double seconds) {
+// Before the first key and after the last one constant.
+std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
   const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
-                                      [](double t, const auto& key) { return t < key.first; });
-  if (after == keys.begin()) return keys.front().second;
-  if (after == keys.end()) return keys.back().second;
-  const auto& [t0, degrees0] = *(after - 1);
-  const auto& [t1, degrees1] = *after;
-  return degrees0 + (degrees1 - degrees0) * (seconds - t0) / (t1 - t0);
+                                      [](double t, const auto& key) { return t < key.seconds; });
+  if (after == keys.begin()) return keys.front().rotation;
+  if (after == keys.end()) return keys.back().rotation;
+  const ProbeTurn &from = *(after - 1), &to = *after;
+  const double elapsed = seconds - from.seconds, duration = to.seconds - from.seconds;
+  if (from.rotation.size() == 1 && to.rotation.size() == 1) {
+    const double degrees = from.rotation.front();
+    return {degrees + (to.rotation.front() - degrees) * elapsed / duration};
+  }
+  return numbersOf(between(parseRotation(from.rotation, "rotation_keys"),
+                           parseRotation(to.rotation, "rotation_keys"), elapsed / duration));
+}
+
+void mergeCamera(SceneFile& file, const Settings& over) {
+  const auto path = over.getIfGiven<std::string>("camera.file");
+  if (over.has("camera.name")) {
+    if (path)
+      throwInput("{}: excludes {}; give one", over.location("camera.file"),
+                 over.location("camera.name"));
+    if (file.settings.has("camera.file")) file.optics.reset();
+    file.settings.erase("camera.file");
+    file.camera.reset();
+  }
+  if (path) {
+    file.settings.erase("camera.name");
+    readCameraFile(*path, file);
+  }
 }
 
 // Overrides the settings of the scene file by `over`.
 void merge(SceneFile& file, const Settings& over) {
-  if (over.has("camera.name")) file.camera.reset();
+  mergeCamera(file, over);
   const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
   const auto isGiven = [&](std::string_view name) { return over.has(name); };
   if (std::any_of(std::begin(limits), std::end(limits), isGiven))  // the limits are one decision
     for (const std::string_view name : limits) file.settings.erase(name);
+  if (over.has("probe.scale")) file.plateScale.reset();
   file.settings.merge(over);
   applyToModels(over, file);
   if (!file.probeTurns.empty() && !over.has("probe.rotation"))
@@ -255,6 +278,21 @@ void checkTransparent(const SceneFile& file) {
                s.location("transparent"));
 }
 
+void checkPlateScale(const SceneFile& file) {
+  if (!file.plateScale) return;
+  const Settings& s = file.settings;
+  const auto refuse = [&](const char* why) {
+    throwInput("{}: scale = \"plate\" {}", *file.plateScale, why);
+  };
+  if (!file.composite || !s.get<bool>("composite.ground"))
+    refuse("needs [composite] with `ground = true`; else give a number");
+  if (!s.has("probe.file")) refuse("needs a probe's `file`");
+  if (file.surroundings) refuse("needs a distant probe, and there are [surroundings]");
+  if (!file.lamps.empty()) refuse("needs the probe as the only light, and there are [[light]]");
+  if (s.get<std::string>("lighting.from") != "all")
+    refuse("needs the whole light; give the numbers that a render with all of it prints");
+}
+
 }  // namespace
 
 RenderJob planJob(SceneFile scene, const Settings& over) {
@@ -262,6 +300,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   job.file = std::move(scene);
   merge(job.file, over);
   const Settings& s = job.file.settings;
+  parseRotation(s.get<std::vector<double>>("probe.rotation"), s.location("probe.rotation"));
   checkTwoPass(job.file);
   checkTransparent(job.file);
   checkOrbit(job.file);
@@ -270,6 +309,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   checkDenoise(job.file);
   checkGroups(job.file);
   checkParts(job.file);
+  checkPlateScale(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));

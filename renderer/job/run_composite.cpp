@@ -5,17 +5,14 @@
 
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
-#include "probe/irradiance.h"
+#include "job/scene_lighting.h"
 
 namespace chromeball {
 namespace {
 
 // Irradiance of the flat local scene.
 Rgb flatIrradiance(const LoadedScene& loaded) {
-  const glm::quat back =
-      glm::angleAxis(-glm::radians(loaded.probe.rotationDegrees()), vec3(0, 1, 0));
-  const vec3 normal = back * *flatNormal(loaded.scene, loaded.isObject);
-  return Rgb(exactIrradiance(loaded.probe.latLong(), {&normal, 1})[0]);
+  return irradianceOn(loaded.probe, *flatNormal(loaded.scene, loaded.isObject));
 }
 
 // Fills loaded.projection with the local scene's reflectance.
@@ -40,7 +37,12 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
 }
 
-Messages warningsOf(const CompositeReport& report, double probeScale) {
+std::string scaledText(std::vector<double> scale, double factor) {
+  for (double& channel : scale) channel *= factor;
+  return fmt::format("{:.2g}", fmt::join(scale, ","));
+}
+
+Messages warningsOf(const CompositeReport& report, const std::vector<double>& scale) {
   constexpr double kMinClamped = 0.01;
   Messages messages;
   if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped)
@@ -50,7 +52,7 @@ Messages warningsOf(const CompositeReport& report, double probeScale) {
                      "the plate is {:.3g} times as bright as the model's own reflectance makes it; "
                      "plate and probe may differ in exposure",
                      100 * r->clampedFraction, r->exposureRatio),
-         Remedy{"probe.scale", fmt::format("{:.2g}", probeScale * r->exposureRatio)}});
+         Remedy{"probe.scale", scaledText(scale, r->exposureRatio)}});
   if (report.darkerThanBlack)
     messages.push_back(
         {Message::Kind::Warning,
@@ -82,7 +84,10 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   FinishedImage finished =
       finishComposite(finishPlan(job, loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
-  Messages messages = warningsOf(*finished.composite, job.file.settings.get<double>("probe.scale"));
+  Messages messages =
+      warningsOf(*finished.composite, job.file.settings.get<std::vector<double>>("probe.scale"));
+  if (loaded.plateScale)  // nothing better is known
+    for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 

@@ -2,6 +2,8 @@
 #include "job/scene_file.h"
 
 #include "base/file.h"
+#include "job/arguments.h"
+#include "job/scene_file_camera.h"
 #include "job/scene_file_composite.h"
 #include "job/scene_file_light.h"
 #include "job/scene_file_source.h"
@@ -57,69 +59,39 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
   if (!keys) return;
   if (!keys.isArray()) keys.mustBe(keys.setting->form);
   forEach(keys, [&](const Entry& key) {
-    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, degrees]");
+    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, rotation]");
     const double seconds = key.element(0).number();
-    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().first))
+    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().seconds))
       failAt(key.location(), "the times of `rotation_keys` must ascend: {:g} s is not after {:g} s",
-             seconds, scene.probeTurns.back().first);
-    scene.probeTurns.emplace_back(seconds, key.element(1).number());
+             seconds, scene.probeTurns.back().seconds);
+    Entry rotation = key.element(1);
+    rotation.setting = findSetting("probe", "rotation");
+    scene.probeTurns.push_back({seconds, rotation.numbers()});
+    parseRotation(scene.probeTurns.back().rotation, rotation.location());
   });
 }
 
-void readLens(const Section& camera, SceneFile& scene) {
-  const Entry aperture = camera["aperture"], focus = camera["focus"];
-  if (!aperture && !focus) return;
-  if (!aperture || !focus)
-    failAt((aperture ? aperture : focus).location(),
-           "`aperture` (the lens's diameter) and `focus` (a distance) go together, in metres");
-  scene.lens = {float(aperture.number()), float(focus.number()), aperture.location()};
-}
-
-void readCamera(const Section& camera, SceneFile& scene) {
-  readLens(camera, scene);
-  const Entry name = camera["name"], position = camera["position"], target = camera["look_at"];
-  if (name) {
-    for (const char* key : {"position", "look_at", "up", "fov", "orthographic"})
-      if (const Entry e = camera[key])
-        failAt(e.location(), "[camera] has `name`, a camera of the model; it cannot have `{}` too",
-               key);
-    return;
-  }
-  const Entry orthographic = camera["orthographic"];
-  if (!position && !target && !camera["up"] && !camera["fov"] && !orthographic) return;
-  if (!position || !target)
-    failAt(camera.location(), "[camera] needs `name`, or both `position` and `look_at`");
-
-  const vec3 from = position.vector(), to = target.vector();
-  const Entry upEntry = camera["up"], fovEntry = camera["fov"];
-  if (orthographic && fovEntry)
-    failAt(fovEntry.location(), "[camera] is `orthographic`; it has no `fov`");
-  const vec3 up = upEntry ? upEntry.vector() : vec3(0, 1, 0);
-  const float fov = fovEntry ? glm::radians(float(fovEntry.number())) : Camera().fov;
-  if (fovEntry && fov < glm::radians(kPi))
-    scene.warnings.push_back(fmt::format(
-        "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
-        fovEntry.location(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
-  try {
-    scene.camera = Camera::lookAt(from, to, up, fov);
-  } catch (const InputError& error) {
-    failAt(camera.location(), "{}", error.what());
-  }
-  if (orthographic) {
-    scene.camera->orthographic = true;
-    scene.camera->halfHeight = 0.5f * float(orthographic.number());
-  }
+// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. The location.
+std::optional<std::string> takePlateScale(const std::string& path, toml::table& table) {
+  toml::table* probe = table["probe"].as_table();
+  const toml::node* scale = probe ? probe->get("scale") : nullptr;
+  if (!scale || !scale->is_string() || scale->as_string()->get() != "plate") return std::nullopt;
+  const std::string location = fmt::format("{}:{}", path, scale->source().begin.line);
+  probe->erase("scale");
+  return location;
 }
 
 }  // namespace
 
 SceneFile readSceneFile(const std::string& path) {
-  const toml::table table = parseToml(path);
+  toml::table table = parseToml(path);
+  const std::optional<std::string> plateScale = takePlateScale(path, table);
   const Section root(path, table,
                      {"model", "camera", "probe", "lighting", "light", "source", "render", "output",
                       "composite", "surroundings"});
   SceneFile scene;
   scene.path = path;
+  scene.plateScale = plateScale;
   forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
   if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
   for (const char* section : {"camera", "probe", "lighting", "render", "output"})

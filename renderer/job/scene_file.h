@@ -28,10 +28,19 @@ struct Lens {
   std::string location;   // FILE:LINE, begins an error
 };
 
+// What distinguishes the image of a real lens from a pinhole's; applies to any perspective camera.
+struct Optics {
+  std::optional<vec2> principalPoint;  // Camera::principalPoint
+  Distortion distortion;
+  std::string location;  // FILE:LINE, begins an error
+};
+
 // The local scene of [composite], by node names; all other nodes are objects.
 struct CompositeEntry {
   std::string location;  // of the section: FILE:LINE, begins an error
   std::vector<NamedSetting> localScene;
+  Rgb groundReflectance{0.25f};
+  vec2 groundReflectanceRange{0.1f, 0.5f};
 };
 
 // A polygon of the probe that becomes a source of its own ([[source]]).
@@ -41,18 +50,26 @@ struct SourceEntry {
   bool isIllum = true;
 };
 
+// The rotation of the probe at a time (`rotation_keys`).
+struct ProbeTurn {
+  double seconds;
+  std::vector<double> rotation;  // as the setting "probe.rotation"
+};
+
 // The contents of a scene file. Paths are resolved against the scene file's folder.
 struct SceneFile {
   std::string path;                // of the scene file, or of the model if there is no scene file
   std::vector<ModelEntry> models;  // at least one
   Settings settings;               // the given keys, except those of structured parts
-  std::optional<Camera> camera;    // [camera] with `position`
-  std::vector<std::pair<double, double>> probeTurns;  // seconds, degrees; ascending, may be empty
+  std::optional<Camera> camera;    // [camera] with `position`, or of another file
+  std::vector<ProbeTurn> probeTurns;  // ascending, may be empty
   std::optional<Lens> lens;
+  std::optional<Optics> optics;
   std::vector<Lamp> lamps;              // [[light]]
   std::vector<SourceEntry> sources;     // [[source]]
   std::vector<std::string> lightLists;  // files that lamps and sources are from
   std::optional<CompositeEntry> composite;
+  std::optional<std::string> plateScale;  // location of `[probe] scale = "plate"`
   std::optional<Surroundings> surroundings;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };

@@ -2,15 +2,39 @@
 #include "job/scene_file_composite.h"
 
 namespace chromeball {
+namespace {
+
+void readGround(const Section& section, CompositeEntry& composite) {
+  if (const Entry e = section["ground_reflectance"])
+    composite.groundReflectance = e.isArray() ? e.vector() : Rgb(float(e.number()));
+  if (const Entry e = section["ground_reflectance_range"]) {
+    if (!e.isArrayOf(2)) e.mustBe(e.setting->form);
+    composite.groundReflectanceRange = vec2(e.element(0).number(), e.element(1).number());
+    if (!(composite.groundReflectanceRange.x <= composite.groundReflectanceRange.y))
+      e.mustBe("two numbers, the smaller one first");
+  }
+}
+
+}  // namespace
+
 CompositeEntry readComposite(const Section& section, Settings& settings) {
   section.required("plate");
   section.read(settings);
   CompositeEntry composite;
   composite.location = section.location();
-  const Entry local = section.required("local_scene");
+  const bool hasGround = settings.get<bool>("composite.ground");
+  const Entry local = section["local_scene"];
+  if (!local && !hasGround)
+    failAt(composite.location,
+           "[composite] has no `local_scene`; name its nodes, or give "
+           "`ground = true` for a plane");
   forEach(local, [&](const Entry& e) { composite.localScene.push_back(e.name()); });
-  if (composite.localScene.empty())
+  if (local && composite.localScene.empty())
     failAt(local.location(), "`local_scene` must name at least one node");
+  for (const char* key : {"ground_height", "ground_reflectance", "ground_reflectance_range"})
+    if (const Entry e = section[key]; e && !hasGround)
+      failAt(e.location(), "`{}` needs `ground = true`", key);
+  readGround(section, composite);
   return composite;
 }
 

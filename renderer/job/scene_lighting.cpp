@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "job/arguments.h"
 #include "job/load_scene.h"
 #include "job/polygon_file.h"
 #include "lighting/ambient_light.h"
@@ -11,6 +12,7 @@
 #include "lighting/finite_surroundings.h"
 #include "lighting/scene_suns.h"
 #include "lighting/split_probe.h"
+#include "probe/irradiance.h"
 
 namespace chromeball {
 namespace {
@@ -88,12 +90,29 @@ LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
   return loaded;
 }
 
-Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
+Rotation rotationOf(const RenderJob& job) {
   const Settings& settings = job.file.settings;
-  Probe probe(loaded.latLong, float(settings.get<double>("probe.rotation")),
-              float(settings.get<double>("probe.scale")));
+  return parseRotation(settings.get<std::vector<double>>("probe.rotation"),
+                       settings.location("probe.rotation"));
+}
+
+Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
+  Probe probe(loaded.latLong, rotationOf(job),
+              colorOf(job.file.settings.get<std::vector<double>>("probe.scale")));
   loaded.latLong = {};
   return probe;
+}
+
+Probe scaled(const Probe& probe, const Rgb& factor) {
+  Image map = probe.latLong();
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, factor * map.rgb(x, y));
+  return Probe(map, probe.rotation());
+}
+
+Rgb irradianceOn(const Probe& probe, const vec3& normal) {
+  const vec3 turned = probe.rotation().back(normal);
+  return Rgb(exactIrradiance(probe.latLong(), {&turned, 1})[0]);
 }
 
 std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
@@ -126,7 +145,7 @@ std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& l
   Image hidden = probe.latLong();
   for (size_t i = 0; i < hidden.texels.size(); ++i) hidden.texels[i] -= rest.texels[i];
   take(false);
-  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotationDegrees())};
+  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotation())};
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
@@ -140,8 +159,8 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   if (sources) {
     std::vector<std::unique_ptr<LightingStrategy>> parts;
     parts.push_back(std::move(lighting));
-    parts.push_back(std::make_unique<PolygonLights>(sources->lights, sources->hidden,
-                                                    sampled.rotationDegrees()));
+    parts.push_back(
+        std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
     lighting = std::make_unique<CombinedLight>(std::move(parts));
   }
   if (loaded.surroundings)

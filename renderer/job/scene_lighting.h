@@ -43,8 +43,17 @@ struct ProbeSources {
 std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
                                       const Probe& probe);
 
+// As `[probe] rotation`. Throws InputError for a quaternion that is not one.
+Rotation rotationOf(const RenderJob& job);
+
 // With the job's rotation and scale; frees the map.
 Probe probeOf(const RenderJob& job, LoadedProbe& loaded);
+
+// With every channel times a factor.
+Probe scaled(const Probe& probe, const Rgb& factor);
+
+// W/m^2 on an unoccluded surface with this unit normal.
+Rgb irradianceOn(const Probe& probe, const vec3& normal);
 
 // The strategy, with the probe mapped onto the scene's surroundings, and with the scene file's suns
 // and ambient light, if it has any. `splitsProbe`: for light groups, tells the probe's suns from

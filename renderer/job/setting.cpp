@@ -71,6 +71,34 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
   return number;
 }
 
+// With commas between; an empty one is refused.
+std::vector<double> parseList(const Setting& setting, const std::string& text,
+                              const std::string& location) {
+  std::vector<double> numbers;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    if (!parseWhole(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
+      refuse(setting, text, location);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+// One of several numbers.
+std::string expectedElement(Setting setting) {
+  setting.type = Type::Number;
+  return expected(setting);
+}
+
+void checkNumbers(const Setting& setting, const SettingValue& value, const std::string& location) {
+  const auto& numbers = std::get<std::vector<double>>(value);
+  if (std::ranges::count(setting.counts, numbers.size()) == 0)
+    refuse(setting, toText(value), location);
+  for (const double x : numbers)
+    if (!(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
+      throwInput("{}: `{}` is not {}", location, x, expectedElement(setting));
+}
+
 }  // namespace
 
 std::string Setting::name() const {
@@ -100,6 +128,7 @@ std::string expected(const Setting& s) {
       return "a file name";
     case Type::Size:
       return "[width, height]";
+    case Type::Numbers:
     case Type::Compound:
       break;
   }
@@ -124,6 +153,9 @@ SettingValue parseSetting(const Setting& setting, const std::vector<std::string>
     case Type::Number:
     case Type::Factor:
       value = parseNumber(setting, text, location);
+      break;
+    case Type::Numbers:
+      value = parseList(setting, text, location);
       break;
     case Type::Choices:
       value = split(words);
@@ -161,6 +193,9 @@ void checkSetting(const Setting& setting, const SettingValue& value, const std::
           !(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
         refuseNumber(x);
       return;
+    case Type::Numbers:
+      requireType(std::holds_alternative<std::vector<double>>(value));
+      return checkNumbers(setting, value, location);
     case Type::Choice:
       requireType(std::holds_alternative<std::string>(value));
       return checkChoice(setting, std::get<std::string>(value), location);
@@ -188,6 +223,9 @@ std::string toText(const SettingValue& value) {
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(uint64_t number) const { return fmt::format("{}", number); }
     std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::vector<double>& numbers) const {
+      return fmt::format("{}", fmt::join(numbers, ","));
+    }
     std::string operator()(const std::string& text) const { return text; }
     std::string operator()(const std::vector<std::string>& names) const {
       return fmt::format("{}", fmt::join(names, ","));

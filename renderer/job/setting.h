@@ -13,16 +13,17 @@
 
 namespace chromeball {
 
-// Flag: bool. Integer: uint64_t. Number and Factor: double. Choice, Name and File: string. Choices
-// and Files: a list of strings. Size: ImageSize.
-using SettingValue =
-    std::variant<bool, uint64_t, double, std::string, std::vector<std::string>, ImageSize>;
+// Flag: bool. Integer: uint64_t. Number and Factor: double. Numbers: a list of doubles. Choice,
+// Name and File: string. Choices and Files: a list of strings. Size: ImageSize.
+using SettingValue = std::variant<bool, uint64_t, double, std::vector<double>, std::string,
+                                  std::vector<std::string>, ImageSize>;
 
 enum class SettingType {
   Flag,
   Integer,   // whole, in the range
   Number,    // finite as a float, in the range
   Factor,    // the same; "off" is 0
+  Numbers,   // one or several such numbers; `form` describes them
   Choice,    // one of the choices
   Choices,   // one or several of the choices
   Name,      // a string, validated by the code that uses it
@@ -32,7 +33,7 @@ enum class SettingType {
   Compound,  // a structured key with its own reader; `form` describes it
 };
 
-// Of an Integer, a Number or the elements of a Compound.
+// Of an Integer, a Number or the elements of Numbers or of a Compound.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -59,7 +60,8 @@ struct Setting {
   std::string_view argument = {};  // name of the option's argument in --help: "N", "SECONDS"
   std::string_view bare = {};      // the value of an option without "=ARGUMENT"; empty: not allowed
   SettingType type;
-  std::string_view form = {};  // of a Compound: "three numbers"
+  std::string_view form = {};       // of a Compound or of Numbers: "three numbers"
+  std::vector<size_t> counts = {};  // of Numbers: how many there may be
   Range range = {};
   std::string_view unit = {};
   std::string fallback = {};     // the default, in the syntax of the option; empty: none

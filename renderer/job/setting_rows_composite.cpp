@@ -19,9 +19,33 @@ void addComposite(std::vector<Setting>& rows) {
   add({.key = "local_scene",
        .type = Compound,
        .form = "a node's name, or several",
-       .absent = "required",
+       .absent = "required without `ground`",
        .help = "Nodes that model real surfaces in the photograph, including their descendants; all "
                "other nodes of the model are synthetic objects."});
+  add({.key = "ground",
+       .type = Flag,
+       .help =
+           "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
+           "the objects matter."});
+  add({.key = "ground_height",
+       .type = Number,
+       .unit = "metres",
+       .fallback = "0",
+       .help = "The ground's y coordinate."});
+  add({.key = "ground_reflectance",
+       .type = Compound,
+       .form = "a number (grey), or three",
+       .range = {.min = 0.001, .max = 1},
+       .absent = "0.25",
+       .help = "The ground's base color where `reflectance` does not find it, and on average for "
+               "`[probe] scale = \"plate\"`."});
+  add({.key = "ground_reflectance_range",
+       .type = Compound,
+       .form = "two numbers, [least, most]",
+       .range = {.min = 0.001, .max = 1},
+       .absent = "0.1, 0.5: asphalt to dry sand",
+       .help = "Between what the ground's reflectance may be: the uncertainty of "
+               "`[probe] scale = \"plate\"`."});
   add({.key = "mode",
        .type = Choice,
        .fallback = "difference",
@@ -32,7 +56,7 @@ void addComposite(std::vector<Setting>& rows) {
        .help = "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj."});
   add({.key = "reflectance",
        .type = Choice,
-       .fallback = "model",
+       .absent = "model; with `ground` flat, or plate if the local scene has more or other lights",
        .choices =
            [] {
              return Names{"model", "plate", "flat"};

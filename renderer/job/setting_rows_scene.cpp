@@ -73,6 +73,12 @@ void addCamera(std::vector<Setting>& rows) {
        .type = Name,
        .absent = "the model's first camera",
        .help = "One of the model's cameras, by its own name or that of its node."});
+  add({.key = "file",
+       .option = "camera-file",
+       .argument = "FILE.toml",
+       .type = File,
+       .absent = "none",
+       .help = "A file with a [camera] of its own, as `chromeball camera solve` writes it."});
   add({.key = "position",
        .type = Compound,
        .form = "three numbers",
@@ -118,6 +124,21 @@ void addCamera(std::vector<Setting>& rows) {
        .unit = "metres",
        .absent = "none",
        .help = "Distance of the plane in focus, along the camera's axis."});
+  add({.key = "principal_point",
+       .type = Compound,
+       .form = "two numbers",
+       .range = {.min = -10, .max = 10},
+       .unit = "fractions of the image's width and height",
+       .absent = "0.5, 0.5: the middle",
+       .help = "Where the lens's axis meets the image, from the top left: a lens that is shifted, "
+               "or a photograph that was cropped."});
+  add({.key = "distortion",
+       .type = Compound,
+       .form = "a number, k1, or two, [k1, k2]",
+       .absent = "none",
+       .help = "The lens's radial distortion: what a pinhole would show at (x, y) focal lengths "
+               "from the principal point appears at (1 + k1 r^2 + k2 r^4) (x, y), r^2 = x^2 + y^2. "
+               "`fov` is that of the pinhole."});
 }
 
 void addProbe(std::vector<Setting>& rows) {
@@ -140,24 +161,32 @@ void addProbe(std::vector<Setting>& rows) {
        .help = "How the probe's image maps to directions; auto detects it."});
   add({.key = "rotation",
        .option = "probe-rotation",
-       .argument = "DEGREES",
-       .type = Number,
+       .argument = "YAW[,PITCH,ROLL]",
+       .type = Numbers,
+       .form = "one angle, three (yaw, pitch, roll), or a quaternion (x, y, z, w)",
+       .counts = {1, 3, 4},
        .unit = "degrees",
        .fallback = "0",
-       .help = "Turns the environment about +Y, counter-clockwise seen from above."});
+       .help = "Turns the environment about the fixed axes Z (roll), then X (pitch), then Y (yaw), "
+               "counter-clockwise seen from the tip of the axis: yaw from above."});
   add({.key = "rotation_keys",
        .type = Compound,
-       .form = "pairs [seconds, degrees], each later than the one before",
+       .form = "pairs [seconds, rotation], each later than the one before",
        .absent = "`rotation` at all times",
-       .help = "The rotation at times of an animation, linear between; see --frames and "
-               "--animation-time."});
+       .help = "The rotation at times of an animation, as a number or an array like `rotation`; "
+               "between them linear in the yaw, or the shortest way if one is tilted; see --frames "
+               "and --animation-time."});
   add({.key = "scale",
        .option = "probe-scale",
-       .argument = "FACTOR",
-       .type = Number,
+       .argument = "R[,G,B]",
+       .type = Numbers,
+       .form = "a number, or three (r, g, b)",
+       .counts = {1, 3},
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the probe's radiance."});
+       .help =
+           "Factor on the probe's radiance. In the scene file also \"plate\": for each channel, "
+           "what a composite's ground needs to look as in the plate (`ground_reflectance`)."});
 }
 
 void addLighting(std::vector<Setting>& rows) {

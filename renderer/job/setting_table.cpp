@@ -24,8 +24,9 @@ std::span<const SettingSection> settingSections() {
        "tables `[[model]]` with the keys below. A model is scaled, then rotated, then moved."},
       {"camera", "[camera]", "Camera",
        "A camera of the model by `name`, or one of its own: `position` and `look_at`, and `up`, "
-       "`fov` or `orthographic`. Without either, the model's first camera renders, or one that "
-       "frames the model. `aperture` and `focus` go together and apply to any perspective camera."},
+       "`fov` or `orthographic`, here or in a `file`. Without either, the model's first camera "
+       "renders, or one that frames the model. `aperture` and `focus` go together; these, "
+       "`principal_point` and `distortion` apply to any perspective camera."},
       {"probe", "[probe]", "Probe",
        "The light probe. Without a file, the model's own environment or lights light the scene."},
       {"lighting", "[lighting]", "Lighting", "How the scene's light is sampled."},
@@ -47,7 +48,8 @@ std::span<const SettingSection> settingSections() {
        "exists."},
       {"composite", "[composite]", "Composite",
        "Differential rendering: composites the model's nodes into a photograph, except those of "
-       "the local scene, which model real surfaces in the photograph."},
+       "the local scene, which model real surfaces in the photograph. With `ground = true` the "
+       "model needs none: objects stand on a plane that takes their shadows."},
       {"surroundings", "[surroundings]", "Surroundings",
        "The surface at a finite distance that the probe is mapped onto, as seen from `capture`."},
       {"", "The command line only", "Run", "These settings are options without a key."},

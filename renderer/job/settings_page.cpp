@@ -68,6 +68,7 @@ std::string typeText(const Setting& s) {
       return "file, or an array";
     case SettingType::Size:
       return "`[width, height]`";
+    case SettingType::Numbers:
     case SettingType::Compound:
       break;
   }

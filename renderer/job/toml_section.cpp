@@ -23,7 +23,8 @@ std::string describe(const toml::node& node) {
 
 // Describes valid numbers of the setting.
 std::string expectedNumber(Setting setting, const Range& range) {
-  if (setting.type == SettingType::Compound) setting.type = SettingType::Number;
+  if (setting.type == SettingType::Compound || setting.type == SettingType::Numbers)
+    setting.type = SettingType::Number;
   setting.range = range;
   return expected(setting);
 }
@@ -72,6 +73,13 @@ double Entry::number(const Range& range) const {
   return *number;
 }
 
+std::vector<double> Entry::numbers() const {
+  std::vector<double> all;
+  forEach(*this, [&](const Entry& e) { all.push_back(e.number()); });
+  if (std::ranges::count(setting->counts, all.size()) == 0) mustBe(expected(*setting));
+  return all;
+}
+
 vec3 Entry::vector() const {
   if (!isArrayOf(3)) mustBe("three numbers");
   return {element(0).number(), element(1).number(), element(2).number()};
@@ -87,6 +95,8 @@ SettingValue Entry::value() const {
       return number();
     case SettingType::Factor:
       return node->is_string() && text() == "off" ? 0.0 : number();
+    case SettingType::Numbers:
+      return numbers();
     case SettingType::Choice:
       return choice();
     case SettingType::Choices: {

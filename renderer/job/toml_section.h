@@ -49,7 +49,8 @@ struct Entry {
   uint64_t integer() const;
   double number() const;  // finite as a float, in the range
   double number(const Range& narrower) const;
-  vec3 vector() const;  // three such numbers
+  std::vector<double> numbers() const;  // one such number, or an array of as many as allowed
+  vec3 vector() const;                  // three such numbers
 
   // The value of a setting that is not a Compound.
   SettingValue value() const;

@@ -18,11 +18,10 @@ float importance(const DirectionSample& light, const LightPoint& point) {
 
 DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const Rgb& ambient)
     : probe_(probe), ambient_(ambient), count_(lights.size()) {
-  const glm::quat turn = glm::angleAxis(glm::radians(probe.rotationDegrees()), vec3(0, 1, 0));
   for (size_t i = 0; i < count_; ++i)
     if (const DirectionalLight& light = lights[i]; !isBlack(light.irradiance))
       lights_.push_back(
-          {glm::normalize(turn * light.direction), light.irradiance, 0, true, int(i)});
+          {glm::normalize(probe.rotation()(light.direction)), light.irradiance, 0, true, int(i)});
 }
 
 std::vector<std::string> DeltaLights::groups() const {

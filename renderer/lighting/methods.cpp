@@ -57,8 +57,8 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
     const Rgb ambient = made.ambient.value_or(Rgb(0));
     auto strategy = std::make_unique<DeltaLights>(probe, made.lights, ambient);
     if (!options.showLights) return strategy;
-    return std::make_unique<ShownLights>(
-        std::move(strategy), shownLights(made.lights, probe.rotationDegrees()), ambient);
+    return std::make_unique<ShownLights>(std::move(strategy),
+                                         shownLights(made.lights, probe.rotation()), ambient);
   };
   return {name, summary, lights.counts, makeStrategy, true, lights};
 }
@@ -75,7 +75,7 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
                                                               const StrategyOptions& options,
                                                               int count) -> Strategy {
     const Image map = probe.latLong();
-    Areas areas = shape({map, regions(map, {.count = count}).partition, probe.rotationDegrees()});
+    Areas areas = shape({map, regions(map, {.count = count}).partition, probe.rotation()});
     std::vector<AreaLight> all = areas->lights();
     auto strategy = std::make_unique<AreaLights>(probe, std::move(areas));
     if (!options.showLights) return strategy;

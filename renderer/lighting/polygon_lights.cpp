@@ -2,24 +2,23 @@
 #include "lighting/polygon_lights.h"
 
 #include "base/hash.h"
-#include "math/rotation.h"
 
 namespace chromeball {
 namespace {
 
 constexpr uint64_t kSet = uint64_t(2) << 32;  // apart from the discs of sky_discs.h
 
-SphericalPolygon turned(const SphericalPolygon& polygon, double degrees) {
+SphericalPolygon turned(const SphericalPolygon& polygon, const Rotation& rotation) {
   std::vector<dvec3> corners;
-  for (const dvec3& corner : polygon.corners()) corners.push_back(turnedAboutY(corner, degrees));
+  for (const dvec3& corner : polygon.corners()) corners.push_back(rotation(corner));
   return {corners, "polygon"};
 }
 
 }  // namespace
 
 PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Image& hidden,
-                             float rotationDegrees)
-    : choice_(1, int(lights.size())), hidden_(hidden, rotationDegrees) {
+                             const Rotation& rotation)
+    : choice_(1, int(lights.size())), hidden_(hidden, rotation) {
   std::vector<double> powers;
   for (const PolygonLight& light : lights)
     powers.push_back(luminance(Rgb(light.source.irradiance())));
@@ -27,9 +26,8 @@ PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Imag
   for (size_t i = 0; i < lights.size(); ++i) {
     const PolygonSource& source = lights[i].source;
     const double probability = total > 0 ? powers[i] / total : 0;
-    lights_.push_back({turned(source.polygon, rotationDegrees), Rgb(source.radiance),
-                       lights[i].isIllum, lights[i].name,
-                       float(probability / source.polygon.solidAngle())});
+    lights_.push_back({turned(source.polygon, rotation), Rgb(source.radiance), lights[i].isIllum,
+                       lights[i].name, float(probability / source.polygon.solidAngle())});
   }
   while (firstIllum_ + 1 < lights_.size() && !lights_[firstIllum_].isIllum) ++firstIllum_;
 }

@@ -25,7 +25,7 @@ class PolygonLights : public LightingStrategy {
   // `lights` is not empty. `hidden`: the map minus that without the illums, which the camera and
   // mirrors see; unrotated.
   PolygonLights(const std::vector<PolygonLight>& lights, const Image& hidden,
-                float rotationDegrees);
+                const Rotation& rotation);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;

@@ -14,7 +14,7 @@ struct Columns {
 
   Columns(const Probe& probe, const AzimuthRange& range) {
     const auto position = [&](double azimuth) {
-      return (0.5 - (azimuth - probe.rotationDegrees()) / 360) * probe.width();
+      return (0.5 - (azimuth - double(probe.rotation().yaw())) / 360) * probe.width();
     };
     constexpr double kRounding = 1e-9;
     first = int(std::floor(position(range.left) + kRounding));
@@ -104,7 +104,7 @@ RowDistribution rowDistribution(const Probe& probe, const Importance& importance
   std::vector<double> sums{0};
   for (int i = 0; i <= columns.count; ++i) {
     const int column = columns.first + i;
-    found.azimuths.push_back(180 - 360. * column / width + probe.rotationDegrees());
+    found.azimuths.push_back(180 - 360. * column / width + double(probe.rotation().yaw()));
     if (i == columns.count) break;
     const Rgb texel = probe.corners(wrapped(column, width), row + 1).c00;
     found.luminances.push_back(double(luminance(texel)));

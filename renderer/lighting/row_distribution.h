@@ -15,6 +15,8 @@ struct AzimuthRange {
   double left = 180, right = -180;  // at most 360 apart
 };
 
+// The probe of these functions is not tilted: its rows have constant elevation.
+
 // The row of texels that an elevation in degrees falls on, and the row that is sampled most.
 int texelRowAt(const Probe& probe, double elevation);
 int brightestRow(const Probe& probe, const Importance& importance);

@@ -23,13 +23,12 @@ ShownLights::ShownLights(std::unique_ptr<LightingStrategy> strategy, std::vector
                          const Rgb& ambient)
     : strategy_(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
 
-std::vector<AreaLight> shownLights(const Constellation& lights, float rotationDegrees) {
-  const glm::quat turn = glm::angleAxis(glm::radians(rotationDegrees), vec3(0, 1, 0));
+std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation) {
   std::vector<AreaLight> shown;
   for (const DirectionalLight& light : lights)
     if (!isBlack(light.irradiance))
       shown.push_back(
-          {glm::normalize(turn * light.direction), light.irradiance, smallestSolidAngle()});
+          {glm::normalize(rotation(light.direction)), light.irradiance, smallestSolidAngle()});
   return shown;
 }
 

@@ -47,7 +47,7 @@ class ShownLights : public LightingStrategy {
   Rgb ambient_;
 };
 
-// Lights of no extent as lights to show, turned about +Y.
-std::vector<AreaLight> shownLights(const Constellation& lights, float rotationDegrees);
+// Lights of no extent as lights to show, turned.
+std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation);
 
 }  // namespace chromeball

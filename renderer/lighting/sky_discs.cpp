@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/sky_discs.h"
 
-#include "math/rotation.h"
-
 namespace chromeball {
 namespace {
 
@@ -10,7 +8,7 @@ constexpr size_t kMaxSampledEach = 2;  // of more discs, one is chosen by power
 
 }  // namespace
 
-SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, double rotationDegrees) {
+SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation) {
   std::vector<double> powers;
   double power = 0;
   for (const Sun& sun : suns) {
@@ -23,10 +21,9 @@ SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, double rotationDegrees) {
     const Sun& sun = suns[i];
     const double chord = 2 * std::sin(sun.angle * kPiD / 720);
     const double probability = chooses ? powers[i] / power : 1;
-    discs_.push_back(
-        {{Frame(vec3(turnedAboutY(sun.direction, rotationDegrees))), float(chord * chord)},
-         Rgb(sun.radiance()),
-         float(probability / (kPiD * chord * chord))});
+    discs_.push_back({{Frame(vec3(rotation(sun.direction))), float(chord * chord)},
+                      Rgb(sun.radiance()),
+                      float(probability / (kPiD * chord * chord))});
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "math/cdf.h"
+#include "math/rotation.h"
 #include "math/sampler.h"
 #include "math/spherical_cap.h"
 #include "probe/sun.h"
@@ -18,8 +19,8 @@ namespace chromeball {
 // needs 45% fewer rays for the same noise.
 class SkyDiscs {
  public:
-  // Turned about +Y, as a probe.
-  explicit SkyDiscs(const std::vector<Sun>& suns, double rotationDegrees = 0);
+  // Turned, as a probe.
+  explicit SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation = {});
 
   bool empty() const { return discs_.empty(); }
 

@@ -4,13 +4,13 @@
 namespace chromeball {
 
 SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const Probe& probe)
-    : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotationDegrees()) {}
+    : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotation()) {}
 
 SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
-                       float rotationDegrees)
+                       const Rotation& rotation)
     : strategy_(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),
-      rest_(extraction.remainder, rotationDegrees) {}
+      rest_(extraction.remainder, rotation) {}
 
 std::vector<std::string> SplitProbe::groups() const {
   if (!hasSuns_) return {"rest"};

@@ -41,7 +41,7 @@ class SplitProbe : public LightingStrategy {
 
  private:
   SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
-             float rotationDegrees);
+             const Rotation& rotation);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
   std::unique_ptr<LightingStrategy> strategy_;

@@ -12,13 +12,13 @@ std::vector<Sun> withAngle(std::vector<Sun> suns, std::optional<double> angle) {
 }  // namespace
 
 Suns::Suns(const Probe& probe, bool compensated, std::optional<double> angle)
-    : Suns(extractSuns(probe.latLong()), probe.rotationDegrees(), compensated, angle) {}
+    : Suns(extractSuns(probe.latLong()), probe.rotation(), compensated, angle) {}
 
-Suns::Suns(SunExtraction extraction, float rotationDegrees, bool compensated,
+Suns::Suns(SunExtraction extraction, const Rotation& rotation, bool compensated,
            std::optional<double> angle)
-    : remainder_(extraction.remainder, rotationDegrees),
+    : remainder_(extraction.remainder, rotation),
       importance_(remainder_, compensated),
-      discs_(withAngle(std::move(extraction.suns), angle), rotationDegrees) {}
+      discs_(withAngle(std::move(extraction.suns), angle), rotation) {}
 
 void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
                   std::vector<DirectionSample>& out) const {

@@ -40,7 +40,7 @@ class Suns : public LightingStrategy {
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
-  Suns(SunExtraction extraction, float rotationDegrees, bool compensated,
+  Suns(SunExtraction extraction, const Rotation& rotation, bool compensated,
        std::optional<double> angle);
 
   Probe remainder_;

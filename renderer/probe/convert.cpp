@@ -19,15 +19,18 @@ class PatchSource {
   PatchSource(const Image& image, Mapping mapping)
       : image_(image),
         mapping_(mapping),
+        isDisc_(mapping.disc().has_value()),
         faceWidth_(image.width / faceLayout(mapping).columns),
         faceHeight_(image.height / faceLayout(mapping).rows) {}
 
   dvec3 radiance(const dvec3& direction) const {
     dvec2 uv = directionToUv(mapping_, direction);
-    if (isDisc()) {
-      // At most to half a texel inside the rim, where at least one of the four texels is inside.
+    if (isDisc_) {
+      constexpr double kRounding = 1e-9;
       const dvec2 fromCentre = uv - 0.5;
       const double radius = glm::length(fromCentre), maximum = 0.5 - 0.5 / image_.width;
+      if (radius > 0.5 + kRounding) return dvec3(0);  // the disc does not show this direction
+      // At most to half a texel inside the rim, where at least one of the four texels is inside.
       if (radius > maximum) uv = 0.5 + fromCentre * (maximum / radius);
     }
     const double x = uv.x * image_.width, y = uv.y * image_.height;
@@ -42,7 +45,7 @@ class PatchSource {
       const int dx = k & 1, dy = k >> 1;
       const int texelX = std::clamp(int(cornerX) + dx, left, left + faceWidth_ - 1);
       const int texelY = std::clamp(int(cornerY) + dy, top, top + faceHeight_ - 1);
-      if (isDisc() && !insideDisc(texelX, texelY)) continue;
+      if (isDisc_ && !insideDisc(texelX, texelY)) continue;
       const double weight = (dx ? s : 1 - s) * (dy ? t : 1 - t);
       sum += weight * dvec3(image_.rgb(texelX, texelY));
       sumWeight += weight;
@@ -51,7 +54,6 @@ class PatchSource {
   }
 
  private:
-  bool isDisc() const { return mapping_ == Mapping::AngularMap || mapping_ == Mapping::MirrorBall; }
   bool insideDisc(int x, int y) const {
     const dvec2 fromCentre = dvec2((x + 0.5) / image_.width, (y + 0.5) / image_.height) - 0.5;
     return glm::dot(fromCentre, fromCentre) <= 0.25;
@@ -59,28 +61,32 @@ class PatchSource {
 
   const Image& image_;
   Mapping mapping_;
+  bool isDisc_;
   int faceWidth_, faceHeight_;
 };
 
-// The texels that show a direction: not those around a disc, or between the arms of a cross.
+// The texels that show a direction: not those around a disc, or between the arms of a cross. Of a
+// disc that shows a part of the sphere, as many as all of the sphere would have.
 double texelsInUse(Mapping mapping, const ImageSize& image) {
   const auto [columns, rows] = faceLayout(mapping);
   const double all = double(image.width) * image.height;
-  if (mapping == Mapping::AngularMap || mapping == Mapping::MirrorBall) return all * kPiD / 4;
+  if (const std::optional<Fisheye> lens = mapping.disc())
+    return all * kPiD / 4 * (4 * kPiD / lens->solidAngle());
   return columns * rows > 1 ? all * 6 / (columns * rows) : all;
 }
 
 // Samples along the side of a target texel: two per source texel that it covers, at least two; more
-// for the angular map, whose texels are wider at its rim than in its centre, by angle / sin(angle).
+// for discs that are not of equal area: the angular map's texels are wider at its rim than in its
+// centre, by angle / sin(angle).
 int samplesPerSide(Mapping from, const ImageSize& source, Mapping to, const ImageSize& target) {
   const double texels = texelsInUse(from, source) / texelsInUse(to, target);
-  const double perTexel = to == Mapping::AngularMap ? 4 : 2;
+  const std::optional<Fisheye> lens = to.disc();
+  const double perTexel = lens && lens->projection != FisheyeProjection::Equisolid ? 4 : 2;
   return std::max(2, int(std::ceil(perTexel * std::sqrt(texels))));
 }
 
-glm::dmat3 turnAboutY(double degrees) {
-  const double angle = degrees * kPiD / 180, c = std::cos(angle), s = std::sin(angle);
-  return glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+glm::dmat3 matrixOf(const Rotation& rotation) {
+  return {rotation(dvec3(1, 0, 0)), rotation(dvec3(0, 1, 0)), rotation(dvec3(0, 0, 1))};
 }
 
 // Resamples a cube map or a disc.
@@ -92,43 +98,50 @@ Image resample(const Image& image, Mapping from, Mapping to, const ImageSize& si
   return rasterize(to, size, samples, [&](const dvec3& d) { return patches.radiance(back * d); });
 }
 
+// The height of a lat-long map over the diameter of a disc whose centre has the same detail.
+double heightOverDiameter(const Fisheye& lens) {
+  return 0.5 * kPiD / std::sqrt(lens.solidAngleJacobian(0));
+}
+
 }  // namespace
 
 ImageSize latLongSize(Mapping mapping, const ImageSize& image) {
-  const int faceWidth = image.width / faceLayout(mapping).columns;
-  double height = 2.0 * faceWidth;
   if (mapping == Mapping::LatLong) return image;
-  if (mapping == Mapping::AngularMap) height = 0.5 * image.width;
-  if (mapping == Mapping::MirrorBall) height = 0.25 * kPiD * image.width;
-  return {2 * roundUpToEven(height), roundUpToEven(height)};
+  const std::optional<Fisheye> lens = mapping.disc();
+  const double height = lens ? image.width * heightOverDiameter(*lens)
+                             : 2.0 * (image.width / faceLayout(mapping).columns);
+  constexpr double kMostRows = 8192;
+  const int rows =
+      roundUpToEven(mapping.kind() == Mapping::FisheyeDisc ? std::min(height, kMostRows) : height);
+  return {2 * rows, rows};
 }
 
 ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
-  const auto [columns, rows] = faceLayout(mapping);
-  int face = roundUpToEven(0.5 * latLong.height);
   if (mapping == Mapping::LatLong) return latLong;
-  if (mapping == Mapping::AngularMap) face = roundUpToEven(2.0 * latLong.height);
-  if (mapping == Mapping::MirrorBall) face = roundUpToEven(latLong.height * 4 / kPiD);
+  const auto [columns, rows] = faceLayout(mapping);
+  const std::optional<Fisheye> lens = mapping.disc();
+  const int face =
+      roundUpToEven(lens ? latLong.height / heightOverDiameter(*lens) : 0.5 * latLong.height);
   return {face * columns, face * rows};
 }
 
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
-              float rotationDegrees) {
+              const Rotation& rotation) {
   if (parseMapping(mappingName(to), size.width, size.height, "convert") != to)
     throwInput("convert: {} x {} is the wrong aspect ratio for this {} layout", size.width,
                size.height, mappingName(to));
   const ImageSize source{image.width, image.height};
-  if (from == to && rotationDegrees == 0 && size.width == image.width &&
+  if (from == to && rotation == Rotation() && size.width == image.width &&
       size.height == image.height)
     return image;
 
   if (from == Mapping::LatLong) {
     const int samples = samplesPerSide(from, source, to, size);
-    const Probe probe(image, rotationDegrees);
+    const Probe probe(image, rotation);
     return rasterize(to, size, samples,
                      [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
   }
-  return resample(image, from, to, size, turnAboutY(double(rotationDegrees)));
+  return resample(image, from, to, size, matrixOf(rotation));
 }
 
 Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation) {

@@ -3,27 +3,29 @@
 #pragma once
 
 #include "image/image.h"
+#include "math/rotation.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
 
 // Size of the 2:1 lat-long map whose texels are no coarser than those in the centre of an image in
 // `mapping` (of a face, for cube maps). Its height is D/2 for an angular map of diameter D, pi D/4
-// for a mirror ball, twice a cube's face, rounded up to even. A lat-long map keeps its size.
+// for a mirror ball, D for an equidistant fisheye disc of 180 degrees (at most 8192), twice a
+// cube's face, rounded up to even. A lat-long map keeps its size.
 ImageSize latLongSize(Mapping mapping, const ImageSize& image);
 
 // The inverse of latLongSize(): the size at which an image in `mapping` keeps the detail of a
 // lat-long map of size `latLong`.
 ImageSize sizeFor(Mapping mapping, const ImageSize& latLong);
 
-// Resamples the first three channels and turns the environment about +Y by `rotationDegrees`,
-// counter-clockwise seen from above. Each texel is the mean, over its solid angle, of the source's
-// bilinear interpolation (of Probe, for a lat-long source), which never reads outside the disc or
-// the faces. So the mean radiance over the sphere is kept, to 0.1% for detail that both images
-// resolve. Texels that show no direction are black. If nothing changes, returns a copy. All texels
-// must be finite. Throws InputError if `size` does not fit `to`.
+// Resamples the first three channels and turns the environment. Each texel is the mean, over its
+// solid angle, of the source's bilinear interpolation (of Probe, for a lat-long source), which
+// never reads outside the disc or the faces. So the mean radiance over the sphere is kept, to 0.1%
+// for detail that both images resolve. Texels that show no direction are black, and directions that
+// the source does not show (outside the field of view of a fisheye disc). If nothing changes,
+// returns a copy. All texels must be finite. Throws InputError if `size` does not fit `to`.
 Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
-              float rotationDegrees = 0);
+              const Rotation& rotation = {});
 
 // Converts a cube map or disc to a lat-long map of latLongSize(). `rotation` may be any rotation:
 // direction d of the source becomes rotation * d.

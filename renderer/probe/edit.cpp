@@ -25,6 +25,16 @@ void mirrorAtHorizon(Image& latLong) {
       latLong.setRgb(x, y, latLong.rgb(x, latLong.height - 1 - y));
 }
 
+void mirrorLeftAndRight(Image& latLong) {
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; 2 * x < latLong.width - 1; ++x) {
+      const int opposite = latLong.width - 1 - x;
+      const Rgb left = latLong.rgb(x, y);
+      latLong.setRgb(x, y, latLong.rgb(opposite, y));
+      latLong.setRgb(opposite, y, left);
+    }
+}
+
 size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const Rgb& gain) {
   const double cosRadius = std::cos(radius * kPiD / 180);
   size_t count = 0;

@@ -15,6 +15,9 @@ void replaceBelowHorizon(Image& latLong, const Rgb& radiance);
 // Below the horizon the sky is seen mirrored: radiance from (x, -y, z) as from (x, y, z).
 void mirrorAtHorizon(Image& latLong);
 
+// Left and right are exchanged: radiance from (x, y, z) as from (-x, y, z).
+void mirrorLeftAndRight(Image& latLong);
+
 // Multiplies the texels whose centres lie at most `radius` degrees from `centre` (unit). The other
 // texels keep their bits. Returns the number of texels that are multiplied.
 size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const Rgb& gain);

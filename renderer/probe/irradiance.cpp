@@ -41,6 +41,13 @@ Image toImage(const ImageSize& size, const std::vector<dvec3>& colors) {
   return image;
 }
 
+// The normals of an irradiance map, in the frame of the map that is not turned.
+std::vector<vec3> normalsOf(const ImageSize& size, const Rotation& rotation) {
+  std::vector<vec3> normals = texelDirections(size);
+  for (vec3& normal : normals) normal = rotation.back(normal);
+  return normals;
+}
+
 }  // namespace
 
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals) {
@@ -84,12 +91,12 @@ std::vector<vec3> texelDirections(const ImageSize& latLong) {
   return directions;
 }
 
-Image irradianceMap(const Image& latLong, const ImageSize& size) {
-  return toImage(size, exactIrradiance(latLong, texelDirections(size)));
+Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
+  return toImage(size, exactIrradiance(latLong, normalsOf(size, rotation)));
 }
 
-Image shIrradianceMap(const Image& latLong, const ImageSize& size) {
-  return toImage(size, shIrradiance(latLong, texelDirections(size)));
+Image shIrradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
+  return toImage(size, shIrradiance(latLong, normalsOf(size, rotation)));
 }
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "math/rotation.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
@@ -26,8 +27,9 @@ std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> norm
 // map.
 std::vector<vec3> texelDirections(const ImageSize& latLong);
 
-// Lat-long irradiance maps at those normals, three channels.
-Image irradianceMap(const Image& latLong, const ImageSize& size);
-Image shIrradianceMap(const Image& latLong, const ImageSize& size);
+// Lat-long irradiance maps at those normals, three channels, of the environment that `rotation`
+// turns.
+Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation = {});
+Image shIrradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation = {});
 
 }  // namespace chromeball

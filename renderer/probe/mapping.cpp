@@ -55,7 +55,7 @@ const std::array<Face, 6> kGrid{{{0, 0, kX, kY},
                                  {2, 1, -kZ, kY}}};
 
 const std::array<Face, 6>& facesOf(Mapping mapping) {
-  switch (mapping) {
+  switch (mapping.kind()) {
     case Mapping::VerticalCross:
       return kVerticalCross;
     case Mapping::HorizontalCross:
@@ -97,19 +97,19 @@ std::optional<dvec3> cubeToDirection(Mapping mapping, const dvec2& uv) {
   return std::nullopt;
 }
 
-// For both disc mappings: the position at `radius` (1 at the rim) from the centre, towards (x, y).
-dvec2 discUv(double x, double y, double radius) {
-  const double length = std::sqrt(x * x + y * y);
+dvec2 directionToDisc(const Fisheye& lens, const dvec3& d) {
+  const double length = std::sqrt(d.x * d.x + d.y * d.y);
+  const double radius = lens.radius(std::atan2(length, -d.z));
   if (length == 0) return {0.5 + 0.5 * radius, 0.5};
-  return {0.5 + 0.5 * radius * x / length, 0.5 - 0.5 * radius * y / length};
+  return {0.5 + 0.5 * radius * d.x / length, 0.5 - 0.5 * radius * d.y / length};
 }
 
-std::optional<dvec3> discToDirection(Mapping mapping, const dvec2& uv) {
+std::optional<dvec3> discToDirection(const Fisheye& lens, const dvec2& uv) {
   const double x = 2 * uv.x - 1, y = 1 - 2 * uv.y;
   const double radius = std::sqrt(x * x + y * y);
   if (radius > 1) return std::nullopt;
   if (radius == 0) return -kZ;
-  const double theta = mapping == Mapping::AngularMap ? kPiD * radius : 2 * std::asin(radius);
+  const double theta = lens.angle(radius);
   const double scale = std::sin(theta) / radius;
   return dvec3(scale * x, scale * y, -std::cos(theta));
 }
@@ -122,8 +122,21 @@ bool fits(Mapping mapping, int width, int height) {
 
 }  // namespace
 
+std::optional<Fisheye> Mapping::disc() const {
+  switch (kind_) {
+    case AngularMap:
+      return Fisheye{360, FisheyeProjection::Equidistant};
+    case MirrorBall:
+      return Fisheye{360, FisheyeProjection::Equisolid};
+    case FisheyeDisc:
+      return lens_;
+    default:
+      return std::nullopt;
+  }
+}
+
 Layout faceLayout(Mapping mapping) {
-  switch (mapping) {
+  switch (mapping.kind()) {
     case Mapping::VerticalCross:
       return {3, 4};
     case Mapping::HorizontalCross:
@@ -140,41 +153,25 @@ Layout faceLayout(Mapping mapping) {
 }
 
 dvec2 directionToUv(Mapping mapping, const dvec3& d) {
-  const auto fromCentre = [&] { return std::atan2(std::sqrt(d.x * d.x + d.y * d.y), -d.z); };
-  switch (mapping) {
-    case Mapping::LatLong:
-      return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD),
-              std::atan2(std::hypot(d.x, d.z), d.y) / kPiD};
-    case Mapping::AngularMap:
-      return discUv(d.x, d.y, fromCentre() / kPiD);
-    case Mapping::MirrorBall:
-      return discUv(d.x, d.y, std::sin(0.5 * fromCentre()));
-    default:
-      return directionToCube(mapping, d);
-  }
+  if (const std::optional<Fisheye> lens = mapping.disc()) return directionToDisc(*lens, d);
+  if (mapping == Mapping::LatLong)
+    return {0.5 * (1 + std::atan2(d.x, -d.z) / kPiD), std::atan2(std::hypot(d.x, d.z), d.y) / kPiD};
+  return directionToCube(mapping, d);
 }
 
 bool showsDirection(Mapping mapping, const dvec2& uv) {
-  if (mapping != Mapping::AngularMap && mapping != Mapping::MirrorBall)
-    return uvToDirection(mapping, uv).has_value();
+  if (!mapping.disc()) return uvToDirection(mapping, uv).has_value();
   const dvec2 fromCentre = 2.0 * uv - 1.0;
   return std::sqrt(glm::dot(fromCentre, fromCentre)) <= 1;
 }
 
 std::optional<dvec3> uvToDirection(Mapping mapping, const dvec2& uv) {
   if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return std::nullopt;
-  switch (mapping) {
-    case Mapping::LatLong: {
-      const double phi = kPiD * (2 * uv.x - 1), theta = kPiD * uv.y;
-      const double sinTheta = std::sin(theta);
-      return dvec3(sinTheta * std::sin(phi), std::cos(theta), -sinTheta * std::cos(phi));
-    }
-    case Mapping::AngularMap:
-    case Mapping::MirrorBall:
-      return discToDirection(mapping, uv);
-    default:
-      return cubeToDirection(mapping, uv);
-  }
+  if (const std::optional<Fisheye> lens = mapping.disc()) return discToDirection(*lens, uv);
+  if (mapping != Mapping::LatLong) return cubeToDirection(mapping, uv);
+  const double phi = kPiD * (2 * uv.x - 1), theta = kPiD * uv.y;
+  const double sinTheta = std::sin(theta);
+  return dvec3(sinTheta * std::sin(phi), std::cos(theta), -sinTheta * std::cos(phi));
 }
 
 dvec3 directionAt(double azimuth, double elevation) {
@@ -186,8 +183,8 @@ dvec3 texelDirection(const ImageSize& latLong, int x, int y) {
   return *uvToDirection(Mapping::LatLong, {(x + 0.5) / latLong.width, (y + 0.5) / latLong.height});
 }
 
-std::string_view mappingName(Mapping mapping) {
-  switch (mapping) {
+std::string mappingName(Mapping mapping) {
+  switch (mapping.kind()) {
     case Mapping::LatLong:
       return "lat-long";
     case Mapping::AngularMap:
@@ -199,6 +196,8 @@ std::string_view mappingName(Mapping mapping) {
       return "cube-cross";
     case Mapping::CubeGrid:
       return "cube-3x2";
+    case Mapping::FisheyeDisc:
+      return fisheyeName(*mapping.disc());
     default:
       return "cube-strip";
   }
@@ -221,6 +220,12 @@ std::optional<Mapping> parseMapping(std::string_view name, int width, int height
                                           {Mapping::HorizontalStrip, Mapping::VerticalStrip}},
                                          {"cube-3x2", "3:2, of square faces", {Mapping::CubeGrid}}};
   if (name == "auto") return std::nullopt;
+  if (namesFisheye(name)) {
+    if (width != height)
+      throwInput("{}: an image of {} x {} texels cannot be {}, which is square", location, width,
+                 height, name);
+    return parseFisheye(name, location);
+  }
 
   std::vector<std::string_view> known{"auto"};
   for (const Named& named : kNamed) {
@@ -231,7 +236,19 @@ std::optional<Mapping> parseMapping(std::string_view name, int width, int height
     throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", location, width, height,
                name, named.shape);
   }
+  known.push_back("fisheye");
   throwInput("{}: unknown mapping `{}`; {}", location, name, didYouMean(name, known));
+}
+
+Mapping parseMapping(std::string_view name, std::string_view location) {
+  if (namesFisheye(name)) return parseFisheye(name, location);
+  for (const Mapping mapping : {Mapping::LatLong, Mapping::AngularMap, Mapping::MirrorBall,
+                                Mapping::VerticalCross, Mapping::VerticalStrip, Mapping::CubeGrid})
+    if (mappingName(mapping) == name) return mapping;
+  throwInput(
+      "{}: `{}` should be lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
+      "fisheye[:FOV[:PROJECTION]]",
+      location, name);
 }
 
 }  // namespace chromeball

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "math/vec.h"
+#include "probe/fisheye.h"
 
 namespace chromeball {
 
@@ -15,15 +17,34 @@ using glm::dvec3;
 // The centre of the image (of the front face, for cube maps) shows -Z, its top +Y. Lat-long maps
 // from other programs may show another direction there and need a rotation; those marked by OpenEXR
 // are turned when loaded (load.h).
-enum class Mapping {
-  LatLong,          // u = (1 + atan2(Dx, -Dz)/pi)/2, v = acos(Dy)/pi
-  AngularMap,       // the disc's radius is proportional to the angle from -Z
-  MirrorBall,       // ideal, orthographic: the disc's radius is sin of half that angle
-  VerticalCross,    // 3 x 4 faces: +Y / -X -Z +X / -Y / +Z upside down
-  HorizontalCross,  // 4 x 3 faces: +Y / -X -Z +X +Z / -Y
-  HorizontalStrip,  // 6 x 1 faces: +X -X +Y -Y +Z -Z, each as OpenEXR stores it: seen from inside
-  VerticalStrip,    // 1 x 6 faces, the same
-  CubeGrid,         // 3 x 2 faces, the same: +X -X +Y / -Y +Z -Z
+class Mapping {
+ public:
+  enum Kind {
+    LatLong,          // u = (1 + atan2(Dx, -Dz)/pi)/2, v = acos(Dy)/pi
+    AngularMap,       // the disc's radius is proportional to the angle from -Z
+    MirrorBall,       // ideal, orthographic: the disc's radius is sin of half that angle
+    VerticalCross,    // 3 x 4 faces: +Y / -X -Z +X / -Y / +Z upside down
+    HorizontalCross,  // 4 x 3 faces: +Y / -X -Z +X +Z / -Y
+    HorizontalStrip,  // 6 x 1 faces: +X -X +Y -Y +Z -Z, each as OpenEXR stores it: from inside
+    VerticalStrip,    // 1 x 6 faces, the same
+    CubeGrid,         // 3 x 2 faces, the same: +X -X +Y / -Y +Z -Z
+    FisheyeDisc,      // a disc that may show a part of the sphere only
+  };
+
+  constexpr Mapping(Kind kind) : kind_(kind) {}
+  constexpr Mapping(const Fisheye& lens) : kind_(FisheyeDisc), lens_(lens) {}
+
+  constexpr Kind kind() const { return kind_; }
+
+  // The lens of a disc. The angular map and the mirror ball are those of an equidistant and an
+  // equisolid lens with a field of view of 360 degrees. nullopt for maps that are no disc.
+  std::optional<Fisheye> disc() const;
+
+  bool operator==(const Mapping&) const = default;
+
+ private:
+  Kind kind_;
+  Fisheye lens_;  // of a FisheyeDisc
 };
 
 struct ImageSize {
@@ -31,7 +52,7 @@ struct ImageSize {
 };
 
 // The position in the image (u right, v down, both in [0, 1]) that shows `direction` (of any
-// length).
+// length); outside the disc for a direction that a fisheye disc does not show.
 dvec2 directionToUv(Mapping mapping, const dvec3& direction);
 
 // The unit direction shown at `uv`; nullopt outside the disc or the faces.
@@ -53,13 +74,17 @@ struct Layout {
 };
 Layout faceLayout(Mapping mapping);
 
-// "lat-long", "angular", "mirror-ball", "vertical cube-cross", ...: for messages.
-std::string_view mappingName(Mapping mapping);
+// "lat-long", "angular", "mirror-ball", "cube-cross", "fisheye:180:equidistant", ...
+std::string mappingName(Mapping mapping);
 
 // The mapping with this name for an image of this size: lat-long, angular, mirror-ball, cube-cross,
-// cube-strip (the shape decides which cross or strip) or cube-3x2. nullopt for auto. Throws
-// InputError, which starts with `location`, if the name is unknown or does not fit the size.
+// cube-strip (the shape decides which cross or strip), cube-3x2 or fisheye[:FOV[:PROJECTION]]
+// (fisheye.h). nullopt for auto. Throws InputError, which starts with `location`, if the name is
+// unknown or does not fit the size.
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
                                     std::string_view location);
+
+// The same where no size decides: crosses and strips are vertical, and auto is unknown.
+Mapping parseMapping(std::string_view name, std::string_view location);
 
 }  // namespace chromeball

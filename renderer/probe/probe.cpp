@@ -7,18 +7,24 @@
 #include "base/for_ranges.h"
 
 namespace chromeball {
+namespace {
 
-Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
+std::string text(const Rgb& scale) {
+  return scale.x == scale.y && scale.y == scale.z
+             ? fmt::format("{}", scale.x)
+             : fmt::format("{},{},{}", scale.x, scale.y, scale.z);
+}
+
+}  // namespace
+
+Probe::Probe(const Image& latLong, const Rotation& rotation, const Rgb& scale)
     : width_(latLong.width),
       height_(latLong.height),
-      rotationDegrees_(rotationDegrees),
-      uShift_(-rotationDegrees / 360),
+      rotation_(rotation),
+      turn_(rotation),
       grid_(size_t(width_ + 1) * (height_ + 2)) {
-  if (!(scale >= 0) || !std::isfinite(scale))
-    throwInput("probe: the scale {} should be finite and not negative", scale);
-  if (!std::isfinite(rotationDegrees))
-    throwInput("probe: the rotation {} should be a finite number of degrees", rotationDegrees);
-  uShift_ -= std::floor(uShift_);
+  if (!isFinite(scale) || std::min({scale.x, scale.y, scale.z}) < 0)
+    throwInput("probe: the scale {} should be finite and not negative", text(scale));
 
   const auto corner = [&](int x, int cornerRow) -> Rgb& {
     return grid_[size_t(cornerRow) * (width_ + 1) + x];
@@ -34,7 +40,7 @@ Probe::Probe(const Image& latLong, float rotationDegrees, float scale)
   for (int i = 0; !isValid && i < width_ * height_; ++i)
     if (const int x = i % width_, y = i / width_; !isFinite(corner(x, y + 1)))
       throwInput("probe: texel ({}, {}) times the scale {} exceeds the range of a float", x, y,
-                 scale);
+                 text(scale));
   const auto rowMean = [&](int cornerRow) {
     glm::dvec3 sum(0);
     for (int x = 0; x < width_; ++x) sum += glm::dvec3(corner(x, cornerRow));

@@ -8,6 +8,7 @@
 #include "image/image.h"
 #include "math/trig.h"
 #include "math/vec.h"
+#include "probe/map_turn.h"
 
 namespace chromeball {
 
@@ -19,10 +20,9 @@ namespace chromeball {
 // rows of W cells; the first and the last row of cells are half as high.
 class Probe {
  public:
-  // `latLong` has at least three channels and no invalid texel (repair.h). `rotationDegrees` turns
-  // the environment about +Y, counter-clockwise seen from above. Throws InputError if a texel times
-  // `scale` is not finite, or `scale` is negative.
-  explicit Probe(const Image& latLong, float rotationDegrees = 0, float scale = 1);
+  // `latLong` has at least three channels and no invalid texel (repair.h). `rotation` turns the
+  // environment. Throws InputError if a texel times `scale` is not finite, or `scale` is negative.
+  explicit Probe(const Image& latLong, const Rotation& rotation = {}, const Rgb& scale = Rgb(1));
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -30,7 +30,7 @@ class Probe {
 
   // The image times the scale, not rotated; and the rotation.
   Image latLong() const;
-  float rotationDegrees() const { return rotationDegrees_; }
+  const Rotation& rotation() const { return rotation_; }
 
   // A position in the map: the cell, (s, t) in [0, 1]^2 inside it, and the sine of the polar angle.
   struct Position {
@@ -68,14 +68,15 @@ class Probe {
 
  private:
   int width_, height_;
-  float rotationDegrees_;
-  float uShift_;           // rotation, in turns
+  Rotation rotation_;
+  MapTurn turn_;           // as the rotation
   std::vector<Rgb> grid_;  // (H + 2) rows of W + 1 corners; the last column repeats the first
 };
 
-inline Probe::Position Probe::locate(const vec3& d) const {
+inline Probe::Position Probe::locate(const vec3& direction) const {
+  const vec3 d = turn_.toMap(direction);
   const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
-  float u = 0.5f + atan2Turns(d.x, -d.z) - uShift_;
+  float u = 0.5f + atan2Turns(d.x, -d.z) - turn_.uShift();
   u -= std::floor(u);
   const float v = 2 * atan2Turns(sinTheta, d.y);
 
@@ -105,11 +106,11 @@ inline vec3 Probe::direction(Position& p) const {
   else if (p.row == height_)
     y = float(height_) - 0.5f + 0.5f * p.t;
   float sinPhi, cosPhi, cosTheta;
-  sinCosTurns(x / float(width_) + uShift_, sinPhi, cosPhi);
+  sinCosTurns(x / float(width_) + turn_.uShift(), sinPhi, cosPhi);
   sinCosTurns(0.5f * y / float(height_), p.sinTheta, cosTheta);
   p.sinTheta = std::max(p.sinTheta, 0.0f);
   // u = 1/2 shows -Z: x = sin(2 pi (u - 1/2)) = -sin(2 pi u), z = -cos(2 pi (u - 1/2)).
-  return {-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi};
+  return turn_.toWorld({-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi});
 }
 
 }  // namespace chromeball

@@ -29,11 +29,8 @@ double texelSolidAngle(int row, int width, int height) {
 
 double solidAngleJacobian(Mapping mapping, const dvec2& uv) {
   if (mapping == Mapping::LatLong) return 2 * kPiD * kPiD * std::sin(kPiD * uv.y);
-  if (mapping == Mapping::MirrorBall) return 16;  // equal-area: 4 pi / (pi/4), the disc's area
-  if (mapping == Mapping::AngularMap) {
-    const double theta = kPiD * std::hypot(2 * uv.x - 1, 2 * uv.y - 1);
-    return 4 * kPiD * kPiD * (theta > 0 ? std::sin(theta) / theta : 1);
-  }
+  if (const std::optional<Fisheye> lens = mapping.disc())
+    return 4 * lens->solidAngleJacobian(std::hypot(2 * uv.x - 1, 2 * uv.y - 1));
   // A cube's face spans [-1, 1]^2 at distance 1: d(omega) = (1 + s^2 + t^2)^(-3/2) ds dt.
   const auto [columns, rows] = faceLayout(mapping);
   const double x = uv.x * columns, y = uv.y * rows;

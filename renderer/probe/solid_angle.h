@@ -22,8 +22,8 @@ struct TexelSolidAngles {
   size_t texels;
 };
 
-// Exact but for the angular map, where the texel's centre stands for all of it; texels on the rim
-// of a disc count as if they were inside.
+// Exact but for discs other than of equal area (the mirror ball), where the texel's centre stands
+// for all of it; texels on the rim of a disc count as if they were inside.
 TexelSolidAngles texelSolidAngles(Mapping mapping, const ImageSize& image);
 
 // The mean over the sphere of a lat-long map, constant over each texel: sum of radiance x solid

@@ -13,12 +13,37 @@ CameraRays::CameraRays(const Camera& camera, float aspectRatio)
       right_(camera.right),
       up_(camera.up),
       lensRadius_(camera.orthographic ? 0 : camera.lensRadius),
-      focus_(camera.focus) {
+      focus_(camera.focus),
+      distorts_(!camera.orthographic && camera.distortion),
+      distortion_(camera.distortion) {
   const float halfHeight = orthographic_ ? camera.halfHeight : std::tan(0.5f * camera.fov);
   across_ = 2 * halfHeight * aspectRatio * camera.right;
   down_ = -2 * halfHeight * camera.up;
-  corner_ = -0.5f * (across_ + down_);
+  const vec2 axis = orthographic_ ? vec2(0.5f) : camera.principalPoint;
+  corner_ = -(axis.x * across_ + axis.y * down_);
   if (!orthographic_) corner_ += forward_;
+}
+
+vec3 CameraRays::undistorted(const vec3& point) const {
+  const vec3 offset = point - forward_;
+  const double radius = glm::length(glm::dvec3(offset));
+  if (radius == 0) return point;
+  return forward_ + float(distortion_.undistorted(radius) / radius) * offset;
+}
+
+// The lens changes lengths along the radius by 1 / slope, and across it by the ratio of the radii.
+Beam CameraRays::beamAt(const Beam& central, float u, float v) const {
+  if (!distorts_) return central;
+  const double radius = glm::length(glm::dvec3(pointAt(u, v) - forward_));
+  const double area = 1 / (distortion_.slope(radius) * distortion_.factor(radius * radius));
+  return {central.area, float(area) * central.solidAngle};
+}
+
+bool fillsImage(const Camera& camera, double aspectRatio) {
+  if (camera.orthographic || !camera.distortion) return true;
+  const glm::dvec2 axis(camera.principalPoint);
+  const glm::dvec2 farthest = glm::max(axis, 1.0 - axis) * glm::dvec2(aspectRatio, 1);
+  return camera.distortion.reaches(2 * std::tan(0.5 * double(camera.fov)) * glm::length(farthest));
 }
 
 void CameraRays::ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const {
@@ -26,7 +51,7 @@ void CameraRays::ray(float u, float v, vec2 lens, vec3& origin, vec3& direction)
   const vec2 disc = lensRadius_ * vec2(squareToCosineHemisphere(lens));
   const vec3 onLens = disc.x * right_ + disc.y * up_;
   origin = position_ + onLens;
-  direction = glm::normalize(focus_ * (corner_ + u * across_ + v * down_) - onLens);
+  direction = glm::normalize(focus_ * pointAt(u, v) - onLens);
 }
 
 Beam beamOf(const Camera& camera, int height, double samples) {

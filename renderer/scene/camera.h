@@ -5,6 +5,7 @@
 #include <string>
 
 #include "math/vec.h"
+#include "scene/distortion.h"
 
 namespace chromeball {
 
@@ -19,6 +20,11 @@ struct Camera {
   float aspect = 0;        // width / height that the file states; 0: none
   float lensRadius = 0;    // metres; 0: a pinhole. Perspective only
   float focus = 1;         // metres along the axis to the plane in focus; used if there is a lens
+  // Perspective only. Where the axis meets the image: fractions of its width and height from the
+  // top left. `fov` is that of an image of this height around the axis, without distortion: half
+  // the height is tan(fov / 2) focal lengths.
+  vec2 principalPoint{0.5f, 0.5f};
+  Distortion distortion;
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);
@@ -42,6 +48,9 @@ struct Beam {
 // would blur them.
 Beam beamOf(const Camera& camera, int height, double samples);
 
+// Whether the distortion shows one point at every position of an image of this width / height.
+bool fillsImage(const Camera& camera, double aspectRatio);
+
 // The rays of a camera for an image of the given width / height.
 class CameraRays {
  public:
@@ -49,7 +58,7 @@ class CameraRays {
 
   // The ray through an image point (u right, v down, both in [0, 1]). The direction is unit.
   void ray(float u, float v, vec3& origin, vec3& direction) const {
-    const vec3 point = corner_ + u * across_ + v * down_;
+    const vec3 point = pointAt(u, v);
     origin = orthographic_ ? position_ + point : position_;
     direction = orthographic_ ? forward_ : glm::normalize(point);
   }
@@ -59,17 +68,31 @@ class CameraRays {
   bool hasLens() const { return lensRadius_ > 0; }
   void ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const;
 
+  // The beam around the ray through an image point; `central`: that of beamOf().
+  Beam beamAt(const Beam& central, float u, float v) const;
+
   // Depth along the camera's axis, in metres, of the point `distance` metres along a ray.
   float depth(const vec3& direction, float distance) const {
     return distance * glm::dot(direction, forward_);
   }
 
  private:
+  // The point at distance 1 along the axis that the image shows at (u, v), relative to the
+  // position.
+  vec3 pointAt(float u, float v) const {
+    const vec3 point = corner_ + u * across_ + v * down_;
+    return distorts_ ? undistorted(point) : point;
+  }
+  vec3 undistorted(const vec3& point) const;
+
   bool orthographic_;
   vec3 position_, forward_;
-  vec3 corner_, across_, down_;  // the view's rectangle at distance 1, relative to the position
+  // The rectangle at distance 1 that a pinhole would show, relative to the position.
+  vec3 corner_, across_, down_;
   vec3 right_, up_;
   float lensRadius_, focus_;
+  bool distorts_;
+  Distortion distortion_;
 };
 
 }  // namespace chromeball

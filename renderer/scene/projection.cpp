@@ -4,16 +4,7 @@
 namespace chromeball {
 
 Projection::Projection(const Camera& camera, int width, int height)
-    : orthographic_(camera.orthographic),
-      position_(camera.position),
-      forward_(-camera.back),
-      colors_(width, height, 3),
-      depth_(width, height, 1) {
-  const float halfHeight = orthographic_ ? camera.halfHeight : std::tan(0.5f * camera.fov);
-  const float pixel = 2 * halfHeight / float(height);
-  across_ = camera.right / pixel;
-  down_ = -camera.up / pixel;
-}
+    : view_(camera, double(width) / height), colors_(width, height, 3), depth_(width, height, 1) {}
 
 void Projection::setDepth(const Image& farthest) {
   depth_ = farthest;
@@ -28,17 +19,13 @@ void Projection::setDepth(const Image& farthest) {
 }
 
 std::optional<Rgb> Projection::lookup(const vec3& point) const {
-  constexpr float kTolerance = 1e-3f;  // of the depth
-  const vec3 to = point - position_;
-  const float z = glm::dot(to, forward_);
-  if (!(z > 0)) return std::nullopt;
-  const float scale = orthographic_ ? 1 : 1 / z;
-  const float x = scale * glm::dot(to, across_) + 0.5f * float(colors_.width);
-  const float y = scale * glm::dot(to, down_) + 0.5f * float(colors_.height);
-  if (!(x >= 0 && x < float(colors_.width) && y >= 0 && y < float(colors_.height)))
-    return std::nullopt;
-  const float farthest = *depth_.at(int(x), int(y));
-  if (!(farthest > 0) || z > (1 + kTolerance) * farthest) return std::nullopt;
+  constexpr double kTolerance = 1e-3;  // of the depth
+  const auto seen = view_.at(glm::dvec3(point));
+  if (!seen) return std::nullopt;
+  const double x = seen->position.x * colors_.width, y = seen->position.y * colors_.height;
+  if (!(x >= 0 && x < colors_.width && y >= 0 && y < colors_.height)) return std::nullopt;
+  const double farthest = *depth_.at(int(x), int(y));
+  if (!(farthest > 0) || seen->depth > (1 + kTolerance) * farthest) return std::nullopt;
   return colors_.rgb(int(x), int(y));
 }
 

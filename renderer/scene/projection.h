@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "image/image.h"
-#include "scene/camera.h"
+#include "scene/camera_view.h"
 
 namespace chromeball {
 
@@ -28,9 +28,7 @@ class Projection {
   bool sees(int x, int y) const { return *depth_.at(x, y) > 0; }
 
  private:
-  bool orthographic_;
-  vec3 position_, forward_;
-  vec3 across_, down_;  // to pixels, from metres at depth 1
+  CameraView view_;
   Image colors_, depth_;
 };
 

@@ -10,8 +10,9 @@ namespace chromeball {
 void addRenderCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
-void addProbeCommand(CLI::App& app);  // info, convert, synth, irradiance
-void addImageCommand(CLI::App& app);  // view, error
+void addProbeCommand(CLI::App& app);   // info, convert, synth, irradiance
+void addImageCommand(CLI::App& app);   // view, error
+void addCameraCommand(CLI::App& app);  // solve
 void addLightsCommand(CLI::App& app);
 void addLightsErrorCommand(CLI::App& app);
 void addReferenceCommand(CLI::App& app);

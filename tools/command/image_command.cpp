@@ -8,7 +8,9 @@ void addImageCommand(CLI::App& app) {
   CLI::App* image = app.add_subcommand("image", "View and compare images.");
   image->require_subcommand(1);
   addImageDenoiseCommand(*image);
+  addImageDivideCommand(*image);
   addImageErrorCommand(*image);
+  addImageFlatFieldCommand(*image);
   addImageRelightCommand(*image);
   addImageViewCommand(*image);
 }

@@ -7,7 +7,9 @@
 namespace chromeball {
 
 void addImageDenoiseCommand(CLI::App& image);
+void addImageDivideCommand(CLI::App& image);
 void addImageErrorCommand(CLI::App& image);
+void addImageFlatFieldCommand(CLI::App& image);
 void addImageRelightCommand(CLI::App& image);
 void addImageViewCommand(CLI::App& image);
 

@@ -21,6 +21,7 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -33,6 +34,7 @@ struct Arguments {
   std::optional<int> suggest;  // so many polygons
   std::optional<int> normals;  // of the sphere
   std::optional<double> angle;
+  Rotation rotation;
   bool regions = false;
   LightRequest request;
 };
@@ -125,10 +127,17 @@ LightUnits unitsOf(const Arguments& arguments) {
                                  : parseLightUnits({arguments.units, "--light-units"});
 }
 
+Constellation turned(Constellation lights, const Rotation& rotation) {
+  for (DirectionalLight& light : lights) light.direction = rotation(light.direction);
+  return lights;
+}
+
 // Polygons in place of a method.
 void runPolygonsOf(const Arguments& arguments) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");
+  if (!(arguments.rotation == Rotation()))
+    throwInput("--rotation: turns the lights of a --method, not polygons");
   const LightFormat format = arguments.suggest
                                  ? LightFormat::Json
                                  : lightFormat(arguments.output, arguments.format, "--format");
@@ -174,7 +183,7 @@ void run(Arguments arguments) {
               {.probe = arguments.probe.file,
                .method = arguments.method,
                .ambient = ambient,
-               .lights = lights,
+               .lights = turned(lights, arguments.rotation),
                .units = units},
               format);
   warnOfLosses(arguments, made, format);
@@ -243,6 +252,8 @@ void addLightsCommand(CLI::App& app) {
   command->add_flag("--ambient", arguments->request.ambient,
                     "irradiance-fit: also fit a constant radiance from all directions");
   command->add_option("--seed", arguments->seed, "of stochastic methods");
+  addRotationOption(*command, arguments->rotation,
+                    ": the lights that are written; mask and images are those of the probe's map");
   command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
   command->add_option("--mapping", arguments->probe.mapping,
                       "the mapping of PROBE; auto detects it");

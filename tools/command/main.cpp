@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   addCompareCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
+  addCameraCommand(app);
   addLightsCommand(app);
   addLightsErrorCommand(app);
   addReferenceCommand(app);

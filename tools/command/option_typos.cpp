@@ -25,9 +25,9 @@ constexpr auto kEquivalents = std::to_array<Equivalents>({
     {"--probe FILE",
      " envmap env env-map environment environment-map hdri hdr ibl sky skydome background "
      "world light infinite-light environment-image "},
-    {"--probe-rotation DEGREES",
+    {"--probe-rotation YAW[,PITCH,ROLL]",
      " rotation rotate env-rotation envmap-rotation hdri-rotation environment-rotation yaw "},
-    {"--probe-scale FACTOR",
+    {"--probe-scale R[,G,B]",
      " env-strength env-intensity envmap-scale hdri-strength intensity strength "
      "environment-intensity brightness scale "},
     {"--max-depth N",

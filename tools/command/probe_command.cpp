@@ -9,10 +9,16 @@ void addProbeCommand(CLI::App& app) {
   probe->require_subcommand(1);
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
+  addProbeAssembleCommand(*probe);
+  addProbeReflectivityCommand(*probe);
   addProbeSynthCommand(*probe);
   addProbeEditCommand(*probe);
+  addProbeMergeCommand(*probe);
+  addProbeSunCommand(*probe);
   addProbeSplitCommand(*probe);
   addProbeAddSunCommand(*probe);
+  addProbeAlignCommand(*probe);
+  addProbeStitchCommand(*probe);
   addProbeIrradianceCommand(*probe);
   addProbeRaysCommand(*probe);
   addProbePlotCommand(*probe);

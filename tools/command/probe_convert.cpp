@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe convert IN OUT --to MAPPING
+#include <algorithm>
 #include <optional>
 
 #include "base/error.h"
@@ -9,16 +10,19 @@
 #include "job/output_file.h"
 #include "messages.h"
 #include "probe/convert.h"
+#include "probe/edit.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 #include "write_probe.h"
 
 namespace chromeball {
 namespace {
 
 struct Arguments {
-  std::string in, out, to, from = "auto", size;
-  float rotation = 0;
+  std::string in, out, to, from = "auto", size, scale;
+  Rotation rotation;
+  bool flip = false;
 };
 
 // The mapping and size of the output. Without a size, crosses and strips are vertical.
@@ -28,22 +32,36 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
     if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
       return {*mapping, size};
   }
-  for (const Mapping mapping : {Mapping::LatLong, Mapping::AngularMap, Mapping::MirrorBall,
-                                Mapping::VerticalCross, Mapping::VerticalStrip, Mapping::CubeGrid})
-    if (mappingName(mapping) == arguments.to)
-      return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
-  throwInput(
-      "--to: `{}` should be lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2",
-      arguments.to);
+  const Mapping mapping = parseMapping(arguments.to, "--to");
+  return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
+}
+
+void warnOfSource(const LoadedProbe& probe, const Arguments& arguments) {
+  if (probe.mapping == Mapping::MirrorBall && !arguments.flip)
+    warn(fmt::format(
+        "{}: read as an ideal mirror ball; a photograph of a ball is mirrored and shows "
+        "its camera in the centre: use --flip, or `probe assemble`",
+        arguments.in));
+  const std::optional<Fisheye> lens = probe.mapping.disc();
+  if (!lens) return;
+  const double share = lens->solidAngle() / (4 * kPiD);
+  if (share < 1 - 1e-9)
+    warn(fmt::format("{}: shows {:.3g}% of the sphere; the rest is black", arguments.in,
+                     100 * share));
 }
 
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
-  if (!std::isfinite(arguments.rotation)) throwInput("--rotation: should be a number of degrees");
-  const LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
+  const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
+  LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  warnOfSource(probe, arguments);
+  if (arguments.flip) mirrorLeftAndRight(probe.latLong);
   const auto [mapping, size] = target(arguments, probe.latLong);
+  multiply(probe.latLong, scale);
+  if (!std::ranges::all_of(probe.latLong.texels, [](float x) { return std::isfinite(x); }))
+    throwInput("{}: a texel times the scale exceeds the range of a float", arguments.in);
   std::optional<BusyLine> busy("converting");
   const Image converted =
       convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation);
@@ -62,13 +80,19 @@ void addProbeConvertCommand(CLI::App& probe) {
       ->required();
   command
       ->add_option("--to", arguments->to,
-                   "lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2")
+                   "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
+                   "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
+                   "orthographic, stereographic")
       ->required();
   command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT; else the size that keeps the detail");
-  command->add_option("--rotation", arguments->rotation,
-                      "degrees about +Y, counter-clockwise seen from above");
+  addRotationOption(*command, arguments->rotation);
+  command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
+  command->add_flag(
+      "--flip", arguments->flip,
+      "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
+      "shows the camera: with the camera on +Z, turn by --rotation 180");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -10,10 +10,12 @@
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "messages.h"
+#include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 #include "write_probe.h"
 
 namespace chromeball {
@@ -22,6 +24,7 @@ namespace {
 struct Arguments {
   std::string in, out, mapping = "auto", belowHorizon, scale, clip, clipStops, fillNadir;
   std::vector<std::string> regions, gains;
+  Rotation rotation;
 };
 
 struct Region {
@@ -33,6 +36,7 @@ struct Region {
 
 // What to do, in the order in which it is done.
 struct Edits {
+  Rotation rotation;
   double nadirRadius = 0;  // degrees; 0: nothing
   bool isMirrored = false;
   std::optional<Rgb> ground;
@@ -40,24 +44,6 @@ struct Edits {
   std::optional<Rgb> scale;
   std::optional<double> clip, clipStops;
 };
-
-// Whether a number above 0 is one as a float.
-bool isPositiveFloat(double number) {
-  return float(number) > 0 && number <= double(std::numeric_limits<float>::max());
-}
-constexpr const char* kFloats = "1.4e-45 to 3.4e38, the range of a float";
-
-// "X" or "R,G,B".
-Rgb parseColor(const std::string& text, std::string_view option) {
-  const auto commas = std::count(text.begin(), text.end(), ',');
-  if (commas != 0 && commas != 2)
-    throwInput("{}: `{}` should be one number, or three with commas between them", option, text);
-  const std::vector<double> c = parseNumbers(text, commas == 0 ? 1 : 3, option);
-  for (const double channel : c)
-    if (channel != 0 && !isPositiveFloat(channel))
-      throwInput("{}: {} should be not negative: 0, or {}", option, text, kFloats);
-  return c.size() == 1 ? Rgb(float(c[0])) : Rgb(dvec3(c[0], c[1], c[2]));
-}
 
 double parseNumber(const std::string& text, std::string_view option) {
   return parseNumbers(text, 1, option).front();
@@ -88,6 +74,7 @@ void parseGround(const std::string& text, Edits& edits) {
 
 Edits parse(const Arguments& arguments) {
   Edits edits;
+  edits.rotation = arguments.rotation;
   if (!arguments.fillNadir.empty()) {
     edits.nadirRadius = parseNumber(arguments.fillNadir, "--fill-nadir");
     if (!(edits.nadirRadius > 0 && edits.nadirRadius <= 90))
@@ -103,16 +90,17 @@ Edits parse(const Arguments& arguments) {
   if (!arguments.clip.empty()) {
     edits.clip = parseNumber(arguments.clip, "--clip");
     if (!isPositiveFloat(*edits.clip))
-      throwInput("--clip: {} should be above 0: {}", *edits.clip, kFloats);
+      throwInput("--clip: {} should be above 0: {}", *edits.clip, kPositiveFloats);
   }
   if (!arguments.clipStops.empty())
     edits.clipStops = parseNumber(arguments.clipStops, "--clip-stops");
-  const bool isEmpty = edits.nadirRadius == 0 && !edits.isMirrored && !edits.ground &&
-                       edits.regions.empty() && !edits.scale && !edits.clip && !edits.clipStops;
+  const bool isEmpty = edits.rotation == Rotation() && edits.nadirRadius == 0 &&
+                       !edits.isMirrored && !edits.ground && edits.regions.empty() &&
+                       !edits.scale && !edits.clip && !edits.clipStops;
   if (isEmpty)
     throwInput(
-        "probe edit: nothing to do; give --fill-nadir, --below-horizon, --region, --scale, --clip "
-        "or --clip-stops");
+        "probe edit: nothing to do; give --rotation, --fill-nadir, --below-horizon, --region, "
+        "--scale, --clip or --clip-stops");
   return edits;
 }
 
@@ -127,6 +115,9 @@ float clipLevel(const Edits& edits, const Image& latLong) {
 }
 
 void apply(const Edits& edits, const std::string& file, Image& latLong) {
+  if (!(edits.rotation == Rotation()))
+    latLong = convert(latLong, Mapping::LatLong, Mapping::LatLong, {latLong.width, latLong.height},
+                      edits.rotation);
   if (edits.nadirRadius > 0 && fillNadir(latLong, edits.nadirRadius) == 0)
     throwInput(
         "--fill-nadir: no texel's centre is within {} degrees of straight down: the rows "
@@ -168,6 +159,7 @@ void addProbeEditCommand(CLI::App& probe) {
   command->add_option("IN", arguments->in, "the probe's image")->required();
   command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
       ->required();
+  addRotationOption(*command, arguments->rotation, "; before all other edits");
   command->add_option("--fill-nadir", arguments->fillNadir,
                       "RADIUS: fill the disc straight below smoothly from its rim (a tripod)");
   command->add_option(

@@ -8,6 +8,7 @@
 #include "probe/load.h"
 #include "probe/solid_angle.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -120,11 +121,18 @@ void print(const LoadedProbe& probe, const ProbeInfo& info) {
                triple(sun.direction), triple(sun.irradiance), sun.angle);
 }
 
+ProbeInfo turned(ProbeInfo info, const Rotation& rotation) {
+  info.brightestDirection = rotation(info.brightestDirection);
+  for (Sun& sun : info.suns) sun.direction = rotation(sun.direction);
+  return info;
+}
+
 }  // namespace
 
 void addProbeInfoCommand(CLI::App& probeCommand) {
   struct Arguments {
     std::string file, mapping = "auto";
+    Rotation rotation;
     bool json = false, mappingReport = false;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -133,6 +141,7 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
   command->add_option("FILE", arguments->file, "the probe's image")->required();
   command->add_option("--mapping", arguments->mapping,
                       "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
+  addRotationOption(*command, arguments->rotation, ", and with it the directions");
   command->add_flag("--json", arguments->json, "print JSON");
   command->footer(
       "robust_range of the JSON is null if it is infinite, as more than 1% of the sphere is black, "
@@ -143,7 +152,7 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
     for (const std::string& warning : lightWarnings(probe, arguments->file))
       fmt::print(stderr, "chromeball: warning: {}\n", warning);
-    const ProbeInfo info = probeInfo(probe.latLong);
+    const ProbeInfo info = turned(probeInfo(probe.latLong), arguments->rotation);
     const auto angles = [&] {
       return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});
     };

@@ -12,6 +12,7 @@
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 #include "write_probe.h"
 
 namespace chromeball {
@@ -19,6 +20,7 @@ namespace {
 
 struct Arguments {
   std::string in, out, size, method = "exact", mapping = "auto";
+  Rotation rotation;
 };
 
 void run(const Arguments& arguments) {
@@ -35,8 +37,8 @@ void run(const Arguments& arguments) {
   const ImageSize size =
       given.width > 0 ? given : ImageSize{probe.latLong.width, probe.latLong.height};
   std::optional<BusyLine> busy("irradiance of the probe");
-  const Image irradiance =
-      exact ? irradianceMap(probe.latLong, size) : shIrradianceMap(probe.latLong, size);
+  const Image irradiance = exact ? irradianceMap(probe.latLong, size, arguments.rotation)
+                                 : shIrradianceMap(probe.latLong, size, arguments.rotation);
   busy.reset();
   writeProbe(arguments.out, irradiance);
 }
@@ -55,6 +57,7 @@ void addProbeIrradianceCommand(CLI::App& probe) {
       ->add_option("--method", arguments->method,
                    "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
       ->capture_default_str();
+  addRotationOption(*command, arguments->rotation);
   command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
   command->callback([arguments] { run(*arguments); });
 }

@@ -11,6 +11,7 @@
 #include "probe/load.h"
 #include "probe/random_rays.h"
 #include "probe_commands.h"
+#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string file, mapping = "auto", size;
+  Rotation rotation;
   double error = 0.1;
   bool json = false;
 };
@@ -41,11 +43,11 @@ struct Normals {
   std::vector<RayVariance> lit;  // of the icosphere's, those with light
   size_t count = 0;
 
-  explicit Normals(const Image& latLong) {
+  Normals(const Image& latLong, const Rotation& rotation) {
     constexpr int kSubdivisions = 3;  // 1280 normals
     std::vector<vec3> normals = icosphereNormals(kSubdivisions);
     count = normals.size();
-    normals.emplace_back(0, 1, 0);
+    normals.push_back(rotation.back(vec3(0, 1, 0)));
     lit = rayVariances(latLong, normals);
     upward = lit.back();
     lit.pop_back();
@@ -119,7 +121,7 @@ void run(const Arguments& arguments) {
   LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.file)) warn(warning);
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
-  const Normals normals(probe.latLong);
+  const Normals normals(probe.latLong, arguments.rotation);
   if (arguments.json)
     fmt::print("{}\n",
                toJson(arguments, normals).dump(2, ' ', false, Json::error_handler_t::replace));
@@ -142,6 +144,7 @@ void addProbeRaysCommand(CLI::App& probe) {
       ->capture_default_str();
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
+  addRotationOption(*command, arguments->rotation);
   command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
   command->add_flag("--json", arguments->json, "print JSON");
   command->footer(

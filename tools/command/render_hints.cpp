@@ -54,7 +54,8 @@ std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loa
     return std::nullopt;
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ",
                                        100.0 * seen.black / seen.surfaces);
-  if (job.file.settings.get<double>("probe.scale") == 0)
+  const auto scale = job.file.settings.get<std::vector<double>>("probe.scale");
+  if (std::ranges::all_of(scale, [](double channel) { return channel == 0; }))
     return what + "--probe-scale 0 turns the probe off";
   const bool lets = std::any_of(loaded.scene.materials.begin(), loaded.scene.materials.end(),
                                 [](const Material& m) { return m.backLetsLightThrough(); });

@@ -24,7 +24,7 @@ enum class SceneCommand { Render, Compare };
 // `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command);
 
-// "--probe-scale FACTOR", or with a value "--probe-scale 2".
+// "--probe-scale R[,G,B]", or with a value "--probe-scale 2".
 std::string optionText(const Setting& setting, const std::string& value = "");
 
 }  // namespace chromeball

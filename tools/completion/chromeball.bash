@@ -5,52 +5,73 @@ _chromeball() {
   local command='' words='' options=''
   ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
   case $command in
-    probe|image) ((COMP_CWORD > 2)) && command+=" ${COMP_WORDS[2]}" ;;
+    probe|image|camera) ((COMP_CWORD > 2)) && command+=" ${COMP_WORDS[2]}" ;;
   esac
   case $command in
     '')
-      words='render merge compare probe image lights lights-error'
+      words='render merge compare probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
-      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
-      words='info convert synth edit split add-sun irradiance rays plot'
+      words='info convert assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;
     'probe info')
-      options='--help --mapping --json --mapping-report' ;;
+      options='--help --mapping --rotation --json --mapping-report' ;;
     'probe convert')
-      options='--help --to --from --size --rotation' ;;
+      options='--help --to --from --size --rotation --scale --flip' ;;
+    'probe assemble')
+      options='--help --output --azimuth --circle --mask --distance --reflectivity --ball-ior --schlick --camera-disc --from --keep-exposure --keep-azimuth --fill --to --size --preview --json' ;;
+    'probe reflectivity')
+      options='--help --direct --reflected --against --standard-reflectance --saturation --json' ;;
     'probe synth')
       options='--help --size --radiance --texel --direction --slope --sun-elevation --sun-azimuth --turbidity --ground-albedo --no-sun' ;;
     'probe edit')
-      options='--help --fill-nadir --below-horizon --region --gain --scale --clip --clip-stops --mapping' ;;
+      options='--help --rotation --fill-nadir --below-horizon --region --gain --scale --clip --clip-stops --mapping' ;;
+    'probe merge')
+      options='--help --output --exposures --apertures --aperture-ratio --filter --flat-field --response --write-response --smoothness --white --unaligned --calibrate-filter --json' ;;
+    'probe sun')
+      options='--help --diffuse --circle --paint --camera --distance --angle --direction --mask --output --lights --residual --mapping --json' ;;
     'probe split')
       options='--help --suns --rest --angle --probe-mask --mapping' ;;
     'probe add-sun')
       options='--help --lights --mapping' ;;
+    'probe align')
+      options='--help --output --json --mapping-a --mapping-b' ;;
+    'probe stitch')
+      options='--help --output --size --refine --poses --same-exposure' ;;
     'probe irradiance')
-      options='--help --size --method --mapping' ;;
+      options='--help --size --method --rotation --mapping' ;;
     'probe rays')
-      options='--help --error --size --mapping --json' ;;
+      options='--help --error --size --rotation --mapping --json' ;;
     'probe plot')
       options='--help --row --elevation --azimuth --samples --compensated --mapping' ;;
     'image')
-      words='denoise error relight view'
+      words='denoise divide error flat-field relight view'
       options='--help' ;;
     'image denoise')
       options='--help --quiet' ;;
+    'image divide')
+      options='--help --output' ;;
     'image error')
       options='--help --json --flip --output --map' ;;
+    'image flat-field')
+      options='--help --output --at --radius --centre --json' ;;
     'image relight')
       options='--help --gain --output --exposure --tonemap' ;;
     'image view')
       options='--help --exposure --tonemap --layer' ;;
+    'camera')
+      words='solve'
+      options='--help' ;;
+    'camera solve')
+      options='--help --points --lines --fspy --output --fov --focal35 --distortion --principal-point --height --origin --up --preview --json' ;;
     'lights')
-      options='--help --method --suggest --polygons --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --probe-mask --mapping' ;;
+      options='--help --method --suggest --polygons --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --rotation --probe-mask --mapping' ;;
     'lights-error')
       options='--help --methods --counts --recursion --normals --csv --plot --seed --probe-mask --mapping' ;;
   esac

@@ -95,6 +95,7 @@ ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexel
   file.channels = spec.channelnames;
   file.metadata = metadataOf(spec);
   file.integers = !spec.format.is_floating_point();
+  file.bits = file.integers ? int(8 * spec.format.basesize()) : 0;
   file.image = Image(spec.width, spec.height, spec.nchannels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
     fail(path, input.geterror());

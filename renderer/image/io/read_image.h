@@ -28,7 +28,8 @@ struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
-  bool integers = false;  // the file has 8 or 16 bits per channel, so no texel is above 1
+  bool integers = false;  // the file has integers per channel, so no texel is above 1
+  int bits = 0;           // of these, 8 or 16
 };
 
 // The attributes alone, of an .exr.

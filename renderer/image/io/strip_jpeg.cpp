@@ -2,6 +2,7 @@
 // JPEG (ITU-T T.81, annex B): markers, most of them followed by a segment of a stated length, up to
 // the first start of scan.
 #include <algorithm>
+#include <string_view>
 
 #include "image/io/strip_metadata.h"
 #include "image/size_limits.h"
@@ -21,6 +22,7 @@ enum Marker : uint8_t {
   kEoi = 0xd9,
   kSos = 0xda,
   kApp0 = 0xe0,   // JFIF
+  kApp1 = 0xe1,   // EXIF, XMP
   kApp14 = 0xee,  // Adobe: colour is YCbCr, RGB, CMYK or YCCK
   kApp15 = 0xef,
   kCom = 0xfe
@@ -94,6 +96,22 @@ HeaderSize jpegSize(std::span<const uint8_t> file) {
     at = endOfSegment(file, at, marker);
     if (isFrame(marker) && at - begin >= kFrameBytes)
       return frameSize(file.subspan(begin, at - begin));
+  }
+  return {};
+}
+
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
+  constexpr std::string_view kName("Exif\0\0", 6);
+  constexpr size_t kLengthBytes = 2, kBlockAt = kLengthBytes + kName.size();
+  size_t at = 0;
+  while (const uint8_t marker = nextMarker(file, at)) {
+    if (marker == kSos || marker == kEoi) break;
+    const size_t begin = at;
+    at = endOfSegment(file, at, marker);
+    const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
+    if (marker == kApp1 && segment.size() > kBlockAt &&
+        std::equal(kName.begin(), kName.end(), segment.begin() + kLengthBytes))
+      return segment.subspan(kBlockAt);
   }
   return {};
 }

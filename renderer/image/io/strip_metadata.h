@@ -19,6 +19,10 @@ struct HeaderSize {
 HeaderSize jpegSize(std::span<const uint8_t> file);
 HeaderSize pngSize(std::span<const uint8_t> file);
 
+// The EXIF block (exif.h), a part of `file`; empty if there is none.
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
+std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
+
 // A JPEG without its metadata segments, except those of JFIF and Adobe, which tell how colour is
 // encoded. The size is that of the frame header (SOF), so that it can be checked before a library
 // allocates memory for it.

@@ -46,14 +46,12 @@ std::vector<RegionAreas::Region> RegionAreas::regionsOf(const Image& latLong) co
   return regions;
 }
 
-RegionAreas::RegionAreas(const Image& latLong, Partition partition, float rotationDegrees)
+RegionAreas::RegionAreas(const Image& latLong, Partition partition, const Rotation& rotation)
     : width_(latLong.width),
       height_(latLong.height),
-      uShift_(-rotationDegrees / 360),
+      turn_(rotation),
       partition_(std::move(partition)) {
-  uShift_ -= std::floor(uShift_);
   if (partition_.regions == 0) return;
-  const glm::dquat turn = glm::angleAxis(glm::radians(double(rotationDegrees)), dvec3(0, 1, 0));
   std::vector<uint16_t> lightOf;  // each region
   for (Region& region : regionsOf(latLong)) {
     const bool isLit = region.energy.weight > 0;
@@ -62,7 +60,7 @@ RegionAreas::RegionAreas(const Image& latLong, Partition partition, float rotati
     const Rectangle& first = region.rectangles.front();
     const DirectionalLight light =
         lightAt(region.energy, texelDirection({width_, height_}, first.x0, first.y0));
-    const dvec3 direction = glm::normalize(turn * dvec3(light.direction));
+    const dvec3 direction = glm::normalize(rotation.quaternion() * dvec3(light.direction));
     lights_.push_back({vec3(direction), light.irradiance, region.solidAngle()});
     found_.push_back({lights_.back().radiance(), float(1 / region.solidAngle())});
     regions_.push_back(std::move(region));
@@ -73,9 +71,10 @@ RegionAreas::RegionAreas(const Image& latLong, Partition partition, float rotati
 
 uint16_t RegionAreas::lightIn(const vec3& wi) const {
   if (lights_.empty()) return kNoRegion;
-  float u = 0.5f + atan2Turns(wi.x, -wi.z) - uShift_;
+  const vec3 d = turn_.toMap(wi);
+  float u = 0.5f + atan2Turns(d.x, -d.z) - turn_.uShift();
   u -= std::floor(u);
-  const float v = 2 * atan2Turns(std::sqrt(wi.x * wi.x + wi.z * wi.z), wi.y);
+  const float v = 2 * atan2Turns(std::sqrt(d.x * d.x + d.z * d.z), d.y);
   // Clamped on both sides: a NaN direction must not read outside the map.
   const int x = std::clamp(int(u * float(width_)), 0, width_ - 1);
   const int y = std::clamp(int(v * float(height_)), 0, height_ - 1);
@@ -106,9 +105,9 @@ LightAreas::Sample RegionAreas::sample(size_t light, double u, double v) const {
   const float sine = float(std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine))));
   const double x = chosen->x0 + u * (chosen->x1 - chosen->x0);
   float sinPhi, cosPhi;
-  sinCosTurns(float(x / width_) + uShift_, sinPhi, cosPhi);
+  sinCosTurns(float(x / width_) + turn_.uShift(), sinPhi, cosPhi);
   // u = 1/2 shows -Z, as in Probe::direction.
-  return {{-sine * sinPhi, float(cosine), sine * cosPhi}, found_[light]};
+  return {turn_.toWorld({-sine * sinPhi, float(cosine), sine * cosPhi}), found_[light]};
 }
 
 }  // namespace chromeball

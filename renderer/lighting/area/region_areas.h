@@ -6,6 +6,7 @@
 #include "lighting/area/light_areas.h"
 #include "lighting/constellation/partition.h"
 #include "lighting/constellation/texel_table.h"
+#include "probe/map_turn.h"
 
 namespace chromeball {
 
@@ -14,8 +15,8 @@ namespace chromeball {
 // regions make no lights.
 class RegionAreas : public LightAreas {
  public:
-  // The partition is of `latLong`. Both are turned about +Y, as a Probe.
-  RegionAreas(const Image& latLong, Partition partition, float rotationDegrees);
+  // The partition is of `latLong`. Both are turned, as a Probe.
+  RegionAreas(const Image& latLong, Partition partition, const Rotation& rotation);
 
   Found at(const vec3& wi) const override;
   void split(const vec3& wi, std::span<Rgb> radiances) const override;
@@ -38,7 +39,7 @@ class RegionAreas : public LightAreas {
   uint16_t lightIn(const vec3& wi) const;  // kNoRegion: none
 
   int width_, height_;
-  float uShift_;                 // rotation, in turns
+  MapTurn turn_;                 // as the rotation
   Partition partition_;          // afterwards into lights
   std::vector<Region> regions_;  // of each light
   std::vector<Found> found_;     // in each light

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "composite/plate_scale.h"
+
+#include <algorithm>
+
+#include "trace/accel.h"
+
+namespace chromeball {
+namespace {
+
+double quantile(std::vector<double>& values, double fraction) {
+  const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
+                                   int width, int height) {
+  const Accel accel(localScene);
+  const CameraRays rays(camera, float(width) / float(height));
+  std::vector<size_t> pixels;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      Ray ray;
+      rays.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), ray.origin,
+               ray.direction);
+      Hit hit;
+      if (accel.intersect(ray, 0, hit) && localScene.instances[hit.instance].node == ground)
+        pixels.push_back(size_t(y) * size_t(width) + size_t(x));
+    }
+  return pixels;
+}
+
+PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
+                        const Rgb& irradiance, const Rgb& reflectance) {
+  constexpr double kLow = 0.16, kHigh = 0.84;  // one standard deviation of a normal distribution
+  PlateScale result{.pixels = pixels.size()};
+  const auto valuesOf = [&](const auto& value) {
+    std::vector<double> values;
+    for (const size_t i : pixels)
+      values.push_back(
+          value(plate.rgb(int(i % size_t(plate.width)), int(i / size_t(plate.width)))));
+    return values;
+  };
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> radiance = valuesOf([c](const Rgb& pixel) { return double(pixel[c]); });
+    result.scale[c] =
+        float(kPiD * quantile(radiance, 0.5) / (double(reflectance[c]) * double(irradiance[c])));
+  }
+  std::vector<double> luminances = valuesOf([](const Rgb& p) { return luminance(glm::dvec3(p)); });
+  const double spread = quantile(luminances, kHigh) - quantile(luminances, kLow);
+  result.scatter = 0.5 * spread / quantile(luminances, 0.5);
+  return result;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a photograph was taken, by its EXIF block (CIPA DC-008, section 4.6.5): a TIFF directory with
+// a pointer to another one. It is read here and not by OpenImageIO, whose version 2.4 reads beyond
+// the end of damaged blocks.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace chromeball {
+
+// Above 0 and finite; nullopt where the file does not tell.
+struct Exif {
+  std::optional<double> exposureTime;  // seconds
+  std::optional<double> aperture;      // f-number
+  std::optional<double> iso;
+  std::optional<double> focalLength35;  // mm, of the same diagonal field of view on 35 mm film
+};
+
+// From a JPEG, PNG or TIFF; from the attributes expTime, aperture and isoSpeed of an .exr
+// (ImfStandardAttributes.h). Empty for other files and for damaged blocks. Throws InputError if the
+// file cannot be read.
+Exif readExif(const std::filesystem::path& path);
+
+}  // namespace chromeball

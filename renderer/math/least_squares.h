@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linear least squares by the normal equations: for problems of few unknowns and many rows, whose
+// matrix is too large to keep.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+class LeastSquares {
+ public:
+  explicit LeastSquares(int unknowns);
+
+  struct Term {
+    int unknown;
+    double coefficient;
+  };
+  // One more equation: sum of coefficient x unknown = target; its error counts `weight` (>= 0)
+  // times.
+  void add(std::span<const Term> row, double target, double weight = 1);
+
+  // The unknowns with the least weighted sum of squared errors; nullopt if the equations do not
+  // determine all of them. The normal equations square the condition of the problem.
+  std::optional<std::vector<double>> solve() const;
+
+ private:
+  int unknowns_;
+  std::vector<double> matrix_, right_;  // row by row, lower triangle; right-hand side
+};
+
+}  // namespace chromeball

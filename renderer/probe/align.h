@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rotation between two probes of one place.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "image/image.h"
+#include "math/rotation.h"
+
+namespace chromeball {
+
+// A rotation that makes the second probe look like the first.
+struct ProbeFit {
+  Rotation rotation;
+  double correlation;  // of log radiance over the sphere, of all channels together: 1 if they agree
+};
+
+struct ProbeAlignment : ProbeFit {
+  // Standard errors of the rotation about X, Y and Z, in degrees, from the scatter of the residuals
+  // over 80 parts of the sphere.
+  glm::dvec3 standardErrors{0};
+  // The other rotations that fit as well. If there are any, the answer is ambiguous.
+  std::vector<ProbeFit> others;
+  // All of them are turned from the first about this axis: the place is symmetric about it.
+  std::optional<glm::dvec3> axis;
+
+  double standardError() const { return glm::length(standardErrors); }  // of the angle
+};
+
+// Finds the rotation of `second` for which the correlation with `first` is greatest, over all of
+// SO(3); both are finite lat-long maps of any size. They may differ in exposure and white balance,
+// as radiance is compared in its logarithm, channel by channel without their means. First all
+// rotations of a grid of 11 degrees are tried with maps of 32 x 16 texels; then the best are
+// refined by Gauss-Newton steps with larger and larger maps, up to 1024 x 512. Throws InputError,
+// begun by a name, for a map of the same radiance in all directions.
+ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
+                           std::string_view secondName);
+
+}  // namespace chromeball

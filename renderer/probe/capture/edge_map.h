@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edges of a picture.
+#pragma once
+
+#include <vector>
+
+#include "image/image.h"
+
+namespace chromeball {
+
+// One channel: the natural logarithm of luminance, above 1/1000 of the mean. Each pixel is the mean
+// luminance of `scale` x `scale` pixels of the image; what is left over on the right and below is
+// left out.
+Image logLuminance(const Image& image, int scale);
+
+// Bilinear interpolation of one channel, continued beyond the rim.
+double interpolate(const Image& channel, const glm::dvec2& position);
+
+// A point of an edge: a pixel in which the gradient is larger than at its two neighbours along it.
+struct EdgePoint {
+  glm::dvec2 position;
+  glm::dvec2 normal;  // unit, along the gradient
+};
+
+// Edges with the largest gradients: at most `share` of the pixels. Also the index of each pixel's
+// edge point in `points`, or -1.
+struct EdgeMap {
+  int width = 0, height = 0;
+  std::vector<EdgePoint> points;
+  std::vector<int> index;
+
+  EdgeMap(const Image& channel, double share);
+  const EdgePoint* at(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width || y >= height) return nullptr;
+    const int i = index[size_t(y) * width + x];
+    return i < 0 ? nullptr : &points[size_t(i)];
+  }
+};
+
+}  // namespace chromeball

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Photographs of one view that differ in exposure, and what the camera's settings say about it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+struct CameraSettings {
+  double time = 1;                 // seconds
+  std::optional<double> aperture;  // f-number
+  std::optional<double> iso;
+};
+
+// Exposures at aperture `from` receive `ratio` times the light of those at aperture `to`, as
+// measured. By the f-numbers alone it would be (to / from)^2, which lenses miss by several percent
+// (HDRI book, section 9.3.5: 16.63 for f/4 to f/16).
+struct ApertureRatio {
+  double from, to, ratio;
+};
+
+inline bool isSameAperture(double a, double b) { return std::abs(a - b) <= 0.01 * a; }
+
+// Radiance x factor = exposure: time x ISO / 100 / N^2, without what is unknown. A ratio changes
+// the factors of its aperture `to`; it may start from one that an earlier ratio changed. Throws
+// InputError if a ratio names an aperture that no photograph has, or changes one that another ratio
+// has used.
+std::vector<double> exposureFactors(std::span<const CameraSettings> photographs,
+                                    std::span<const ApertureRatio> ratios);
+
+// A photograph and its factor, with the transmission of a filter in it.
+struct Exposure {
+  std::string name;                  // for messages
+  Image levels;                      // as encoded; three channels; 1 is white
+  dvec3 factor;                      // for each channel, above 0
+  const Image* flatField = nullptr;  // by which to divide its exposure; three channels, above 0
+};
+
+// Levels from kSaturated on tell only that the exposure is at least that of kSaturated: JPEG blurs
+// clipped regions by some levels.
+inline constexpr float kSaturated = 250 / 255.f;
+
+// The hat of Debevec and Malik, 1 in the middle; 0 for levels that tell nothing: saturated, black
+// or NaN.
+inline float hatWeight(float level) {
+  return level > 0 && level < kSaturated ? 2 * std::min(level, 1 - level) : 0;
+}
+
+// The step, of rows and columns, at which at most about a million pixels are left: enough for
+// statistics of an image.
+int sampleStep(const Image& image);
+
+}  // namespace chromeball

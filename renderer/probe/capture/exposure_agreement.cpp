@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "probe/capture/exposure_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace chromeball {
+namespace {
+
+constexpr size_t kMinPixels = 20;
+
+// The levels that are compared.
+struct Range {
+  double low, high;  // logarithms of exposure
+  Range(const ResponseCurve& response, int channel) {
+    const double white = response.logExposure(channel, 1);
+    low = white + std::log(0.01), high = white + std::log(0.85);
+  }
+  bool contains(double logExposure) const { return logExposure >= low && logExposure <= high; }
+};
+
+// The median of found / given.
+double medianRatio(const Exposure& longer, const Exposure& shorter, const ResponseCurve& response,
+                   int channel, size_t& pixels) {
+  const Range range(response, channel);
+  const int step = sampleStep(longer.levels);
+  std::vector<double> ratios;
+  for (int y = step / 2; y < longer.levels.height; y += step)
+    for (int x = step / 2; x < longer.levels.width; x += step) {
+      const auto logOf = [&](const Exposure& exposure) {
+        const float level = exposure.levels.at(x, y)[channel];
+        return hatWeight(level) > 0 ? response.logExposure(channel, level) : range.low - 1;
+      };
+      const double a = logOf(longer), b = logOf(shorter);
+      if (!range.contains(a) || !range.contains(b)) continue;
+      double flat = 0;
+      if (longer.flatField) flat += std::log(longer.flatField->at(x, y)[channel]);
+      if (shorter.flatField) flat -= std::log(shorter.flatField->at(x, y)[channel]);
+      ratios.push_back(a - b - flat);
+    }
+  pixels = std::min(pixels, ratios.size());
+  if (ratios.size() < kMinPixels) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = ratios.begin() + std::ptrdiff_t(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::exp(*middle) * shorter.factor[channel] / longer.factor[channel];
+}
+
+}  // namespace
+
+std::optional<double> Agreement::error() const {
+  std::optional<double> largest;
+  for (int c = 0; c < 3; ++c)
+    if (const double difference = std::abs(found[c] - 1); difference >= largest.value_or(0))
+      largest = difference;
+  return largest;
+}
+
+std::vector<Agreement> exposureAgreement(std::span<const Exposure> exposures,
+                                         const ResponseCurve& response) {
+  std::vector<size_t> order(exposures.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::ranges::stable_sort(
+      order, [&](size_t a, size_t b) { return exposures[a].factor.y > exposures[b].factor.y; });
+  std::vector<Agreement> agreements;
+  for (size_t i = 0; i + 1 < order.size(); ++i) {
+    const Exposure &longer = exposures[order[i]], &shorter = exposures[order[i + 1]];
+    Agreement agreement{order[i], order[i + 1], longer.factor.y / shorter.factor.y, dvec3(0),
+                        std::numeric_limits<size_t>::max()};
+    for (int c = 0; c < 3; ++c)
+      agreement.found[c] = medianRatio(longer, shorter, response, c, agreement.pixels);
+    agreements.push_back(agreement);
+  }
+  return agreements;
+}
+
+}  // namespace chromeball

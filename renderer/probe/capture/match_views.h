@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Photographs of one place, taken from several sides, brought to one exposure and orientation.
+#pragma once
+
+#include <vector>
+
+#include "probe/capture/capture_view.h"
+
+namespace chromeball {
+
+// Of a view to all before it. The first view is the standard.
+struct ViewMatch {
+  double overlap = 0;                    // the share of the sphere that both show well
+  double correlation = 0;                // of the logarithms of luminance there, at `turn`
+  double turn = 0;                       // degrees, added to the azimuth of the camera
+  double gain = 1;                       // multiplies the radiance
+  bool turned = false, exposed = false;  // whether turn and gain were found; else they are 0 and 1
+};
+
+// The largest turn that is looked for, in degrees to both sides.
+inline constexpr double kLargestTurn = 5;
+
+// Matches each view to those before it and changes its camera and gain accordingly. The turn is the
+// maximum of the correlation of the logarithms of luminance, where both views show a direction
+// well, between steps of half a degree by a parabola; none is found if the views overlap in less
+// than 2% of the sphere, if the correlation stays below 0.5, or is largest at the limit. The gain
+// is the median ratio of luminance over cells of 4 degrees, weighted by solid angle.
+std::vector<ViewMatch> matchViews(std::vector<CaptureView>& views, bool exposure, bool rotation);
+
+}  // namespace chromeball

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which direction each point of a photograph's circle shows: on a mirror ball, or through a fisheye
+// lens.
+#pragma once
+
+#include <optional>
+
+#include "math/vec.h"
+#include "probe/capture/ball_reflectance.h"
+#include "probe/fisheye.h"
+
+namespace chromeball {
+
+using glm::dvec2;
+using glm::dvec3;
+
+// Where a photograph shows a direction.
+struct DiscPoint {
+  dvec2 position;     // x right, y up; the circle has radius 1
+  double weight;      // how well it is shown, above 0 to 1: for a mean over several photographs
+  dvec3 reflectance;  // the photograph's radiance over that of the direction
+};
+
+// Directions are unit, in the camera's frame: x right, y up, z backwards, towards the camera.
+class CaptureOptics {
+ public:
+  virtual ~CaptureOptics() = default;
+  virtual std::optional<DiscPoint> locate(const dvec3& direction) const = 0;  // nullopt: not shown
+
+  // The solid angle that the circle shows, over the whole sphere's.
+  virtual double shareShown() const = 0;
+};
+
+// A mirror ball seen by a camera that looks at its centre. A point at radius r of the disc, which
+// is seen at the angle b from the axis, has the angle of incidence i with sin(i) = d sin(b), where
+// d is the distance of the camera from the centre in radii; the normal is at i - b from the axis,
+// and the reflected direction at 2i - b from the direction towards the camera. So the centre shows
+// the camera, and the right of the photograph the camera's right. The cone of half angle asin(1/d)
+// behind the ball is not shown.
+class BallOptics : public CaptureOptics {
+ public:
+  // `distance` is above 1; infinite for a parallel projection. Directions within `cameraDisc`
+  // degrees of the camera, where it and its operator are reflected, are shown worse than by any
+  // other photograph.
+  BallOptics(double distance, const BallReflectance& reflectance, double cameraDisc);
+
+  // The weight is smoothstep(cos(i)): images of lengths at the angle 2i from the camera shrink by
+  // cos(i) along the radius (HDRI book, section 9.3.1: blind spots).
+  std::optional<DiscPoint> locate(const dvec3& direction) const override;
+  double shareShown() const override;
+
+  // The direction that a point of the disc shows, and the cosine of the angle of incidence there.
+  struct Reflection {
+    dvec3 direction;
+    double cosIncidence;
+  };
+  Reflection reflection(const dvec2& position) const;
+
+ private:
+  double angleOfIncidence(double fromCamera) const;
+
+  double inverseDistance_;
+  BallReflectance reflectance_;
+  double cameraDisc_;  // radians
+};
+
+// A fisheye lens: the centre shows the direction in which the camera looks. The weight falls
+// towards the rim.
+class FisheyeOptics : public CaptureOptics {
+ public:
+  explicit FisheyeOptics(const Fisheye& lens) : lens_(lens) {}
+  std::optional<DiscPoint> locate(const dvec3& direction) const override;
+  double shareShown() const override;
+
+ private:
+  Fisheye lens_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "probe/capture/read_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/for_ranges.h"
+#include "image/io/read_image.h"
+
+namespace chromeball {
+namespace {
+
+std::string kindOf(int bits) {
+  return bits > 0 ? fmt::format("integers of {} bits", bits) : std::string("floats");
+}
+
+float largestTexel(const std::vector<Image>& images) {
+  float largest = 0;
+  for (const Image& image : images)
+    for (const float texel : image.texels)
+      if (std::isfinite(texel)) largest = std::max(largest, texel);
+  return largest;
+}
+
+}  // namespace
+
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white) {
+  PhotographLevels result;
+  for (const std::string& file : files) {
+    ImageFile read = readImageFile(file, IntegerTexels::Linear);
+    const int bits = read.bits;
+    Image image = colorOf(std::move(read), file);
+    if (result.levels.empty()) {
+      result.bits = bits;
+    } else {
+      const Image& first = result.levels.front();
+      if (image.width != first.width || image.height != first.height)
+        throwInput("{}: is {} x {}, but {} is {} x {}; photographs of a series have one size", file,
+                   image.width, image.height, files.front(), first.width, first.height);
+      if (bits != result.bits)
+        throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,
+                   kindOf(bits), files.front(), kindOf(result.bits));
+    }
+    result.levels.push_back(std::move(image));
+  }
+  if (result.bits > 0) return result;
+  result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
+  for (Image& image : result.levels)
+    forRanges(image.texels.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) image.texels[i] /= result.white;
+    });
+  return result;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the photographs of a series.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace chromeball {
+
+struct PhotographLevels {
+  std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
+  int bits = 0;               // of the files' channels; 0: floats
+  float white = 1;            // the texel of the files that is level 1
+};
+
+// `white` is that of float files, which are otherwise white at 1, or at their largest texel if that
+// is higher. Integers are white at 1. Throws InputError if a file is no image, or if sizes or kinds
+// of numbers differ.
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white);
+
+}  // namespace chromeball

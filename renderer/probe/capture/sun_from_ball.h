@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sun that photographs of a probe have clipped, from a photograph of a diffuse ball in its
+// light.
+#pragma once
+
+#include "probe/capture/diffuse_ball.h"
+#include "probe/sun.h"
+
+namespace chromeball {
+
+struct SunFromBall {
+  Sun sun;
+  dvec3 alpha;  // of each channel: the sun's irradiance / pi
+
+  // Root mean square over pixels and channels, over the mean, of what the ball shows without the
+  // light of the probe; and of the residual, what it shows without that of the sun either.
+  double rmsOfProbe, rms;
+  double explained;  // the fraction of the pixels whose residual is within 2% of the mean
+  Image residual;    // signed, of a white ball; black outside; a pixel for each block
+
+  dvec3 radiance() const { return sun.radiance(); }
+};
+
+// The fraction of the mean within which a residual counts as explained (HDRI book, section 9.3.5).
+inline constexpr double kExplained = 0.02;
+
+// HDRI book, section 9.3.5: the ball's white radiance minus irradiance / pi of the clipped probe,
+// exact at each normal, is the sun's alone: alpha times that of a sun of irradiance pi, in the mean
+// over the samples. For a whole orthographic ball whose camera is at the angle g from the sun, the
+// mean of the latter is 2/(3 pi) (sin g + (pi - g) cos g).
+//
+// `clipped` is lat-long, finite and not negative; `direction` is unit; `angle` is the diameter of
+// the sun in degrees. Throws InputError if the sun lights hardly any of the samples, and if the
+// ball is darker than the probe alone would make it.
+SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3& direction,
+                     double angle);
+
+}  // namespace chromeball

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "math/least_squares.h"
+#include "probe/capture/stitch.h"
+#include "probe/capture/tile_overlaps.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dquat;
+using glm::dvec3;
+
+constexpr int kCoarsestRows = 64, kFinestRows = 512;  // of images
+constexpr float kFloor = 0.05f;
+
+// The mean over [begin, end) of what `at` gives for whole numbers.
+template <class At>
+Rgb meanOver(double begin, double end, const At& at) {
+  Rgb sum(0);
+  for (int i = int(begin); i < end; ++i)
+    sum += float(std::min(end, i + 1.0) - std::max(begin, double(i))) * at(i);
+  return sum / float(end - begin);
+}
+
+// With so many rows: each pixel is the mean over the area that it covers.
+Image reduced(const Image& image, int rows) {
+  const int columns = std::max(1, int(std::lround(double(image.width) * rows / image.height)));
+  const double width = double(image.width) / columns, height = double(image.height) / rows;
+  Image narrow(columns, image.height, 3), small(columns, rows, 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < columns; ++x)
+      narrow.setRgb(x, y,
+                    meanOver(x * width, std::min((x + 1) * width, double(image.width)),
+                             [&](int i) { return image.rgb(i, y); }));
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      small.setRgb(x, y,
+                   meanOver(y * height, std::min((y + 1) * height, double(image.height)),
+                            [&](int i) { return narrow.rgb(x, i); }));
+  return small;
+}
+
+// The median of luminance over all tiles; 1 if that is black.
+float medianLuminance(const std::vector<Tile>& tiles) {
+  std::vector<float> all;
+  for (const Tile& tile : tiles)
+    for (int y = 0; y < tile.image.height; ++y)
+      for (int x = 0; x < tile.image.width; ++x) all.push_back(luminance(tile.image.rgb(x, y)));
+  const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle > 0 ? *middle : 1;
+}
+
+// With at most `rows` rows, and log(gain x radiance / unit + 1/20) for radiance.
+std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<double>& gains,
+                           float unit, int rows) {
+  std::vector<Tile> logs = tiles;
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    Image& image = logs[i].image;
+    if (image.height > rows) image = reduced(image, rows);
+    const float factor = float(gains[i]) / unit;
+    for (float& channel : image.texels)
+      channel = std::log(factor * std::max(channel, 0.0f) + kFloor);
+  }
+  return logs;
+}
+
+// The difference of two tiles in a direction, and its derivatives by turns of each about X, Y, Z.
+struct Difference {
+  dvec3 channels;
+  std::array<dvec3, 3> first, second;
+};
+
+dvec3 seen(const TileView& view, const dvec3& direction) {
+  return dvec3(view.at(glm::normalize(direction)).radiance);
+}
+
+// A turn of the tile by w moves what was seen at d - w x d to d.
+std::array<dvec3, 3> derivativesOf(const TileView& view, const dvec3& direction) {
+  const double step = 0.5 * view.pixelAngle();
+  std::array<dvec3, 3> derivatives;
+  for (int axis = 0; axis < 3; ++axis) {
+    dvec3 turn(0);
+    turn[axis] = step;
+    const dvec3 shift = glm::cross(turn, direction);
+    derivatives[size_t(axis)] =
+        (seen(view, direction - shift) - seen(view, direction + shift)) / (2 * step);
+  }
+  return derivatives;
+}
+
+std::vector<Difference> differencesAt(const std::vector<TileView>& views,
+                                      const std::vector<Overlap>& overlaps) {
+  std::vector<Difference> all(overlaps.size());
+  tbb::parallel_for(size_t(0), overlaps.size(), [&](size_t i) {
+    const Overlap& o = overlaps[i];
+    const TileView &a = views[size_t(o.first)], &b = views[size_t(o.second)];
+    all[i] = {seen(a, o.direction) - seen(b, o.direction), derivativesOf(a, o.direction),
+              derivativesOf(b, o.direction)};
+  });
+  return all;
+}
+
+double rms(const std::vector<Overlap>& overlaps, const std::vector<Difference>& differences) {
+  double sum = 0, weight = 0;
+  for (size_t i = 0; i < overlaps.size(); ++i) {
+    const dvec3& d = differences[i].channels;
+    sum += double(overlaps[i].weight) * glm::dot(d, d) / 3;
+    weight += double(overlaps[i].weight);
+  }
+  return weight > 0 ? std::sqrt(sum / weight) : 0;
+}
+
+// The turns of all tiles but the first, which has none.
+std::vector<dvec3> stepOf(const std::vector<Tile>& tiles, const std::vector<Overlap>& overlaps,
+                          const std::vector<Difference>& differences) {
+  LeastSquares equations(3 * (int(tiles.size()) - 1));
+  std::vector<LeastSquares::Term> row;
+  for (size_t i = 0; i < overlaps.size(); ++i)
+    for (int channel = 0; channel < 3; ++channel) {
+      row.clear();
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto add = [&](int tile, double coefficient) {
+          if (tile > 0) row.push_back({3 * (tile - 1) + axis, coefficient});
+        };
+        add(overlaps[i].first, differences[i].first[size_t(axis)][channel]);
+        add(overlaps[i].second, -differences[i].second[size_t(axis)][channel]);
+      }
+      equations.add(row, -differences[i].channels[channel], double(overlaps[i].weight));
+    }
+  const auto solution = equations.solve();
+  if (!solution)
+    throwInput("{}: the overlaps of the tiles do not determine their poses", tiles[0].name);
+  std::vector<dvec3> turns{dvec3(0)};
+  for (size_t i = 0; i + 2 < solution->size(); i += 3)
+    turns.emplace_back((*solution)[i], (*solution)[i + 1], (*solution)[i + 2]);
+  return turns;
+}
+
+constexpr int kMaxDirections = 256;  // rows of the map of directions
+
+std::vector<Overlap> overlapsAt(const std::vector<TileView>& views, int rows) {
+  return overlapsOf(views, std::min(rows, kMaxDirections));
+}
+
+// The RMS of the differences of tiles with so many rows.
+double disagreement(const std::vector<Tile>& tiles, int rows) {
+  const std::vector<Tile> logs = logTiles(tiles, tileGains(tiles), medianLuminance(tiles), rows);
+  const std::vector<TileView> views(logs.begin(), logs.end());
+  const std::vector<Overlap> overlaps = overlapsAt(views, rows);
+  return rms(overlaps, differencesAt(views, overlaps));
+}
+
+void refineAt(std::vector<Tile>& tiles, int rows) {
+  constexpr int kMaxSteps = 12;
+  constexpr double kEnough = 0.01;  // of a pixel
+  std::vector<Tile> logs = logTiles(tiles, tileGains(tiles), medianLuminance(tiles), rows);
+  double largest = 1;
+  for (int i = 0; i < kMaxSteps && largest > kEnough; ++i) {
+    const std::vector<TileView> views(logs.begin(), logs.end());
+    const std::vector<Overlap> overlaps = overlapsAt(views, rows);
+    const std::vector<dvec3> turns = stepOf(tiles, overlaps, differencesAt(views, overlaps));
+    largest = 0;
+    for (size_t t = 0; t < tiles.size(); ++t) {
+      const double angle = glm::length(turns[t]);
+      largest = std::max(largest, angle / views[t].pixelAngle());
+      if (angle > 0)
+        tiles[t].pose = logs[t].pose = Rotation::ofQuaternion(
+            glm::angleAxis(angle, turns[t] / angle) * tiles[t].pose.quaternion());
+    }
+  }
+}
+
+}  // namespace
+
+PoseRefinement refinePoses(std::vector<Tile>& tiles) {
+  std::vector<dquat> given;
+  int rows = 1;
+  for (const Tile& tile : tiles) {
+    given.push_back(tile.pose.quaternion());
+    rows = std::max(rows, tile.image.height);
+  }
+  PoseRefinement refinement{};
+  const int finest = std::min(rows, kFinestRows);
+  std::vector<int> levels;
+  for (int level = kCoarsestRows; level < finest; level *= 2) levels.push_back(level);
+  levels.push_back(finest);
+  refinement.before = disagreement(tiles, finest);
+  for (const int level : levels) refineAt(tiles, level);
+  refinement.after = disagreement(tiles, finest);
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    const double cosine = std::fabs(glm::dot(given[i], tiles[i].pose.quaternion()));
+    refinement.turns.push_back(glm::degrees(2 * std::acos(std::min(cosine, 1.0))));
+  }
+  return refinement;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "probe/fisheye.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "math/vec.h"
+
+namespace chromeball {
+namespace {
+
+constexpr std::string_view kFisheye = "fisheye";
+
+struct NamedProjection {
+  std::string_view name;
+  FisheyeProjection projection;
+  double largestFieldOfView;  // degrees
+};
+constexpr std::array<NamedProjection, 4> kProjections{
+    {{"equidistant", FisheyeProjection::Equidistant, 360},
+     {"equisolid", FisheyeProjection::Equisolid, 360},
+     {"orthographic", FisheyeProjection::Orthographic, 180},
+     {"stereographic", FisheyeProjection::Stereographic, 300}}};
+
+const NamedProjection& projectionNamed(std::string_view name, std::string_view location) {
+  std::vector<std::string_view> known;
+  for (const NamedProjection& named : kProjections) {
+    if (named.name == name) return named;
+    known.push_back(named.name);
+  }
+  throwInput("{}: unknown projection `{}` of a fisheye lens; {}", location, name,
+             didYouMean(name, known));
+}
+
+}  // namespace
+
+double Fisheye::halfAngle() const { return kPiD * (fieldOfView / 360); }
+
+double Fisheye::solidAngle() const {
+  const double sine = std::sin(0.5 * halfAngle());  // 1 - cos(h) = 2 sin^2(h/2)
+  return 4 * kPiD * sine * sine;
+}
+
+double Fisheye::radius(double t) const {
+  const double h = halfAngle();
+  switch (projection) {
+    case FisheyeProjection::Equidistant:
+      return t / h;
+    case FisheyeProjection::Equisolid:
+      return std::sin(0.5 * t) / std::sin(0.5 * h);
+    case FisheyeProjection::Orthographic:
+      // The sine falls again behind the lens: its reflection at 1 goes on rising.
+      return (t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t)) / std::sin(h);
+    case FisheyeProjection::Stereographic:
+      return std::tan(0.5 * t) / std::tan(0.5 * h);
+  }
+  return 0;
+}
+
+double Fisheye::angle(double r) const {
+  const double h = halfAngle();
+  switch (projection) {
+    case FisheyeProjection::Equidistant:
+      return h * r;
+    case FisheyeProjection::Equisolid:
+      return 2 * std::asin(std::sin(0.5 * h) * r);
+    case FisheyeProjection::Orthographic:
+      return std::asin(std::sin(h) * r);
+    case FisheyeProjection::Stereographic:
+      return 2 * std::atan(std::tan(0.5 * h) * r);
+  }
+  return 0;
+}
+
+// sin(t) (dt/dr) / r.
+double Fisheye::solidAngleJacobian(double r) const {
+  const double h = halfAngle(), t = angle(r);
+  switch (projection) {
+    case FisheyeProjection::Equidistant:
+      return h * h * (t > 0 ? std::sin(t) / t : 1);
+    case FisheyeProjection::Equisolid: {
+      const double sine = std::sin(0.5 * h);
+      return 4 * sine * sine;
+    }
+    case FisheyeProjection::Orthographic: {
+      const double sine = std::sin(h);
+      return sine * sine / std::cos(t);
+    }
+    case FisheyeProjection::Stereographic: {
+      const double tangent = 2 * std::tan(0.5 * h), cosine = std::cos(0.5 * t);
+      return tangent * tangent * std::pow(cosine, 4);
+    }
+  }
+  return 0;
+}
+
+std::string fisheyeName(const Fisheye& lens) {
+  return fmt::format("{}:{}:{}", kFisheye, lens.fieldOfView,
+                     kProjections[size_t(lens.projection)].name);
+}
+
+bool namesFisheye(std::string_view name) {
+  return name.starts_with(kFisheye) &&
+         (name.size() == kFisheye.size() || name[kFisheye.size()] == ':');
+}
+
+Fisheye parseFisheye(std::string_view name, std::string_view location) {
+  Fisheye lens;
+  std::string_view rest = name.substr(kFisheye.size());
+  if (rest.empty()) return lens;
+  rest.remove_prefix(1);
+  const size_t colon = std::min(rest.find(':'), rest.size());
+  const std::string_view degrees = rest.substr(0, colon);
+  const NamedProjection& projection =
+      colon < rest.size() ? projectionNamed(rest.substr(colon + 1), location) : kProjections[0];
+  const auto [end, error] =
+      std::from_chars(degrees.data(), degrees.data() + degrees.size(), lens.fieldOfView);
+  constexpr double kSmallest = 60;
+  if (error != std::errc{} || end != degrees.data() + degrees.size() ||
+      !(lens.fieldOfView >= kSmallest && lens.fieldOfView <= projection.largestFieldOfView))
+    throwInput("{}: the field of view `{}` of an {} fisheye lens should be {} to {} degrees",
+               location, degrees, projection.name, kSmallest, projection.largestFieldOfView);
+  lens.projection = projection.projection;
+  return lens;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/solve/camera_doubts.h"
+
+#include "scene/camera_view.h"
+
+namespace chromeball {
+namespace {
+
+Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
+
+}  // namespace
+
+Messages doubtsAbout(const CameraFit& fit) {
+  constexpr double kMisfit = 0.01;  // of the picture's diagonal
+  constexpr double kRivals = 2, kUncertain = 0.1;
+  Messages messages;
+  const ImageSize& size = fit.camera.size;
+  const double rms = fit.rms();
+  if (rms > kMisfit * std::hypot(size.width, size.height))
+    messages.push_back(warning(fmt::format(
+        "no camera fits: the distances are {:.3g} pixels in the root mean square; check the "
+        "positions, and that pixels count from the top left",
+        rms)));
+  else if (fit.rivalRms && *fit.rivalRms < kRivals * rms)
+    messages.push_back(warning(fmt::format(
+        "another camera fits nearly as well, with {:.3g} instead of {:.3g} pixels; more points, "
+        "not on one plane, tell which is right",
+        *fit.rivalRms, rms)));
+  if (fit.errors.fov && *fit.errors.fov > kUncertain * fit.camera.fov())
+    messages.push_back(
+        warning("the field of view is uncertain by more than a tenth; give it if it is known"));
+  return messages;
+}
+
+Messages doubtsAbout(const std::vector<ObservedPoint>& points, const ImageSize& size) {
+  Messages messages;
+  for (const ObservedPoint& point : points) {
+    const dvec2& p = point.pixel;
+    if (!(p.x >= 0 && p.y >= 0 && p.x <= size.width && p.y <= size.height))
+      messages.push_back(warning(fmt::format("{}: `{}` is outside the picture of {}x{} pixels",
+                                             point.location, point.name, size.width, size.height)));
+  }
+  return messages;
+}
+
+Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model) {
+  if (model.empty()) return {};
+  const CameraView view(camera.camera(), double(camera.size.width) / camera.size.height);
+  dvec2 min(INFINITY), max(-INFINITY);
+  int behind = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto seen =
+        view.at({(corner & 1 ? model.max : model.min).x, (corner & 2 ? model.max : model.min).y,
+                 (corner & 4 ? model.max : model.min).z});
+    if (!seen) {
+      ++behind;
+      continue;
+    }
+    min = glm::min(min, seen->position);
+    max = glm::max(max, seen->position);
+  }
+  const bool isBeside = max.x < 0 || max.y < 0 || min.x > 1 || min.y > 1;
+  if (behind == 8 || (behind == 0 && isBeside))
+    return {warning("the camera does not see the model, which lies outside the picture")};
+  return {};
+}
+
+}  // namespace chromeball

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assemble_options.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/capture/photograph.h"
+#include "probe/convert.h"
+#include "probe/load.h"
+
+namespace chromeball {
+namespace {
+
+void addBallOptions(CLI::App& command, AssembleArguments& arguments) {
+  command.add_option("--distance", arguments.distance,
+                     "from the ball's centre to the camera, in radii of the ball; else infinite");
+  command.add_option("--reflectivity", arguments.reflectivity,
+                     "X or R,G,B of the ball, as `probe reflectivity` measures it; else 1");
+  command
+      .add_option("--ball-ior", arguments.ballIor,
+                  "N,K: the reflectivity changes with the angle as that of a metal of refractive "
+                  "index N + iK: chrome 3.18,3.31. Without --reflectivity, also its value at the "
+                  "centre")
+      ->excludes(command.add_flag("--schlick", arguments.schlick,
+                                  "the reflectivity rises to 1 at the rim, by Schlick's "
+                                  "approximation: a rendered ball of glTF"));
+  command.add_option("--camera-disc", arguments.cameraDisc,
+                     "degrees around the camera's reflection that other photographs replace; else "
+                     "15");
+}
+
+// "X", for all channels, or "R,G,B".
+dvec3 parseReflectivity(const std::string& text) {
+  const bool isOne = text.find(',') == std::string::npos;
+  const std::vector<double> c = parseNumbers(text, isOne ? 1 : 3, "--reflectivity");
+  for (const double channel : c)
+    if (!(channel >= 1e-3 && channel <= 1))
+      throwInput("--reflectivity: {} should be 0.001 to 1", channel);
+  return isOne ? dvec3(c[0]) : dvec3(c[0], c[1], c[2]);
+}
+
+BallReflectance parseReflectance(const AssembleArguments& arguments) {
+  std::optional<dvec3> normal;
+  if (!arguments.reflectivity.empty()) normal = parseReflectivity(arguments.reflectivity);
+  if (arguments.schlick && !normal)
+    throwInput("--schlick: needs --reflectivity, that at the centre of the ball");
+  if (arguments.schlick) return BallReflectance::schlick(*normal);
+  if (arguments.ballIor.empty()) return BallReflectance(normal.value_or(dvec3(1)));
+  const std::vector<double> index = parseNumbers(arguments.ballIor, 2, "--ball-ior");
+  const MetalIndex metal{index[0], index[1]};
+  const double atCentre = metalFresnel(1, metal);
+  if (!(metal.n >= 0.01 && metal.n <= 100 && metal.k >= 0 && metal.k <= 100 && atCentre > 1e-3))
+    throwInput(
+        "--ball-ior: {} should be N,K of a metal, such as 3.18,3.31 for chrome: N from 0.01, and "
+        "both up to 100",
+        arguments.ballIor);
+  return BallReflectance::ofMetal(normal.value_or(dvec3(atCentre)), metal);
+}
+
+// Within [least, most], or `fallback` for no text.
+double parseRange(const std::string& text, double fallback, double least, double most,
+                  std::string_view option, std::string_view meaning) {
+  if (text.empty()) return fallback;
+  const double number = parseNumbers(text, 1, option)[0];
+  if (!(number >= least && number <= most))
+    throwInput("{}: {} should be {} to {}: {}", option, number, least, most, meaning);
+  return number;
+}
+
+bool isColor(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 2 &&
+         text.find_first_not_of("0123456789.,eE+-") == std::string::npos;
+}
+
+}  // namespace
+
+void addAssembleOptions(CLI::App& command, AssembleArguments& arguments) {
+  command.add_option("PHOTO", arguments.photographs, "linear images, up to 16")->required();
+  command.add_option("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command
+      .add_option(
+          "--azimuth", arguments.azimuths,
+          "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
+          "is +Z, 90 is +X. One photograph: 0 if left out")
+      ->allow_extra_args(false);
+  command
+      .add_option("--circle", arguments.circles,
+                  "X,Y,RADIUS[;...]: the outline of each ball, in pixels from the top left corner; "
+                  "else, or for auto, it is found")
+      ->allow_extra_args(false);
+  command
+      .add_option("--mask", arguments.masks,
+                  "an image of the same size, black where a photograph shows the stand or the "
+                  "operator; one for all, or one for each")
+      ->allow_extra_args(false);
+  addBallOptions(command, arguments);
+  command.add_option("--from", arguments.from,
+                     "mirror-ball, or fisheye[:FOV[:PROJECTION]]: 180 degrees; equidistant, "
+                     "equisolid, orthographic or stereographic");
+  command.add_flag("--keep-exposure", arguments.keepExposure,
+                   "do not match the exposures of the photographs");
+  command.add_flag("--keep-azimuth", arguments.keepAzimuth,
+                   "do not correct the azimuths by up to 5 degrees");
+  command.add_option("--fill", arguments.fill,
+                     "what blind directions get: inpaint (smooth), black, R,G,B or the file of a "
+                     "probe");
+  command.add_option("--to", arguments.to, "the mapping of the output, as of `probe convert`");
+  command.add_option("--size", arguments.size, "WIDTHxHEIGHT; else the size that keeps the detail");
+  command.add_option("--preview", arguments.preview,
+                     "a .png: the circles on the photographs, and the probe with its blind spots");
+  command.add_flag("--json", arguments.json, "print JSON");
+}
+
+void checkFiles(const AssembleArguments& arguments) {
+  constexpr size_t kMostPhotographs = 16;
+  if (arguments.photographs.size() > kMostPhotographs)
+    throwInput("probe assemble: {} photographs are too many; at most {}",
+               arguments.photographs.size(), kMostPhotographs);
+  checkWritable(arguments.out);
+  if (!arguments.preview.empty()) checkOutputFile(arguments.preview, {".png"});
+  std::vector<std::string> inputs = arguments.photographs;
+  inputs.insert(inputs.end(), arguments.masks.begin(), arguments.masks.end());
+  inputs.push_back(arguments.fill);
+  checkDistinct({arguments.out, arguments.preview}, inputs);
+}
+
+std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& arguments) {
+  if (!arguments.isFisheye()) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const double distance = parseRange(arguments.distance, kInfinity, 1.1, 1e9, "--distance",
+                                       "radii of the ball, from its centre");
+    const double cameraDisc =
+        parseRange(arguments.cameraDisc, 15, 0, 90, "--camera-disc", "degrees");
+    return std::make_shared<BallOptics>(distance, parseReflectance(arguments), cameraDisc);
+  }
+  if (!namesFisheye(arguments.from))
+    throwInput("--from: `{}` should be mirror-ball or fisheye[:FOV[:PROJECTION]]", arguments.from);
+  const Fisheye lens = parseFisheye(arguments.from, "--from");
+  const std::pair<const char*, bool> ofBalls[] = {
+      {"--distance", !arguments.distance.empty()},
+      {"--reflectivity", !arguments.reflectivity.empty()},
+      {"--ball-ior", !arguments.ballIor.empty()},
+      {"--schlick", arguments.schlick},
+      {"--camera-disc", !arguments.cameraDisc.empty()}};
+  for (const auto& [option, isGiven] : ofBalls)
+    if (isGiven) throwInput("{}: is for mirror balls, not for a fisheye lens", option);
+  return std::make_shared<FisheyeOptics>(lens);
+}
+
+BlindFill parseFill(const std::string& text) {
+  if (text == "inpaint") return {.isSmooth = true, .map = {}};
+  if (text == "black") return {.map = {}};
+  if (isColor(text)) {
+    const std::vector<double> c = parseNumbers(text, 3, "--fill");
+    for (const double channel : c)
+      if (!(channel >= 0 && channel <= double(std::numeric_limits<float>::max())))
+        throwInput("--fill: {} should be a radiance, 0 to 3.4e38", channel);
+    return {.color = Rgb(dvec3(c[0], c[1], c[2])), .map = {}};
+  }
+  std::error_code ignored;
+  if (!std::filesystem::exists(text, ignored))
+    throwInput("--fill: `{}` should be inpaint, black, R,G,B or the file of a probe", text);
+  return {.map = loadProbe(text).latLong};
+}
+
+AssemblyTarget parseTarget(const AssembleArguments& arguments,
+                           const std::vector<CaptureView>& views) {
+  const ImageSize natural = assemblySize(views);
+  if (arguments.size.empty()) {
+    const Mapping mapping = parseMapping(arguments.to, "--to");
+    return {mapping, sizeFor(mapping, natural), natural};
+  }
+  const ImageSize size = parseSize(arguments.size, "--size");
+  const std::optional<Mapping> mapping =
+      parseMapping(arguments.to, size.width, size.height, "--to");
+  if (!mapping) return {parseMapping(arguments.to, "--to"), size, size};
+  return {*mapping, size, *mapping == Mapping::LatLong ? size : natural};
+}
+
+}  // namespace chromeball

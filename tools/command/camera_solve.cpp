@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball camera solve MODEL PLATE --points P.csv | --lines L.csv | --fspy F.json -o camera.toml
+#include <cstdio>
+
+#include "base/error.h"
+#include "camera_commands.h"
+#include "camera_report.h"
+#include "composite/plate.h"
+#include "image/io/exif.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/camera_file.h"
+#include "job/output_file.h"
+#include "job/scene_file.h"
+#include "messages.h"
+#include "scene/camera_view.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/solve/camera_doubts.h"
+#include "scene/solve/fspy.h"
+#include "scene/solve/picture_lines.h"
+#include "scene/solve/solve_lines.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string model, plate, points, lines, fspy, output, preview;
+  std::string principalPoint, origin, up = "y";
+  std::optional<double> fov, focal35, height;
+  bool distortion = false, json = false;
+};
+
+void check(const Arguments& a) {
+  const auto isGiven = [](const std::string& name) { return !name.empty(); };
+  if (isGiven(a.points) + isGiven(a.lines) + isGiven(a.fspy) != 1)
+    throwInput("give one of --points, --lines and --fspy");
+  const auto onlyFor = [](bool given, bool applies, const char* option, const char* method) {
+    if (given && !applies) throwInput("{}: is for {}", option, method);
+  };
+  onlyFor(a.distortion, isGiven(a.points), "--distortion", "--points");
+  onlyFor(a.height.has_value(), isGiven(a.lines), "--height", "--lines");
+  onlyFor(isGiven(a.origin), isGiven(a.lines), "--origin", "--lines");
+  onlyFor(a.up != "y", isGiven(a.fspy), "--up", "--fspy");
+  onlyFor(a.fov.has_value(), !isGiven(a.fspy), "--fov", "--points and --lines");
+  onlyFor(a.focal35.has_value(), !isGiven(a.fspy), "--focal35", "--points and --lines");
+  onlyFor(isGiven(a.principalPoint), !isGiven(a.fspy), "--principal-point", "--points and --lines");
+  if (a.fov && a.focal35) throwInput("--fov: excludes --focal35; give one");
+  if (a.fov && !(*a.fov > 0 && *a.fov < 180))
+    throwInput("--fov: {:g} should be above 0 and below 180 degrees", *a.fov);
+  if (a.focal35 && !(*a.focal35 > 0 && *a.focal35 < 1e5))
+    throwInput("--focal35: {:g} should be a focal length in millimetres, above 0", *a.focal35);
+  if (a.height && !(*a.height > 0 && *a.height < 1e9))
+    throwInput("--height: {:g} should be in metres, above 0", *a.height);
+  if (a.up != "y" && a.up != "z") throwInput("--up: `{}` should be y or z", a.up);
+  checkOutputFile(a.output, {".toml"});
+  if (isGiven(a.preview)) checkWritable(a.preview);
+  checkDistinct({a.output, a.preview}, {a.model, a.plate, a.points, a.lines, a.fspy});
+}
+
+Scene loadModels(const std::string& path) {
+  Scene scene;
+  for (const ModelEntry& model : openScene(path).models) {
+    GltfChoice choice = model.choice;
+    choice.environment = false;
+    append(scene, loadGltf(model.file, model.placement, warn, choice));
+  }
+  return scene;
+}
+
+dvec2 pairOf(const std::string& text, const char* option) {
+  const std::vector<double> numbers = parseNumbers(text, 2, option);
+  return {numbers[0], numbers[1]};
+}
+
+CameraKnowledge knowledgeOf(const Arguments& a, const ImageSize& size) {
+  CameraKnowledge known{.size = size, .findsDistortion = a.distortion};
+  if (!a.principalPoint.empty())
+    known.principalPoint = pairOf(a.principalPoint, "--principal-point");
+  if (a.fov) known.focalLength = focalLengthOfFov(size, glm::radians(*a.fov));
+  if (a.focal35) known.focalLength = focalLengthOf35mm(size, *a.focal35);
+  return known;
+}
+
+// A photograph of too few points for a field of view may tell it itself.
+void addExif(const std::string& plate, size_t points, CameraKnowledge& known) {
+  if (known.focalLength || points >= fewestPoints(known)) return;
+  const auto focal35 = readExif(plate).focalLength35;
+  if (!focal35) return;
+  note(fmt::format("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35));
+  known.focalLength = focalLengthOf35mm(known.size, *focal35);
+}
+
+struct Solution {
+  std::string method;
+  SolvedCamera camera;
+  std::optional<CameraFit> fit;
+  std::vector<ObservedPoint> points;
+  std::vector<std::string> names;
+
+  CameraReport report() const { return {method, camera, fit ? &*fit : nullptr, names}; }
+};
+
+Solution solve(const Arguments& a, const ImageSize& size) {
+  Solution s;
+  CameraKnowledge known = knowledgeOf(a, size);
+  if (!a.fspy.empty()) {
+    s.method = "fspy";
+    s.camera = readFspy(a.fspy, a.up == "z");
+    const ImageSize& own = s.camera.size;
+    if (std::abs(double(own.width) * size.height - double(size.width) * own.height) >
+        own.width + own.height)
+      throwInput("{}: is of a photograph of {}x{} pixels, and {} has {}x{}", a.fspy, own.width,
+                 own.height, a.plate, size.width, size.height);
+    return s;
+  }
+  if (!a.points.empty()) {
+    s.method = "points";
+    s.points = readObservedPoints(a.points);
+    addExif(a.plate, s.points.size(), known);
+    s.fit = solveByPoints(s.points, known, a.points);
+    for (const ObservedPoint& point : s.points) s.names.push_back(point.name);
+  } else {
+    s.method = "lines";
+    LinePlacement placement{.height = a.height, .origin = {}};
+    if (!a.origin.empty()) placement.origin = pairOf(a.origin, "--origin");
+    const std::vector<ObservedLine> lines = readObservedLines(a.lines);
+    s.fit = solveByLines(lines, known, placement, a.lines);
+    for (const ObservedLine& line : lines) s.names.push_back(line.location);
+  }
+  s.camera = s.fit->camera;
+  return s;
+}
+
+// The picked points are crosses, where the camera sees them are circles.
+void writePreview(const std::string& path, const Scene& scene, const Solution& solution,
+                  Image picture) {
+  const Rgb kWires(0.1f, 1, 0.1f), kPicked(1, 0.05f, 0.05f), kSeen(1, 1, 0.1f);
+  const Camera camera = solution.camera.camera();
+  drawEdges(creases(scene), camera, kWires, picture);
+  const dvec2 size(picture.width, picture.height);
+  const CameraView view(camera, size.x / size.y);
+  PictureLines marks(picture);
+  for (const ObservedPoint& point : solution.points) {
+    marks.cross(point.pixel, kPicked);
+    if (const auto seen = view.at(point.position)) marks.circle(size * seen->position, kSeen);
+  }
+  writeImage(path, picture);
+}
+
+void run(const Arguments& a) {
+  check(a);
+  Image plate = readPlate(a.plate);
+  const Scene scene = loadModels(a.model);
+  const Solution solution = solve(a, {plate.width, plate.height});
+  const std::vector<std::string> lines = reportLines(solution.report());
+  std::vector<std::string> comments{
+      fmt::format("The camera of {}, by `chromeball camera solve`.", a.plate)};
+  comments.insert(comments.end(), lines.begin(), lines.end());
+  if (!a.preview.empty()) writePreview(a.preview, scene, solution, std::move(plate));
+  writeCameraFile(a.output, solution.camera, comments);
+  Messages messages = doubtsAbout(solution.points, solution.camera.size);
+  const auto add = [&](const Messages& more) {
+    messages.insert(messages.end(), more.begin(), more.end());
+  };
+  if (solution.fit) add(doubtsAbout(*solution.fit));
+  add(doubtsAbout(solution.camera, bounds(scene)));
+  print(messages, false);
+  if (a.json)
+    fmt::print("{}\n", reportJson(solution.report()));
+  else
+    for (const std::string& line : lines) fmt::print("{}\n", line);
+}
+
+}  // namespace
+
+void addCameraSolveCommand(CLI::App& camera) {
+  const auto a = std::make_shared<Arguments>();
+  CLI::App* command = camera.add_subcommand(
+      "solve",
+      "Find where a photograph was taken from, and its field of view: by points of known "
+      "positions, or by lines along the scene's axes.");
+  command->add_option("MODEL", a->model, "the model, .glb or .gltf, or a scene file")->required();
+  command->add_option("PLATE", a->plate, "the photograph")->required();
+  command->add_option(
+      "--points", a->points,
+      "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
+  command->add_option("--lines", a->lines,
+                      "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
+  command->add_option("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
+  command
+      ->add_option("-o,--output", a->output,
+                   "the .toml to write; `[camera] file` and --camera-file "
+                   "read it")
+      ->required();
+  command->add_option("--fov", a->fov, "the vertical field of view in degrees, if it is known");
+  command->add_option("--focal35", a->focal35,
+                      "the focal length in mm that has the same diagonal field of view on 35 mm "
+                      "film, if it is known");
+  command->add_flag("--distortion", a->distortion, "find the lens's radial distortion k1 too");
+  command->add_option("--principal-point", a->principalPoint,
+                      "U,V: where the lens's axis meets the image, as fractions of its size from "
+                      "the top left [0.5,0.5]");
+  command->add_option("--height", a->height,
+                      "height of the camera above the ground y = 0 in metres, for lines");
+  command->add_option("--origin", a->origin,
+                      "PX,PY: the pixel that shows the point 0, 0, 0 of the ground, for lines");
+  command->add_option("--up", a->up, "the axis of fSpy's scene that is up: y, or z as in Blender")
+      ->capture_default_str();
+  command->add_option("--preview", a->preview,
+                      "an image to write: the model's edges over the photograph, picked points as "
+                      "crosses, where the camera sees them as circles");
+  command->add_flag("--json", a->json, "print JSON");
+  command->footer(
+      "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
+      "go\n"
+      "from one to another farther along the positive axis. `metres` is the length of a line "
+      "whose\n"
+      "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace chromeball

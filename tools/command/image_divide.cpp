@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image divide A B -o OUT.exr
+#include "base/error.h"
+#include "image/flat_field.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "image_commands.h"
+#include "job/output_file.h"
+#include "messages.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string a, b, output;
+};
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.output);
+  checkDistinct({arguments.output}, {arguments.a, arguments.b});
+  ImageFile file = readImageFile(arguments.a);
+  const Image b = readImage(arguments.b);
+  OutputImage output;
+  std::optional<Image> clipped = findLayer(file, "clipped");
+  Image a = colorOf(std::move(file), arguments.a);
+  if (a.width != b.width || a.height != b.height)
+    throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be divided",
+               arguments.a, a.width, a.height, arguments.b, b.width, b.height);
+  if (const size_t undivided = divide(a, b); undivided > 0)
+    warn(fmt::format("{}: {} pixels have a channel that is not above 0; the result is 0 there",
+                     arguments.b, undivided));
+  output.layers.push_back({"", "RGB", std::move(a)});
+  if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
+  writeImage(arguments.output, output);
+}
+
+}  // namespace
+
+void addImageDivideCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand(
+      "divide",
+      "Divide the colour of an image by that of another, in linear light: a photograph by its flat "
+      "field.");
+  command->add_option("A", arguments->a, "the image; its layer `clipped` is kept")->required();
+  command->add_option("B", arguments->b, "what to divide by")->required();
+  command
+      ->add_option("-o,--output", arguments->output, "the image to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image flat-field SERIES... -o F.exr
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "image/flat_field.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "image_commands.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "messages.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::vector<std::string> files, positions;
+  std::string output, centre;
+  double radius = 3;
+  bool json = false;
+};
+
+dvec2 parsePoint(const std::string& text, std::string_view option) {
+  const std::vector<double> point = parseNumbers(text, 2, option);
+  return {point[0], point[1]};
+}
+
+struct Series {
+  std::vector<SourceSample> samples;
+  ImageSize size{};
+};
+
+Series measure(const Arguments& arguments) {
+  constexpr float kSaturated = 0.98f;
+  Series series;
+  for (size_t i = 0; i < arguments.files.size(); ++i) {
+    const std::string& file = arguments.files[i];
+    ImageFile read = readImageFile(file);
+    const bool hasWhite = read.integers;
+    const Image image = colorOf(std::move(read), file);
+    if (i == 0) series.size = {image.width, image.height};
+    if (image.width != series.size.width || image.height != series.size.height)
+      throwInput("{}: is {} x {}, but {} is {} x {}; photographs of a series have one size", file,
+                 image.width, image.height, arguments.files.front(), series.size.width,
+                 series.size.height);
+    const dvec2 position = arguments.positions.empty() ? findSource(image)
+                                                       : parsePoint(arguments.positions[i], "--at");
+    series.samples.push_back(measureSource(image, position, arguments.radius, file));
+    if (hasWhite && maxComponent(Rgb(series.samples.back().radiance)) > kSaturated)
+      throwInput("{}: the source at {:.1f},{:.1f} is saturated; expose less", file, position.x,
+                 position.y);
+  }
+  return series;
+}
+
+Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json toJson(const FlatField& field, const Series& series) {
+  Json samples = Json::array();
+  for (const SourceSample& sample : series.samples)
+    samples.push_back({{"position", {sample.position.x, sample.position.y}},
+                       {"radiance", toJson(sample.radiance)}});
+  return {{"centre", {field.centre.x, field.centre.y}},
+          {"unit", field.unit},
+          {"a2", toJson(field.a2)},
+          {"a4", toJson(field.a4)},
+          {"a6", toJson(field.a6)},
+          {"largest_r", field.largest},
+          {"rms_error", toJson(field.rmsError)},
+          {"samples", samples}};
+}
+
+void print(const FlatField& field, const Series& series) {
+  for (const auto& [name, a] : {std::pair{"a2", field.a2}, {"a4", field.a4}, {"a6", field.a6}})
+    fmt::print("{:<12}{:.5g} {:.5g} {:.5g}\n", name, a.x, a.y, a.z);
+  const dvec3 corner = field.at(field.centre + dvec2(field.unit, 0));
+  fmt::print("r = 1       at {:.5g} pixels from {:.5g},{:.5g}: response {:.4g} {:.4g} {:.4g}\n",
+             field.unit, field.centre.x, field.centre.y, corner.x, corner.y, corner.z);
+  fmt::print("samples     {}, r up to {:.3g}\n", series.samples.size(), field.largest);
+  const dvec3 error = 100.0 * field.rmsError;
+  fmt::print("error       {:.2g}% {:.2g}% {:.2g}% of the samples, RMS\n", error.x, error.y,
+             error.z);
+}
+
+void run(const Arguments& arguments) {
+  constexpr double kReaches = 0.9, kPoorFit = 0.02;
+  checkWritable(arguments.output);
+  checkDistinct({arguments.output}, arguments.files);
+  if (!arguments.positions.empty() && arguments.positions.size() != arguments.files.size())
+    throwInput("--at: {} positions for {} photographs; give one for each, or none",
+               arguments.positions.size(), arguments.files.size());
+  if (!(arguments.radius >= 0 && std::isfinite(arguments.radius)))
+    throwInput("--radius: {} should be at least 0", arguments.radius);
+  const Series series = measure(arguments);
+  const auto [width, height] = series.size;
+  const dvec2 centre = arguments.centre.empty() ? dvec2(width, height) / 2.0
+                                                : parsePoint(arguments.centre, "--centre");
+  const FlatField field = fitFlatField(series.samples, width, height, centre);
+  if (field.largest < kReaches)
+    warn(
+        fmt::format("the source is never further from the centre than {:.2g} of half the "
+                    "diagonal: far beyond, the response stays constant",
+                    field.largest));
+  if (const double error = std::max({field.rmsError.x, field.rmsError.y, field.rmsError.z});
+      error > kPoorFit)
+    warn(
+        fmt::format("the samples differ from the fit by {:.2g}%: is the source constant, and of "
+                    "even radiance within --radius?",
+                    100 * error));
+  if (arguments.json)
+    fmt::print("{}\n", toJson(field, series).dump(2));
+  else
+    print(field, series);
+  writeImage(arguments.output, field.image(width, height));
+}
+
+}  // namespace
+
+void addImageFlatFieldCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand(
+      "flat-field",
+      "Fit how a lens darkens the image towards the corners, 1 + a2 r^2 + a4 r^4 + a6 r^6, to "
+      "photographs that show one constant source at different places.");
+  command
+      ->add_option("SERIES", arguments->files,
+                   "linear photographs with equal exposure, at least four, each with the source at "
+                   "another distance from the centre")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png")
+      ->required();
+  command
+      ->add_option(
+          "--at", arguments->positions,
+          "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
+          "it the brightest spot of each")
+      ->allow_extra_args(false);
+  command->add_option("--radius", arguments->radius, "of the disc that is averaged, in pixels")
+      ->capture_default_str();
+  command->add_option("--centre", arguments->centre,
+                      "X,Y: of the lens, in pixels; without it the middle of the image");
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

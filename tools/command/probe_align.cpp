@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe align A B
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "busy_line.h"
+#include "image/io/write_image.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/align.h"
+#include "probe/convert.h"
+#include "probe/load.h"
+#include "probe_commands.h"
+#include "write_probe.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string first, second, out, firstMapping = "auto", secondMapping = "auto";
+  bool json = false;
+};
+
+constexpr double kPoor = 0.5;  // correlation
+
+Json toJson(const ProbeFit& fit) {
+  const Rotation::Angles angles = fit.rotation.angles();
+  const glm::dquat q = fit.rotation.quaternion();
+  return {{"yaw", angles.yaw},
+          {"pitch", angles.pitch},
+          {"roll", angles.roll},
+          {"quaternion", {q.x, q.y, q.z, q.w}},
+          {"correlation", fit.correlation}};
+}
+
+Json toJson(const Arguments& arguments, const ProbeAlignment& alignment) {
+  Json json = {{"a", arguments.first}, {"b", arguments.second}};
+  json.update(toJson(static_cast<const ProbeFit&>(alignment)));
+  const dvec3& errors = alignment.standardErrors;
+  json["standard_error"] = alignment.standardError();
+  json["standard_errors_xyz"] = {errors.x, errors.y, errors.z};
+  json["ambiguous"] = !alignment.others.empty();
+  json["axis"] = alignment.axis ? Json{alignment.axis->x, alignment.axis->y, alignment.axis->z}
+                                : Json(nullptr);
+  json["others"] = Json::array();
+  for (const ProbeFit& fit : alignment.others) json["others"].push_back(toJson(fit));
+  return json;
+}
+
+std::string text(const Rotation::Angles& angles) {
+  return fmt::format("{:.4f},{:.4f},{:.4f}", angles.yaw, angles.pitch, angles.roll);
+}
+
+void print(const ProbeAlignment& alignment) {
+  const Rotation::Angles angles = alignment.rotation.angles();
+  const glm::dquat q = alignment.rotation.quaternion();
+  fmt::print("rotation         yaw {:.4f}, pitch {:.4f}, roll {:.4f} degrees: B as A sees it\n",
+             angles.yaw, angles.pitch, angles.roll);
+  fmt::print("quaternion       {:.7f} {:.7f} {:.7f} {:.7f} (x y z w)\n", q.x, q.y, q.z, q.w);
+  fmt::print("standard error   {:.2g} degrees\n", alignment.standardError());
+  fmt::print("correlation      {:.4f} of the log radiance\n", alignment.correlation);
+}
+
+void warnOfDoubt(const ProbeAlignment& alignment) {
+  if (const size_t count = alignment.others.size()) {
+    const auto& axis = alignment.axis;
+    const std::string where =
+        axis ? fmt::format(", all turned about the axis ({:.3f}, {:.3f}, {:.3f})", axis->x, axis->y,
+                           axis->z)
+             : "";
+    warn(fmt::format("ambiguous: {} other rotation{} as well, such as {}{}", count,
+                     count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()),
+                     where));
+  }
+  if (alignment.correlation < kPoor)
+    warn(fmt::format("the correlation is {:.2g}: the probes may be of different places",
+                     alignment.correlation));
+}
+
+Image load(const std::string& file, const std::string& mapping, const char* option) {
+  LoadedProbe probe = loadProbe(file, mapping, option);
+  for (const std::string& warning : warnings(probe, file)) warn(warning);
+  return std::move(probe.latLong);
+}
+
+void run(const Arguments& arguments) {
+  if (!arguments.out.empty()) {
+    checkWritable(arguments.out);
+    checkDistinct({arguments.out}, {arguments.first, arguments.second});
+  }
+  const Image first = load(arguments.first, arguments.firstMapping, "--mapping-a");
+  const Image second = load(arguments.second, arguments.secondMapping, "--mapping-b");
+  std::optional<BusyLine> busy("aligning");
+  const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
+  busy.reset();
+  if (arguments.json)
+    fmt::print("{}\n",
+               toJson(arguments, alignment).dump(2, ' ', false, Json::error_handler_t::replace));
+  else
+    print(alignment);
+  std::fflush(stdout);
+  warnOfDoubt(alignment);
+  if (!arguments.out.empty())
+    writeProbe(arguments.out, convert(second, Mapping::LatLong, Mapping::LatLong,
+                                      {second.width, second.height}, alignment.rotation));
+}
+
+}  // namespace
+
+void addProbeAlignCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "align", "Find the rotation that makes one probe of a place agree with another.");
+  command->add_option("A", arguments->first, "a probe")->required();
+  command->add_option("B", arguments->second, "the probe to turn")->required();
+  command->add_option("-o,--output", arguments->out, "write B, turned, as a lat-long map");
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->add_option("--mapping-a", arguments->firstMapping, "the mapping of A; auto detects it");
+  command->add_option("--mapping-b", arguments->secondMapping, "the mapping of B; auto detects it");
+  command->footer(
+      "render takes the angles or the quaternion as --probe-rotation of B. The probes may differ "
+      "in "
+      "exposure, white balance, size and noise.\n");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe assemble PHOTO... -o OUT --azimuth 0,90
+#include <nlohmann/json.hpp>
+
+#include "assemble_options.h"
+#include "busy_line.h"
+#include "image/io/write_image.h"
+#include "messages.h"
+#include "probe/capture/assembly_preview.h"
+#include "probe/capture/match_views.h"
+#include "probe/convert.h"
+#include "probe_commands.h"
+#include "write_probe.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Report {
+  const AssembleArguments& arguments;
+  const std::vector<AssemblyPhotograph>& photographs;
+  const std::vector<CaptureView>& views;
+  const std::vector<ViewMatch>& matches;
+  const Assembly& assembly;
+  const AssemblyTarget& target;
+};
+
+Json toJson(const Report& report) {
+  Json views = Json::array();
+  for (size_t i = 0; i < report.views.size(); ++i) {
+    const AssemblyPhotograph& p = report.photographs[i];
+    const ViewMatch& match = report.matches[i];
+    views.push_back({{"file", p.file},
+                     {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
+                     {"circle_support", p.support ? Json(*p.support) : Json()},
+                     {"azimuth", report.views[i].camera().azimuth},
+                     {"elevation", report.views[i].camera().elevation},
+                     {"overlap", match.overlap},
+                     {"correlation", match.correlation},
+                     {"turn", match.turn},
+                     {"turn_found", match.turned},
+                     {"gain", match.gain},
+                     {"gain_found", match.exposed}});
+  }
+  return {{"views", views},
+          {"blind_share", report.assembly.blindShare},
+          {"fill", report.arguments.fill},
+          {"mapping", mappingName(report.target.mapping)},
+          {"width", report.target.size.width},
+          {"height", report.target.size.height}};
+}
+
+void print(const Report& report) {
+  for (size_t i = 0; i < report.views.size(); ++i) {
+    const AssemblyPhotograph& p = report.photographs[i];
+    fmt::print("photograph   {}\n", p.file);
+    fmt::print("circle       {:.2f},{:.2f},{:.2f}{}\n", p.circle.centre.x, p.circle.centre.y,
+               p.circle.radius,
+               p.support ? fmt::format(", found: {:.0f}% of it are edges", 100 * *p.support) : "");
+    fmt::print("camera       azimuth {:.6g}, elevation {:.6g}\n", report.views[i].camera().azimuth,
+               report.views[i].camera().elevation);
+    if (i == 0) continue;
+    const ViewMatch& match = report.matches[i];
+    fmt::print("overlap      {:.3g}% of the sphere with the views before, correlation {:.3f}\n",
+               100 * match.overlap, match.correlation);
+    fmt::print("turned by    {:.3f} degrees\n", match.turn);
+    fmt::print("multiplied   by {:.5g}\n", match.gain);
+  }
+  fmt::print("blind        {:.3g}% of the sphere, filled by {}\n", 100 * report.assembly.blindShare,
+             report.arguments.fill);
+  fmt::print("probe        {} x {}, {}\n", report.target.size.width, report.target.size.height,
+             mappingName(report.target.mapping));
+}
+
+void warnOf(const Report& report) {
+  for (size_t i = 0; i < report.views.size(); ++i) {
+    const AssemblyPhotograph& p = report.photographs[i];
+    const ViewMatch& match = report.matches[i];
+    const double inside = shareInside(p.circle, p.image.width, p.image.height);
+    if (inside < 0.999)
+      warn(fmt::format("{}: {:.2g}% of its circle is outside the picture, and blind", p.file,
+                       100 * (1 - inside)));
+    if (i == 0) continue;
+    if (!report.arguments.keepAzimuth && !match.turned)
+      warn(
+          fmt::format("{}: no turn of up to {} degrees matches the photographs before "
+                      "(correlation {:.2f} over {:.2g}% of the sphere); its azimuth is kept",
+                      p.file, kLargestTurn, match.correlation, 100 * match.overlap));
+    if (!report.arguments.keepExposure && !match.exposed)
+      warn(fmt::format("{}: hardly overlaps the photographs before; its exposure is kept", p.file));
+  }
+  if (!report.arguments.isFisheye() && report.arguments.reflectivity.empty() &&
+      report.arguments.ballIor.empty())
+    warn(
+        "no --reflectivity: the probe is as dark as the ball, which reflects only a part of the "
+        "light");
+}
+
+Image preview(const Report& report) {
+  std::vector<PhotographPreview> previews;
+  for (size_t i = 0; i < report.views.size(); ++i) {
+    const AssemblyPhotograph& p = report.photographs[i];
+    previews.push_back({&p.image, &p.mask, p.circle, report.matches[i].gain});
+  }
+  return assemblyPreview(previews, report.assembly);
+}
+
+void run(const AssembleArguments& arguments) {
+  checkFiles(arguments);
+  const std::shared_ptr<const CaptureOptics> optics = parseOptics(arguments);
+  const BlindFill fill = parseFill(arguments.fill);
+  const std::vector<AssemblyPhotograph> photographs = loadPhotographs(arguments);
+  std::vector<CaptureView> views;
+  for (const AssemblyPhotograph& p : photographs)
+    views.emplace_back(p.image, p.mask, p.circle, optics, p.camera);
+  const AssemblyTarget target = parseTarget(arguments, views);
+  std::optional<BusyLine> busy("assembling");
+  const std::vector<ViewMatch> matches =
+      matchViews(views, !arguments.keepExposure, !arguments.keepAzimuth);
+  Assembly assembly = assemble(views, target.merged);
+  fillBlind(fill, assembly);
+  const Image probe = convert(assembly.latLong, Mapping::LatLong, target.mapping, target.size);
+  busy.reset();
+
+  const Report report{arguments, photographs, views, matches, assembly, target};
+  warnOf(report);
+  writeProbe(arguments.out, probe);
+  if (!arguments.preview.empty()) writeImage(arguments.preview, preview(report));
+  if (arguments.json)
+    fmt::print("{}\n", toJson(report).dump(2, ' ', false, Json::error_handler_t::replace));
+  else
+    print(report);
+}
+
+}  // namespace
+
+void addProbeAssembleCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<AssembleArguments>();
+  CLI::App* command = probe.add_subcommand(
+      "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.");
+  addAssembleOptions(*command, *arguments);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe merge 1.jpg 2.jpg ... -o hdr.exr
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/capture/filter_transmission.h"
+#include "probe_commands.h"
+#include "probe_merge_options.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
+Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+Json orNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+Json toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
+  Json exposures = Json::array(), agreements = Json::array();
+  for (size_t i = 0; i < series.files.size(); ++i)
+    exposures.push_back({{"file", series.files[i]},
+                         {"time", merged.settings[i].time},
+                         {"aperture", orNull(merged.settings[i].aperture)},
+                         {"iso", orNull(merged.settings[i].iso)},
+                         {"factor", toJson(merged.factors[i])},
+                         {"used_pixels", merged.image.uses[i].weighted},
+                         {"saturated_pixels", merged.image.uses[i].saturated}});
+  for (const Agreement& a : merged.agreements)
+    agreements.push_back(
+        {{"longer", a.longer + 1},
+         {"shorter", a.shorter + 1},
+         {"given", a.factor},
+         {"found_over_given", {orNull(a.found.x), orNull(a.found.y), orNull(a.found.z)}},
+         {"pixels", a.pixels}});
+  return {{"exposures", exposures},
+          {"response", merged.responseName},
+          {"white", merged.white},
+          {"agreement", agreements},
+          {"pixels", merged.image.clipped.texels.size()},
+          {"clipped_in_all", merged.image.clippedPixels},
+          {"underexposed_in_all", merged.image.underexposedPixels}};
+}
+
+std::string timeText(double seconds) {
+  return seconds < 0.4 ? fmt::format("1/{:.4g} s", 1 / seconds) : fmt::format("{:.4g} s", seconds);
+}
+
+std::string factorText(const dvec3& f) {
+  const bool isGrey = f.x == f.y && f.y == f.z;
+  return isGrey ? fmt::format("{:.4g}", f.x) : fmt::format("{:.4g} {:.4g} {:.4g}", f.x, f.y, f.z);
+}
+
+std::string settingsText(const CameraSettings& settings) {
+  std::string text = timeText(settings.time);
+  if (settings.aperture) text += fmt::format(", f/{:g}", *settings.aperture);
+  if (settings.iso) text += fmt::format(", ISO {:g}", *settings.iso);
+  return text;
+}
+
+void print(const PhotographSeries& series, const MergedPhotographs& merged) {
+  const double pixels = double(merged.image.clipped.texels.size()) / 100;
+  for (size_t i = 0; i < series.files.size(); ++i)
+    fmt::print("exposure {:<3}    {}: {}, factor {}; {:.3g}% used, {:.3g}% saturated\n", i + 1,
+               series.files[i], settingsText(merged.settings[i]), factorText(merged.factors[i]),
+               double(merged.image.uses[i].weighted) / pixels,
+               double(merged.image.uses[i].saturated) / pixels);
+  for (const Agreement& a : merged.agreements)
+    if (const auto error = a.error())
+      fmt::print("ratio {:>3} : {:<3}   given {:.5g}, found {:.5g} {:.5g} {:.5g} ({:.2g}% off)\n",
+                 a.longer + 1, a.shorter + 1, a.factor, a.factor * a.found.x, a.factor * a.found.y,
+                 a.factor * a.found.z, 100 * *error);
+  fmt::print("response        {}, white at {:g}\n", merged.responseName, merged.white);
+  fmt::print("clipped         {} pixels in all exposures, {:.3g}%\n", merged.image.clippedPixels,
+             double(merged.image.clippedPixels) / pixels);
+  fmt::print("under-exposed   {} pixels in all exposures, {:.3g}%\n",
+             merged.image.underexposedPixels, double(merged.image.underexposedPixels) / pixels);
+}
+
+void merge(const MergeArguments& arguments) {
+  if (arguments.files.empty()) throwInput("probe merge: give the photographs to merge");
+  if (arguments.output.empty()) throwInput("probe merge: give -o, the image to write");
+  const PhotographSeries series = arguments.series();
+  checkWritable(arguments.output);
+  if (lowerExtension(arguments.output) == ".png")
+    throwInput("{}: a .png cannot hold the range; give an .exr, .hdr or .pfm", arguments.output);
+  if (!arguments.responseOutput.empty()) checkReplaceable(arguments.responseOutput);
+  std::vector<std::string> inputs = series.files;
+  for (const auto& flatField : series.flatFields) inputs.push_back(flatField.file);
+  inputs.push_back(series.response);
+  checkDistinct({arguments.output, arguments.responseOutput}, inputs);
+
+  MergedPhotographs merged = mergePhotographs(series);
+  print(merged.warnings, false);
+  if (arguments.json)
+    fmt::print("{}\n", toJson(series, merged).dump(2, ' ', false, Json::error_handler_t::replace));
+  else
+    print(series, merged);
+  if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
+  writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
+                                            {"clipped", "", std::move(merged.image.clipped)}},
+                                           {},
+                                           {},
+                                           {}});
+}
+
+void calibrate(const MergeArguments& arguments) {
+  constexpr double kTolerance = 0.02;
+  if (!arguments.files.empty() || !arguments.output.empty())
+    throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
+  const auto read = [](const std::string& path) {
+    ImageFile file = readImageFile(path);
+    std::optional<Image> clipped = findLayer(file, "clipped");
+    return std::pair{colorOf(std::move(file), path), std::move(clipped)};
+  };
+  const auto [with, clippedWith] = read(arguments.calibration[0]);
+  const auto [without, clippedWithout] = read(arguments.calibration[1]);
+  if (with.width != without.width || with.height != without.height)
+    throwInput("{}: is {} x {}, but {} is {} x {}; give two images of one view",
+               arguments.calibration[0], with.width, with.height, arguments.calibration[1],
+               without.width, without.height);
+  const FilterTransmission filter =
+      filterTransmission(with, clippedWith ? &*clippedWith : nullptr, without,
+                         clippedWithout ? &*clippedWithout : nullptr);
+  const dvec3& t = filter.transmission;
+  for (int c = 0; c < 3; ++c)
+    if (!(std::abs(filter.median[c] / t[c] - 1) <= kTolerance)) {
+      warn(
+          fmt::format("the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
+                      "of their sums: is the light or the scene another, or dark noise strong?",
+                      filter.median.x, filter.median.y, filter.median.z));
+      break;
+    }
+  if (arguments.json)
+    fmt::print("{}\n", Json{{"transmission", toJson(t)},
+                            {"median", toJson(filter.median)},
+                            {"pixels", filter.pixels}}
+                           .dump(2));
+  else
+    fmt::print("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
+}
+
+}  // namespace
+
+void addProbeMergeCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<MergeArguments>();
+  CLI::App* command = probe.add_subcommand(
+      "merge",
+      "Merge photographs of one view that differ in exposure into an image of high dynamic range.");
+  arguments->addTo(*command);
+  command->callback([arguments] {
+    if (arguments->calibration.empty())
+      merge(*arguments);
+    else
+      calibrate(*arguments);
+  });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of `chromeball probe merge`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "probe/capture/merge_photographs.h"
+
+namespace chromeball {
+
+struct MergeArguments {
+  std::vector<std::string> files, ratios, filters, flatFields, calibration;
+  std::string output, exposures, apertures, response, responseOutput, smoothness, white;
+  bool unaligned = false, json = false;
+
+  void addTo(CLI::App& command);
+
+  // What they ask for, without looking at files. Throws InputError.
+  PhotographSeries series() const;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe reflectivity PHOTO --direct X,Y,W,H --reflected X,Y,W,H
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "image/io/read_image.h"
+#include "job/arguments.h"
+#include "messages.h"
+#include "probe/capture/reflectivity.h"
+#include "probe_commands.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using glm::dvec3;
+
+struct Arguments {
+  std::string photograph, direct, reflected, against, standard;
+  std::optional<double> saturation;
+  bool json = false;
+};
+
+struct Photograph {
+  Image image;
+  double saturation;  // channels from here on are clipped
+};
+
+// Integer files are clipped at white, half floats at 65504.
+Photograph load(const std::string& file, const std::optional<double>& saturation) {
+  constexpr double kWhite = 1, kLargestHalf = 65504;
+  ImageFile read = readImageFile(file);
+  const bool hasIntegers = read.integers;
+  if (hasIntegers)
+    warn(fmt::format(
+        "{}: has integer texels: decoded from sRGB, without the response of the camera", file));
+  return {colorOf(std::move(read), file), saturation.value_or(hasIntegers ? kWhite : kLargestHalf)};
+}
+
+dvec3 parseStandard(const std::string& text) {
+  if (text.empty()) return dvec3(1);
+  const bool isOne = text.find(',') == std::string::npos;
+  const std::vector<double> c = parseNumbers(text, isOne ? 1 : 3, "--standard-reflectance");
+  for (const double channel : c)
+    if (!(channel > 0 && channel <= 1))
+      throwInput("--standard-reflectance: {} should be above 0, up to 1", channel);
+  return isOne ? dvec3(c[0]) : dvec3(c[0], c[1], c[2]);
+}
+
+bool isRectangle(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 3 &&
+         text.find_first_not_of("0123456789,-") == std::string::npos;
+}
+
+// The patch to compare with: in the photograph, or in another one.
+PatchMean denominator(const Arguments& arguments, const Photograph& photograph) {
+  if (isRectangle(arguments.against)) {
+    if (!arguments.direct.empty())
+      throwInput("--against: a rectangle takes the place of --direct; give one of them");
+    return patchMean(photograph.image, parseRectangle(arguments.against, "--against"),
+                     photograph.saturation, "--against");
+  }
+  if (arguments.direct.empty())
+    throwInput("--direct: give the rectangle X,Y,WIDTH,HEIGHT to compare with");
+  const PixelRectangle rectangle = parseRectangle(arguments.direct, "--direct");
+  if (arguments.against.empty())
+    return patchMean(photograph.image, rectangle, photograph.saturation, "--direct");
+  const Photograph standard = load(arguments.against, arguments.saturation);
+  return patchMean(standard.image, rectangle, standard.saturation, "--direct");
+}
+
+Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json toJson(const PatchMean& patch) {
+  return {{"mean", toJson(patch.mean)},
+          {"standard_error", toJson(patch.standardError)},
+          {"pixels", patch.pixels}};
+}
+
+void run(const Arguments& arguments) {
+  const dvec3 standard = parseStandard(arguments.standard);
+  if (arguments.saturation && !(*arguments.saturation > 0))
+    throwInput("--saturation: {} should be above 0", *arguments.saturation);
+  const PixelRectangle rectangle = parseRectangle(arguments.reflected, "--reflected");
+  const Photograph photograph = load(arguments.photograph, arguments.saturation);
+  const PatchMean reflected =
+      patchMean(photograph.image, rectangle, photograph.saturation, "--reflected");
+  const PatchMean direct = denominator(arguments, photograph);
+  const Reflectivity result = reflectivity(
+      reflected, direct, standard, isRectangle(arguments.against) ? "--against" : "--direct");
+  const double percent = 100 * luminance(result.value);
+  if (std::max({result.value.x, result.value.y, result.value.z}) > 1)
+    warn("a reflectivity above 1: are the rectangles exchanged, or lit differently?");
+  if (arguments.json) {
+    const Json json = {{"file", arguments.photograph},
+                       {"reflectivity", toJson(result.value)},
+                       {"standard_error", toJson(result.standardError)},
+                       {"percent", percent},
+                       {"reflected", toJson(reflected)},
+                       {"direct", toJson(direct)},
+                       {"standard_reflectance", toJson(standard)}};
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return;
+  }
+  const auto triple = [](const dvec3& v) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z);
+  };
+  fmt::print("direct          {}, the mean of {} pixels\n", triple(direct.mean), direct.pixels);
+  fmt::print("reflected       {}, the mean of {} pixels\n", triple(reflected.mean),
+             reflected.pixels);
+  fmt::print("reflectivity    {:.4f},{:.4f},{:.4f}\n", result.value.x, result.value.y,
+             result.value.z);
+  fmt::print("standard error  {:.2g} {:.2g} {:.2g}\n", result.standardError.x,
+             result.standardError.y, result.standardError.z);
+  fmt::print("{:.0f}% reflective\n", percent);
+}
+
+}  // namespace
+
+void addProbeReflectivityCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "reflectivity",
+      "Measure how much a mirror ball or a paint reflects, from a photograph that shows a surface "
+      "directly and in the ball, or the paint and a standard.");
+  command->add_option("PHOTO", arguments->photograph, "a linear image")->required();
+  command->add_option("--direct", arguments->direct,
+                      "X,Y,WIDTH,HEIGHT in pixels: the surface seen directly, or the standard");
+  command
+      ->add_option("--reflected", arguments->reflected,
+                   "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint")
+      ->required();
+  command->add_option("--against", arguments->against,
+                      "where the standard is: the photograph in which --direct lies, or its "
+                      "rectangle in PHOTO");
+  command->add_option("--standard-reflectance", arguments->standard,
+                      "X or R,G,B of the standard; else 1");
+  command->add_option("--saturation", arguments->saturation,
+                      "the level from which on channels are clipped; else 1 in integer images, and "
+                      "65504");
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

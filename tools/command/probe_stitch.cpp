@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe stitch TILES.toml -o OUT
+#include <filesystem>
+#include <optional>
+
+#include "base/error.h"
+#include "busy_line.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "job/tile_file.h"
+#include "messages.h"
+#include "probe/capture/stitch.h"
+#include "probe_commands.h"
+#include "write_probe.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string list, out, poses, size;
+  bool refine = false, sameExposure = false;
+};
+
+std::vector<Tile> load(const std::vector<TileEntry>& entries) {
+  std::vector<Tile> tiles;
+  for (const TileEntry& entry : entries) {
+    tiles.push_back({entry.file, readImage(entry.file), Rotation::ofAngles(entry.pose), entry.fov});
+    for (const float channel : tiles.back().image.texels)
+      if (!std::isfinite(channel)) throwInput("{}: has invalid pixels", entry.file);
+  }
+  return tiles;
+}
+
+// Fills in the refined poses.
+void refine(std::vector<TileEntry>& entries, std::vector<Tile>& tiles) {
+  std::optional<BusyLine> busy("refining poses");
+  const PoseRefinement refinement = refinePoses(tiles);
+  busy.reset();
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    entries[i].pose = tiles[i].pose.angles();
+    const Rotation::Angles& pose = entries[i].pose;
+    fmt::print("{}  yaw {:.4f}, pitch {:.4f}, roll {:.4f}: turned by {:.4f} degrees\n",
+               entries[i].file, pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
+  }
+  fmt::print("overlaps differ by {:.3g}% before and {:.3g}% after, RMS of the log radiance\n",
+             100 * refinement.before, 100 * refinement.after);
+}
+
+std::vector<double> gainsOf(const Arguments& arguments, const std::vector<Tile>& tiles) {
+  if (arguments.sameExposure) return std::vector<double>(tiles.size(), 1.0);
+  const std::vector<double> gains = tileGains(tiles);
+  for (size_t i = 0; i < tiles.size(); ++i)
+    fmt::print("{}  gain {:.4f}\n", tiles[i].name, gains[i]);
+  return gains;
+}
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  if (!arguments.poses.empty()) checkOutputFile(arguments.poses, {".toml"});
+  if (!arguments.poses.empty() && !arguments.refine)
+    throwInput("--poses: are those that --refine finds");
+  const std::optional<ImageSize> given =
+      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
+  std::vector<TileEntry> entries = readTiles(arguments.list);
+  std::vector<std::string> inputs{arguments.list};
+  for (const TileEntry& entry : entries) inputs.push_back(entry.file);
+  std::vector<std::string> outputs{arguments.out};
+  if (!arguments.poses.empty()) outputs.push_back(arguments.poses);
+  checkDistinct(outputs, inputs);
+  std::vector<Tile> tiles = load(entries);
+  if (arguments.refine) refine(entries, tiles);
+  const std::vector<double> gains = gainsOf(arguments, tiles);
+  std::optional<BusyLine> busy("stitching");
+  const StitchedProbe probe = stitch(tiles, gains, given.value_or(stitchedSize(tiles)));
+  busy.reset();
+  constexpr double kGap = 1e-5;
+  if (probe.uncovered > kGap)
+    warn(fmt::format("{:.3g}% of the sphere is in no tile, and black", 100 * probe.uncovered));
+  writeProbe(arguments.out, probe.latLong);
+  if (!arguments.poses.empty()) writeTiles(arguments.poses, entries);
+}
+
+}  // namespace
+
+void addProbeStitchCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "stitch", "Stitch photographs of known direction (tiles) to a lat-long probe.");
+  command->add_option("TILES", arguments->list, "the list of tiles (.toml); see below")->required();
+  command->add_option("-o,--output", arguments->out, "the probe to write: .exr, .hdr, .pfm or .png")
+      ->required();
+  command->add_option("--size", arguments->size,
+                      "WIDTHxHEIGHT; else the size that keeps the detail of the tiles");
+  command->add_flag("--refine", arguments->refine,
+                    "turn all tiles but the first until they agree where they overlap");
+  command->add_option("--poses", arguments->poses,
+                      "with --refine: write the list with the poses that were found (.toml), for "
+                      "other exposures from the same directions");
+  command->add_flag("--same-exposure", arguments->sameExposure,
+                    "take the tiles as they are; else factors make them agree where they overlap");
+  command->footer(
+      "The list:\n"
+      "  fov = 50            # vertical, degrees; of all tiles that give none\n"
+      "  [[tile]]\n"
+      "  file = \"a.exr\"      # linear, relative to the list\n"
+      "  yaw = 40            # of the camera, as of a probe's rotation: 0 looks along -Z,\n"
+      "  pitch = 10          # positive yaw to the left, positive pitch up,\n"
+      "  roll = 0            # positive roll lifts the camera's right\n");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe sun CLIPPED.exr --diffuse BALL.exr --circle X,Y,R --paint R,G,B --camera AZ,EL
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "lighting/light_file.h"
+#include "lighting/light_list.h"
+#include "messages.h"
+#include "probe/capture/clipped_sun.h"
+#include "probe/capture/sun_from_ball.h"
+#include "probe/sky.h"
+#include "probe_commands.h"
+#include "write_probe.h"
+
+namespace chromeball {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string probe, mapping = "auto", ball, circle, paint, camera, distance, direction, mask;
+  std::string output, lights, residual;
+  double angle = 0.53;
+  bool json = false;
+};
+
+DiffuseBall parseBall(const Arguments& arguments) {
+  const std::vector<double> circle = parseNumbers(arguments.circle, 3, "--circle");
+  const std::vector<double> paint = parseNumbers(arguments.paint, 3, "--paint");
+  const std::vector<double> camera = parseNumbers(arguments.camera, 2, "--camera");
+  DiffuseBall ball{.centre = {circle[0], circle[1]},
+                   .radius = circle[2],
+                   .paint = {paint[0], paint[1], paint[2]},
+                   .azimuth = camera[0],
+                   .elevation = camera[1]};
+  if (!(ball.radius >= 8)) throwInput("--circle: the radius {} should be at least 8", ball.radius);
+  for (const double channel : paint)
+    if (!(channel > 0 && channel <= 1))
+      throwInput("--paint: {} should be a reflectance, above 0 and at most 1", arguments.paint);
+  if (std::abs(ball.elevation) > 90)
+    throwInput("--camera: the elevation {} should be -90 to 90 degrees", ball.elevation);
+  if (!arguments.distance.empty())
+    ball.distance = parseNumbers(arguments.distance, 1, "--distance").front();
+  if (!(ball.distance > 1))
+    throwInput("--distance: {} should be above 1, in radii of the ball", ball.distance);
+  return ball;
+}
+
+// 1 where a pixel of the ball does not count: outside the mask, or saturated.
+Image excludedPixels(const Arguments& arguments, const ImageFile& file, const Image& photograph) {
+  constexpr float kSaturated = 0.98f;
+  const std::optional<Image> clipped = findLayer(file, "clipped");
+  Image mask;
+  if (!arguments.mask.empty()) mask = readImage(arguments.mask, IntegerTexels::Linear);
+  if (!mask.empty() && (mask.width != photograph.width || mask.height != photograph.height))
+    throwInput("{}: is {} x {}, but {} is {} x {}; a mask has the photograph's size",
+               arguments.mask, mask.width, mask.height, arguments.ball, photograph.width,
+               photograph.height);
+  Image excluded(photograph.width, photograph.height, 1);
+  for (int y = 0; y < excluded.height; ++y)
+    for (int x = 0; x < excluded.width; ++x) {
+      const bool isMasked = !mask.empty() && !(maxComponent(mask.rgb(x, y)) > 0.5f);
+      const bool isClipped = clipped && *clipped->at(x, y) > 0.5f;
+      const bool isWhite = file.integers && maxComponent(photograph.rgb(x, y)) >= kSaturated;
+      *excluded.at(x, y) = isMasked || isClipped || isWhite ? 1 : 0;
+    }
+  return excluded;
+}
+
+BallSamples readBall(const Arguments& arguments, const DiffuseBall& ball) {
+  const ImageFile file = readImageFile(arguments.ball);
+  const Image photograph = colorOf(ImageFile(file), arguments.ball);
+  if (file.integers)
+    warn(fmt::format("{}: has integer texels, decoded as sRGB; a merged .exr is linear",
+                     arguments.ball));
+  BallSamples samples =
+      sampleBall(ball, photograph, excludedPixels(arguments, file, photograph), arguments.ball);
+  if (samples.invalid > 0)
+    warn(fmt::format("{}: left out {} pixels that are not finite, or negative", arguments.ball,
+                     samples.invalid));
+  return samples;
+}
+
+// Where the sun is, and the width of its plateau if that shows it.
+struct Direction {
+  dvec3 direction;
+  std::optional<double> width;
+};
+
+Direction directionOf(const Arguments& arguments, const LoadedProbe& probe) {
+  constexpr double kWide = 3;
+  if (!arguments.direction.empty()) {
+    const std::vector<double> d = parseNumbers(arguments.direction, 3, "--direction");
+    const dvec3 direction(d[0], d[1], d[2]);
+    if (!(glm::length(direction) > 0)) throwInput("--direction: should not be 0,0,0");
+    return {glm::normalize(direction), std::nullopt};
+  }
+  const std::optional<Image> clipped = loadClippedLayer(arguments.probe, probe);
+  const ClippedSun sun =
+      findClippedSun(probe.latLong, clipped ? &*clipped : nullptr, arguments.probe);
+  if (sun.width > kWide)
+    warn(
+        fmt::format("{}: what is clipped around the sun is {:.2g} degrees wide, so that its "
+                    "direction is uncertain; give --direction",
+                    arguments.probe, sun.width));
+  if (sun.rivals > 0)
+    warn(
+        fmt::format("{}: {} other clipped region{} half as large as the sun's or larger; give "
+                    "--direction if the sun is another one",
+                    arguments.probe, sun.rivals, sun.rivals == 1 ? " is" : "s are"));
+  return {sun.direction, sun.width};
+}
+
+// An .exr holds the residual itself; in a .png 0 is middle grey, and 10% of the mean black or
+// white.
+void writeResidual(const std::string& path, const SunFromBall& result, const BallSamples& ball) {
+  Image image = result.residual;
+  if (lowerExtension(path) == ".png") {
+    dvec3 sum(0);
+    for (const BallSample& sample : ball.samples) sum += sample.radiance;
+    const float mean = float((sum.x + sum.y + sum.z) / (3 * double(ball.samples.size())));
+    for (float& channel : image.texels)
+      channel = srgbToLinear(std::clamp(0.5f + 5 * channel / mean, 0.0f, 1.0f));
+  }
+  writeImage(path, image);
+}
+
+Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
+  return {{"direction", toJson(result.sun.direction)},
+          {"clipped_width", direction.width ? Json(*direction.width) : Json(nullptr)},
+          {"angle", result.sun.angle},
+          {"alpha", toJson(result.alpha)},
+          {"irradiance", toJson(result.sun.irradiance)},
+          {"radiance", toJson(result.radiance())},
+          {"samples", ball.samples.size()},
+          {"pixels_per_sample", ball.block * ball.block},
+          {"rms_clipped", result.rmsOfProbe},
+          {"rms", result.rms},
+          {"explained", result.explained}};
+}
+
+void print(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
+  const auto triple = [](const dvec3& v) {
+    return fmt::format("{:.5g} {:.5g} {:.5g}", v.x, v.y, v.z);
+  };
+  const auto width = direction.width
+                         ? fmt::format(", clipped {:.3g} degrees wide", *direction.width)
+                         : std::string();
+  fmt::print("direction   {}{}\n", triple(result.sun.direction), width);
+  fmt::print("alpha       {}, of a sun of irradiance pi\n", triple(result.alpha));
+  fmt::print("irradiance  {}\n", triple(result.sun.irradiance));
+  fmt::print("radiance    {}, {:g} degrees wide\n", triple(result.radiance()), result.sun.angle);
+  fmt::print("samples     {} of {} pixel{}\n", ball.samples.size(), ball.block * ball.block,
+             ball.block == 1 ? "" : "s");
+  fmt::print("residual    {:.3g}% of the mean, RMS; {:.3g}% without the sun\n", 100 * result.rms,
+             100 * result.rmsOfProbe);
+  fmt::print("explained   {:.3g}% of the samples within {:g}% of the mean\n",
+             100 * result.explained, 100 * kExplained);
+}
+
+void run(const Arguments& arguments) {
+  const DiffuseBall ball = parseBall(arguments);
+  if (!(arguments.angle > 0 && arguments.angle <= kMaxListedAngle))
+    throwInput("--angle: should be above 0 and at most {} degrees", kMaxListedAngle);
+  for (const std::string& image : {arguments.output, arguments.residual})
+    if (!image.empty()) checkWritable(image);
+  if (!arguments.lights.empty() && lightFormat(arguments.lights, "", "") != LightFormat::Json)
+    throwInput("--lights: {} should end in .json, which [[light]] and `probe add-sun` read",
+               arguments.lights);
+  if (!arguments.lights.empty()) checkReplaceable(arguments.lights);
+  checkDistinct({arguments.output, arguments.lights, arguments.residual},
+                {arguments.probe, arguments.ball, arguments.mask});
+
+  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
+  const Direction direction = directionOf(arguments, probe);
+  const BallSamples samples = readBall(arguments, ball);
+  const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
+  if (arguments.json)
+    fmt::print("{}\n", toJson(result, direction, samples).dump(2));
+  else
+    print(result, direction, samples);
+  const Sun& sun = result.sun;
+  if (!arguments.residual.empty()) writeResidual(arguments.residual, result, samples);
+  if (!arguments.lights.empty())
+    writeLights(arguments.lights,
+                LightRig{.probe = arguments.probe,
+                         .method = "sun",
+                         .ambient = {},
+                         .lights = {{vec3(sun.direction), Rgb(sun.irradiance), float(sun.angle)}}});
+  if (!arguments.output.empty()) {
+    addSunDisc(probe.latLong, sun.direction, sun.angle, sun.irradiance);
+    writeProbe(arguments.output, probe.latLong);
+  }
+}
+
+}  // namespace
+
+void addProbeSunCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      probe.add_subcommand("sun",
+                           "Find the irradiance of a sun that a probe's photographs have clipped, "
+                           "from a photograph of a "
+                           "diffuse ball in the same light and with the same exposure.");
+  command->add_option("CLIPPED", arguments->probe, "the probe's image")->required();
+  command->add_option("--diffuse", arguments->ball, "the photograph of the ball, linear")
+      ->required();
+  command->add_option("--circle", arguments->circle, "X,Y,R: the ball in it, in pixels")
+      ->required();
+  command->add_option("--paint", arguments->paint, "R,G,B: the reflectance of the ball")
+      ->required();
+  command
+      ->add_option("--camera", arguments->camera,
+                   "AZ,EL: where the camera is, seen from the ball, in degrees: 0 is +Z, 90 is +X; "
+                   "elevation 90 is +Y")
+      ->required();
+  command->add_option("--distance", arguments->distance,
+                      "of the camera, in radii of the ball; without it infinite");
+  command->add_option("--angle", arguments->angle, "diameter of the sun in degrees")
+      ->capture_default_str();
+  command->add_option("--direction", arguments->direction,
+                      "X,Y,Z: towards the sun; without it the middle of what is clipped: the layer "
+                      "`clipped` (`probe merge`), or the brightest texels");
+  command->add_option("--mask", arguments->mask,
+                      "an image of the photograph's size, black where the ball does not count");
+  command->add_option("-o,--output", arguments->output,
+                      "the lat-long map with the sun to write: .exr, .hdr, .pfm or .png");
+  command->add_option("--lights", arguments->lights,
+                      "the sun as a list of lights to write, .json; [[light]] `file` reads it");
+  command->add_option("--residual", arguments->residual,
+                      "an image to write of what neither probe nor sun explain: .exr, or .png in "
+                      "which black and white are 10% of the mean");
+  command->add_option("--mapping", arguments->mapping, "the mapping of CLIPPED; auto detects it");
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
