@@ -64,10 +64,9 @@ DirectLight::LightSample DirectLight::ofGuide(const GuideRegion& region,
   return {{sample.direction, found.radiance / pdf, pdf}, found.pdf};
 }
 
-// What a light sample adds to the radiance if nothing blocks it.
-Rgb DirectLight::contribution(const DirectionSample& light, const BsdfValue& bsdf) const {
-  const float weight = light.isDelta ? 1 : lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf);
-  return bsdf.fCos * light.irradiance * weight;
+// f cos with the MIS weight of a light sample: what its irradiance is multiplied by.
+Rgb DirectLight::weighted(const DirectionSample& light, const BsdfValue& bsdf) const {
+  return bsdf.fCos * (light.isDelta ? 1 : lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf));
 }
 
 // The record of a light sample that nothing blocks.
@@ -83,14 +82,16 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
           .bsdfPdf = bsdf.pdf};
 }
 
-// contribution() by group.
-void DirectLight::addToGroups(const Vertex& vertex, const DirectionSample& light,
-                              const BsdfValue& bsdf, const Rgb& passed,
+// `scattered`: what reaches the viewer per irradiance of the sample. `source`: as
+// LightGroups::rangeOf().
+void DirectLight::addToGroups(std::optional<size_t> source, const Vertex& vertex,
+                              const DirectionSample& light, const Rgb& scattered,
                               PathContext& context) const {
-  const Rgb weight = vertex.throughput * bsdf.fCos * passed;
-  if (light.isDelta) return context.groups->addDelta(light, weight * light.irradiance);
-  const float ofSample = lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf) / light.pdf;
-  context.groups->addEscaped(vertex.point, light.wi, weight * ofSample);
+  const Rgb weight = vertex.throughput * scattered;
+  if (light.isDelta || light.end.instance != LightEnd::kNone)
+    return context.groups->addSample(source, light, weight * light.irradiance);
+  const LightingStrategy& lighting = source ? *world_.sources.all[*source] : lighting_;
+  context.groups->addEscaped(lighting, source, vertex.point, light.wi, weight / light.pdf);
 }
 
 Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
@@ -101,9 +102,10 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     if (isBlack(bsdf.fCos)) return;
     const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
     if (isBlack(passed)) return;
-    sum += contribution(light.direction, bsdf) * passed;
+    const Rgb scattered = weighted(light.direction, bsdf) * passed;
+    sum += scattered * light.direction.irradiance;
     if (context.groups) [[unlikely]]
-      addToGroups(vertex, light.direction, bsdf, passed, context);
+      addToGroups({}, vertex, light.direction, scattered, context);
     if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
   };
   if (guideChooses(vertex, context)) {
@@ -137,7 +139,7 @@ void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLig
     return;
   }
   const LightSample sample = ofStrategy(vertex, light.sample);
-  light.radiance = throughput * contribution(sample.direction, bsdf);
+  light.radiance = throughput * weighted(sample.direction, bsdf) * sample.direction.irradiance;
   if (context.records) light.record = record(vertex.point, sample, bsdf);
 }
 
@@ -145,7 +147,8 @@ void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight
                            const PathContext& context) const {
   const LightSample sample =
       ofGuide(*light.region, {light.shadowRay.direction, light.treePdf}, found);
-  light.radiance = light.throughput * contribution(sample.direction, light.bsdf);
+  light.radiance =
+      light.throughput * weighted(sample.direction, light.bsdf) * sample.direction.irradiance;
   if (context.records) light.record = record(light.point, sample, light.bsdf);
 }
 
@@ -167,10 +170,10 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
       ray.direction = (light.end.position - ray.origin) / ray.tMax;
     }
     const Rgb passed = transmittance(vertex, ray, context, light.end.instance);
-    const Rgb found = (contribution(light, broad) + contribution(light, narrow)) * passed;
-    sum += found;
+    const Rgb scattered = (weighted(light, broad) + weighted(light, narrow)) * passed;
+    sum += scattered * light.irradiance;
     if (context.groups) [[unlikely]]
-      context.groups->addOfScene(source, light, vertex.throughput * found);
+      addToGroups(source, vertex, light, scattered, context);
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "integrate/context.h"
 #include "integrate/guided_bsdf.h"
@@ -72,9 +73,9 @@ class DirectLight {
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
                              const LightingStrategy::Escaped& found);
-  Rgb contribution(const DirectionSample& light, const BsdfValue& bsdf) const;
-  void addToGroups(const Vertex& vertex, const DirectionSample& light, const BsdfValue& bsdf,
-                   const Rgb& passed, PathContext& context) const;
+  Rgb weighted(const DirectionSample& light, const BsdfValue& bsdf) const;
+  void addToGroups(std::optional<size_t> source, const Vertex& vertex, const DirectionSample& light,
+                   const Rgb& scattered, PathContext& context) const;
   static LightRecord record(const LightPoint& point, const LightSample& light,
                             const BsdfValue& bsdf);
 

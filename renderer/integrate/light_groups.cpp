@@ -4,16 +4,27 @@
 #include <algorithm>
 
 namespace chromeball {
+namespace {
+
+// An EXR channel, with its layer's prefix, a number and ".R", has 255 bytes at most.
+std::string shortened(const std::string& name) {
+  constexpr size_t kMaxBytes = 200;
+  size_t end = std::min(name.size(), kMaxBytes);
+  while (end < name.size() && (uint8_t(name[end]) & 0xC0) == 0x80) --end;  // whole UTF-8 characters
+  return name.substr(0, end);
+}
+
+}  // namespace
 
 LightGroups::LightGroups(const World& world, const LightingStrategy& lighting)
     : scene_(world.scene), ofNode_(world.scene.nodeNames.size(), -1) {
   const Scene& scene = world.scene;
-  for (const std::string& name : lighting.groups()) add(name);
-  countOfStrategy_ = names_.size();
-  for (const auto& source : world.sources.all) {
-    firstOfSource_.push_back(int(names_.size()));
-    for (const std::string& name : source->groups()) add(name);
-  }
+  const auto addSource = [&](const LightingStrategy& source) {
+    for (const std::string& name : source.groups()) add(name);
+    ends_.push_back(names_.size());
+  };
+  addSource(lighting);
+  for (const auto& source : world.sources.all) addSource(*source);
   for (const Instance& instance : scene.instances) {
     const Material& material = scene.materials[size_t(instance.material)];
     if (!material.emits()) continue;
@@ -23,37 +34,40 @@ LightGroups::LightGroups(const World& world, const LightingStrategy& lighting)
 }
 
 int LightGroups::add(const std::string& name) {
-  std::string base = name.empty() ? "light" : name;
+  std::string base = name.empty() ? "light" : shortened(name);
   for (char& c : base)
     if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
   std::string unique = base;
-  for (int i = 2; std::ranges::find(names_, unique) != names_.end(); ++i)
-    unique = base + "_" + std::to_string(i);
+  for (int& count = taken_[base]; ++count > 1;) {
+    unique = base + "_" + std::to_string(count);
+    if (taken_.try_emplace(unique, 1).second) break;
+  }
   names_.push_back(unique);
   return int(names_.size()) - 1;
 }
 
-std::span<Rgb> GroupSums::startScratch() {
-  scratch_.assign(groups_.countOfStrategy(), Rgb(0));
-  return std::span(scratch_);
+template <class Split>
+void GroupSums::add(std::optional<size_t> source, const Rgb& throughput, const Split& split) {
+  const auto [first, last] = groups_.rangeOf(source);
+  scratch_.assign(last - first, Rgb(0));
+  split(std::span(scratch_));
+  for (size_t i = 0; i < scratch_.size(); ++i) sums_[first + i] += throughput * scratch_[i];
 }
 
-void GroupSums::addScratch(const Rgb& throughput) {
-  for (size_t i = 0; i < scratch_.size(); ++i) sums_[i] += throughput * scratch_[i];
+void GroupSums::addEscaped(const LightingStrategy& light, std::optional<size_t> source,
+                           const LightPoint& point, const vec3& wi, const Rgb& throughput) {
+  add(source, throughput,
+      [&](std::span<Rgb> radiances) { light.splitEscaped(point, wi, radiances); });
 }
 
-void GroupSums::addEscaped(const LightPoint& point, const vec3& wi, const Rgb& throughput) {
-  lighting_.splitEscaped(point, wi, startScratch());
-  addScratch(throughput);
-}
-
-void GroupSums::addBackground(const vec3& origin, const vec3& wi, const Rgb& throughput) {
-  lighting_.splitBackground(origin, wi, startScratch());
-  addScratch(throughput);
+void GroupSums::addBackground(const LightingStrategy& light, std::optional<size_t> source,
+                              const vec3& origin, const vec3& wi, const Rgb& throughput) {
+  add(source, throughput,
+      [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });
 }
 
 Sample GroupIntegrator::sample(const CameraSample& camera, PathContext& context) const {
-  GroupSums sums(groups_, tracer_.lighting(), context.layers, context.lightRadiances);
+  GroupSums sums(groups_, context.layers, context.lightRadiances);
   context.groups = &sums;
   const Rgb whole = tracer_.radiance(camera.path(), camera.hit, context);
   context.groups = nullptr;

@@ -3,8 +3,11 @@
 // section 4; HDRI book, section 9.9.1).
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "integrate/integrator.h"
@@ -20,12 +23,16 @@ class LightGroups {
   // Unique; without the characters that separate layers and gains: . , = and spaces.
   const std::vector<std::string>& names() const { return names_; }
 
-  size_t countOfStrategy() const { return countOfStrategy_; }
-  // Of a sample of one of World::sources.
-  int ofScene(size_t source, const DirectionSample& light) const {
+  // Of the probe's strategy, if `source` is null, or of one of World::sources: indices of the
+  // first group and of the one after the last.
+  std::array<size_t, 2> rangeOf(std::optional<size_t> source) const {
+    const size_t i = source ? *source + 1 : 0;
+    return {ends_[i], ends_[i + 1]};
+  }
+  int ofSample(std::optional<size_t> source, const DirectionSample& light) const {
     if (light.end.instance != LightEnd::kNone)
       return ofInstance(scene_.instances[light.end.instance]);
-    return firstOfSource_[source] + light.group;
+    return int(rangeOf(source)[0]) + light.group;
   }
   // Of the radiance that an instance emits.
   int ofInstance(const Instance& instance) const {
@@ -38,8 +45,8 @@ class LightGroups {
 
   const Scene& scene_;
   std::vector<std::string> names_;
-  size_t countOfStrategy_ = 0;
-  std::vector<int> firstOfSource_;
+  std::vector<size_t> ends_{0};  // after the groups of the strategy, and of each source
+  std::unordered_map<std::string, int> taken_;  // by name: how many lights have or had it
   int unlit_ = -1;
   std::vector<int> ofNode_;  // -1 for a node that does not emit
 };
@@ -48,32 +55,30 @@ class LightGroups {
 class GroupSums {
  public:
   // `sums`: one element per group. `scratch` keeps its capacity.
-  GroupSums(const LightGroups& groups, const LightingStrategy& lighting, std::span<Rgb> sums,
-            std::vector<Rgb>& scratch)
-      : groups_(groups), lighting_(lighting), sums_(sums), scratch_(scratch) {}
+  GroupSums(const LightGroups& groups, std::span<Rgb> sums, std::vector<Rgb>& scratch)
+      : groups_(groups), sums_(sums), scratch_(scratch) {}
 
   void addEmitted(const Instance& instance, const Rgb& radiance) {
     sums_[size_t(groups_.ofInstance(instance))] += radiance;
   }
-  void addOfScene(size_t source, const DirectionSample& light, const Rgb& radiance) {
-    sums_[size_t(groups_.ofScene(source, light))] += radiance;
+  // Of a delta light or a surface.
+  void addSample(std::optional<size_t> source, const DirectionSample& light, const Rgb& radiance) {
+    sums_[size_t(groups_.ofSample(source, light))] += radiance;
   }
-  // Of a delta light of the strategy.
-  void addDelta(const DirectionSample& light, const Rgb& radiance) {
-    sums_[size_t(light.group)] += radiance;
-  }
-  // `throughput` times the radiance of LightingStrategy::escaped(), by group. Each group is
-  // independent of the others, so that its bits scale with those of its source.
-  void addEscaped(const LightPoint& point, const vec3& wi, const Rgb& throughput);
-  // `throughput` times LightingStrategy::background().
-  void addBackground(const vec3& origin, const vec3& wi, const Rgb& throughput);
+  // `throughput` times the radiance of light.escaped(), by group. Each group is independent of the
+  // others, so that its bits scale with those of its source. `source`: as LightGroups::rangeOf().
+  void addEscaped(const LightingStrategy& light, std::optional<size_t> source,
+                  const LightPoint& point, const vec3& wi, const Rgb& throughput);
+  // `throughput` times light.background().
+  void addBackground(const LightingStrategy& light, std::optional<size_t> source,
+                     const vec3& origin, const vec3& wi, const Rgb& throughput);
 
  private:
-  std::span<Rgb> startScratch();
-  void addScratch(const Rgb& throughput);
+  // Adds `throughput` times what split(radiances) adds to the groups of a source.
+  template <class Split>
+  void add(std::optional<size_t> source, const Rgb& throughput, const Split& split);
 
   const LightGroups& groups_;
-  const LightingStrategy& lighting_;
   std::span<Rgb> sums_;
   std::vector<Rgb>& scratch_;
 };

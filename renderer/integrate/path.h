@@ -85,7 +85,8 @@ class PathTracer {
                                      PathContext& context) const;
   bool isHiddenBack(const PathState& state, const Hit& hit) const;
 
-  // Adds what a ray that hits nothing finds; not for narrow lobes and the camera.
+  // Adds what a ray that hits nothing finds; not for narrow lobes and the camera. `escaped`: of the
+  // probe.
   void addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
                   PathContext& context) const;
 
@@ -99,6 +100,7 @@ class PathTracer {
   Rgb escapedRadiance(const PathState& state, PathContext& context) const;
   Rgb weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
                PathContext& context) const;
+  Rgb distantRadiance(const PathState& state, PathContext& context) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
                       const MaterialPoint& material, PathContext& context) const;
   ExtendedPoint extendedPointAt(const PathState& state, const Instance& instance,

@@ -11,12 +11,15 @@
 namespace chromeball {
 namespace {
 
-float medianLuminance(const LightingStrategy& lighting) {
+float medianLuminance(const SceneSources& sources, const LightingStrategy& lighting) {
   constexpr int kSide = 16;
   std::vector<float> luminances;
   for (int i = 0; i < kSide * kSide; ++i) {
     const vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
-    luminances.push_back(luminance(lighting.background(vec3(0), squareToUniformSphere(u))));
+    const vec3 direction = squareToUniformSphere(u);
+    Rgb radiance = lighting.background(vec3(0), direction);
+    for (const size_t s : sources.distant) radiance += sources.all[s]->background({}, direction);
+    luminances.push_back(luminance(radiance));
   }
   const auto middle = luminances.begin() + kSide * kSide / 2;
   std::nth_element(luminances.begin(), middle, luminances.end());
@@ -27,7 +30,8 @@ bool isSeen(const PathState& state) { return state.lobes == Lobes::Narrow && !st
 
 }  // namespace
 
-SeenFeature::SeenFeature(const LightingStrategy& lighting) : median_(medianLuminance(lighting)) {}
+SeenFeature::SeenFeature(const World& world, const LightingStrategy& lighting)
+    : median_(medianLuminance(world.sources, lighting)) {}
 
 void SeenFeature::noteEscaped(const PathState& state, const Rgb& escaped) const {
   if (isSeen(state) && state.depth > 0) state.first->seen = escaped / (escaped + median_);

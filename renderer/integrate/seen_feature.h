@@ -2,6 +2,7 @@
 // What the camera sees behind mirrors, glass and other narrow lobes (FirstHit::seen).
 #pragma once
 
+#include "integrate/world.h"
 #include "lighting/strategy.h"
 #include "scene/surface.h"
 
@@ -11,7 +12,7 @@ struct PathState;
 
 class SeenFeature {
  public:
-  explicit SeenFeature(const LightingStrategy& lighting);
+  SeenFeature(const World& world, const LightingStrategy& lighting);
 
   // These set state.first->seen, which must exist, if all lobes of the path were narrow.
   // `escaped`: the radiance that the path has found in the background.

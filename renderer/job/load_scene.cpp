@@ -214,8 +214,6 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      std::move(room),
                      models.origin,
                      std::move(sources),
-                     sunsOf(job),
-                     ambientOf(job),
                      settings.getIfGiven<double>("lighting.sun_angle"),
                      settings.get<bool>("lighting.show_lights"),
                      std::move(files)};

@@ -25,8 +25,6 @@ struct LoadedScene {
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::optional<ProbeSources> sources;       // polygons of the probe
-  std::vector<SunLamp> suns;                 // of the scene file, besides the probe
-  std::vector<AmbientLamp> ambient;          // likewise
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle
   bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one

@@ -7,10 +7,8 @@
 #include "job/arguments.h"
 #include "job/load_scene.h"
 #include "job/polygon_file.h"
-#include "lighting/ambient_light.h"
 #include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
-#include "lighting/scene_suns.h"
 #include "lighting/split_probe.h"
 #include "probe/irradiance.h"
 
@@ -18,7 +16,7 @@ namespace chromeball {
 namespace {
 
 // Throws InputError if the part is to be the suns, and there are none.
-void keepPart(const RenderJob& job, Image& latLong) {
+void keepPart(const RenderJob& job, const Scene& scene, Image& latLong) {
   const LightFrom from = lightFrom(job);
   if (from == LightFrom::All) return;
   SunExtraction extraction = extractSuns(latLong);
@@ -26,7 +24,7 @@ void keepPart(const RenderJob& job, Image& latLong) {
     latLong = std::move(extraction.remainder);
     return;
   }
-  if (extraction.suns.empty() && sunsOf(job).empty())
+  if (extraction.suns.empty() && scene.suns.empty())
     throwInput("{}: there are no suns, neither in the probe nor in the scene file",
                job.file.settings.location("lighting.from"));
   for (size_t i = 0; i < latLong.texels.size(); ++i)
@@ -57,27 +55,21 @@ LightFrom lightFrom(const RenderJob& job) {
 }
 
 void removeLamps(const RenderJob& job, Scene& scene) {
-  if (lightFrom(job) != LightFrom::Suns) return;
+  const LightFrom from = lightFrom(job);
+  if (from == LightFrom::Rest) scene.suns.clear();
+  if (from != LightFrom::Suns) return;
   scene.lights.clear();
+  scene.ambient.clear();
   for (Material& material : scene.materials) {
     material.emission = Rgb(0);
     if (material.unlit) material.baseColor = vec4(0, 0, 0, material.baseColor.w);
   }
 }
 
-std::vector<SunLamp> sunsOf(const RenderJob& job) {
-  return lightFrom(job) == LightFrom::Rest ? std::vector<SunLamp>() : sunsOf(job.file.lamps);
-}
-
-std::vector<AmbientLamp> ambientOf(const RenderJob& job) {
-  return lightFrom(job) == LightFrom::Suns ? std::vector<AmbientLamp>() : ambientOf(job.file.lamps);
-}
-
 void checkLit(const RenderJob& job, const Scene& scene) {
-  const bool lit = !scene.lights.empty() || !sunsOf(job.file.lamps).empty() ||
-                   !ambientOf(job.file.lamps).empty() ||
-                   std::any_of(scene.materials.begin(), scene.materials.end(),
-                               [](const Material& m) { return m.emits(); });
+  const bool lit = !scene.lights.empty() || std::ranges::any_of(job.file.lamps, [](const Lamp& l) {
+    return l.sun || l.ambient;
+  }) || std::ranges::any_of(scene.materials, &Material::emits);
   if (!lit)
     throw InputError(
         fmt::format("{}: nothing lights the scene; it needs a probe", job.file.models.front().file),
@@ -86,7 +78,7 @@ void checkLit(const RenderJob& job, const Scene& scene) {
 
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
   LoadedProbe loaded = loadWholeProbe(job, scene);
-  keepPart(job, loaded.latLong);
+  keepPart(job, scene, loaded.latLong);
   return loaded;
 }
 
@@ -167,13 +159,7 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
     lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
                                                     *loaded.surroundings, loaded.room.get(),
                                                     loaded.showLights);
-  if (loaded.suns.empty() && loaded.ambient.empty()) return lighting;
-  std::vector<std::unique_ptr<LightingStrategy>> parts;
-  parts.push_back(std::move(lighting));
-  if (!loaded.suns.empty()) parts.push_back(std::make_unique<SceneSuns>(loaded.suns));
-  for (const AmbientLamp& lamp : loaded.ambient)
-    parts.push_back(std::make_unique<AmbientLight>(lamp.radiance, lamp.isVisible, lamp.name));
-  return std::make_unique<CombinedLight>(std::move(parts));
+  return lighting;
 }
 
 std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded) {

@@ -26,8 +26,6 @@ LightFrom lightFrom(const RenderJob& job);
 void removeLamps(const RenderJob& job, Scene& scene);
 
 // The suns and the ambient light of the scene file that the job renders.
-std::vector<SunLamp> sunsOf(const RenderJob& job);
-std::vector<AmbientLamp> ambientOf(const RenderJob& job);
 
 // The probe's map: the job's file, else the model's own environment, which it takes, else black if
 // the scene has lights of its own; of it, the part that the job renders. Throws InputError.

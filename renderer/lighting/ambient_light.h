@@ -3,29 +3,25 @@
 #pragma once
 
 #include "lighting/strategy.h"
+#include "scene/light.h"
 
 namespace chromeball {
 
-// A part of a CombinedLight. Found by BSDF samples only, which for constant radiance are as good as
-// light samples.
+// Found by BSDF samples only, which for constant radiance are as good as light samples.
 class AmbientLight : public LightingStrategy {
  public:
-  AmbientLight(const Rgb& radiance, bool isVisible, std::string name)
-      : radiance_(radiance), isVisible_(isVisible), name_(std::move(name)) {}
+  explicit AmbientLight(const AmbientLamp& lamp) : lamp_(lamp) {}
 
   void sample(const LightPoint&, const PixelSampler&,
               std::vector<DirectionSample>&) const override {}
-  Escaped escaped(const LightPoint&, const vec3&) const override { return {radiance_, 0}; }
+  Escaped escaped(const LightPoint&, const vec3&) const override { return {lamp_.radiance, 0}; }
   Rgb background(const vec3&, const vec3&) const override {
-    return isVisible_ ? radiance_ : Rgb(0);
+    return lamp_.isVisible ? lamp_.radiance : Rgb(0);
   }
-  bool unbiased() const override { return true; }
-  std::vector<std::string> groups() const override { return {name_}; }
+  std::vector<std::string> groups() const override { return {lamp_.name}; }
 
  private:
-  Rgb radiance_;
-  bool isVisible_;
-  std::string name_;
+  AmbientLamp lamp_;
 };
 
 }  // namespace chromeball

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/scene_sources.h"
 
+#include "lighting/ambient_light.h"
 #include "lighting/punctual.h"
+#include "lighting/scene_suns.h"
 
 namespace chromeball {
 
@@ -13,6 +15,12 @@ SceneSources::SceneSources(const Scene& scene) {
   emitters = surfaces.get();
   add(std::move(surfaces));
   add(PunctualLights::make(scene));
+  const auto addDistant = [&](auto source) {
+    distant.push_back(all.size());
+    all.push_back(std::move(source));
+  };
+  if (!scene.suns.empty()) addDistant(std::make_unique<SceneSuns>(scene.suns));
+  for (const AmbientLamp& lamp : scene.ambient) addDistant(std::make_unique<AmbientLight>(lamp));
 }
 
 }  // namespace chromeball

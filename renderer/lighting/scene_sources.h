@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light sources that are in a scene, at a finite distance or of the model.
+// The light sources that a scene has besides its probe.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@ struct SceneSources {
   explicit SceneSources(const Scene& scene);
 
   std::vector<std::unique_ptr<const LightingStrategy>> all;
+  std::vector<size_t> distant;         // of these: those that rays find which hit nothing
   const Emitters* emitters = nullptr;  // of these: photons start there; null where nothing emits
 };
 

@@ -4,11 +4,11 @@
 
 #include "lighting/sky_discs.h"
 #include "lighting/strategy.h"
-#include "scene/lamp.h"
+#include "scene/light.h"
 
 namespace chromeball {
 
-// A part of a CombinedLight. The camera and mirrors see the visible discs.
+// The camera and mirrors see the visible discs; all other rays find all discs.
 class SceneSuns : public LightingStrategy {
  public:
   explicit SceneSuns(const std::vector<SunLamp>& suns);
@@ -20,7 +20,6 @@ class SceneSuns : public LightingStrategy {
     return {light.radiance, light.pdf};
   }
   Rgb background(const vec3&, const vec3& wi) const override { return visible_.at(wi).radiance; }
-  bool unbiased() const override { return true; }
   std::vector<std::string> groups() const override { return names_; }
   void splitEscaped(const LightPoint& point, const vec3& wi,
                     std::span<Rgb> radiances) const override;

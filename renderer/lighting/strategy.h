@@ -52,8 +52,8 @@ struct DirectionSample {
   LightEnd end{};
 };
 
-// Light of a probe, as a strategy samples it; of suns and windows that are infinitely far away; or
-// of lamps and surfaces in the scene (scene_sources.h), which override less.
+// Light of a probe, as a strategy samples it, or of what a scene has besides (scene_sources.h):
+// lamps and emitting surfaces, which override less, and suns.
 class LightingStrategy {
  public:
   virtual ~LightingStrategy() = default;

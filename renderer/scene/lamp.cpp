@@ -45,22 +45,9 @@ float PunctualLight::intensityOfOneWatt() const {
   return 1 / (2 * kPi * ((1 - cosInner) + (cosInner - cosOuter) / 3));
 }
 
-std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps) {
-  std::vector<SunLamp> suns;
-  for (const Lamp& lamp : lamps)
-    if (lamp.sun) suns.push_back(*lamp.sun);
-  return suns;
-}
-
-std::vector<AmbientLamp> ambientOf(const std::vector<Lamp>& lamps) {
-  std::vector<AmbientLamp> ambient;
-  for (const Lamp& lamp : lamps)
-    if (lamp.ambient) ambient.push_back(*lamp.ambient);
-  return ambient;
-}
-
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
-  if (lamp.sun || lamp.ambient) return;
+  if (lamp.sun) return scene.suns.push_back(*lamp.sun);
+  if (lamp.ambient) return scene.ambient.push_back(*lamp.ambient);
   if (lamp.punctual) {
     scene.lights.push_back(*lamp.punctual);
     scene.lights.back().position = moved(lamp.punctual->position, origin);

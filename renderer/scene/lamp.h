@@ -6,24 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "probe/sun.h"
 #include "scene/scene.h"
 
 namespace chromeball {
-
-// A distant disc.
-struct SunLamp {
-  Sun sun;
-  bool isVisible = true;  // to the camera and mirrors
-  std::string name = {};
-};
-
-// Constant radiance from all directions.
-struct AmbientLamp {
-  Rgb radiance{0};
-  bool isVisible = true;
-  std::string name = {};
-};
 
 // Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
 struct Lamp {
@@ -34,12 +19,8 @@ struct Lamp {
   std::optional<AmbientLamp> ambient;
 };
 
-std::vector<SunLamp> sunsOf(const std::vector<Lamp>& lamps);
-std::vector<AmbientLamp> ambientOf(const std::vector<Lamp>& lamps);
-
-// Adds the lamp, unless it is a sun or ambient, to the scene, whose origin is at `origin` in world
-// space. A disc becomes a single-sided emitting polygon of kDiscSides sides with exactly the area
-// of the disc.
+// Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
+// single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
 inline constexpr int kDiscSides = 128;
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "math/vec.h"
+#include "probe/sun.h"
 
 namespace chromeball {
 
@@ -40,6 +41,20 @@ struct DiscLamp {
   vec3 direction{0, 0, -1};  // unit, the normal of the emitting side
   float radius = 1;          // metres
   Rgb radiance{1};
+};
+
+// A distant disc.
+struct SunLamp {
+  Sun sun;
+  bool isVisible = true;  // to the camera and mirrors
+  std::string name = {};
+};
+
+// Constant radiance from all directions.
+struct AmbientLamp {
+  Rgb radiance{0};
+  bool isVisible = true;  // to the camera and mirrors
+  std::string name = {};
 };
 
 }  // namespace chromeball

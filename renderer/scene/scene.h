@@ -48,6 +48,8 @@ struct Scene {
   std::shared_ptr<const TexelFile> texelFile;  // has the texels that are not in memory, or null
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
+  std::vector<SunLamp> suns;         // besides those of a probe
+  std::vector<AmbientLamp> ambient;  // likewise
   std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired
   std::vector<std::string> nodeNames;
   std::vector<std::string> notes;  // hints for the user: "FILE: ..."
