@@ -122,15 +122,16 @@ TEST(LightFile, CsvHasALinePerLight) {
             "x,y,z,r,g,b,angle\n0,1,0,5,2,1,0\n0,0,-1,0,0.25,0.33333334,0.53\n");
 }
 
-// 1 degree: 2.392e-4 steradians (Madsen and Laursen 2007, eq. 5).
+// 1 degree: 2.392e-4 (Madsen and Laursen 2007, eq. 5). 90 degrees: pi / 2.
 TEST(LightFile, RadianceOfLightsWithAnAngle) {
-  EXPECT_NEAR(discSolidAngle(1), 2.3925e-4, 5e-9);
+  EXPECT_NEAR(projectedSolidAngle(1), 2.3924e-4, 5e-9);
+  EXPECT_NEAR(projectedSolidAngle(90), kPiD / 2, 1e-12);
   const TemporaryFolder folder;
   LightRig rig = exampleRig();
   rig.lights[0].angle = 1;
   writeLights(folder / "a.json", rig);
   const json lights = json::parse(fileContents(folder / "a.json"))["lights"];
-  EXPECT_NEAR(lights[0]["radiance"][0].get<double>() * discSolidAngle(1), 5, 1e-5);
+  EXPECT_NEAR(lights[0]["radiance"][0].get<double>() * projectedSolidAngle(1), 5, 1e-5);
   EXPECT_TRUE(lights[1].contains("radiance"));
   EXPECT_FALSE(lights[2].contains("radiance"));
   // A radiance beyond a float.

@@ -164,7 +164,7 @@ TEST(ProbeSplit, WritesTheDiameterThatIsAskedFor) {
   };
   ASSERT_EQ(split("0.5323").status, 0);
   EXPECT_FLOAT_EQ(readLights(folder / "suns.json").lights.front().angle, 0.5323f);
-  EXPECT_EQ(split("0").status, 2);
+  EXPECT_EQ(split("0.001").status, 2);
   EXPECT_EQ(split("91").status, 2);
   expectError({"probe", "split", folder / "sky.exr", "--suns", folder / "suns.csv", "--rest",
                folder / "rest.exr"},
@@ -226,6 +226,13 @@ TEST(LightList, RefusesOthers) {
   refused(light(R"("direction": [0, 1, 0], "radiance": [1, 1, 1])"), "angle");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1e38, 1, 1], "angle": 0.01)"),
           "too large");
+  for (const char* angle : {"1e-30", "0.009", "-1", "\"1\""})
+    refused(
+        light(std::string(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "angle": )") + angle),
+        "`angle` should be 0, or 0.01 to 90");
+  refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "diameter": 1)"),
+          "`diameter` is no key");
+  refused(R"({"lights": [], "ambiance": [1, 1, 1]})", "`ambiance` is no key");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "angle": 100)"), "angle");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "radiance": [9, 9, 9],
                    "angle": 1)"),

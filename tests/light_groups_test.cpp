@@ -173,6 +173,40 @@ TEST(LightGroups, RelightToTheBitsOfARender) {
     EXPECT_EQ(layer(mixed, "light." + name).texels, layer(changed, "light." + name).texels) << name;
 }
 
+TEST(LightGroups, RelightKeepsTheHeaderOfACrop) {
+  const LitScene scene;
+  render(scene, {"--aov", "light_groups", "--crop", "4,5,6,3"});
+  const ImageFile before = readImageFile(scene / "o.exr");
+  ASSERT_EQ(
+      runCommand({"image", "relight", scene / "o.exr", "--gain", "sun=2", "-o", scene / "r.exr"})
+          .status,
+      0);
+  const ImageFile after = readImageFile(scene / "r.exr");
+  for (const ImageFile& file : {before, after}) {
+    ASSERT_TRUE(file.placement);
+    EXPECT_EQ((std::array{file.placement->x, file.placement->y, file.placement->width,
+                          file.placement->height}),
+              (std::array{4, 5, 16, 12}));
+  }
+  EXPECT_EQ(std::get<std::string>(after.metadata.at("strategy")),
+            std::get<std::string>(before.metadata.at("strategy")));
+}
+
+// EXR channels have 255 bytes at most. Long names that begin alike stay apart.
+TEST(LightGroups, NamesAreUniqueAndShort) {
+  const LitScene scene;
+  const std::string longName(300, 'x');
+  std::string lamps, lamp = "type = 'point'\nposition = [0.1, 0.2, 0.5]\nintensity = 0.3\n";
+  for (const std::string& name : {longName + "1", longName + "2", std::string("a"),
+                                  std::string("a_2"), std::string("a"), std::string("a")})
+    lamps += "[[light]]\nname = '" + name + "'\n" + lamp;
+  scene.write("names.toml", lamps);
+  Strings names = groupsOf(render(scene, {"--aov", "light_groups"}, "names.toml"));
+  const std::string kept(200, 'x');
+  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "rest", "suns", "unlit", kept,
+                            kept + "_2"}));
+}
+
 // A plane under a constant probe (E = pi L) and one light: where the light is blocked, the factor
 // is E_ambient / (E_ambient + E n.l).
 TEST(LightGroups, ShadowMatteOfAPlane) {
@@ -235,7 +269,7 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
-  expectError(with({"--denoise"}), "relight first");
+  expectError(with({"--denoise"}), "add up");
   expectError(with({"--strategy", "median-cut:4096", "--size", "2000x2000", "--memory", "8"}),
               "light groups take");
   render(scene, {"--aov", "light_groups"});
@@ -243,11 +277,13 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
     return Strings{"image", "relight", scene / "o.exr", "--gain", gains, "-o", scene / "r.exr"};
   };
   expectError(relight("lmap=2"), "`lamp`");
-  expectError(relight("2"), "has no name");
+  expectError(relight("2"), "NAME=GAIN");
   expectError(relight("lamp=2,lamp=3"), "two gains");
   expectError(relight("lamp=1,2"), "3 numbers");
   expectError(relight("lamp="), "--gain lamp");
   expectError(relight("lamp=1e39"), "--gain lamp");
+  expectError(relight("lamp=-1"), "negative");
+  expectError(relight("rest=3e38,lamp=3e38,sun=3e38"), "largest float");
   expectError({"image", "relight", scene / "sky.exr", "--gain", "a=1", "-o", scene / "r.exr"},
               "no light groups");
   EXPECT_FALSE(std::filesystem::exists(scene / "r.exr"));

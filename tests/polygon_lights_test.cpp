@@ -62,6 +62,30 @@ TEST(PolygonSource, KeepsEnergyAndIrradiance) {
   EXPECT_LT(maxComponent(extraction.remainder.rgb(150, 40)), 1.5f);  // as the rim
 }
 
+// Also around a pole, across the seam, and of one texel: as a test of every texel finds it.
+TEST(PolygonSource, CoversTexelsAnywhere) {
+  const Image map = constantProbe({64, 32}, Rgb(1));
+  for (const dvec3& axis : {dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0.1, 1, 0.05), dvec3(0, 0, 1),
+                            dvec3(0.02, 0.1, -1), dvec3(1, 0.4, 0), dvec3(-1, -2, 0.01)})
+    for (const double radius : {0.04, 0.3, 1.2}) {
+      const Frame frame{vec3(glm::normalize(axis))};
+      std::vector<dvec3> corners;
+      for (int i = 0; i < 5; ++i) {
+        const double turn = 2 * kPiD * i / 5;
+        corners.push_back(glm::normalize(dvec3(
+            frame.toWorld({float(std::sin(radius) * std::cos(turn)),
+                           float(std::sin(radius) * std::sin(turn)), float(std::cos(radius))}))));
+      }
+      const SphericalPolygon polygon(corners, "test");
+      double expected = 0;
+      for (int y = 0; y < 4 * 32; ++y)
+        for (int x = 0; x < 4 * 64; ++x)
+          expected += polygon.contains(texelDirection({4 * 64, 4 * 32}, x, y)) / 16.0;
+      EXPECT_EQ(extractPolygons(map, {polygon}).sources.front().coveredTexels, expected)
+          << axis.x << " " << axis.y << " " << axis.z << " " << radius;
+    }
+}
+
 TEST(PolygonSource, AConstantProbeStays) {
   const Image map = constantProbe({kWidth, kHeight}, Rgb(0.3f, 1e-8f, 1e10f));
   const PolygonExtraction extraction = extractPolygons(map, {window()});
@@ -165,6 +189,28 @@ TEST(PolygonLights, TheCameraSeesTheProbeBehindAnIllum) {
   EXPECT_NEAR(lamp->background({}, inside).x /
                   (extraction.sources.front().radiance.x + extraction.remainder.rgb(155, 45).x),
               1, 1e-3);
+}
+
+// Each illum's group has what the camera sees of it.
+TEST(PolygonLights, TellIllumsApart) {
+  Image map = roomWithWindow();
+  for (int y = 50; y < 70; ++y)
+    for (int x = 20; x < 40; ++x) map.setRgb(x, y, Rgb(5));
+  const PolygonCorners other{{19, 49}, {41, 49}, {41, 71}, {19, 71}};
+  const PolygonExtraction extraction = extractPolygons(map, {window(), window(other)});
+  Image hidden = map;
+  for (size_t i = 0; i < hidden.texels.size(); ++i)
+    hidden.texels[i] -= extraction.remainder.texels[i];
+  const PolygonLights lights(
+      {{extraction.sources[0], true, "a"}, {extraction.sources[1], true, "b"}}, hidden, {});
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const vec3 wi(texelDirection({kWidth, kHeight}, x, y));
+      std::array<Rgb, 2> radiances{Rgb(0), Rgb(0)};
+      lights.splitBackground({}, wi, radiances);
+      EXPECT_EQ(radiances[0] + radiances[1], lights.background({}, wi));
+      EXPECT_TRUE(isBlack(radiances[x > 100 ? 1 : 0])) << x << " " << y;
+    }
 }
 
 class Room {

@@ -99,6 +99,15 @@ void planComposite(RenderJob& job) {
   std::erase(job.settings.aovs, Aov::Alpha);  // a composite's alpha is a layer of its own
 }
 
+namespace {
+
+// Whether the probe is not the only light, emitting surfaces aside.
+bool hasLamps(const Scene& scene) {
+  return !scene.lights.empty() || !scene.suns.empty() || !scene.ambient.empty();
+}
+
+}  // namespace
+
 void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
   CompositePlan& composite = *job.composite;
   const CompositeEntry& entry = *job.file.composite;
@@ -110,7 +119,7 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
     localScene.push_back({kGroundNode, entry.location});
   }
   loaded.isObject = findObjects(scene, localScene, entry.location);
-  if (composite.choosesReflectance && !scene.lights.empty())
+  if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositePlan::Reflectance::Plate;
   if (composite.reflectance == CompositePlan::Reflectance::Flat) {
     if (!flatNormal(scene, loaded.isObject))
@@ -134,7 +143,7 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
 void scaleProbeByPlate(const RenderJob& job, LoadedScene& loaded) {
   const auto& location = job.file.plateScale;
   if (!location) return;
-  if (!loaded.scene.lights.empty())
+  if (hasLamps(loaded.scene))
     throwInput(
         "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
         "own: leave them out with `lights = \"off\"` in [lighting]",

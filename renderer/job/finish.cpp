@@ -111,9 +111,9 @@ double meanAlpha(const DifferentialFilm& film) {
   return covered / std::max(count, 1.0);
 }
 
-std::optional<OutputImage::Placement> placementOf(const RenderSettings& s) {
+std::optional<Placement> placementOf(const RenderSettings& s) {
   if (!s.crop) return {};
-  return OutputImage::Placement{s.crop->x, s.crop->y, s.width, s.height};
+  return Placement{s.crop->x, s.crop->y, s.width, s.height};
 }
 
 // By the difference formula, with its errors.

@@ -249,7 +249,7 @@ void checkGroups(const SceneFile& file) {
     throwInput("{}: composites have no `{}`; render the scene without [composite]",
                s.location("output.aovs"), *found);
   if (s.get<bool>("render.denoise"))
-    throwInput("{}: `{}` are not denoised; relight first, then use `image denoise`",
+    throwInput("{}: `{}` would not add up to the denoised picture; leave one of the two out",
                s.location("render.denoise"), *found);
 }
 

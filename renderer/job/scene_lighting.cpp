@@ -156,9 +156,9 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
     lighting = std::make_unique<CombinedLight>(std::move(parts));
   }
   if (loaded.surroundings)
-    lighting = std::make_unique<FiniteSurroundings>(std::move(lighting), loaded.probe,
-                                                    *loaded.surroundings, loaded.room.get(),
-                                                    loaded.showLights);
+    lighting = std::make_unique<FiniteSurroundings>(
+        std::move(lighting), loaded.probe, *loaded.surroundings, loaded.room.get(),
+        loaded.showLights || (sources && sources->areSeen()));
   return lighting;
 }
 

@@ -2,6 +2,7 @@
 // The light of a job: its probe, and the strategy that samples it.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "job/render_job.h"
@@ -25,8 +26,6 @@ LightFrom lightFrom(const RenderJob& job);
 // Removes the lamps and emission that the job leaves out.
 void removeLamps(const RenderJob& job, Scene& scene);
 
-// The suns and the ambient light of the scene file that the job renders.
-
 // The probe's map: the job's file, else the model's own environment, which it takes, else black if
 // the scene has lights of its own; of it, the part that the job renders. Throws InputError.
 LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene);
@@ -36,6 +35,11 @@ struct ProbeSources {
   std::vector<PolygonLight> lights;
   Image hidden;  // PolygonLights
   Probe remainder;
+
+  // Whether the camera sees a polygon in place of the probe's texels.
+  bool areSeen() const {
+    return std::ranges::any_of(lights, [](const PolygonLight& l) { return !l.isIllum; });
+  }
 };
 // Nullopt if the job renders none. `loaded`: the file that `probe` is from. Throws InputError.
 std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
@@ -53,9 +57,9 @@ Probe scaled(const Probe& probe, const Rgb& factor);
 // W/m^2 on an unoccluded surface with this unit normal.
 Rgb irradianceOn(const Probe& probe, const vec3& normal);
 
-// The strategy, with the probe mapped onto the scene's surroundings, and with the scene file's suns
-// and ambient light, if it has any. `splitsProbe`: for light groups, tells the probe's suns from
-// the rest. `loaded` must outlive it. Throws InputError for an unknown name.
+// The strategy, with the probe mapped onto the scene's surroundings. `splitsProbe`: for light
+// groups, tells the probe's suns from the rest. `loaded` must outlive it. Throws InputError for an
+// unknown name.
 std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
                                                const LoadedScene& loaded, bool splitsProbe = false);
 std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded);

@@ -22,7 +22,7 @@ namespace chromeball {
 //
 // The camera and mirrors see the probe as captured; lamps made from suns light only broad lobes
 // (RADIANCE's "illum"). With `showsLights` they see on the surface what the strategy shows instead
-// of the probe (StrategyOptions::showLights).
+// of the probe: its lights (StrategyOptions::showLights), polygons that are no illums.
 class FiniteSurroundings : public LightingStrategy {
  public:
   // `room`: replaces the box or sphere of `surroundings` unless null; must outlive this.

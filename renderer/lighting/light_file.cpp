@@ -25,7 +25,7 @@ std::string text(const Json& json, int indent = -1) {
 Json toJson(const vec3& v) { return {v.x, v.y, v.z}; }
 
 Rgb radianceOf(const DirectionalLight& light) {
-  return Rgb(dvec3(light.irradiance) / discSolidAngle(light.angle));
+  return Rgb(dvec3(light.irradiance) / projectedSolidAngle(light.angle));
 }
 
 // One line per light.
@@ -97,9 +97,9 @@ std::string formatCsv(const LightRig& rig) {
 
 }  // namespace
 
-double discSolidAngle(double degrees) {
-  const double radius = degrees / 2 * kPiD / 180;
-  return kPiD * radius * radius;
+double projectedSolidAngle(double degrees) {
+  const double sine = std::sin(degrees / 2 * kPiD / 180);
+  return kPiD * sine * sine;
 }
 
 LightFormat lightFormat(const std::filesystem::path& path, std::string_view name,

@@ -20,11 +20,10 @@ struct LightRig {
   LightUnits units = LightUnits::Photometric;  // in .gltf
 };
 
-// The solid angle of a disc light, a of diameter, as Madsen and Laursen (2007, eq. 5) have it: A =
-// pi (a / 2)^2 steradians, 2.392e-4 for 1 degree; a light's radiance is its irradiance / A. The
-// approximation for small discs: at 10 degrees the cosine-weighted solid angle pi sin^2(a / 2), the
-// exact ratio of irradiance to radiance, is 0.25% less.
-double discSolidAngle(double degrees);
+// The ratio of irradiance, on a surface that faces a disc of constant radiance, to that radiance:
+// pi sin^2(a / 2) for a diameter a. Madsen and Laursen (2007, eq. 5) take pi (a / 2)^2 steradians,
+// 2.392e-4 for 1 degree, which is 0.25% more at 10 degrees.
+double projectedSolidAngle(double degrees);
 
 enum class LightFormat { Json, Gltf, Csv, OpenGl };
 
@@ -36,7 +35,7 @@ LightFormat lightFormat(const std::filesystem::path& path, std::string_view name
 // Writes atomically. Throws RunError if a light is not finite or writing fails.
 //   Json    {"probe", "method", "ambient": [r, g, b] if any, "lights": [{"direction": [x, y, z],
 //           "irradiance": [r, g, b], "angle": degrees}, ...]}; lights with an angle also have
-//           "radiance": [r, g, b] (discSolidAngle)
+//           "radiance": [r, g, b] (projectedSolidAngle)
 //   Gltf    KHR_lights_punctual: for each light a directional light and a node whose -Z points
 //   along
 //           its rays. Intensity x colour is the irradiance (x 683 lux per W/m^2 for photometric

@@ -29,6 +29,12 @@ class Reader {
     throwInput("{}: {}", where_, fmt::format(reason, std::forward<Args>(args)...));
   }
 
+  void allowOnly(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, value] : object_.items())
+      if (std::ranges::find(keys, key) == keys.end())
+        fail("`{}` is no key of a list of lights: {}", key, fmt::join(keys, ", "));
+  }
+
   std::optional<dvec3> vector(const char* key) const {
     const auto member = object_.find(key);
     if (member == object_.end()) return {};
@@ -50,8 +56,8 @@ class Reader {
     const auto member = object_.find("angle");
     if (member == object_.end()) return 0;
     const double degrees = member->is_number() ? member->get<double>() : -1;
-    if (!(degrees >= 0 && degrees <= kMaxListedAngle))
-      fail("`angle` should be a number of degrees, 0 to {}", kMaxListedAngle);
+    if (degrees != 0 && !(degrees >= kLeastListedAngle && degrees <= kMaxListedAngle))
+      fail("`angle` should be 0, or {} to {} degrees", kLeastListedAngle, kMaxListedAngle);
     return degrees;
   }
 
@@ -66,6 +72,7 @@ class Reader {
 
 DirectionalLight readLight(const Reader& light) {
   constexpr double kRounding = 0.01;
+  light.allowOnly({"direction", "irradiance", "radiance", "angle"});
   const auto direction = light.vector("direction");
   if (!direction || !(glm::length(*direction) > 0))
     light.fail("`direction` should be three numbers, not all of them 0");
@@ -73,13 +80,15 @@ DirectionalLight readLight(const Reader& light) {
   const auto radiance = light.color("radiance"), irradiance = light.color("irradiance");
   if (radiance && angle == 0) light.fail("`radiance` needs an `angle` above 0");
   if (!radiance && !irradiance) light.fail("has neither `irradiance` nor `radiance`");
-  const dvec3 ofRadiance = radiance ? *radiance * discSolidAngle(angle) : dvec3(0);
+  const dvec3 ofRadiance = radiance ? *radiance * projectedSolidAngle(angle) : dvec3(0);
   if (radiance && irradiance &&
       glm::distance(ofRadiance, *irradiance) > kRounding * glm::length(*irradiance))
-    light.fail("`irradiance` is not `radiance` x solid angle; if one was edited, delete the other");
+    light.fail(
+        "`irradiance` is not `radiance` x solid angle of `angle`; if one of the three was edited, "
+        "delete `irradiance` or `radiance`");
   const Rgb kept = Rgb(irradiance.value_or(ofRadiance));
   if (!isFinite(kept)) light.fail("`radiance` x solid angle is too large");
-  if (angle > 0 && !isFinite(Rgb(dvec3(kept) / discSolidAngle(angle))))
+  if (angle > 0 && !isFinite(Rgb(dvec3(kept) / projectedSolidAngle(angle))))
     light.fail("`irradiance` / solid angle is too large");
   return {vec3(glm::normalize(*direction)), kept, float(angle)};
 }
@@ -99,6 +108,7 @@ LightList readLights(const std::filesystem::path& path) {
   const auto lights = root.find("lights");
   if (lights == root.end() || !lights->is_array())
     list.fail("has no array `lights`; `chromeball lights` and `probe split` write such lists");
+  list.allowOnly({"probe", "method", "ambient", "lights"});
   if (lights->size() > kMaxLights) list.fail("has more than {} lights", kMaxLights);
   LightList result;
   for (size_t i = 0; i < lights->size(); ++i)

@@ -14,10 +14,11 @@ struct LightList {
   std::optional<Rgb> ambient;  // radiance from all directions
 };
 
-// Directions need not be unit vectors. A light without `irradiance` needs `radiance` and `angle`
-// (degrees, 0 to kMaxListedAngle); one that has both must have an irradiance of discSolidAngle()
-// (light_file.h) times its radiance, within 1%. Throws InputError for a file that is no such list.
-inline constexpr double kMaxListedAngle = 90;
+// Directions need not be unit vectors. Angles, in degrees, are 0 or kLeastListedAngle to
+// kMaxListedAngle. A light without `irradiance` needs `radiance` and `angle`; one that has both
+// must have an irradiance of Sun::radiance() within 1%. Other keys are refused, as they are
+// typing errors. Throws InputError for a file that is no such list.
+inline constexpr double kLeastListedAngle = 0.01, kMaxListedAngle = 90;
 LightList readLights(const std::filesystem::path& path);
 
 }  // namespace chromeball

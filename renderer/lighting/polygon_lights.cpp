@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/polygon_lights.h"
 
+#include <limits>
+
 #include "base/hash.h"
 
 namespace chromeball {
@@ -29,7 +31,6 @@ PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Imag
     lights_.push_back({turned(source.polygon, rotation), Rgb(source.radiance), lights[i].isIllum,
                        lights[i].name, float(probability / source.polygon.solidAngle())});
   }
-  while (firstIllum_ + 1 < lights_.size() && !lights_[firstIllum_].isIllum) ++firstIllum_;
 }
 
 void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
@@ -80,7 +81,20 @@ void PolygonLights::splitEscaped(const LightPoint&, const vec3& wi,
 
 void PolygonLights::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> radiances) const {
   splitEscaped({}, wi, radiances);
-  radiances[firstIllum_] += hidden_.radiance(wi);
+  if (const Rgb hidden = hidden_.radiance(wi); !isBlack(hidden)) radiances[illumAt(wi)] += hidden;
+}
+
+// The illum that took what is hidden in this direction: the first that contains it; at its rim,
+// where texels reach over the edge, the nearest.
+size_t PolygonLights::illumAt(const vec3& wi) const {
+  size_t nearest = 0;
+  double least = std::numeric_limits<double>::max();
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    if (!lights_[i].isIllum) continue;
+    const double distance = lights_[i].polygon.chordTo(dvec3(wi));
+    if (distance < least) least = distance, nearest = i;
+  }
+  return nearest;
 }
 
 }  // namespace chromeball

@@ -36,10 +36,11 @@ class PolygonLights : public LightingStrategy {
   std::vector<std::string> groups() const override;
   void splitEscaped(const LightPoint& point, const vec3& wi,
                     std::span<Rgb> radiances) const override;
-  // The texels that became illums are not told apart: they are in the first illum's group.
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
+  size_t illumAt(const vec3& wi) const;
+
   struct Light {
     SphericalPolygon polygon;
     Rgb radiance;
@@ -51,7 +52,6 @@ class PolygonLights : public LightingStrategy {
   std::vector<Light> lights_;
   CdfRows choice_;
   Probe hidden_;
-  size_t firstIllum_ = 0;
 };
 
 }  // namespace chromeball

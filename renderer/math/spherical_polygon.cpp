@@ -48,6 +48,28 @@ bool SphericalPolygon::contains(const dvec3& direction) const {
   return glm::dot(direction, axis_) > 0 && chromeball::contains(plane_, projected(direction));
 }
 
+double SphericalPolygon::chordTo(const dvec3& direction) const {
+  if (contains(direction)) return 0;
+  double least = 2;
+  for (size_t i = 0; i < corners_.size(); ++i) {
+    const dvec3 &a = corners_[i], &b = corners_[(i + 1) % corners_.size()];
+    least = std::min(least, glm::distance(direction, a));
+    const dvec3 normal = glm::normalize(glm::cross(a, b));
+    const dvec3 foot = direction - glm::dot(direction, normal) * normal;
+    const bool isBetween =
+        glm::dot(glm::cross(a, foot), normal) > 0 && glm::dot(glm::cross(foot, b), normal) > 0;
+    if (isBetween) least = std::min(least, glm::distance(direction, glm::normalize(foot)));
+  }
+  return least;
+}
+
+// A cap of less than 90 degrees is convex: it contains the great circles between its points.
+double SphericalPolygon::capRadius() const {
+  double least = 1;
+  for (const dvec3& corner : corners_) least = std::min(least, glm::dot(corner, axis_));
+  return std::acos(std::min(least, 1.0));
+}
+
 dvec3 SphericalPolygon::vectorIrradiance() const {
   dvec3 sum(0);
   for (size_t i = 0; i < corners_.size(); ++i) {

@@ -24,6 +24,11 @@ class SphericalPolygon {
   const std::vector<dvec3>& corners() const { return corners_; }  // counter-clockwise from inside
   double solidAngle() const { return solidAngle_; }
   bool contains(const dvec3& direction) const;
+  double chordTo(const dvec3& direction) const;  // the shortest, on the unit sphere; 0 inside
+
+  // The cap that contains the polygon.
+  const dvec3& axis() const { return axis_; }
+  double capRadius() const;  // radians, at most 80 degrees
 
   // The vector irradiance of unit radiance (Lambert 1760): 1/2 sum over edges of (angle of the
   // edge) x (unit normal of its plane). Its product with a surface's normal is the irradiance

@@ -2,7 +2,8 @@
 #include "probe/polygon_source.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "base/for_ranges.h"
@@ -13,57 +14,91 @@
 namespace chromeball {
 namespace {
 
-// The fraction of each texel that the polygon covers, from 4 x 4 points.
-std::vector<float> coverageOf(const SphericalPolygon& polygon, const ImageSize& size) {
+struct CoveredTexel {
+  Texel texel;
+  float part;  // of its area, above 0
+};
+
+// Columns of a row, which may begin left of the map or end right of it.
+struct Columns {
+  int begin, end;
+};
+
+// Those of a lat-long map that a cap may touch, in row y. At an elevation closer to a pole than the
+// cap's rim, all; else the meridians that touch the cap, asin(sin(radius) / cos(elevation)) from
+// its axis.
+Columns columnsOf(const SphericalPolygon& polygon, const ImageSize& size) {
+  const double radius = polygon.capRadius(),
+               cosine = std::hypot(polygon.axis().x, polygon.axis().z);
+  if (std::sin(radius) >= cosine) return {0, size.width};
+  const double half = std::asin(std::sin(radius) / cosine) / (2 * kPiD) * size.width;
+  const double centre = directionToUv(Mapping::LatLong, polygon.axis()).x * size.width;
+  const Columns columns{int(std::floor(centre - half)) - 1, int(std::ceil(centre + half)) + 1};
+  return columns.end - columns.begin < size.width ? columns : Columns{0, size.width};
+}
+
+// The texels of a lat-long map of which the polygon covers a part, from 4 x 4 points of each.
+std::vector<CoveredTexel> coverageOf(const SphericalPolygon& polygon, const ImageSize& size) {
   constexpr int kPoints = 4;
-  std::vector<float> coverage(size_t(size.width) * size_t(size.height));
-  forRows(size.width, size.height, kPoints * kPoints, [&](int y) {
-    for (int x = 0; x < size.width; ++x) {
+  const double centre = directionToUv(Mapping::LatLong, polygon.axis()).y * size.height;
+  const double reach = polygon.capRadius() / kPiD * size.height + 1;
+  const int top = std::max(0, int(std::floor(centre - reach)));
+  const int bottom = std::min(size.height, int(std::ceil(centre + reach)));
+  const Columns columns = columnsOf(polygon, size);
+  std::vector<std::vector<CoveredTexel>> rows(size_t(std::max(0, bottom - top)));
+  forRows(columns.end - columns.begin, bottom - top, kPoints * kPoints, [&](int row) {
+    const int y = top + row;
+    for (int column = columns.begin; column < columns.end; ++column) {
+      const int x = (column + size.width) % size.width;
       int inside = 0;
       for (int i = 0; i < kPoints * kPoints; ++i) {
         const dvec2 uv((x + (i % kPoints + 0.5) / kPoints) / size.width,
                        (y + (i / kPoints + 0.5) / kPoints) / size.height);
         inside += polygon.contains(*uvToDirection(Mapping::LatLong, uv));
       }
-      coverage[size_t(y) * size_t(size.width) + size_t(x)] = float(inside) / (kPoints * kPoints);
+      if (inside) rows[size_t(row)].push_back({{x, y}, float(inside) / (kPoints * kPoints)});
     }
   });
-  return coverage;
+  std::vector<CoveredTexel> covered;
+  for (const auto& row : rows) covered.insert(covered.end(), row.begin(), row.end());
+  return covered;
 }
 
 // The mean radiance of the uncovered texels beside covered ones, by solid angle; 0 if there are
 // none.
-dvec3 meanOfRim(const Image& map, const std::vector<float>& coverage) {
-  const auto covered = [&](int x, int y) {
-    return y >= 0 && y < map.height &&
-           coverage[size_t(y) * size_t(map.width) + size_t((x + map.width) % map.width)] > 0;
+dvec3 meanOfRim(const Image& map, const std::vector<CoveredTexel>& coverage) {
+  const auto indexOf = [&](int x, int y) {
+    return size_t(y) * size_t(map.width) + size_t((x + map.width) % map.width);
   };
+  std::vector<size_t> covered, beside, rim;
+  for (const auto& [texel, part] : coverage) {
+    covered.push_back(indexOf(texel.x, texel.y));
+    for (int y = std::max(0, texel.y - 1); y <= std::min(map.height - 1, texel.y + 1); ++y)
+      for (int x = texel.x - 1; x <= texel.x + 1; ++x) beside.push_back(indexOf(x, y));
+  }
+  std::ranges::sort(covered);
+  std::ranges::sort(beside);
+  beside.erase(std::ranges::unique(beside).begin(), beside.end());
+  std::ranges::set_difference(beside, covered, std::back_inserter(rim));
   dvec3 sum(0);
   double weight = 0;
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) {
-      if (covered(x, y)) continue;
-      bool isRim = false;
-      for (int i = 0; i < 9 && !isRim; ++i) isRim = covered(x + i % 3 - 1, y + i / 3 - 1);
-      if (!isRim) continue;
-      const double solidAngle = texelSolidAngle(y, map.width, map.height);
-      sum += dvec3(map.rgb(x, y)) * solidAngle;
-      weight += solidAngle;
-    }
+  for (const size_t i : rim) {
+    const int x = int(i % size_t(map.width)), y = int(i / size_t(map.width));
+    const double solidAngle = texelSolidAngle(y, map.width, map.height);
+    sum += dvec3(map.rgb(x, y)) * solidAngle;
+    weight += solidAngle;
+  }
   return weight > 0 ? sum / weight : dvec3(0);
 }
 
-dvec3 removeCovered(Image& map, const std::vector<float>& coverage, const dvec3& fill) {
+dvec3 removeCovered(Image& map, const std::vector<CoveredTexel>& coverage, const dvec3& fill) {
   dvec3 taken(0);  // radiance x solid angle
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) {
-      const double part = coverage[size_t(y) * size_t(map.width) + size_t(x)];
-      if (part == 0) continue;
-      const dvec3 before(map.rgb(x, y));
-      const Rgb after(before - part * glm::max(before - fill, dvec3(0)));
-      taken += (before - dvec3(after)) * texelSolidAngle(y, map.width, map.height);
-      map.setRgb(x, y, after);
-    }
+  for (const auto& [texel, part] : coverage) {
+    const dvec3 before(map.rgb(texel.x, texel.y));
+    const Rgb after(before - double(part) * glm::max(before - fill, dvec3(0)));
+    taken += (before - dvec3(after)) * texelSolidAngle(texel.y, map.width, map.height);
+    map.setRgb(texel.x, texel.y, after);
+  }
   return taken;
 }
 
@@ -125,11 +160,12 @@ PolygonExtraction extractPolygons(const Image& latLong,
   for (int y = 0; y < latLong.height; ++y)
     for (int x = 0; x < latLong.width; ++x) result.remainder.setRgb(x, y, latLong.rgb(x, y));
   for (const SphericalPolygon& polygon : polygons) {
-    const std::vector<float> coverage = coverageOf(polygon, {latLong.width, latLong.height});
+    const std::vector<CoveredTexel> coverage = coverageOf(polygon, {latLong.width, latLong.height});
     const dvec3 fill = meanOfRim(result.remainder, coverage);
     const dvec3 taken = removeCovered(result.remainder, coverage, fill);
-    result.sources.push_back({polygon, taken / polygon.solidAngle(),
-                              std::accumulate(coverage.begin(), coverage.end(), 0.0)});
+    double texels = 0;
+    for (const CoveredTexel& covered : coverage) texels += covered.part;
+    result.sources.push_back({polygon, taken / polygon.solidAngle(), texels});
   }
   return result;
 }

@@ -34,7 +34,7 @@ std::map<std::string, Rgb> parseGains(const std::string& text) {
       item.erase(0, equals + 1);
       if (numbers.contains(name)) throwInput("--gain: `{}` has two gains", name);
     } else if (name.empty()) {
-      throwInput("--gain: `{}` has no name; give NAME=GAIN or NAME=R,G,B", item);
+      throwInput("--gain: `{}` is no NAME=GAIN or NAME=R,G,B", item);
     } else {
       numbers[name] += ',';
     }
@@ -47,6 +47,7 @@ std::map<std::string, Rgb> parseGains(const std::string& text) {
     gains[group] =
         isGrey ? Rgb(float(values[0])) : Rgb(float(values[0]), float(values[1]), float(values[2]));
     if (!isFinite(gains[group])) throwInput("--gain {}: is too large", group);
+    if (const Rgb& g = gains[group]; std::min({g.x, g.y, g.z}) < 0) throwInput("--gain {}: must not be negative", group);
   }
   return gains;
 }
@@ -103,7 +104,13 @@ void run(const Arguments& arguments) {
   const std::vector<Rgb> gains = gainsOf(groups, given);
   for (size_t i = 0; i < gains.size(); ++i) groups.layers[i] = scaled(groups.layers[i], gains[i]);
   OutputImage output;
+  output.metadata = file.metadata;
+  output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, sumOf(groups.layers)));
+  for (const float texel : output.layers.front().image.texels)
+    if (!std::isfinite(texel))
+      throwInput("--gain: the picture exceeds the largest float, 3.4e38, or {} has such texels",
+                 arguments.in);
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});

@@ -26,7 +26,7 @@
 namespace chromeball {
 namespace {
 
-constexpr double kMaxAngle = 10;  // degrees; the approximation of discSolidAngle() errs by 0.25%
+constexpr double kMaxAngle = 10;  // degrees; more is no longer a light from one direction
 
 struct Arguments {
   LightsProbe probe;
@@ -138,6 +138,14 @@ void runPolygonsOf(const Arguments& arguments) {
     throwInput("--method: excludes --suggest and --polygons; give one");
   if (!(arguments.rotation == Rotation()))
     throwInput("--rotation: turns the lights of a --method, not polygons");
+  const LightRequest& request = arguments.request;
+  const std::pair<const char*, bool> others[] = {
+      {"--count", request.count.has_value()},       {"--recursion", request.levels.has_value()},
+      {"--max-error", !arguments.maxError.empty()}, {"--ambient", request.ambient},
+      {"--angle", arguments.angle.has_value()},     {"--regions", arguments.regions},
+      {"--sphere", !arguments.sphere.empty()},      {"--normals", arguments.normals.has_value()}};
+  for (const auto& [option, isGiven] : others)
+    if (isGiven) throwInput("{}: is for the lights of a --method, not for polygons", option);
   const LightFormat format = arguments.suggest
                                  ? LightFormat::Json
                                  : lightFormat(arguments.output, arguments.format, "--format");

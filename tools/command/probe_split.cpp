@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe split PROBE --suns suns.json --rest rest.exr
 // chromeball probe add-sun REST.exr OUT.exr --lights suns.json
+#include <cmath>
 #include <cstdio>
 
 #include "base/error.h"
@@ -24,8 +25,10 @@ struct SplitArguments {
 };
 
 void split(const SplitArguments& arguments) {
-  if (arguments.angle && !(*arguments.angle > 0 && *arguments.angle <= kMaxListedAngle))
-    throwInput("--angle: should be above 0 and at most {} degrees", kMaxListedAngle);
+  if (arguments.angle &&
+      !(*arguments.angle >= kLeastListedAngle && *arguments.angle <= kMaxListedAngle))
+    throwInput("--angle: should be {} to {} degrees", kLeastListedAngle, kMaxListedAngle);
+  arguments.probe.checkMask();
   if (lightFormat(arguments.suns, "", "") != LightFormat::Json)
     throwInput("--suns: {} should end in .json, which [[light]] and `probe add-sun` read",
                arguments.suns);
@@ -55,7 +58,6 @@ struct AddArguments {
 
 // Lights without an angle become as small as a map can show.
 void addSuns(const AddArguments& arguments) {
-  constexpr double kLeastAngle = 0.01;  // degrees
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.probe.file, arguments.lights});
   const LightList list = readLights(arguments.lights);
@@ -65,7 +67,11 @@ void addSuns(const AddArguments& arguments) {
     for (int x = 0; x < map.width; ++x) map.setRgb(x, y, map.rgb(x, y) + ambient);
   for (const DirectionalLight& light : list.lights)
     addSunDisc(map, glm::normalize(dvec3(light.direction)),
-               std::max<double>(light.angle, kLeastAngle), dvec3(light.irradiance));
+               std::max<double>(light.angle, kLeastListedAngle), dvec3(light.irradiance));
+  for (const float texel : map.texels)
+    if (!std::isfinite(texel))
+      throwInput("{}: with {} a texel exceeds the largest float, 3.4e38", arguments.lights,
+                 arguments.probe.file);
   writeImage(arguments.out, map);
 }
 

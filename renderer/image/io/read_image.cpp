@@ -78,6 +78,15 @@ void checkFileLength(const fs::path& path, std::string_view reader, const OIIO::
     throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
+// Of an .exr whose data window lies within its display window and is not all of it.
+std::optional<Placement> placementOf(const OIIO::ImageSpec& spec) {
+  const Placement p{spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width, spec.full_height};
+  const bool isWithin =
+      p.x >= 0 && p.y >= 0 && p.width - p.x >= spec.width && p.height - p.y >= spec.height;
+  if (!isWithin || (p.width == spec.width && p.height == spec.height)) return {};
+  return p;
+}
+
 // Multiplies the colour by alpha; the texels are linear.
 void associate(Image& image, int alphaChannel) {
   for (int y = 0; y < image.height; ++y)
@@ -94,6 +103,7 @@ ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexel
   ImageFile file;
   file.channels = spec.channelnames;
   file.metadata = metadataOf(spec);
+  if (input.format_name() == std::string_view("openexr")) file.placement = placementOf(spec);
   file.integers = !spec.format.is_floating_point();
   file.bits = file.integers ? int(8 * spec.format.basesize()) : 0;
   file.image = Image(spec.width, spec.height, spec.nchannels);

@@ -22,14 +22,20 @@ using Metadata = std::map<std::string, std::variant<std::string, int, float, Mat
 // The encoding of integer files (8 or 16 bits). Float files are always linear.
 enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear, except alpha
 
+// The position of an image's first pixel in a larger image, and the size of that.
+struct Placement {
+  int x, y, width, height;
+};
+
 // All contents of a file: its channels, interleaved in `image` in the file's order. Colour is
 // associated with alpha (premultiplied, in linear light), however the file stores it.
 struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
-  bool integers = false;  // the file has integers per channel, so no texel is above 1
-  int bits = 0;           // of these, 8 or 16
+  std::optional<Placement> placement;  // of an .exr whose pixels are part of its display window
+  bool integers = false;               // the file has integers per channel, so no texel is above 1
+  int bits = 0;                        // of these, 8 or 16
 };
 
 // The attributes alone, of an .exr.

@@ -28,11 +28,6 @@ struct Layer {
 struct OutputImage {
   std::vector<Layer> layers;
   Metadata metadata;
-
-  // The position of the first pixel in a larger image, and the size of that.
-  struct Placement {
-    int x, y, width, height;
-  };
   std::optional<Placement> placement;   // of an .exr
   std::function<void(Archive&)> state;  // what else an .exr holds (exr_state.h); may be empty
 };
