@@ -9,6 +9,7 @@
 #include "integrate/mis.h"
 #include "job/job.h"
 #include "measure/statistics.h"
+#include "probe/sky.h"
 #include "run_command.h"
 #include "small_model.h"
 #include "sphere_test.h"
