@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/compose.h"
 
+#include <algorithm>
+
 namespace chromeball {
 namespace {
 
@@ -42,10 +44,32 @@ Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
   return gain;
 }
 
+// Premultiplied colour and alpha.
+glm::vec4 caught(const DifferentialPixel& p) {
+  if (!(p.count > 0)) return glm::vec4(0);
+  double kept = 1;
+  for (int c = 0; c < 3; ++c)
+    if (p.local[c] > 0) kept = std::clamp((p.local[c] + p.difference[c]) / p.local[c], 0.0, kept);
+  const dvec3 color = (p.objects + p.local + p.difference - kept * p.local) / p.count;
+  return {glm::max(Rgb(color), Rgb(0)), float(1 - (1 - alphaOf(p)) * kept)};
+}
+
+Composite shadowCatcher(const DifferentialFilm& film) {
+  Composite result{Image(film.width(), film.height(), 4), Image(film.width(), film.height(), 3)};
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const glm::vec4 pixel = caught(film.at(x, y));
+      std::copy_n(&pixel.x, 4, result.color.at(x, y));
+      result.gain.setRgb(x, y, Rgb(1));
+    }
+  return result;
+}
+
 }  // namespace
 
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode) {
+  if (mode == CompositeMode::ShadowCatcher) return shadowCatcher(film);
   Composite result{Image(film.width(), film.height(), 3), Image(film.width(), film.height(), 3)};
   const dvec3 meanLocal = meanLocalRadiance(film);
   for (int y = 0; y < film.height(); ++y)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/denoise_composite.h"
 
+#include "composite/layers.h"
+
 namespace chromeball {
 namespace {
 
@@ -32,13 +34,13 @@ Image differenceOf(const DifferentialFilm& film, const Image& plate) {
 Image errorOf(const std::vector<DenoisedPart>& parts, const Image& differences,
               const Composite& composite, const Image& unclamped, const HalvedImage& alpha,
               const Image& plate) {
-  Image error(plate.width, plate.height, 1);
-  for (int y = 0; y < plate.height; ++y)
-    for (int x = 0; x < plate.width; ++x) {
-      const Rgb share = alpha.half.rgb(x, y) * plate.rgb(x, y);
+  Image error(unclamped.width, unclamped.height, 1);
+  for (int y = 0; y < error.height; ++y)
+    for (int x = 0; x < error.width; ++x) {
+      const Rgb behind = plate.empty() ? Rgb(0) : plate.rgb(x, y);
+      const Rgb share = alpha.half.rgb(x, y) * behind;
       const Rgb gain = composite.gain.rgb(x, y);
-      const Rgb largest =
-          glm::max(gain * absolute(differences.rgb(x, y)), absolute(plate.rgb(x, y)));
+      const Rgb largest = glm::max(gain * absolute(differences.rgb(x, y)), absolute(behind));
       const Rgb change = glm::min(gain * glm::sqrt(parts[1].squaredError.rgb(x, y)), largest);
       const Rgb standardError =
           glm::sqrt(parts[0].squaredError.rgb(x, y) + share * share + change * change);
@@ -55,7 +57,7 @@ std::optional<Denoised> denoiseComposite(const RenderResult& render, const Image
                                          const std::atomic<bool>& stop) {
   const FeatureFilm& features = render.features;
   std::vector<Layer> layers{DifferentialFilm::kObjects, DifferentialFilm::kDifference};
-  if (mode == CompositeMode::Ratio) layers.push_back(DifferentialFilm::kLocal);
+  if (mode != CompositeMode::Difference) layers.push_back(DifferentialFilm::kLocal);
   const DifferentialFilm noisy(render.layers);
   DenoiseInput input{{}, features.albedo(), features.normal(), features.disparity()};
   for (const Layer layer : layers) input.parts.push_back(noisy.mean(layer));
@@ -68,16 +70,18 @@ std::optional<Denoised> denoiseComposite(const RenderResult& render, const Image
     if (layers[i] != DifferentialFilm::kDifference)  // a regression may predict less than nothing
       for (float& texel : mean.texels) texel = std::max(texel, 0.0f);
   }
-  if (mode == CompositeMode::Ratio)
+  if (mode != CompositeMode::Difference)
     limitDifference(means.at(DifferentialFilm::kLocal), means.at(DifferentialFilm::kDifference));
   const LayerFilm filtered = render.layers.with(means);
   const DifferentialFilm film(filtered);
-  const Image difference = differenceOf(film, plate);
+  const bool hasPlate = mode != CompositeMode::ShadowCatcher;
+  const Image difference =
+      hasPlate ? differenceOf(film, plate) : compositeLayer(film, CompositeLayer::WithObjects);
   Composite composite = compose(film, difference, plate, mode);
   const Image& unclamped = mode == CompositeMode::Difference ? difference : composite.color;
   Image error = errorOf(*parts, means.at(DifferentialFilm::kDifference), composite, unclamped,
                         noisy.mean(DifferentialFilm::kCoverage), plate);
-  return Denoised{std::move(composite.color), std::move(error)};
+  return Denoised{std::move(composite.color), std::move(error), hasPlate ? Image() : difference};
 }
 
 }  // namespace chromeball

@@ -65,7 +65,7 @@ Sample DifferentialIntegrator::sample(const CameraSample& camera, PathContext& c
   const Rgb difference = context.clamp(s.difference());
   layers[DifferentialFilm::kLocal] = without;
   layers[DifferentialFilm::kDifference] = difference;
-  return {plate_.rgb(camera.x, camera.y) + difference, std::nullopt};
+  return {(plate_.empty() ? without : plate_.rgb(camera.x, camera.y)) + difference, std::nullopt};
 }
 
 }  // namespace chromeball

@@ -30,7 +30,8 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
 // and differences, not to the plate. Writes the layers of DifferentialFilm.
 class DifferentialIntegrator : public Integrator {
  public:
-  // All arguments must outlive this; the plate has the size of the image.
+  // All arguments must outlive this. The plate has the size of the image, or is empty: then samples
+  // are the radiance with the objects.
   DifferentialIntegrator(const CompositeWorlds& worlds, const Image& plate, bool behindObjects)
       : worlds_(worlds), plate_(plate), behindObjects_(behindObjects) {}
 

@@ -7,6 +7,13 @@
 namespace chromeball {
 namespace {
 
+Rgb ratioOf(const DifferentialPixel& p) {
+  Rgb ratio(1);
+  for (int c = 0; c < 3; ++c)
+    if (p.local[c] > 0) ratio[c] = float((p.local[c] + p.difference[c]) / p.local[c]);
+  return ratio;
+}
+
 Rgb valueOf(const DifferentialPixel& p, CompositeLayer layer) {
   const double count = std::max(p.count, 1.0);
   switch (layer) {
@@ -16,6 +23,10 @@ Rgb valueOf(const DifferentialPixel& p, CompositeLayer layer) {
       return Rgb((p.local + p.behind) / count);
     case CompositeLayer::Difference:
       return Rgb(p.difference / count);
+    case CompositeLayer::Ratio:
+      return ratioOf(p);
+    case CompositeLayer::Objects:
+      return Rgb(p.objects / count);
     default:
       return Rgb(float(p.covered / count));
   }
@@ -28,6 +39,8 @@ const std::vector<CompositeLayerInfo>& compositeLayers() {
       {CompositeLayer::WithObjects, "l_obj", "RGB"},
       {CompositeLayer::WithoutObjects, "l_noobj", "RGB"},
       {CompositeLayer::Difference, "difference", "RGB"},
+      {CompositeLayer::Ratio, "ratio", "RGB"},
+      {CompositeLayer::Objects, "objects", "RGB"},
       {CompositeLayer::Alpha, "alpha", "A"},
       {CompositeLayer::Reflectance, "reflectance", "RGB"}};
   return layers;

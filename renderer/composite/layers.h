@@ -15,6 +15,8 @@ enum class CompositeLayer {
   WithObjects,     // l_obj: radiance with the objects
   WithoutObjects,  // l_noobj: radiance without them
   Difference,      // (1 - alpha) (L_obj - L_noobj)
+  Ratio,           // L_obj / L_noobj of the samples that see no object; 1 where L_noobj is 0
+  Objects,         // alpha L_objects: radiance of the objects, premultiplied
   Alpha,           // fraction of the pixel that objects cover
   Reflectance,     // of the local scene
 };

@@ -20,9 +20,9 @@ struct CompositeRender {
   DifferentialFilm film() const { return DifferentialFilm(result.layers); }
 };
 
-// `world` must have the masks of composite/objects.h, and the plate the size of the image.
-// `behindObjects`: also estimate L_noobj where an object hides it. `control`: of one pass; may be
-// null.
+// `world` must have the masks of composite/objects.h, and the plate the size of the image; empty,
+// of one pass: the mean is the radiance with the objects. `behindObjects`: also estimate L_noobj
+// where an object hides it. `control`: of one pass; may be null.
 CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightingStrategy& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,

@@ -208,7 +208,8 @@ double denoiseBytes(int width, int height, int parts) {
 }
 
 double remainingNoise(const Denoised& denoised) {
-  const Image &color = denoised.color, &error = denoised.error;
+  const Image& color = denoised.whole.empty() ? denoised.color : denoised.whole;
+  const Image& error = denoised.error;
   double mean = 0, sum = 0;
   const double count = double(error.texels.size());
   for (int y = 0; y < color.height; ++y)

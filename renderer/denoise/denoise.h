@@ -32,8 +32,9 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
                                                  const std::atomic<bool>& stop);
 
 struct Denoised {
-  Image color;  // RGB radiance
-  Image error;  // one channel: estimated standard error of luminance
+  Image color;       // RGB radiance; RGBA of a shadow catcher
+  Image error;       // one channel: estimated standard error of luminance
+  Image whole = {};  // to which errors are relative; empty: the colour
 };
 
 // The sum of the parts; negative radiance is set to 0.

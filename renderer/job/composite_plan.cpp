@@ -33,6 +33,20 @@ void planReflectance(const RenderJob& job, CompositePlan& composite) {
   }
 }
 
+// Whether the probe is not the only light, emitting surfaces aside.
+bool hasLamps(const Scene& scene) {
+  return !scene.lights.empty() || !scene.suns.empty() || !scene.ambient.empty();
+}
+
+constexpr std::string_view kGround = "ground";
+
+// `--shadow-catcher ground`, where no node is called so.
+bool namesTheGround(const CompositeEntry& entry, const Scene& scene) {
+  return std::ranges::any_of(entry.localScene,
+                             [](const NamedSetting& node) { return node.name == kGround; }) &&
+         std::ranges::find(scene.nodeNames, kGround) == scene.nodeNames.end();
+}
+
 // The part inside a box or sphere.
 Ground clipped(Ground ground, const Surroundings& around, const std::string& location) {
   const bool isBox = around.shape == Surroundings::Shape::Box;
@@ -52,7 +66,9 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
 
 void placeGround(const RenderJob& job, LoadedScene& loaded) {
   const Settings& settings = job.file.settings;
-  const std::string location = settings.location("composite.ground");
+  const std::string location = settings.has("composite.ground")
+                                   ? settings.location("composite.ground")
+                                   : settings.location("shadow-catcher");
   if (loaded.surroundings && loaded.room)
     throwInput(
         "{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
@@ -73,14 +89,29 @@ void placeGround(const RenderJob& job, LoadedScene& loaded) {
   addGround(loaded.scene, ground, job.file.composite->groundReflectance);
 }
 
+// What a compositor needs is always written: plate x (1 - alpha) x ratio + objects, or plate x (1 -
+// alpha) + objects + difference.
+void planShadowCatcher(RenderJob& job, CompositePlan& composite) {
+  composite.mode = CompositeMode::ShadowCatcher;
+  for (const char* key : {"reflectance", "iterations"})
+    if (const std::string name = fmt::format("composite.{}", key); job.file.settings.has(name))
+      throwInput("{}: a shadow catcher has no plate that tells its reflectance",
+                 job.file.settings.location(name));
+  for (const char* layer : {"objects", "alpha", "difference", "ratio"})
+    if (std::ranges::count(composite.layers, layer) == 0) composite.layers.emplace_back(layer);
+  std::erase(job.settings.aovs, Aov::Alpha);
+}
+
 }  // namespace
 
 void planComposite(RenderJob& job) {
   const Settings& s = job.file.settings;
   CompositePlan& composite = job.composite.emplace();
+  composite.layers = s.get<std::vector<std::string>>("output.aovs");
+  composite.passes = s.get<bool>("two-pass") ? Passes::Two : Passes::One;
+  if (isShadowCatcher(s)) return planShadowCatcher(job, composite);
   composite.mode = s.get<std::string>("composite.mode") == "ratio" ? CompositeMode::Ratio
                                                                    : CompositeMode::Difference;
-  composite.passes = s.get<bool>("two-pass") ? Passes::Two : Passes::One;
   const std::string path = s.get<std::string>("composite.plate");
   const Image plate = readPlate(path);
   if (!job.size) job.size = ImageSize{plate.width, plate.height};
@@ -91,7 +122,6 @@ void planComposite(RenderJob& job) {
   if (s.has("composite.iterations") && composite.reflectance != CompositePlan::Reflectance::Plate)
     throwInput("{}: `iterations` is only for reflectance = \"plate\"",
                s.location("composite.iterations"));
-  composite.layers = s.get<std::vector<std::string>>("output.aovs");
   if (std::ranges::count(composite.layers, "reflectance") > 0 &&
       composite.reflectance == CompositePlan::Reflectance::Model)
     throwInput("{}: layer `reflectance` needs reflectance = \"plate\" or \"flat\" in [composite]",
@@ -99,22 +129,15 @@ void planComposite(RenderJob& job) {
   std::erase(job.settings.aovs, Aov::Alpha);  // a composite's alpha is a layer of its own
 }
 
-namespace {
-
-// Whether the probe is not the only light, emitting surfaces aside.
-bool hasLamps(const Scene& scene) {
-  return !scene.lights.empty() || !scene.suns.empty() || !scene.ambient.empty();
-}
-
-}  // namespace
-
 void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
   CompositePlan& composite = *job.composite;
   const CompositeEntry& entry = *job.file.composite;
   const Settings& settings = job.file.settings;
   Scene& scene = loaded.scene;
   std::vector<NamedSetting> localScene = entry.localScene;
-  if (settings.get<bool>("composite.ground")) {
+  if (settings.get<bool>("composite.ground") ||
+      (settings.has("shadow-catcher") && namesTheGround(entry, scene))) {
+    std::erase_if(localScene, [&](const NamedSetting& node) { return node.name == kGround; });
     placeGround(job, loaded);
     localScene.push_back({kGroundNode, entry.location});
   }
@@ -127,6 +150,9 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
                  settings.location("composite.reflectance"));
     if (job.file.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
+                 settings.location("composite.reflectance"));
+    if (hasLamps(scene))
+      throwInput("{}: needs the probe as the only light, and there are lamps; give \"plate\"",
                  settings.location("composite.reflectance"));
   }
   if (composite.reflectance != CompositePlan::Reflectance::Model) {

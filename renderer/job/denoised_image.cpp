@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/denoised_image.h"
 
+#include <algorithm>
+
 #include "base/stopwatch.h"
 
 namespace chromeball {
@@ -27,7 +29,7 @@ double addDenoised(Denoised denoised, OutputImage& image) {
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
       noisy.setRgb(x, y, color.rgb(x, y));
-      color.setRgb(x, y, denoised.color.rgb(x, y));
+      std::copy_n(denoised.color.at(x, y), denoised.color.channels, color.at(x, y));
     }
   image.layers.push_back({"noisy", "RGB", std::move(noisy)});
   image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});

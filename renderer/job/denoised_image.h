@@ -27,9 +27,9 @@ std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress
 // The share of rendering in the progress of a job that denoises.
 inline constexpr double kRenderShare = 0.9;
 
-// Replaces the color of `image` (not its alpha) by the denoised one, and adds the layers `noisy`
-// and `denoise_error`. `progress` receives fractions from kRenderShare to 1. nullopt if `denoise`
-// returns nullopt.
+// Replaces the color of `image` (its alpha only by one that is denoised) by the denoised one, and
+// adds the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare
+// to 1. nullopt if `denoise` returns nullopt.
 using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
 std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const Progress& progress,
                                          OutputImage& image);

@@ -129,12 +129,18 @@ FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result
   const DifferentialFilm film(result.layers);
   const Composite composed = compose(film, difference.mean, composite.plate, composite.mode);
   FinishedImage finished{
-      {}, ImageNoise(compositeErrors(film, composed, std::move(difference.errors))), {}, {}};
+      {},
+      ImageNoise(composite.isShadowCatcher()
+                     ? std::move(difference.errors)
+                     : compositeErrors(film, composed, std::move(difference.errors))),
+      {},
+      {}};
   finished.composite.emplace();
   finished.composite->coverage = meanAlpha(film);
   finished.composite->darkerThanBlack = composed.darkerThanBlack;
   finished.image.placement = placementOf(plan.settings);
-  finished.image.layers.push_back({"", "RGB", composed.color});
+  finished.image.layers.push_back(
+      {"", composite.isShadowCatcher() ? "RGBA" : "RGB", composed.color});
   for (const std::string& name : composite.layers)
     finished.image.layers.push_back(
         compositeLayerOf(name, composite, result, finished.noise.variance));
@@ -207,11 +213,12 @@ void FinishPlan::archive(Archive& a) {
   a.check(groups.empty() || !composite);
   a.check(composite || !s.hideProbe || std::ranges::count(s.aovs, Aov::Alpha) > 0);
   if (!composite) return;
-  a.enumerator(composite->mode, CompositeMode::Ratio);
+  a.enumerator(composite->mode, CompositeMode::ShadowCatcher);
   archiveNames(a, composite->layers);
   archiveChannels(a, composite->plate);
   archiveChannels(a, composite->reflectance);
-  a.check(composite->plate.channels == 3 && composite->reflectance.channels % 3 == 0 &&
+  a.check(composite->plate.channels == (composite->isShadowCatcher() ? 0 : 3) &&
+          composite->reflectance.channels % 3 == 0 &&
           std::ranges::all_of(composite->layers,
                               [&](const std::string& name) { return hasLayer(name); }));
 }

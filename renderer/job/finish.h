@@ -33,7 +33,9 @@ struct CompositeReport {
 struct CompositeFinish {
   CompositeMode mode = CompositeMode::Difference;
   std::vector<std::string> layers;
-  Image plate, reflectance;  // of the rendered part of the image; the latter may be empty
+  Image plate, reflectance;  // of the rendered part of the image; empty without such
+
+  bool isShadowCatcher() const { return mode == CompositeMode::ShadowCatcher; }
 };
 
 // What the image is made of besides the samples.

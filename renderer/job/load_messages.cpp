@@ -90,7 +90,8 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
     addLights(job, scene, messages);
   if (const auto& scale = loaded.plateScale)
     messages.note(plateScaleText(*job.file.composite, *scale));
-  if (job.composite) addPlate(settings.get<std::string>("composite.plate"), messages);
+  if (const auto plate = settings.getIfGiven<std::string>("composite.plate"))
+    addPlate(*plate, messages);
   return messages.take();
 }
 

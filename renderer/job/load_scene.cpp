@@ -198,7 +198,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   const Settings& settings = job.file.settings;
   if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
   if (const auto path = settings.getIfGiven<std::string>("camera.file")) files.push_back(*path);
-  if (job.composite) files.push_back(settings.get<std::string>("composite.plate"));
+  if (const auto path = settings.getIfGiven<std::string>("composite.plate")) files.push_back(*path);
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.file.surroundings && !room)
     checkInside(scene, *job.file.surroundings, job.file.models.front().file);

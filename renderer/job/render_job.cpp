@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "base/error.h"
 #include "composite/layers.h"
@@ -116,6 +117,21 @@ void merge(SceneFile& file, const Settings& over) {
         rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
 }
 
+// --shadow-catcher NODE,...: a composite without a plate.
+void applyShadowCatcher(SceneFile& file) {
+  const auto nodes = file.settings.getIfGiven<std::string>("shadow-catcher");
+  if (!nodes) return;
+  const std::string location = file.settings.location("shadow-catcher");
+  if (file.composite)
+    throwInput("{}: the scene file has [composite]; give it mode = \"shadow-catcher\"", location);
+  file.settings.set("composite.mode", std::string("shadow-catcher"), location);
+  file.composite.emplace().location = location;
+  std::istringstream names(*nodes);
+  for (std::string name; std::getline(names, name, ',');)
+    file.composite->localScene.push_back({name, location});
+  if (file.composite->localScene.empty()) throwInput("{}: names no node", location);
+}
+
 constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
 
 bool isOfLight(std::string_view layer) { return layer == kLightGroups || layer == kShadowMattes; }
@@ -193,8 +209,9 @@ RenderSettings integratorSettings(const SceneFile& file) {
 void checkTwoPass(const SceneFile& file) {
   const Settings& s = file.settings;
   if (!s.get<bool>("two-pass")) return;
-  if (!file.composite)
-    throwInput("{}: is for composites; the scene file has no [composite]", s.location("two-pass"));
+  if (!file.composite || isShadowCatcher(s))
+    throwInput("{}: is for composites with a plate; the scene file has no [composite] plate",
+               s.location("two-pass"));
   const auto refuse = [&](const char* name) {
     throwInput("{}: is biased; leave it out in a reference of two passes", s.location(name));
   };
@@ -267,14 +284,14 @@ void checkParts(const SceneFile& file) {
 }
 
 void checkOrbit(const SceneFile& file) {
-  if (file.composite && file.settings.has("orbit"))
+  if (file.composite && !isShadowCatcher(file.settings) && file.settings.has("orbit"))
     throwInput("{}: the plate of a composite does not turn", file.settings.location("orbit"));
 }
 
 void checkTransparent(const SceneFile& file) {
   const Settings& s = file.settings;
   if (file.composite && s.get<bool>("transparent"))
-    throwInput("{}: the plate is the background of a composite; its layer alpha shows the objects",
+    throwInput("{}: is for plain renders; the layer alpha of a composite shows its objects",
                s.location("transparent"));
 }
 
@@ -286,6 +303,7 @@ void checkPlateScale(const SceneFile& file) {
   };
   if (!file.composite || !s.get<bool>("composite.ground"))
     refuse("needs [composite] with `ground = true`; else give a number");
+  if (isShadowCatcher(s)) refuse("needs a plate, and a shadow catcher has none");
   if (!s.has("probe.file")) refuse("needs a probe's `file`");
   if (file.surroundings) refuse("needs a distant probe, and there are [surroundings]");
   if (!file.lamps.empty()) refuse("needs the probe as the only light, and there are [[light]]");
@@ -299,6 +317,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   RenderJob job;
   job.file = std::move(scene);
   merge(job.file, over);
+  applyShadowCatcher(job.file);
   const Settings& s = job.file.settings;
   parseRotation(s.get<std::vector<double>>("probe.rotation"), s.location("probe.rotation"));
   checkTwoPass(job.file);

@@ -55,8 +55,8 @@ FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded, const Ren
   FinishPlan plan{job.settings, {}, result.groups};
   if (!job.composite) return plan;
   const Crop window = job.settings.window();
-  plan.composite = {
-      job.composite->mode, job.composite->layers, cropped(job.composite->plate, window), {}};
+  plan.composite = {job.composite->mode, job.composite->layers, {}, {}};
+  if (!job.composite->plate.empty()) plan.composite->plate = cropped(job.composite->plate, window);
   if (loaded.projection) plan.composite->reflectance = cropped(loaded.projection->colors(), window);
   return plan;
 }

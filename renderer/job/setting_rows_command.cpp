@@ -18,6 +18,15 @@ std::vector<Setting> commandRows() {
        .type = Flag,
        .help = "Hides the probe from the camera, and writes alpha.",
        .renderOnly = true},
+      {.option = "shadow-catcher",
+       .argument = "NODE,...",
+       .type = Name,
+       .absent = "a plain render",
+       .help = "Renders all other nodes, and the shadows and light that they cast on these, as an "
+               "image with alpha to be laid over a photograph, with the layers objects, alpha, "
+               "difference and ratio of the .exr. `ground`: a level plane at height 0, unless a "
+               "node is called so. As [composite] with mode = \"shadow-catcher\".",
+       .renderOnly = true},
       {.option = "two-pass",
        .type = Flag,
        .help = "Renders a composite as the difference of two renders: slow, the reference for the "

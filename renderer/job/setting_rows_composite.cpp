@@ -14,7 +14,7 @@ void addComposite(std::vector<Setting>& rows) {
   };
   add({.key = "plate",
        .type = File,
-       .absent = "required",
+       .absent = "required but for a shadow catcher",
        .help = "The photograph: linear .exr, .hdr, .pfm; others are decoded from sRGB."});
   add({.key = "local_scene",
        .type = Compound,
@@ -51,9 +51,12 @@ void addComposite(std::vector<Setting>& rows) {
        .fallback = "difference",
        .choices =
            [] {
-             return Names{"difference", "ratio"};
+             return Names{"difference", "ratio", "shadow-catcher"};
            },
-       .help = "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj."});
+       .help =
+           "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj; or "
+           "the objects and their shadows, without a plate, as a premultiplied image with alpha "
+           "to be laid over one."});
   add({.key = "reflectance",
        .type = Choice,
        .absent = "model; with `ground` flat, or plate if the local scene has more or other lights",

@@ -53,4 +53,8 @@ SettingValue Settings::defaultOf(std::string_view name) {
   return parseSetting(setting, {setting.fallback}, std::string(name));
 }
 
+bool isShadowCatcher(const Settings& settings) {
+  return settings.get<std::string>("composite.mode") == "shadow-catcher";
+}
+
 }  // namespace chromeball

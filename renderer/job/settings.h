@@ -58,4 +58,7 @@ class Settings {
   std::map<std::string, Given, std::less<>> given_;
 };
 
+// Whether [composite] has no plate.
+bool isShadowCatcher(const Settings& settings);
+
 }  // namespace chromeball
