@@ -61,8 +61,8 @@ void run(const Arguments& arguments) {
   if (!arguments.poses.empty()) checkOutputFile(arguments.poses, {".toml"});
   if (!arguments.poses.empty() && !arguments.refine)
     throwInput("--poses: are those that --refine finds");
-  const std::optional<ImageSize> given =
-      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
+  ImageSize size{};
+  if (!arguments.size.empty()) size = parseSize(arguments.size, "--size");
   std::vector<TileEntry> entries = readTiles(arguments.list);
   std::vector<std::string> inputs{arguments.list};
   for (const TileEntry& entry : entries) inputs.push_back(entry.file);
@@ -73,7 +73,8 @@ void run(const Arguments& arguments) {
   if (arguments.refine) refine(entries, tiles);
   const std::vector<double> gains = gainsOf(arguments, tiles);
   std::optional<BusyLine> busy("stitching");
-  const StitchedProbe probe = stitch(tiles, gains, given.value_or(stitchedSize(tiles)));
+  if (arguments.size.empty()) size = stitchedSize(tiles);
+  const StitchedProbe probe = stitch(tiles, gains, size);
   busy.reset();
   constexpr double kGap = 1e-5;
   if (probe.uncovered > kGap)
