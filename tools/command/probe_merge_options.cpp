@@ -101,6 +101,9 @@ void MergeArguments::addTo(CLI::App& command) {
   command.add_option(
       "--white", white,
       "where floats saturate; without it 1, or the largest number if that is higher");
+  command.add_flag("--resize", resizes,
+                   "accept photographs of several sizes, each cropped to the same ball: resample "
+                   "them to the smallest");
   command.add_flag("--unaligned", unaligned, "accept photographs that seem shifted");
   command
       .add_option(
@@ -122,6 +125,7 @@ PhotographSeries MergeArguments::series() const {
   if (!smoothness.empty()) series.smoothness = parsePositive(smoothness, "--smoothness");
   if (!white.empty()) series.white = float(parsePositive(white, "--white"));
   series.checkAlignment = !unaligned;
+  series.resizes = resizes;
   return series;
 }
 

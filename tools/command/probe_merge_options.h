@@ -11,7 +11,7 @@ namespace chromeball {
 struct MergeArguments {
   std::vector<std::string> files, ratios, filters, flatFields, calibration;
   std::string output, exposures, apertures, response, responseOutput, smoothness, white;
-  bool unaligned = false, json = false;
+  bool unaligned = false, resizes = false, json = false;
 
   void addTo(CLI::App& command);
 

@@ -143,7 +143,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   merged.settings = cameraSettings(series.files, series.times, series.apertures);
   merged.factors = factorsOf(series, merged.settings);
   checkFactorsDiffer(series, merged.factors);
-  PhotographLevels photographs = readLevels(series.files, series.white);
+  PhotographLevels photographs = readLevels(series.files, series.white, series.resizes);
   merged.white = photographs.white;
   const FlatFields flatFields(series, merged.settings, photographs.levels.front());
   std::vector<Exposure> exposures;

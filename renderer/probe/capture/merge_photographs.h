@@ -34,6 +34,7 @@ struct PhotographSeries {
   double smoothness = 20;      // of solve
   std::optional<float> white;  // of float files (read_levels.h)
   bool checkAlignment = true;  // find_shift.h
+  bool resizes = false;        // read_levels.h
 };
 
 struct MergedPhotographs {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/for_ranges.h"
 #include "image/io/read_image.h"
+#include "image/resample.h"
 
 namespace chromeball {
 namespace {
@@ -23,9 +24,17 @@ float largestTexel(const std::vector<Image>& images) {
   return largest;
 }
 
+void toSmallestSize(std::vector<Image>& images) {
+  int width = images.front().width, height = images.front().height;
+  for (const Image& image : images)
+    width = std::min(width, image.width), height = std::min(height, image.height);
+  for (Image& image : images) image = resampled(image, width, height);
+}
+
 }  // namespace
 
-PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white) {
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
+                            bool resizes) {
   PhotographLevels result;
   for (const std::string& file : files) {
     ImageFile read = readImageFile(file, IntegerTexels::Linear);
@@ -35,15 +44,18 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
       result.bits = bits;
     } else {
       const Image& first = result.levels.front();
-      if (image.width != first.width || image.height != first.height)
-        throwInput("{}: is {} x {}, but {} is {} x {}; photographs of a series have one size", file,
-                   image.width, image.height, files.front(), first.width, first.height);
+      if (!resizes && (image.width != first.width || image.height != first.height))
+        throwInput(
+            "{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, or give "
+            "--resize for crops of a ball",
+            file, image.width, image.height, files.front(), first.width, first.height);
       if (bits != result.bits)
         throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,
                    kindOf(bits), files.front(), kindOf(result.bits));
     }
     result.levels.push_back(std::move(image));
   }
+  if (resizes) toSmallestSize(result.levels);
   if (result.bits > 0) return result;
   result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
   for (Image& image : result.levels)

@@ -16,9 +16,11 @@ struct PhotographLevels {
   float white = 1;            // the texel of the files that is level 1
 };
 
-// `white` is that of float files, which are otherwise white at 1, or at their largest texel if that
-// is higher. Integers are white at 1. Throws InputError if a file is no image, or if sizes or kinds
-// of numbers differ.
-PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white);
+// `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
+// to the smallest width and height. `white` is that of float files, which are otherwise white at 1,
+// or at their largest texel if that is higher. Integers are white at 1. Throws InputError if a file
+// is no image, or if sizes or kinds of numbers differ.
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
+                            bool resizes = false);
 
 }  // namespace chromeball
