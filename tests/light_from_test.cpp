@@ -236,7 +236,7 @@ TEST(LightList, RefusesOthers) {
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "angle": 100)"), "angle");
   refused(light(R"("direction": [0, 1, 0], "irradiance": [1, 1, 1], "radiance": [9, 9, 9],
                    "angle": 1)"),
-          "delete the other");
+          "one of the three was edited");
 }
 
 // Of a light without an angle, one of 20 degrees and ambient light, on a white floor that faces +Z:

@@ -58,7 +58,8 @@ TEST(SolvePoints, ExactPointsGiveTheCamera) {
       const auto points = observe(truth, c.count, c.half, 0, random);
       SCOPED_TRACE(
           fmt::format("{} points, trial {}, k1 {}, flat {}", c.count, trial, c.k1, c.half.y == 0));
-      const CameraFit fit = solveByPoints(points, knowledge(truth, c.knowsFocalLength), "P");
+      CameraFit fit;
+      ASSERT_NO_THROW(fit = solveByPoints(points, knowledge(truth, c.knowsFocalLength), "P"));
       EXPECT_LT(errorOf(fit.camera, truth), 1e-8) << c.count << " points, k1 " << c.k1;
       EXPECT_LT(fit.rms(), 1e-7);
     }
@@ -130,7 +131,7 @@ TEST(SolvePoints, TheWorstPointIsTheMovedOne) {
 
 // Seen from far away, four corners of a table fit two cameras.
 TEST(SolvePoints, TellsOfTwoCamerasThatFit) {
-  const SolvedCamera truth = photographFrom({0, 120, 160}, {0, 0, 0}, 0.75);
+  const SolvedCamera truth = photographFrom({0, 480, 640}, {0, 0, 0}, 0.1875);
   std::vector<ObservedPoint> points;
   std::mt19937 random(4);
   std::normal_distribution<double> normal;

@@ -45,7 +45,34 @@ void checkSpread(const std::vector<ObservedPoint>& points, const dvec3& middle,
     throwInput("{}: all points have the same place in the picture", file);
 }
 
-// Minima of different rotations, the best first.
+// The unit normal of the plane that the points lie on, or are nearest to.
+dvec3 normalOf(const std::vector<CentredPoint>& points) {
+  Eigen::MatrixXd positions(points.size(), 3);
+  for (size_t i = 0; i < points.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      positions(Eigen::Index(i), axis) = points[i].position[axis];
+  const Eigen::Vector3d normal = positions.jacobiSvd(Eigen::ComputeFullV).matrixV().col(2);
+  return {normal[0], normal[1], normal[2]};
+}
+
+// A view that shows points of a plane at the same places, with depths and nearness reversed: q.z
+// becomes -q.z if the points are reflected in their plane, which leaves them where they are, and
+// then in the picture's.
+PointView reversed(const PointView& view, const dvec3& normal) {
+  PointView other = view;
+  other.nearness = -view.nearness;
+  const dmat3 inPlane = dmat3(1) - 2.0 * glm::outerProduct(normal, normal);
+  other.rotation = dmat3(dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, -1)) * view.rotation * inPlane;
+  return other;
+}
+
+// Whether it fits as well but for rounding.
+bool isAsGood(const Found& found, const Found& best, size_t points) {
+  constexpr double kRounding = 1e-6;  // also pixels
+  return found.squares <= (1 + kRounding) * best.squares + kRounding * kRounding * double(points);
+}
+
+// Minima of different rotations, the best first; of equal ones, those in front of the camera.
 std::vector<Found> search(const std::vector<CentredPoint>& points, const CameraKnowledge& known) {
   constexpr int kStarts = 128, kFirstSteps = 10, kMostSteps = 300;
   constexpr size_t kKept = 12;
@@ -66,9 +93,21 @@ std::vector<Found> search(const std::vector<CentredPoint>& points, const CameraK
     if (const auto start = simple.viewWith(rotation))
       first.push_back(minimise(simple, *start, kFirstSteps));
   const PointProblem whole(points, known.focalLength, known.findsDistortion);
-  for (const Found& start : distinct(std::move(first)))
+  const dvec3 normal = normalOf(points);
+  Eigen::VectorXd residual;
+  for (const Found& start : distinct(std::move(first))) {
     last.push_back(minimise(whole, start.state, kMostSteps));
-  return distinct(std::move(last));
+    if (last.back().state.nearness > 0) continue;
+    const PointView other = reversed(last.back().state, normal);
+    if (whole.residuals(other, residual, nullptr))
+      last.push_back(minimise(whole, other, kMostSteps));
+  }
+  std::vector<Found> found = distinct(std::move(last));
+  const Found best = found.empty() ? Found{} : found.front();
+  std::ranges::stable_partition(found, [&](const Found& one) {
+    return one.state.nearness > 0 && isAsGood(one, best, points.size());
+  });
+  return found;
 }
 
 SolvedCamera cameraOf(const PointView& view, const PointProblem& problem, const dvec3& middle,
@@ -194,8 +233,9 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   problem.residuals(best.state, residual, nullptr);
   for (size_t i = 0; i < points.size(); ++i)
     fit.distances.push_back(residual.segment<2>(Eigen::Index(2 * i)).norm());
-  if (found.size() > 1 && found[1].state.nearness > 0)
-    fit.rivalRms = std::sqrt(found[1].squares / double(points.size()));
+  const auto rival = std::find_if(found.begin() + 1, found.end(),
+                                  [](const Found& f) { return f.state.nearness > 0; });
+  if (rival != found.end()) fit.rivalRms = std::sqrt(rival->squares / double(points.size()));
   return fit;
 }
 
