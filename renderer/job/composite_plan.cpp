@@ -93,6 +93,9 @@ void placeGround(const RenderJob& job, LoadedScene& loaded) {
 // alpha) + objects + difference.
 void planShadowCatcher(RenderJob& job, CompositePlan& composite) {
   composite.mode = CompositeMode::ShadowCatcher;
+  if (job.file.settings.has("composite.plate"))
+    throwInput("{}: a shadow catcher is rendered without `plate`; leave one of them out",
+               job.file.settings.location("composite.plate"));
   for (const char* key : {"reflectance", "iterations"})
     if (const std::string name = fmt::format("composite.{}", key); job.file.settings.has(name))
       throwInput("{}: a shadow catcher has no plate that tells its reflectance",

@@ -19,10 +19,7 @@ void readGround(const Section& section, CompositeEntry& composite) {
 
 CompositeEntry readComposite(const Section& section, Settings& settings) {
   section.read(settings);
-  const bool hasPlate = !isShadowCatcher(settings);
-  if (hasPlate) section.required("plate");
-  if (const Entry plate = section["plate"]; plate && !hasPlate)
-    failAt(plate.location(), "a shadow catcher is rendered without `plate`; leave one of them out");
+  if (!isShadowCatcher(settings)) section.required("plate");
   CompositeEntry composite;
   composite.location = section.location();
   const bool hasGround = settings.get<bool>("composite.ground");
