@@ -9,11 +9,13 @@ import lights
 import probes
 import rendering
 import scenes
+import suns
 from page import page
 from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", lights.rows), ("Probes", probes.rows),
-            ("Sampling a probe", rendering.rows), ("Composites and rooms", scenes.rows)]
+            ("Sampling a probe", rendering.rows),
+            ("Suns", suns.rows), ("Composites and rooms", scenes.rows)]
 
 
 def main():

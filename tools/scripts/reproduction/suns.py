@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Suns: HDRI's figures 9.14 to 9.17, and the numbers of section 9.6.1."""
+import math
+import sys
+
+from page import Row, table
+from run import ROOT, luminance, read_pfm
+
+sys.path.append(str(ROOT / "tools" / "scripts"))
+from gltf import Model  # noqa: E402
+
+PAINT = 0.5
+
+
+def model(run, name, add):
+    made = Model()
+    add(made)
+    made.write(run.scratch / name)
+    return run.scratch / name
+
+
+def mean(run, image):
+    width, height, rows = read_pfm(run.scratch / image)
+    return [sum(color[c] for row in rows for color in row) / (width * height) for c in range(3)]
+
+
+def floor(run):
+    file = model(run, "floor.gltf", lambda m: m.quads("floor", m.material((1, 1, 1)),
+                                                      [((-1, 0, 1), (2, 0, 0), (0, 0, -2))]))
+    scene = run.scratch / "floor.toml"
+    scene.write_text(f"""model = "{file}"
+[camera]
+position = [0, 3, 1]
+look_at = [0, 0, 0]
+fov = 5
+[[light]]
+direction = [0, 1, 0]
+angle = 0.5323
+radiance = 46700
+""")
+    run.render(scene, "floor.pfm", "--samples", 64, "--size", "8x8")
+    radiance = mean(run, "floor.pfm")[0]
+    exact = 46700 * math.sin(math.radians(0.5323 / 2)) ** 2
+    return [Row(
+        "HDRI 9.6.1: the radiance of the sun",
+        "A sun of 46,700 times the radiance of the sky gives a white floor about the radiance 1; the sun's disc is "
+        "1 / 100,000 of the sky.",
+        ["chromeball render floor.toml, with [[light]] direction, angle = 0.5323, radiance = 46700"],
+        f"{radiance:.5f}, rendered; {exact:.5f} = 46,700 sin^2(0.5323 / 2 degrees), exact.",
+        "The number of the text is right; the solid angle of the disc is 1 / 92,700 of the hemisphere.")]
+
+
+def diffuse_ball(run):
+    ball = model(run, "ball.gltf", lambda m: m.sphere("ball", m.material((PAINT,) * 3), (0, 0, 0), 1))
+    distance, size = 10, 200
+    fov = 2 * math.degrees(math.atan(1.1 / math.sqrt(distance ** 2 - 1)))
+    scene = run.scratch / "ball.toml"
+    rows = []
+    for name, file in run.probes(["Qwantani", "Kloppenheim", "Hilly terrain"]).items():
+        scene.write_text(f"""model = "{ball}"
+[camera]
+position = [0, 0, {distance}]
+look_at = [0, 0, 0]
+fov = {fov}
+[probe]
+file = "{file}"
+""")
+        run.render(scene, "ball.exr", "--samples", 256, "--size", f"{size}x{size}", "--max-depth", 1)
+        run("probe", "edit", file, "clipped.exr", "--clip-stops", 4)
+        radius = size / 2 / 1.1
+        found = run.json("probe", "sun", "clipped.exr", "--diffuse", "ball.exr", "--circle",
+                         f"{size / 2},{size / 2},{radius}", "--paint", ",".join([str(PAINT)] * 3), "--camera", "0,0",
+                         "--distance", distance)
+        true = run.json("probe", "info", file)["suns"][0]["irradiance"]
+        rows.append([name, f"{luminance(found['irradiance']):.3g}", f"{luminance(true):.3g}",
+                     f"{100 * found['rms']:.2g}", f"{100 * found['rms_clipped']:.3g}"])
+    if not rows:
+        return []
+    return [Row(
+        "HDRI figures 9.14 to 9.17: a clipped sun from a diffuse ball",
+        "The sun's intensity is solved from a photograph of a grey ball; its render differs by less than 2%.",
+        ["chromeball probe sun clipped.exr --diffuse ball.exr --circle X,Y,R --paint 0.5,0.5,0.5 --camera 0,0"],
+        table(["probe", "irradiance of the sun found", "of `probe info`", "RMS left, %",
+               "RMS of the clipped probe alone, %"], rows),
+        "The photographs are rendered here, and the probes clipped at 16 times their mean. `probe info` counts as sun "
+        "only what stands out of its glow; the ball has all that was clipped.")]
+
+
+def errata():
+    return [Row(
+        "HDRI 9.3.5, 9.4.1, 9.6.1: what to read with care",
+        "Numbers and words that a program must decide about.", [],
+        "- The colour 10,960,000 10,280,000 866,000 of a sun lacks a digit in blue: with 8,660,000 it is the yellowish "
+        "one of the text.\n- Its direction, with y = -0.58, is where the light travels; (0.748, 0.199, 0.633) of 9.3.5 "
+        "points to the sun. Here all directions point to the light.\n- The ideal mirror ball has \"forward\" in its "
+        "middle; a photograph of a ball shows the camera there, and is mirrored: `probe convert --flip`.\n- 46,700 is "
+        "1 / sin^2(0.53 / 2 degrees) rounded, for a sun of 0.53 degrees.", "")]
+
+
+def rows(run):
+    return floor(run) + diffuse_ball(run) + errata()
