@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kRegions[] = {"median-cut-area", "median-cut-centre-area",
                                     "median-cut-flat-area", "kollig-keller-average"};
 
-std::unique_ptr<LightingStrategy> make(const std::string& name, const Probe& probe) {
+std::unique_ptr<LightSource> make(const std::string& name, const Probe& probe) {
   return makeStrategy(name, probe, Mis::Balance, "test");
 }
 
@@ -117,7 +117,7 @@ TEST(AreaLights, AreTheMapIfThereIsARegionForEachTexel) {
 }
 
 // A map that is constant over each region, with the light of the strategy.
-Image piecewiseConstant(const LightingStrategy& lighting, int width, int height) {
+Image piecewiseConstant(const LightSource& lighting, int width, int height) {
   Image map(width, height, 3);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -126,7 +126,7 @@ Image piecewiseConstant(const LightingStrategy& lighting, int width, int height)
 }
 
 // Irradiance estimated by light samples and, with MIS, cosine-distributed BSDF samples.
-double estimate(const LightingStrategy& lighting, Samples& samples, Mis mis, int i) {
+double estimate(const LightSource& lighting, Samples& samples, Mis mis, int i) {
   const Frame frame(samples.point().normal);
   double sum = 0;
   for (const DirectionSample& s : samples.take(i)) {
@@ -141,8 +141,7 @@ double estimate(const LightingStrategy& lighting, Samples& samples, Mis mis, int
 
 constexpr Mis kAll[] = {Mis::Off, Mis::Balance, Mis::Power};
 
-void expectIrradiance(const LightingStrategy& lighting, const vec3& normal, double expected,
-                      int tests) {
+void expectIrradiance(const LightSource& lighting, const vec3& normal, double expected, int tests) {
   for (const Mis mis : kAll)
     for (const int depth : {0, 1}) {
       Samples samples(lighting, normal, depth);

@@ -33,7 +33,7 @@ void expectNear(const Rgb& a, const dvec3& b, double relative) {
 
 // Mean over random numbers of the sum over light samples of f(wi) x irradiance at `point`.
 template <class F>
-dvec3 meanEstimate(const LightingStrategy& lighting, const LightPoint& point, uint64_t seed, F f,
+dvec3 meanEstimate(const LightSource& lighting, const LightPoint& point, uint64_t seed, F f,
                    uint32_t count = 1024) {
   const SobolTable table(count, dimension::kVertex + 2 * dimension::kPerVertex, seed);
   PixelSampler sampler(table, seed);

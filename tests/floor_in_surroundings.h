@@ -30,7 +30,7 @@ inline vec3 sphereDirection(uint64_t i) {
 
 // Exitant radiance of a small area of the floor around (x, z), seen from above. The moments are
 // over `repeats` renders with different seeds.
-inline Moments floorRadiance(const LightingStrategy& lighting, float x, float z, int repeats) {
+inline Moments floorRadiance(const LightSource& lighting, float x, float z, int repeats) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1.9f, 0.001f, 1.9f}, {3.8f, 0, 0},
           {0, 0, -3.8f});

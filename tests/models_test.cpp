@@ -28,7 +28,7 @@ std::vector<fs::path> filesBelow(const fs::path& root, std::initializer_list<con
 
 struct LitBy {
   fs::path file;
-  std::unique_ptr<LightingStrategy> lighting;
+  std::unique_ptr<LightSource> lighting;
 };
 
 std::vector<LitBy> everyProbe(const fs::path& root, std::deque<Probe>& probes) {

@@ -111,7 +111,7 @@ std::unique_ptr<CombinedLight> withWindow(const PolygonExtraction& extraction,
   if (isIllum)
     for (size_t i = 0; i < hidden.texels.size(); ++i)
       hidden.texels[i] = map.texels[i] - extraction.remainder.texels[i];
-  std::vector<std::unique_ptr<LightingStrategy>> parts;
+  std::vector<std::unique_ptr<LightSource>> parts;
   parts.push_back(makeStrategy("importance", remainder, Mis::Balance, "test"));
   parts.push_back(std::make_unique<PolygonLights>(
       std::vector<PolygonLight>{{extraction.sources.front(), isIllum, "w"}}, hidden,

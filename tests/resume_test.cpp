@@ -52,7 +52,7 @@ struct Stopped {
 };
 
 // Stops again and again after so many tiles.
-Stopped renderInPieces(const World& world, const LightingStrategy& lighting,
+Stopped renderInPieces(const World& world, const LightSource& lighting,
                        const RenderSettings& settings, int tiles) {
   std::vector<char> stored;
   for (int times = 0;; ++times) {

@@ -238,7 +238,7 @@ TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
             later = jobAt(model.scene(), 1);
   scene.show(first);
   const World* world = scene.prepared().world.get();
-  const LightingStrategy* lighting = scene.prepared().lighting.get();
+  const LightSource* lighting = scene.prepared().lighting.get();
   const vec3 position = scene.loaded().camera.position;
   const TexelGrid* texels = scene.loaded().scene.grids.at(0).get();
   const auto chain = scene.loaded().scene.textures.at(0).mipLevels;

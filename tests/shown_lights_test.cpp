@@ -19,8 +19,7 @@ namespace {
 
 constexpr float kRotation = 40;
 
-std::unique_ptr<LightingStrategy> shown(const std::string& name, const Probe& probe,
-                                        bool shows = true) {
+std::unique_ptr<LightSource> shown(const std::string& name, const Probe& probe, bool shows = true) {
   return makeStrategy(name, probe, {Mis::Balance, {}, shows}, "test");
 }
 
@@ -76,7 +75,7 @@ TEST(ShownLights, AreSeenByTheCameraAndMirrorsOnly) {
   for (const char* name : {"median-cut:16", "median-cut-area:16", "kollig-keller-average:16"}) {
     SCOPED_TRACE(name);
     const auto with = shown(name, probe), without = shown(name, probe, false);
-    const auto image = [&](const Material& material, const LightingStrategy& lighting,
+    const auto image = [&](const Material& material, const LightSource& lighting,
                            const Camera& camera, int size) {
       Scene scene;
       addQuad(scene, addMaterial(scene, material), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});

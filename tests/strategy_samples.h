@@ -11,7 +11,7 @@ namespace chromeball {
 // Independent samples at one point: the first hit, or a later one.
 class Samples {
  public:
-  Samples(const LightingStrategy& strategy, const vec3& normal, int depth = 0)
+  Samples(const LightSource& strategy, const vec3& normal, int depth = 0)
       : strategy_(strategy), point_{{}, normal, nullptr, depth} {}
 
   const std::vector<DirectionSample>& take(int i) {
@@ -25,7 +25,7 @@ class Samples {
   const LightPoint& point() const { return point_; }
 
  private:
-  const LightingStrategy& strategy_;
+  const LightSource& strategy_;
   LightPoint point_;
   SobolTable table_{1, 16, 5};
   PixelSampler sampler_{table_, 7};

@@ -50,7 +50,7 @@ TEST(Suns, PdfIsTheMixtureOfAllSamples) {
 }
 
 // Irradiance from a strategy's radiance, by quadrature.
-dvec3 irradianceOf(const LightingStrategy& strategy, const vec3& normal) {
+dvec3 irradianceOf(const LightSource& strategy, const vec3& normal) {
   constexpr int kWidth = 1600, kHeight = 800;
   dvec3 sum(0);
   for (int y = 0; y < kHeight; ++y)
@@ -189,7 +189,7 @@ TEST(SlowSuns, RenderAgreesWithImportance) {
   const World world(scene);
   const std::atomic<bool> stop = false;
   const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
-  const auto brightness = [&](const LightingStrategy& strategy, uint64_t seed) {
+  const auto brightness = [&](const LightSource& strategy, uint64_t seed) {
     const RenderSettings settings = smallRender(48, 48, 64, 5, seed);
     return double(luminance(meanColor(render(
                                           world, camera, strategy, settings, [](double) {}, stop)

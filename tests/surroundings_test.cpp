@@ -38,8 +38,8 @@ constexpr std::pair<const char*, double> kStrategies[] = {{"bsdf", 0.03},
                                                           {"kollig-keller-strata:4", 0.03},
                                                           {"irradiance-fit-ambient:8", 0.3}};
 
-std::unique_ptr<LightingStrategy> makeLighting(const Surroundings& s, const char* name,
-                                               const Probe& probe) {
+std::unique_ptr<LightSource> makeLighting(const Surroundings& s, const char* name,
+                                          const Probe& probe) {
   return std::make_unique<FiniteSurroundings>(makeStrategy(name, probe, Mis::Balance, "test"),
                                               probe, s);
 }

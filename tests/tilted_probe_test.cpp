@@ -72,8 +72,8 @@ TEST(SlowTiltedProbe, ImportanceSamplesFollowThePdf) {
 
 // Few may differ: those that fall on another side of an edge by rounding. `samplesTurn`: so do the
 // samples; those within discs depend on the disc's own frame.
-void expectTurned(const LightingStrategy& level, const LightingStrategy& tilted,
-                  const std::string& name, bool samplesTurn = true) {
+void expectTurned(const LightSource& level, const LightSource& tilted, const std::string& name,
+                  bool samplesTurn = true) {
   SCOPED_TRACE(name);
   const vec3 normal = glm::normalize(vec3(0.3f, 0.8f, -0.4f));
   Samples a(level, normal), b(tilted, kTilt(normal));

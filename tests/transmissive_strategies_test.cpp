@@ -57,8 +57,8 @@ struct View {
   }
 
   // The image's mean for each channel, for consecutive seeds from `firstSeed`.
-  std::array<std::vector<double>, 3> means(const LightingStrategy& lighting, Mis mis,
-                                           uint64_t firstSeed, int samples = 16) const {
+  std::array<std::vector<double>, 3> means(const LightSource& lighting, Mis mis, uint64_t firstSeed,
+                                           int samples = 16) const {
     const World world(scene, {}, allTables());
     const std::atomic<bool> stop = false;
     std::array<std::vector<double>, 3> all;
@@ -96,7 +96,7 @@ TEST(SlowTransmissiveStrategies, unbiasedOnesAgree) {
   struct Choice {
     std::string_view name;
     Mis mis;
-    std::unique_ptr<LightingStrategy> lighting;
+    std::unique_ptr<LightSource> lighting;
   };
   std::vector<Choice> choices;
   for (const std::string_view name : strategyNames())

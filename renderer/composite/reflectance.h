@@ -21,7 +21,7 @@ struct ReflectanceSolution {
 struct ReflectanceProblem {
   const World& world;  // after makeProjected() (local_scene.h); masks as in composite/objects.h
   const Camera& camera;
-  const LightingStrategy& lighting;
+  const LightSource& lighting;
   const Image& plate;
 };
 

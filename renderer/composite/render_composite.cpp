@@ -51,7 +51,7 @@ Image sum(Image a, const Image& b) {
 }  // namespace
 
 CompositeRender renderComposite(const World& world, const Camera& camera,
-                                const LightingStrategy& lighting, const Image& plate,
+                                const LightSource& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
                                 const Progress& progress, const std::atomic<bool>& stop,
                                 RenderControl* control) {

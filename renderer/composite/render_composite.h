@@ -24,7 +24,7 @@ struct CompositeRender {
 // of one pass: the mean is the radiance with the objects. `behindObjects`: also estimate L_noobj
 // where an object hides it. `control`: of one pass; may be null.
 CompositeRender renderComposite(const World& world, const Camera& camera,
-                                const LightingStrategy& lighting, const Image& plate,
+                                const LightSource& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,
                                 const Progress& progress, const std::atomic<bool>& stop,
                                 RenderControl* control = nullptr);

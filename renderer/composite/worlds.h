@@ -11,7 +11,7 @@ namespace chromeball {
 // is the background.
 struct CompositeWorlds {
   // `world` must have the masks of composite/objects.h; it and `lighting` must outlive this.
-  CompositeWorlds(const World& world, const LightingStrategy& lighting, PathSettings settings)
+  CompositeWorlds(const World& world, const LightSource& lighting, PathSettings settings)
       : whole(world, lighting, with(settings, kAllInstances, kAllInstances)),
         local(world, lighting, with(settings, kLocalScene, kLocalScene)),
         shared(world, lighting, with(settings, kAllInstances, kLocalScene)) {}

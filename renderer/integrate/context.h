@@ -10,7 +10,7 @@
 #include "integrate/depth_cut.h"
 #include "integrate/guiding/caustic_guide.h"
 #include "integrate/guiding/light_guide.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/sampler.h"
 #include "trace/ray.h"
 

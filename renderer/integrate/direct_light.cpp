@@ -8,7 +8,7 @@ namespace chromeball {
 namespace {
 
 // Narrow lobes receive light samples from lamps, but not from the probe
-// (LightingStrategy::mirrorAlpha).
+// (LightSource::mirrorAlpha).
 BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
   if (!bsdf.has(Lobes::Narrow)) return {Rgb(0), 0};
   return bsdf.evaluate(wi, Lobes::Narrow);
@@ -59,7 +59,7 @@ DirectLight::LightSample DirectLight::ofStrategy(const Vertex& vertex, const Dir
 
 DirectLight::LightSample DirectLight::ofGuide(const GuideRegion& region,
                                               const DirectionTree::Sample& sample,
-                                              const LightingStrategy::Escaped& found) {
+                                              const LightSource::Escaped& found) {
   const float pdf = region.pdf(found.pdf, sample.pdf);
   return {{sample.direction, found.radiance / pdf, pdf}, found.pdf};
 }
@@ -90,7 +90,7 @@ void DirectLight::addToGroups(std::optional<size_t> source, const Vertex& vertex
   const Rgb weight = vertex.throughput * scattered;
   if (light.isDelta || light.end.instance != LightEnd::kNone)
     return context.groups->addSample(source, light, weight * light.irradiance);
-  const LightingStrategy& lighting = source ? *world_.sources.all[*source] : lighting_;
+  const LightSource& lighting = source ? *world_.sources.all[*source] : lighting_;
   context.groups->addEscaped(lighting, source, vertex.point, light.wi, weight / light.pdf);
 }
 
@@ -143,7 +143,7 @@ void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLig
   if (context.records) light.record = record(vertex.point, sample, bsdf);
 }
 
-void DirectLight::complete(const LightingStrategy::Escaped& found, DeferredLight& light,
+void DirectLight::complete(const LightSource::Escaped& found, DeferredLight& light,
                            const PathContext& context) const {
   const LightSample sample =
       ofGuide(*light.region, {light.shadowRay.direction, light.treePdf}, found);

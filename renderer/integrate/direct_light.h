@@ -46,7 +46,7 @@ struct DeferredLight {
 class DirectLight {
  public:
   // `world` and `lighting` must outlive this.
-  DirectLight(const World& world, const LightingStrategy& lighting, const PathSettings& settings)
+  DirectLight(const World& world, const LightSource& lighting, const PathSettings& settings)
       : world_(world), lighting_(lighting), settings_(settings) {}
 
   // From the probe, with the strategy's samples; broad lobes only.
@@ -55,8 +55,8 @@ class DirectLight {
   void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
              PathContext& context) const;
   // The second part of defer() where light.region is set. `found`: what
-  // LightingStrategy::escaped() returns for light.point and the direction of the shadow ray.
-  void complete(const LightingStrategy::Escaped& found, DeferredLight& light,
+  // LightSource::escaped() returns for light.point and the direction of the shadow ray.
+  void complete(const LightSource::Escaped& found, DeferredLight& light,
                 const PathContext& context) const;
   // From one of World::sources, which lights narrow lobes too.
   Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
@@ -72,7 +72,7 @@ class DirectLight {
   // With the pdf of the mixture.
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
-                             const LightingStrategy::Escaped& found);
+                             const LightSource::Escaped& found);
   Rgb weighted(const DirectionSample& light, const BsdfValue& bsdf) const;
   void addToGroups(std::optional<size_t> source, const Vertex& vertex, const DirectionSample& light,
                    const Rgb& scattered, PathContext& context) const;
@@ -91,7 +91,7 @@ class DirectLight {
   }
 
   const World& world_;
-  const LightingStrategy& lighting_;
+  const LightSource& lighting_;
   PathSettings settings_;
 };
 

@@ -31,7 +31,7 @@ uint32_t GuideTraining::samplesOf(const RenderSettings& settings) {
   return settings.shard.repeated > 0 ? std::min(samples, settings.shard.repeated) : samples;
 }
 
-GuideTraining::GuideTraining(const World& world, const LightingStrategy& lighting,
+GuideTraining::GuideTraining(const World& world, const LightSource& lighting,
                              const RenderSettings& settings, Guides guides)
     : world_(world),
       lighting_(lighting),

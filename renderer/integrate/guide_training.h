@@ -29,9 +29,9 @@ class GuideTraining {
   // Both guides; of bounces only for integrators with layers, whose film has no weights.
   enum class Guides { Both, Bounces };
   // All arguments must outlive this. Guides nothing if the strategy takes more than one sample
-  // (LightingStrategy::takesOneSample()).
-  GuideTraining(const World& world, const LightingStrategy& lighting,
-                const RenderSettings& settings, Guides guides);
+  // (LightSource::takesOneSample()).
+  GuideTraining(const World& world, const LightSource& lighting, const RenderSettings& settings,
+                Guides guides);
 
   // With the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
@@ -58,7 +58,7 @@ class GuideTraining {
 
  private:
   const World& world_;
-  const LightingStrategy& lighting_;
+  const LightSource& lighting_;
   const RenderSettings& settings_;
   Guiding guiding_, lightGuiding_;  // the latter is off when nothing is to be gained
   bool hasBegun_ = false;           // from then on `Auto` keeps the guide of light samples

@@ -16,10 +16,10 @@ std::string shortened(const std::string& name) {
 
 }  // namespace
 
-LightGroups::LightGroups(const World& world, const LightingStrategy& lighting)
+LightGroups::LightGroups(const World& world, const LightSource& lighting)
     : scene_(world.scene), ofNode_(world.scene.nodeNames.size(), -1) {
   const Scene& scene = world.scene;
-  const auto addSource = [&](const LightingStrategy& source) {
+  const auto addSource = [&](const LightSource& source) {
     for (const std::string& name : source.groups()) add(name);
     ends_.push_back(names_.size());
   };
@@ -54,13 +54,13 @@ void GroupSums::add(std::optional<size_t> source, const Rgb& throughput, const S
   for (size_t i = 0; i < scratch_.size(); ++i) sums_[first + i] += throughput * scratch_[i];
 }
 
-void GroupSums::addEscaped(const LightingStrategy& light, std::optional<size_t> source,
+void GroupSums::addEscaped(const LightSource& light, std::optional<size_t> source,
                            const LightPoint& point, const vec3& wi, const Rgb& throughput) {
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitEscaped(point, wi, radiances); });
 }
 
-void GroupSums::addBackground(const LightingStrategy& light, std::optional<size_t> source,
+void GroupSums::addBackground(const LightSource& light, std::optional<size_t> source,
                               const vec3& origin, const vec3& wi, const Rgb& throughput) {
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });

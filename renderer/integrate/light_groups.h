@@ -15,10 +15,10 @@
 namespace chromeball {
 
 // The groups of a scene: those of the strategy, then those of the scene's sources
-// (LightingStrategy::groups()), each node that emits, and one for all unlit materials.
+// (LightSource::groups()), each node that emits, and one for all unlit materials.
 class LightGroups {
  public:
-  LightGroups(const World& world, const LightingStrategy& lighting);
+  LightGroups(const World& world, const LightSource& lighting);
 
   // Unique; without the characters that separate layers and gains: . , = and spaces.
   const std::vector<std::string>& names() const { return names_; }
@@ -67,11 +67,11 @@ class GroupSums {
   }
   // `throughput` times the radiance of light.escaped(), by group. Each group is independent of the
   // others, so that its bits scale with those of its source. `source`: as LightGroups::rangeOf().
-  void addEscaped(const LightingStrategy& light, std::optional<size_t> source,
-                  const LightPoint& point, const vec3& wi, const Rgb& throughput);
+  void addEscaped(const LightSource& light, std::optional<size_t> source, const LightPoint& point,
+                  const vec3& wi, const Rgb& throughput);
   // `throughput` times light.background().
-  void addBackground(const LightingStrategy& light, std::optional<size_t> source,
-                     const vec3& origin, const vec3& wi, const Rgb& throughput);
+  void addBackground(const LightSource& light, std::optional<size_t> source, const vec3& origin,
+                     const vec3& wi, const Rgb& throughput);
 
  private:
   // Adds `throughput` times what split(radiances) adds to the groups of a source.

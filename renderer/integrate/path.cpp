@@ -26,7 +26,7 @@ bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
 
 }  // namespace
 
-PathTracer::PathTracer(const World& world, const LightingStrategy& lighting,
+PathTracer::PathTracer(const World& world, const LightSource& lighting,
                        const PathSettings& settings)
     : world_(world),
       lighting_(lighting),
@@ -61,14 +61,14 @@ Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) co
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   Rgb sum(0);
   for (const size_t i : world_.sources.distant) {
-    const LightingStrategy& source = *world_.sources.all[i];
+    const LightSource& source = *world_.sources.all[i];
     if (state.isDelta) {
       sum += state.throughput * source.background(origin, direction);
       if (context.groups) [[unlikely]]
         context.groups->addBackground(source, i, origin, direction, state.throughput);
       continue;
     }
-    const LightingStrategy::Escaped found = source.escaped(state.from, direction);
+    const LightSource::Escaped found = source.escaped(state.from, direction);
     if (isBlack(found.radiance)) continue;
     const Rgb weight = state.throughput * bsdfSampleWeight(settings_.mis, state.pdf, found.pdf);
     sum += weight * found.radiance;
@@ -78,7 +78,7 @@ Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) co
   return sum;
 }
 
-Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
+Rgb PathTracer::weighted(const PathState& state, const LightSource::Escaped& escaped,
                          PathContext& context) const {
   const Rgb found = state.throughput * escaped.radiance;
   const vec3& direction = state.ray.direction;
@@ -95,7 +95,7 @@ Rgb PathTracer::weighted(const PathState& state, const LightingStrategy::Escaped
   return found * weight;
 }
 
-void PathTracer::addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
+void PathTracer::addEscaped(PathState& state, const LightSource::Escaped& escaped,
                             PathContext& context) const {
   state.radiance += weighted(state, escaped, context) + distantRadiance(state, context);
 }

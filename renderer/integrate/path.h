@@ -53,7 +53,7 @@ struct PathState {
 class PathTracer {
  public:
   // `world` and `lighting` must outlive this.
-  PathTracer(const World& world, const LightingStrategy& lighting, const PathSettings& settings);
+  PathTracer(const World& world, const LightSource& lighting, const PathSettings& settings);
 
   // Radiance towards the camera along the ray of `start`.
   Rgb radiance(const PathState& start, const std::optional<Hit>& hit, PathContext& context) const;
@@ -87,18 +87,18 @@ class PathTracer {
 
   // Adds what a ray that hits nothing finds; not for narrow lobes and the camera. `escaped`: of the
   // probe.
-  void addEscaped(PathState& state, const LightingStrategy::Escaped& escaped,
+  void addEscaped(PathState& state, const LightSource::Escaped& escaped,
                   PathContext& context) const;
 
   const World& world() const { return world_; }
-  const LightingStrategy& lighting() const { return lighting_; }
+  const LightSource& lighting() const { return lighting_; }
   const DirectLight& direct() const { return direct_; }
   const PathSettings& settings() const { return settings_; }
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
   Rgb escapedRadiance(const PathState& state, PathContext& context) const;
-  Rgb weighted(const PathState& state, const LightingStrategy::Escaped& escaped,
+  Rgb weighted(const PathState& state, const LightSource::Escaped& escaped,
                PathContext& context) const;
   Rgb distantRadiance(const PathState& state, PathContext& context) const;
   bool scatterLayered(PathState& state, const Instance& instance, const Surface& surface,
@@ -113,7 +113,7 @@ class PathTracer {
   void followTwice(PathState& state, const Hit& hit, PathContext& context) const;
 
   const World& world_;
-  const LightingStrategy& lighting_;
+  const LightSource& lighting_;
   PathSettings settings_;
   float mirrorAlpha_;
   SeenFeature seen_;

@@ -10,7 +10,7 @@ struct PathBatch::Task {
   uint32_t firstSample;
   PathContext& context;
 
-  const LightingStrategy& lighting() const { return tracer.lighting(); }
+  const LightSource& lighting() const { return tracer.lighting(); }
   const Scene& scene() const { return tracer.world().scene; }
   const Accel& accel() const { return tracer.world().accel; }
   RayMask visible() const { return tracer.settings().visible; }

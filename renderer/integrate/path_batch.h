@@ -14,7 +14,7 @@ namespace chromeball {
 // its arrays would take a noticeable part of the time.
 class PathBatch {
  public:
-  static constexpr size_t kMaxPaths = LightingStrategy::kMaxMany;
+  static constexpr size_t kMaxPaths = LightSource::kMaxMany;
 
   // Adds a path from a camera ray and its hit.
   void add(const PathState& start, const std::optional<Hit>& hit);
@@ -56,9 +56,9 @@ class PathBatch {
   // Arguments and results of the functions that take several rays.
   List<Ray> rays_;
   List<uint32_t> keys_;
-  List<LightingStrategy::Escape> escapes_;
+  List<LightSource::Escape> escapes_;
   List<glm::uvec2> numbers_;
-  std::array<LightingStrategy::Escaped, kMaxPaths> escaped_;
+  std::array<LightSource::Escaped, kMaxPaths> escaped_;
   std::array<DirectionSample, kMaxPaths> samples_;
   std::array<std::optional<Hit>, kMaxPaths> found_;
   std::array<Rgb, kMaxPaths> transmittances_;

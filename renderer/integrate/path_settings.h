@@ -19,7 +19,7 @@ struct PathSettings {
       kDefaultTransmissionDepth;  // bounces in solid glass; not counted in maxDepth
   bool hideProbe = false;         // from the camera
   bool estimateDepthCut = true;   // estimate the light beyond the depth limits
-  // For strategies that take one light sample (LightingStrategy::takesOneSample()); null: none.
+  // For strategies that take one light sample (LightSource::takesOneSample()); null: none.
   const LightGuide* guide = nullptr;
   const CausticGuide* caustics = nullptr;  // likewise, for bounces
   RayMask visible = kAllInstances;         // all rays of the paths ignore other instances

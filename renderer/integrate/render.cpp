@@ -258,7 +258,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
   return std::move(state.result);
 }
 
-RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
+RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, RenderControl* control) {
   if (settings.wantsGroups()) {

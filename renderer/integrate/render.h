@@ -52,7 +52,7 @@ struct RenderResult {
 // the whole image; the first takes a few samples per pixel, each later one doubles them. The result
 // does not depend on the number of threads (except under a time limit). `control`
 // (render_state.h) may be null.
-RenderResult render(const World& world, const Camera& camera, const LightingStrategy& lighting,
+RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, RenderControl* control = nullptr);
 

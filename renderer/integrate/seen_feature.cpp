@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-float medianLuminance(const SceneSources& sources, const LightingStrategy& lighting) {
+float medianLuminance(const SceneSources& sources, const LightSource& lighting) {
   constexpr int kSide = 16;
   std::vector<float> luminances;
   for (int i = 0; i < kSide * kSide; ++i) {
@@ -30,7 +30,7 @@ bool isSeen(const PathState& state) { return state.lobes == Lobes::Narrow && !st
 
 }  // namespace
 
-SeenFeature::SeenFeature(const World& world, const LightingStrategy& lighting)
+SeenFeature::SeenFeature(const World& world, const LightSource& lighting)
     : median_(medianLuminance(world.sources, lighting)) {}
 
 void SeenFeature::noteEscaped(const PathState& state, const Rgb& escaped) const {

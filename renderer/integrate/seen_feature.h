@@ -3,7 +3,7 @@
 #pragma once
 
 #include "integrate/world.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "scene/surface.h"
 
 namespace chromeball {
@@ -12,7 +12,7 @@ struct PathState;
 
 class SeenFeature {
  public:
-  SeenFeature(const World& world, const LightingStrategy& lighting);
+  SeenFeature(const World& world, const LightSource& lighting);
 
   // These set state.first->seen, which must exist, if all lobes of the path were narrow.
   // `escaped`: the radiance that the path has found in the background.

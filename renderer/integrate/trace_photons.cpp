@@ -96,7 +96,7 @@ struct Traced {
 
 class PhotonTracer {
  public:
-  PhotonTracer(const World& world, const LightingStrategy& lighting)
+  PhotonTracer(const World& world, const LightSource& lighting)
       : world_(world), lighting_(lighting) {
     const std::vector<Sphere> spheres = spheresAround(world.scene);
     targets_ = targetsOf(world.scene, spheres);
@@ -211,14 +211,14 @@ class PhotonTracer {
   }
 
   const World& world_;
-  const LightingStrategy& lighting_;
+  const LightSource& lighting_;
   std::vector<Target> targets_;
   float sceneSize_;
 };
 
 }  // namespace
 
-std::vector<Photon> tracePhotons(const World& world, const LightingStrategy& lighting,
+std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting,
                                  const PhotonBudget& budget, uint64_t seed) {
   const Scene& scene = world.scene;
   if (std::ranges::none_of(scene.materials, mayHaveNarrowLobes)) return {};  // before any bounds

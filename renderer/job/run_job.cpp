@@ -34,7 +34,7 @@ Image cropped(const Image& whole, const Crop& window) {
 
 // The number of groups is known only now.
 void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded, const World& world,
-                      const LightingStrategy& lighting) {
+                      const LightSource& lighting) {
   const size_t count = LightGroups(world, lighting).names().size();
   const Crop window = job.settings.window();
   const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *

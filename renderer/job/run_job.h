@@ -15,7 +15,7 @@ namespace chromeball {
 // The data that a render needs besides the scene, which must outlive it.
 struct PreparedScene {
   std::unique_ptr<const World> world;
-  std::unique_ptr<LightingStrategy> lighting;
+  std::unique_ptr<LightSource> lighting;
   double buildSeconds = 0, prepareSeconds = 0;  // of the world, of the lighting
 };
 

@@ -140,8 +140,8 @@ std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& l
   return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotation())};
 }
 
-std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded, bool splitsProbe) {
+std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
+                                          const LoadedScene& loaded, bool splitsProbe) {
   const auto& sources = loaded.sources;
   const Probe& sampled = sources ? sources->remainder : loaded.probe;
   auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
@@ -149,7 +149,7 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
     lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
   if (sources) {
-    std::vector<std::unique_ptr<LightingStrategy>> parts;
+    std::vector<std::unique_ptr<LightSource>> parts;
     parts.push_back(std::move(lighting));
     parts.push_back(
         std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
@@ -162,7 +162,7 @@ std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis
   return lighting;
 }
 
-std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded) {
+std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScene& loaded) {
   return makeLighting(job.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
 }
 

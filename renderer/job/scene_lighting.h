@@ -60,8 +60,8 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal);
 // The strategy, with the probe mapped onto the scene's surroundings. `splitsProbe`: for light
 // groups, tells the probe's suns from the rest. `loaded` must outlive it. Throws InputError for an
 // unknown name.
-std::unique_ptr<LightingStrategy> makeLighting(const NamedSetting& strategy, Mis mis,
-                                               const LoadedScene& loaded, bool splitsProbe = false);
-std::unique_ptr<LightingStrategy> makeLighting(const RenderJob& job, const LoadedScene& loaded);
+std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
+                                          const LoadedScene& loaded, bool splitsProbe = false);
+std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScene& loaded);
 
 }  // namespace chromeball

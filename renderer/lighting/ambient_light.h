@@ -2,13 +2,13 @@
 // Constant radiance from all directions, as light lists have it (lighting/light_file.h).
 #pragma once
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "scene/light.h"
 
 namespace chromeball {
 
 // Found by BSDF samples only, which for constant radiance are as good as light samples.
-class AmbientLight : public LightingStrategy {
+class AmbientLight : public LightSource {
  public:
   explicit AmbientLight(const AmbientLamp& lamp) : lamp_(lamp) {}
 

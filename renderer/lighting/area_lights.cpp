@@ -44,7 +44,7 @@ void AreaLights::sample(const LightPoint& point, const PixelSampler& sampler,
   }
 }
 
-LightingStrategy::Escaped AreaLights::escaped(const LightPoint& point, const vec3& wi) const {
+LightSource::Escaped AreaLights::escaped(const LightPoint& point, const vec3& wi) const {
   if (!(power_ > 0)) return {Rgb(0), 0};
   const LightAreas::Found found = areas_->at(wi);
   return {found.radiance, pdf(found, point.depth)};

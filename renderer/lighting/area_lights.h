@@ -2,9 +2,11 @@
 // Area lights that replace the probe: constellations without the aliasing of delta lights.
 #pragma once
 
+#include <memory>
 #include "lighting/area/light_areas.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/cdf.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -15,7 +17,7 @@ namespace chromeball {
 // The first hit samples one direction in each light, uniform over its solid angle: Kollig and
 // Keller's stratification with the regions' average colours (2003; HDRI book, section 9.6.2). Later
 // hits sample kLater lights, chosen with probability proportional to power.
-class AreaLights : public LightingStrategy {
+class AreaLights : public LightSource {
  public:
   static constexpr int kLater = 4;
 

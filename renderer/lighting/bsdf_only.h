@@ -2,11 +2,12 @@
 // `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).
 #pragma once
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
-class BsdfOnly : public LightingStrategy {
+class BsdfOnly : public LightSource {
  public:
   explicit BsdfOnly(const Probe& probe) : probe_(probe) {}
 

@@ -3,7 +3,7 @@
 
 namespace chromeball {
 
-CombinedLight::CombinedLight(std::vector<std::unique_ptr<LightingStrategy>> parts)
+CombinedLight::CombinedLight(std::vector<std::unique_ptr<LightSource>> parts)
     : parts_(std::move(parts)) {
   for (const auto& part : parts_) groupCounts_.push_back(part->groups().size());
 }
@@ -32,7 +32,7 @@ void CombinedLight::sample(const LightPoint& point, const PixelSampler& sampler,
   }
 }
 
-LightingStrategy::Escaped CombinedLight::escaped(const LightPoint& point, const vec3& wi) const {
+LightSource::Escaped CombinedLight::escaped(const LightPoint& point, const vec3& wi) const {
   Escaped sum{Rgb(0), 0};
   for (const auto& part : parts_) {
     const Escaped light = part->escaped(point, wi);

@@ -5,16 +5,16 @@
 #include <memory>
 #include <vector>
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 
 namespace chromeball {
 
 // Takes the samples of every part. Radiances and pdfs of all parts are added in each direction, so
 // that all samples are combined by the balance heuristic (Veach 1997).
-class CombinedLight : public LightingStrategy {
+class CombinedLight : public LightSource {
  public:
   // The first part is that of the probe.
-  explicit CombinedLight(std::vector<std::unique_ptr<LightingStrategy>> parts);
+  explicit CombinedLight(std::vector<std::unique_ptr<LightSource>> parts);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
@@ -28,7 +28,7 @@ class CombinedLight : public LightingStrategy {
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
-  std::vector<std::unique_ptr<LightingStrategy>> parts_;
+  std::vector<std::unique_ptr<LightSource>> parts_;
   std::vector<size_t> groupCounts_;  // of each part
 };
 

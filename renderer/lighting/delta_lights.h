@@ -3,7 +3,8 @@
 #pragma once
 
 #include "lighting/constellation/directional_light.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -14,7 +15,7 @@ namespace chromeball {
 // The first hit uses all lights. Later hits choose kLater lights, with probability proportional to
 // irradiance x cosine (x BSDF for layered BSDFs, which may transmit light), and divide by the
 // probability: less noise in the same time than with all lights.
-class DeltaLights : public LightingStrategy {
+class DeltaLights : public LightSource {
  public:
   static constexpr int kLater = 4;
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/cdf.h"
 #include "scene/scene.h"
 
@@ -17,7 +17,7 @@ namespace chromeball {
 //
 // A call of sample() gives one sample. Its radiance is that of the point times its alpha, with
 // which a BSDF-sampled ray hits it.
-class Emitters : public LightingStrategy {
+class Emitters : public LightSource {
  public:
   // Null if nothing emits. The scene must outlive this.
   static std::unique_ptr<Emitters> make(const Scene& scene);

@@ -28,8 +28,7 @@ void FiniteSurroundings::sample(const LightPoint& point, const PixelSampler& sam
   out.resize(kept);
 }
 
-LightingStrategy::Escaped FiniteSurroundings::escaped(const LightPoint& point,
-                                                      const vec3& wi) const {
+LightSource::Escaped FiniteSurroundings::escaped(const LightPoint& point, const vec3& wi) const {
   const Surroundings::Point y = behind(point.position, wi);
   Escaped found = strategy_->escaped(point, glm::normalize(y.position - surroundings_.capture));
   if (found.pdf == 0) return found;

@@ -23,10 +23,10 @@ namespace chromeball {
 // The camera and mirrors see the probe as captured; lamps made from suns light only broad lobes
 // (RADIANCE's "illum"). With `showsLights` they see on the surface what the strategy shows instead
 // of the probe: its lights (StrategyOptions::showLights), polygons that are no illums.
-class FiniteSurroundings : public LightingStrategy {
+class FiniteSurroundings : public LightSource {
  public:
   // `room`: replaces the box or sphere of `surroundings` unless null; must outlive this.
-  FiniteSurroundings(std::unique_ptr<LightingStrategy> strategy, const Probe& probe,
+  FiniteSurroundings(std::unique_ptr<LightSource> strategy, const Probe& probe,
                      const Surroundings& surroundings, const Walls* room = nullptr,
                      bool showsLights = false)
       : strategy_(std::move(strategy)),
@@ -58,7 +58,7 @@ class FiniteSurroundings : public LightingStrategy {
   // The solid angle of a patch at y seen from x, relative to that from the capture point.
   float solidAngleRatio(const vec3& x, const Surroundings::Point& y) const;
 
-  std::unique_ptr<LightingStrategy> strategy_;
+  std::unique_ptr<LightSource> strategy_;
   const Probe& probe_;
   Surroundings surroundings_;
   const Walls* room_;

@@ -78,12 +78,11 @@ void Importance::sample(const LightPoint&, const PixelSampler& sampler,
   if (sample.pdf > 0) out.push_back(sample);
 }
 
-LightingStrategy::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
+LightSource::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
   return escapedAt(wi, probe_.locate(wi));
 }
 
-LightingStrategy::Escaped Importance::escapedAt(const vec3& wi,
-                                                const Probe::Position& position) const {
+LightSource::Escaped Importance::escapedAt(const vec3& wi, const Probe::Position& position) const {
   const LuminanceField::Point seen = field_.at(wi, position);
   return {seen.radiance, seen.weight * scale_};
 }

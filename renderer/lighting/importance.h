@@ -3,9 +3,10 @@
 // "Infinite Area Light Source with Importance Sampling", 2004; HDRI book, section 9.6.3).
 #pragma once
 
+#include "lighting/light_source.h"
 #include "lighting/luminance_field.h"
-#include "lighting/strategy.h"
 #include "math/cdf.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -18,7 +19,7 @@ namespace chromeball {
 // Importance Sampling", 2019): w becomes max(luminance - mean, 0) x sin(theta), because BSDF
 // samples cover the rest. Only valid with MIS. The plain w is used if the total of the compensated
 // w is almost 0.
-class Importance : public LightingStrategy {
+class Importance : public LightSource {
  public:
   Importance(const Probe& probe, bool compensated);
 

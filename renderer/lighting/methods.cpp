@@ -25,7 +25,7 @@ namespace chromeball {
 namespace {
 
 using Lights = LightingMethod::Lights;
-using Strategy = std::unique_ptr<LightingStrategy>;
+using Strategy = std::unique_ptr<LightSource>;
 
 constexpr int kMaxLevels = 12;  // of median cut: 4096 regions
 constexpr int kUnlimited = std::numeric_limits<int>::max();

@@ -46,7 +46,7 @@ struct LightingMethod {
 
   // As a strategy for rendering: NAME, or NAME:COUNT.
   CountRange counts;
-  std::function<std::unique_ptr<LightingStrategy>(const Probe&, const StrategyOptions&, int count)>
+  std::function<std::unique_ptr<LightSource>(const Probe&, const StrategyOptions&, int count)>
       makeStrategy;
   bool replacesProbe = false;  // by lights, which the camera can see (StrategyOptions::showLights)
 

@@ -49,7 +49,7 @@ void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
   if (found.pdf > 0) out.push_back({wi, found.radiance / found.pdf, found.pdf});
 }
 
-LightingStrategy::Escaped PolygonLights::escaped(const LightPoint&, const vec3& wi) const {
+LightSource::Escaped PolygonLights::escaped(const LightPoint&, const vec3& wi) const {
   Escaped sum{Rgb(0), 0};
   for (const Light& light : lights_)
     if (!light.isIllum && light.polygon.contains(dvec3(wi))) {

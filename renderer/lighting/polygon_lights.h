@@ -2,9 +2,10 @@
 // Polygons of a probe as sources of their own (HDRI book, section 9.6.1; RADIANCE's "illum").
 #pragma once
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/cdf.h"
 #include "probe/polygon_source.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -20,7 +21,7 @@ struct PolygonLight {
 // An illum is found by its samples only; the camera and mirrors see the probe as it was captured.
 // Others are seen by all rays, as polygons of constant radiance, and their samples are weighted
 // against BSDF samples. Either way energy is counted once.
-class PolygonLights : public LightingStrategy {
+class PolygonLights : public LightSource {
  public:
   // `lights` is not empty. `hidden`: the map minus that without the illums, which the camera and
   // mirrors see; unrotated.

@@ -113,7 +113,7 @@ void Product::sample(const LightPoint& point, const PixelSampler& sampler,
   if (sample.pdf > 0) out.push_back(sample);
 }
 
-LightingStrategy::Escaped Product::escaped(const LightPoint& point, const vec3& wi) const {
+LightSource::Escaped Product::escaped(const LightPoint& point, const vec3& wi) const {
   const Probe::Position p = probe_.locate(wi);
   const LuminanceField::Point seen = field_.at(wi, p);
   return {seen.radiance, seen.weight * field_.scale() * pdfRatio(point, field_.blockOf(p))};

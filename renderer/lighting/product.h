@@ -4,8 +4,9 @@
 #pragma once
 
 #include "lighting/blocked_field.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/cdf.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -15,7 +16,7 @@ namespace chromeball {
 //   pdf = (pdf proportional to luminance) x pdfRatio(bin, block).
 // On a transmissive surface half of the samples use the opposite normal. The pdf does not follow
 // specular lobes; BSDF samples do.
-class Product : public LightingStrategy {
+class Product : public LightSource {
  public:
   explicit Product(const Probe& probe);
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -15,7 +15,7 @@ namespace chromeball {
 // ((cos - cosOuter) / (cosInner - cosOuter))^2, clamped to [0, 1] before squaring. A delta light.
 DirectionSample incidentLight(const PunctualLight& light, const vec3& position);
 
-class PunctualLights : public LightingStrategy {
+class PunctualLights : public LightSource {
  public:
   // Null if the scene has none. The scene must outlive this.
   static std::unique_ptr<PunctualLights> make(const Scene& scene);

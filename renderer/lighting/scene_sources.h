@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lighting/emitters.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 
 namespace chromeball {
 
@@ -14,7 +14,7 @@ struct SceneSources {
   // One for each kind of source that occurs in the scene, which must outlive this.
   explicit SceneSources(const Scene& scene);
 
-  std::vector<std::unique_ptr<const LightingStrategy>> all;
+  std::vector<std::unique_ptr<const LightSource>> all;
   std::vector<size_t> distant;         // of these: those that rays find which hit nothing
   const Emitters* emitters = nullptr;  // of these: photons start there; null where nothing emits
 };

@@ -2,14 +2,14 @@
 // Suns that a scene has besides its probe (HDRI book, sections 9.3.5 and 9.6.1).
 #pragma once
 
+#include "lighting/light_source.h"
 #include "lighting/sky_discs.h"
-#include "lighting/strategy.h"
 #include "scene/light.h"
 
 namespace chromeball {
 
 // The camera and mirrors see the visible discs; all other rays find all discs.
-class SceneSuns : public LightingStrategy {
+class SceneSuns : public LightSource {
  public:
   explicit SceneSuns(const std::vector<SunLamp>& suns);
 

@@ -19,7 +19,7 @@ std::vector<AreaLight> large(std::vector<AreaLight> lights) {
 
 }  // namespace
 
-ShownLights::ShownLights(std::unique_ptr<LightingStrategy> strategy, std::vector<AreaLight> lights,
+ShownLights::ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
                          const Rgb& ambient)
     : strategy_(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
 

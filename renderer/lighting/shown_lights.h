@@ -3,19 +3,20 @@
 // of the probe, as in the HDRI book, Figs. 9.31 and 9.35.
 #pragma once
 
+#include <memory>
 #include "lighting/area/disc_areas.h"
 #include "lighting/constellation/directional_light.h"
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 
 namespace chromeball {
 
 // Each light is seen as a disc with its energy and its solid angle, but at least
 // kShownDegrees in diameter, before `ambient` (black, where none was fitted).
-class ShownLights : public LightingStrategy {
+class ShownLights : public LightSource {
  public:
   static constexpr double kShownDegrees = 1;
 
-  ShownLights(std::unique_ptr<LightingStrategy> strategy, std::vector<AreaLight> lights,
+  ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
               const Rgb& ambient = Rgb(0));
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
@@ -42,7 +43,7 @@ class ShownLights : public LightingStrategy {
   }
 
  private:
-  std::unique_ptr<LightingStrategy> strategy_;
+  std::unique_ptr<LightSource> strategy_;
   DiscAreas discs_;
   Rgb ambient_;
 };

@@ -3,10 +3,10 @@
 
 namespace chromeball {
 
-SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const Probe& probe)
+SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe)
     : SplitProbe(std::move(strategy), extractSuns(probe.latLong()), probe.rotation()) {}
 
-SplitProbe::SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
+SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const SunExtraction& extraction,
                        const Rotation& rotation)
     : strategy_(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),

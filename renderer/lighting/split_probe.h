@@ -5,15 +5,16 @@
 
 #include <memory>
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
+#include "probe/probe.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {
 
 // Samples and radiances are the strategy's.
-class SplitProbe : public LightingStrategy {
+class SplitProbe : public LightSource {
  public:
-  SplitProbe(std::unique_ptr<LightingStrategy> strategy, const Probe& probe);
+  SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override {
@@ -40,11 +41,11 @@ class SplitProbe : public LightingStrategy {
   }
 
  private:
-  SplitProbe(std::unique_ptr<LightingStrategy> strategy, const SunExtraction& extraction,
+  SplitProbe(std::unique_ptr<LightSource> strategy, const SunExtraction& extraction,
              const Rotation& rotation);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
-  std::unique_ptr<LightingStrategy> strategy_;
+  std::unique_ptr<LightSource> strategy_;
   bool hasSuns_;
   Probe rest_;  // without the suns
 };

@@ -95,7 +95,7 @@ void Strata::sample(const LightPoint& point, const PixelSampler& sampler,
   }
 }
 
-LightingStrategy::Escaped Strata::escaped(const LightPoint& point, const vec3& wi) const {
+LightSource::Escaped Strata::escaped(const LightPoint& point, const vec3& wi) const {
   const Probe::Position p = probe_.locate(wi);
   const LuminanceField::Point seen = field_.at(wi, p);
   if (!(seen.weight > 0)) return {seen.radiance, 0};

@@ -4,9 +4,10 @@
 #pragma once
 
 #include "lighting/constellation/kollig_keller.h"
+#include "lighting/light_source.h"
 #include "lighting/luminance_field.h"
-#include "lighting/strategy.h"
 #include "math/cdf.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -39,7 +40,7 @@ class Stratum {
 // The regions are those of kollig-keller; they are small where the probe is bright. The first hit
 // takes one sample in each region, with pdf proportional to luminance. Later hits take kLater
 // samples, in regions chosen with probability proportional to their energy.
-class Strata : public LightingStrategy {
+class Strata : public LightSource {
  public:
   static constexpr int kLater = 1;  // samples
 

@@ -59,9 +59,9 @@ std::string resolveStrategy(const std::string& name) {
   return method && method->counts.max > 0 ? fmt::format("{}:{}", name, method->counts.usual) : name;
 }
 
-std::unique_ptr<LightingStrategy> makeStrategy(const std::string& name, const Probe& probe,
-                                               const StrategyOptions& options,
-                                               const std::string& location) {
+std::unique_ptr<LightSource> makeStrategy(const std::string& name, const Probe& probe,
+                                          const StrategyOptions& options,
+                                          const std::string& location) {
   const std::string resolved = resolveStrategy(name);
   const size_t colon = resolved.find(':');
   const LightingMethod* method = findMethod(std::string_view(resolved).substr(0, colon));

@@ -32,7 +32,7 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
   discs_.sample(u, v, 0, add);
 }
 
-LightingStrategy::Escaped Suns::escaped(const LightPoint& point, const vec3& wi) const {
+LightSource::Escaped Suns::escaped(const LightPoint& point, const vec3& wi) const {
   Escaped light = importance_.escaped(point, wi);
   const SkyDiscs::Light discs = discs_.at(wi);
   light.radiance += discs.radiance;

@@ -20,7 +20,7 @@ namespace chromeball {
 //
 // All samples are combined by the balance heuristic: pdfs and radiances of the remainder and all
 // discs in a direction are added.
-class Suns : public LightingStrategy {
+class Suns : public LightSource {
  public:
   // `compensated`: MIS compensation of the remainder (importance.h). `angle`: a diameter for all
   // suns, in degrees, above 0 and at most 90, instead of the measured ones; the Sun's is

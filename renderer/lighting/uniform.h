@@ -2,13 +2,14 @@
 // `uniform`: directions uniform over the hemisphere of the normal, pdf 1 / 2 pi.
 #pragma once
 
-#include "lighting/strategy.h"
+#include "lighting/light_source.h"
 #include "math/frame.h"
 #include "math/warp.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
-class Uniform : public LightingStrategy {
+class Uniform : public LightSource {
  public:
   explicit Uniform(const Probe& probe) : probe_(probe) {}
 

@@ -17,10 +17,8 @@ class MapTurn {
     uShift_ -= std::floor(uShift_);
   }
 
-  float uShift() const {
-    return uShift_;
-  }  // in turns, [0, 1): of the map that is turned, minus
-     // that of the map itself
+  // In turns, [0, 1): of the map that is turned, minus that of the map itself.
+  float uShift() const { return uShift_; }
   // To and from the frame in which the map is shifted by uShift().
   vec3 toMap(const vec3& d) const {
     if (isTilted_) [[unlikely]]

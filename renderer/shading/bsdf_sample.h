@@ -7,7 +7,7 @@
 namespace chromeball {
 
 // If a strategy replaces the probe by lights, narrow lobes would reflect them as separate
-// highlights; so narrow lobes see the probe itself (LightingStrategy::mirrorAlpha). A BSDF is the
+// highlights; so narrow lobes see the probe itself (LightSource::mirrorAlpha). A BSDF is the
 // sum of its broad and its narrow lobes; each sum has its own samples, pdf and MIS weights.
 enum class Lobes {
   Broad,

@@ -29,9 +29,7 @@ class StudyRun {
 
   int stored() const { return stored_; }
   int total() const { return int(renders_.size()); }
-  const LightingStrategy& strategy(const std::string& row) const {
-    return *built_.at(row).strategy;
-  }
+  const LightSource& strategy(const std::string& row) const { return *built_.at(row).strategy; }
   bool unbiased(const std::string& row) const {
     return strategy(row).unbiased() && !built_.at(row).row.isBiased();
   }
@@ -39,7 +37,7 @@ class StudyRun {
  private:
   struct Built {
     Row row;
-    std::unique_ptr<LightingStrategy> strategy;
+    std::unique_ptr<LightSource> strategy;
     double prepareSeconds = 0;
     double secondsPerSample = 0;  // of the last render; 0 if there was none
   };

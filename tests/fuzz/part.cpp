@@ -34,7 +34,7 @@ struct SmallWorld {
   const Scene scene = quad();
   const World world{scene, {}, BsdfTables(scene.materials, true)};
   const Probe probe{gradientProbe({16, 8}, Rgb(0.5f), {0.1, 0.2, 0.3})};
-  const std::unique_ptr<LightingStrategy> lighting =
+  const std::unique_ptr<LightSource> lighting =
       makeStrategy("importance", probe, Mis::Balance, "fuzz");
   const Camera camera = Camera::lookAt({0, 1, 3}, {0, 0, 0}, {0, 1, 0}, 0.8f);
 };

@@ -159,7 +159,7 @@ class LeanBatch {
     sampler.startVertex(depth_);
   }
 
-  static constexpr size_t kMax = LightingStrategy::kMaxMany;
+  static constexpr size_t kMax = LightSource::kMaxMany;
   const LeanScene& scene_;
   const LightPoint nowhere_{};
   Rgb sum_{0};
@@ -169,8 +169,8 @@ class LeanBatch {
   std::array<Ray, kMax> rays_;
   std::array<uint32_t, kMax> keys_{};
   std::array<std::optional<Hit>, kMax> hits_;
-  std::array<LightingStrategy::Escape, kMax> escapes_;
-  std::array<LightingStrategy::Escaped, kMax> found_;
+  std::array<LightSource::Escape, kMax> escapes_;
+  std::array<LightSource::Escaped, kMax> found_;
   std::array<glm::uvec2, kMax> numbers_;
   std::array<DirectionSample, kMax> lights_;
   std::array<Rgb, kMax> lit_, transmittances_;

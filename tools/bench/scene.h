@@ -28,7 +28,7 @@ struct BenchmarkScene {
   Scene scene;
   World world;
   Probe probe;
-  std::unique_ptr<LightingStrategy> lighting;
+  std::unique_ptr<LightSource> lighting;
 
   explicit BenchmarkScene(Scene s)
       : scene(std::move(s)),

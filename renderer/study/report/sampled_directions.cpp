@@ -6,7 +6,7 @@
 
 namespace chromeball {
 
-std::vector<vec3> sampledDirections(const LightingStrategy& strategy) {
+std::vector<vec3> sampledDirections(const LightSource& strategy) {
   constexpr uint32_t kSamples = 128;
   const SobolTable table(kSamples, dimension::kVertex + dimension::kPerVertex, 0);
   PixelSampler sampler(table, 0);

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The interface of light sources: the light of a probe, in any way of sampling it, and what else
+// lights a scene.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/sampler.h"
+#include "math/vec.h"
+
+namespace chromeball {
+
+class Bsdf;
+struct Instance;
+struct Surface;
+
+// A point that receives light.
+struct LightPoint {
+  vec3 position;
+  vec3 normal;             // shading normal, on the viewer's side
+  const Bsdf* bsdf;        // null in escaped()
+  int depth;               // 0 at the first hit; a strategy may take fewer samples at later hits
+  bool transmits = false;  // light from behind contributes too
+};
+
+// The surface at which a shadow ray to a light in the scene ends.
+struct LightEnd {
+  static constexpr uint32_t kNone = ~0u;
+
+  uint32_t instance = kNone;
+  vec3 position{0};  // offset from the surface, as origins of rays
+};
+
+// One direction for a shadow ray, as a directional light. `pdf` is the sum of the pdfs, over solid
+// angle, of all samples of the call; `irradiance`, on a surface perpendicular to the direction, is
+// radiance / pdf. So for any number of samples the estimate is the sum over samples of
+//   f cos * irradiance.
+struct DirectionSample {
+  vec3 wi;  // unit, from the point to the light
+  Rgb irradiance;
+  float pdf;                  // unless isDelta
+  bool isDelta = false;       // no BSDF sample can find the light: its MIS weight is 1
+  int group = 0;              // of a delta light: index into LightSource::groups()
+  float distance = INFINITY;  // metres
+  LightEnd end{};
+};
+
+// Light of a probe, as a strategy samples it, or of what a scene has besides (scene_sources.h):
+// lamps and emitting surfaces, which override less, and suns.
+class LightSource {
+ public:
+  virtual ~LightSource() = default;
+
+  // Appends zero or more samples.
+  virtual void sample(const LightPoint& point, const PixelSampler& sampler,
+                      std::vector<DirectionSample>& out) const = 0;
+
+  // Radiance along a BSDF-sampled ray that left `point` in direction `wi` and hit nothing, and the
+  // pdf of sample() for that direction, over solid angle; 0 if sample() cannot return it.
+  struct Escaped {
+    Rgb radiance;
+    float pdf;
+  };
+  virtual Escaped escaped(const LightPoint&, const vec3&) const { return {Rgb(0), 0}; }
+
+  // The pdf of sample(), over solid angle, for the point of a surface in the scene that a
+  // BSDF-sampled ray from `point` hits. Its radiance is emittedRadiance() (scene/surface.h).
+  virtual float pdfOfHit(const LightPoint&, const Surface&, const Instance&) const { return 0; }
+
+  // escaped() for up to kMaxMany rays. Strategies override it where table reads of several rays can
+  // overlap.
+  static constexpr size_t kMaxMany = 16;
+  struct Escape {
+    const LightPoint* point;
+    vec3 wi;
+  };
+  virtual void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
+    for (size_t i = 0; i < rays.size(); ++i) out[i] = escaped(*rays[i].point, rays[i].wi);
+  }
+
+  // sample() for up to kMaxMany paths, from the bits of dimension::kLight and kLight + 1 of each; a
+  // pdf of 0 stands for no sample. Returns false for strategies that take several samples or whose
+  // samples depend on the point.
+  virtual bool sampleMany(std::span<const glm::uvec2>, std::span<DirectionSample>) const {
+    return false;
+  }
+
+  // Whether sample() takes one sample at most, which is not a delta.
+  virtual bool takesOneSample() const { return sampleMany({}, {}); }
+
+  // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
+  virtual Rgb background(const vec3&, const vec3&) const { return Rgb(0); }
+
+  // Specular lobes with a GGX alpha below this are treated as mirrors: they see background(), and
+  // sample() does not light them. The scene's own lamps light them like all other lobes.
+  virtual float mirrorAlpha() const { return 0; }
+
+  // False for an approximation, whose error does not converge to 0 with the number of samples.
+  virtual bool unbiased() const { return true; }
+
+  // The names of the parts of the light that light groups tell apart (integrate/light_groups.h).
+  // Surfaces in the scene have none: their groups are those of their nodes.
+  virtual std::vector<std::string> groups() const { return {"probe"}; }
+  // Adds the radiance of escaped(), or of background(), to that of each group: one element of
+  // `radiances` per group.
+  virtual void splitEscaped(const LightPoint& point, const vec3& wi,
+                            std::span<Rgb> radiances) const {
+    radiances.front() += escaped(point, wi).radiance;
+  }
+  virtual void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const {
+    radiances.front() += background(origin, wi);
+  }
+};
+
+}  // namespace chromeball
