@@ -227,8 +227,27 @@ TEST_F(SlowCommandCapture, ShiftedPhotographsAreRejected) {
 TEST_F(SlowCommandCapture, RealPhotographsOfDifferentSizesAreRejected) {
   const auto real = sharedData("reference/differential_rendering/kartikagrawal27/Materials");
   if (!real) GTEST_SKIP() << "no real photographs";
-  expectError({"probe", "merge", *real / "10.JPG", *real / "40.JPG", *real / "160.JPG", "-o", out_},
-              "40.JPG: is 484 x 468, but ");
+  const Words merge{"probe", "merge", *real / "10.JPG", *real / "40.JPG", *real / "160.JPG",
+                    "-o",    out_};
+  expectError(merge, "40.JPG: is 484 x 468, but ");
+  const CommandResult resized =
+      runCommand(joined(merge, {"--resize", "--exposures", "1/10,1/40,1/160", "--unaligned"}));
+  EXPECT_EQ(resized.status, 0) << resized.error;
+  EXPECT_EQ(readImage(out_).width, 480);
+}
+
+TEST_F(SlowCommandCapture, CropsOfSeveralSizesAreResized) {
+  const Image small = ramp(48, 24, 0.05, 100);
+  const Words files{photograph("a.png", radiance_, 0.25, {}), photograph("b.png", small, 0.02, {})};
+  const CommandResult result = runCommand(
+      joined({"probe", "merge", "-o", out_, "--resize", "--exposures", "0.25,0.02"}, files));
+  ASSERT_EQ(result.status, 0) << result.error;
+  const ImageFile merged = readImageFile(out_);
+  const Image color = *findColor(merged), clipped = *findLayer(merged, "clipped");
+  ASSERT_EQ(color.width, 48);
+  ASSERT_EQ(color.height, 24);
+  for (int x = 4; x < 44; ++x)
+    if (*clipped.at(x, 12) == 0) EXPECT_NEAR(color.rgb(x, 12).y / small.rgb(x, 12).y, 1, 0.12) << x;
 }
 
 // A sky whose sun the photographs clip, and a white ball in its full light, seen from +Z.
