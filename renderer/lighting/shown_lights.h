@@ -7,6 +7,7 @@
 #include "lighting/area/disc_areas.h"
 #include "lighting/constellation/directional_light.h"
 #include "lighting/light_source.h"
+#include "math/rotation.h"
 
 namespace chromeball {
 
