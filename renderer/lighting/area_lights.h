@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+
 #include "lighting/area/light_areas.h"
 #include "lighting/light_source.h"
 #include "math/cdf.h"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+
 #include "lighting/area/disc_areas.h"
 #include "lighting/constellation/directional_light.h"
 #include "lighting/light_source.h"
