@@ -12,7 +12,7 @@ _chromeball() {
       words='render merge compare probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
@@ -33,7 +33,7 @@ _chromeball() {
     'probe edit')
       options='--help --rotation --fill-nadir --below-horizon --region --gain --scale --clip --clip-stops --mapping' ;;
     'probe merge')
-      options='--help --output --exposures --apertures --aperture-ratio --filter --flat-field --response --write-response --smoothness --white --unaligned --calibrate-filter --json' ;;
+      options='--help --output --exposures --apertures --aperture-ratio --filter --flat-field --response --write-response --smoothness --white --resize --unaligned --calibrate-filter --json' ;;
     'probe sun')
       options='--help --diffuse --circle --paint --camera --distance --angle --direction --mask --output --lights --residual --mapping --json' ;;
     'probe split')
