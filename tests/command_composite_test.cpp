@@ -241,7 +241,7 @@ TEST_F(SlowCommandComposite, EstimatesReflectanceFromThePlate) {
   expectInputError(scene("plate = \"plate.exr\"\nlocal_scene = []"),
                    "`local_scene` must name at least one node");
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--transparent"},
-              "--transparent: the plate is the background of a composite");
+              "--transparent: is for plain renders; the layer alpha of a composite");
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
               "layer `reflectance` needs reflectance =");
 }

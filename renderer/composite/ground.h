@@ -14,10 +14,10 @@ struct Ground {
   vec2 min, max;     // x and z
 };
 
-// What the camera sees of the plane y = height, and the surroundings of the objects within three
-// times the size of their box; nothing beyond 30 times that size and their distance from the camera
-// together, from where no shadow or light of the objects is to be seen. Throws InputError, begun by
-// `location`, if the camera is below the plane or does not see it.
+// The plane y = height as far as 30 times the size of the objects' box and their distance from the
+// camera together, on all sides: the ground behind the camera lights the objects too, and what lies
+// beyond is within 2 degrees of their horizon. Throws InputError, begun by `location`, if the
+// camera is below the plane or does not see it.
 Ground groundSeenBy(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
                     const std::string& location);
 

@@ -124,7 +124,7 @@ Fisheye parseFisheye(std::string_view name, std::string_view location) {
   constexpr double kSmallest = 60;
   if (error != std::errc{} || end != degrees.data() + degrees.size() ||
       !(lens.fieldOfView >= kSmallest && lens.fieldOfView <= projection.largestFieldOfView))
-    throwInput("{}: the field of view `{}` of an {} fisheye lens should be {} to {} degrees",
+    throwInput("{}: the field of view `{}` of a fisheye lens, {}, should be {} to {} degrees",
                location, degrees, projection.name, kSmallest, projection.largestFieldOfView);
   lens.projection = projection.projection;
   return lens;

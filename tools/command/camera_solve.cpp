@@ -45,10 +45,10 @@ void check(const Arguments& a) {
   onlyFor(a.focal35.has_value(), !isGiven(a.fspy), "--focal35", "--points and --lines");
   onlyFor(isGiven(a.principalPoint), !isGiven(a.fspy), "--principal-point", "--points and --lines");
   if (a.fov && a.focal35) throwInput("--fov: excludes --focal35; give one");
-  if (a.fov && !(*a.fov > 0 && *a.fov < 180))
-    throwInput("--fov: {:g} should be above 0 and below 180 degrees", *a.fov);
-  if (a.focal35 && !(*a.focal35 > 0 && *a.focal35 < 1e5))
-    throwInput("--focal35: {:g} should be a focal length in millimetres, above 0", *a.focal35);
+  if (a.fov && !(*a.fov >= 0.01 && *a.fov < 179))
+    throwInput("--fov: {:g} should be 0.01 to 179 degrees", *a.fov);
+  if (a.focal35 && !(*a.focal35 > 0.1 && *a.focal35 < 1e5))
+    throwInput("--focal35: {:g} should be 0.1 to 100000 millimetres", *a.focal35);
   if (a.height && !(*a.height > 0 && *a.height < 1e9))
     throwInput("--height: {:g} should be in metres, above 0", *a.height);
   if (a.up != "y" && a.up != "z") throwInput("--up: `{}` should be y or z", a.up);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball image divide A B -o OUT.exr
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "image/flat_field.h"
 #include "image/io/read_image.h"
@@ -29,6 +32,12 @@ void run(const Arguments& arguments) {
   if (const size_t undivided = divide(a, b); undivided > 0)
     warn(fmt::format("{}: {} pixels have a channel that is not above 0; the result is 0 there",
                      arguments.b, undivided));
+  const auto invalid = std::ranges::count_if(a.texels, [](float x) { return !std::isfinite(x); });
+  if (invalid > 0)
+    throwInput(
+        "{}: {} channels divided by {} are NaN or infinite: such texels, or results above the "
+        "largest float, 3.4e38",
+        arguments.a, invalid, arguments.b);
   output.layers.push_back({"", "RGB", std::move(a)});
   if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
   writeImage(arguments.output, output);

@@ -56,6 +56,10 @@ std::string factorText(const dvec3& f) {
   return isGrey ? fmt::format("{:.4g}", f.x) : fmt::format("{:.4g} {:.4g} {:.4g}", f.x, f.y, f.z);
 }
 
+std::string ratioText(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.5g}", ratio) : "unknown";
+}
+
 std::string settingsText(const CameraSettings& settings) {
   std::string text = timeText(settings.time);
   if (settings.aperture) text += fmt::format(", f/{:g}", *settings.aperture);
@@ -72,9 +76,9 @@ void print(const PhotographSeries& series, const MergedPhotographs& merged) {
                double(merged.image.uses[i].saturated) / pixels);
   for (const Agreement& a : merged.agreements)
     if (const auto error = a.error())
-      fmt::print("ratio {:>3} : {:<3}   given {:.5g}, found {:.5g} {:.5g} {:.5g} ({:.2g}% off)\n",
-                 a.longer + 1, a.shorter + 1, a.factor, a.factor * a.found.x, a.factor * a.found.y,
-                 a.factor * a.found.z, 100 * *error);
+      fmt::print("ratio {:>3} : {:<3}   given {:.5g}, found {} {} {} ({:.2g}% off)\n", a.longer + 1,
+                 a.shorter + 1, a.factor, ratioText(a.factor * a.found.x),
+                 ratioText(a.factor * a.found.y), ratioText(a.factor * a.found.z), 100 * *error);
   fmt::print("response        {}, white at {:g}\n", merged.responseName, merged.white);
   fmt::print("clipped         {} pixels in all exposures, {:.3g}%\n", merged.image.clippedPixels,
              double(merged.image.clippedPixels) / pixels);

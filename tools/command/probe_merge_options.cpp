@@ -100,7 +100,8 @@ void MergeArguments::addTo(CLI::App& command) {
       fmt::format("of the solved response, default {:g}", PhotographSeries{}.smoothness));
   command.add_option(
       "--white", white,
-      "where floats saturate; without it 1, or the largest number if that is higher");
+      "where floats saturate; without it 1, or the largest number if that is higher. The result "
+      "has the scale of the files");
   command.add_flag("--resize", resizes,
                    "accept photographs of several sizes, each cropped to the same ball: resample "
                    "them to the smallest");
@@ -123,6 +124,9 @@ PhotographSeries MergeArguments::series() const {
   for (const std::string& text : flatFields) series.flatFields.push_back(parseFlatField(text));
   series.response = response;
   if (!smoothness.empty()) series.smoothness = parsePositive(smoothness, "--smoothness");
+  constexpr double kSmoothest = 1e6;  // more leaves a straight line, and rounding errors
+  if (!(series.smoothness <= kSmoothest))
+    throwInput("--smoothness: `{}` should be at most {:g}", smoothness, kSmoothest);
   if (!white.empty()) series.white = float(parsePositive(white, "--white"));
   series.checkAlignment = !unaligned;
   series.resizes = resizes;

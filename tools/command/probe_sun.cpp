@@ -20,6 +20,8 @@
 namespace chromeball {
 namespace {
 
+constexpr double kSeldomExplained = 0.2;  // of the mean: another direction, or another ball
+
 using Json = nlohmann::ordered_json;
 
 struct Arguments {
@@ -31,7 +33,9 @@ struct Arguments {
 
 DiffuseBall parseBall(const Arguments& arguments) {
   const std::vector<double> circle = parseNumbers(arguments.circle, 3, "--circle");
-  const std::vector<double> paint = parseNumbers(arguments.paint, 3, "--paint");
+  const bool isGrey = arguments.paint.find(',') == std::string::npos;
+  std::vector<double> paint = parseNumbers(arguments.paint, isGrey ? 1 : 3, "--paint");
+  if (isGrey) paint.resize(3, paint.front());
   const std::vector<double> camera = parseNumbers(arguments.camera, 2, "--camera");
   DiffuseBall ball{.centre = {circle[0], circle[1]},
                    .radius = circle[2],
@@ -167,8 +171,8 @@ void print(const SunFromBall& result, const Direction& direction, const BallSamp
 
 void run(const Arguments& arguments) {
   const DiffuseBall ball = parseBall(arguments);
-  if (!(arguments.angle > 0 && arguments.angle <= kMaxListedAngle))
-    throwInput("--angle: should be above 0 and at most {} degrees", kMaxListedAngle);
+  if (!(arguments.angle >= kLeastListedAngle && arguments.angle <= kMaxListedAngle))
+    throwInput("--angle: should be {} to {} degrees", kLeastListedAngle, kMaxListedAngle);
   for (const std::string& image : {arguments.output, arguments.residual})
     if (!image.empty()) checkWritable(image);
   if (!arguments.lights.empty() && lightFormat(arguments.lights, "", "") != LightFormat::Json)
@@ -183,6 +187,11 @@ void run(const Arguments& arguments) {
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
+  if (result.rms > kSeldomExplained)
+    warn(fmt::format(
+        "the ball differs by {:.3g}% of its mean from what probe and sun make it, by {:.3g}% "
+        "without the sun: check --camera, --direction, --circle and --paint",
+        100 * result.rms, 100 * result.rmsOfProbe));
   if (arguments.json)
     fmt::print("{}\n", toJson(result, direction, samples).dump(2));
   else
@@ -215,7 +224,7 @@ void addProbeSunCommand(CLI::App& probe) {
       ->required();
   command->add_option("--circle", arguments->circle, "X,Y,R: the ball in it, in pixels")
       ->required();
-  command->add_option("--paint", arguments->paint, "R,G,B: the reflectance of the ball")
+  command->add_option("--paint", arguments->paint, "X or R,G,B: the reflectance of the ball")
       ->required();
   command
       ->add_option("--camera", arguments->camera,

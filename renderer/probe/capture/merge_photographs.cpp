@@ -153,6 +153,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   if (series.checkAlignment) checkShifts(exposures);
   merged.response = responseOf(series, photographs.bits, exposures, merged.responseName);
   merged.image = mergeExposures(exposures, merged.response);
+  for (float& texel : merged.image.radiance.texels) texel *= merged.white;  // the files' scale
   merged.agreements = exposureAgreement(exposures, merged.response);
 
   const size_t pixels = merged.image.clipped.texels.size();
@@ -162,6 +163,12 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   if (merged.image.underexposedPixels == pixels)
     throwInput("{}: all pixels are black in all exposures; add longer ones", series.files.front());
   addWarnings(series, merged);
+  for (size_t i = 0; i < series.files.size(); ++i)
+    if (photographs.invalid[i] > 0)
+      merged.warnings.push_back(
+          {Message::Kind::Warning, fmt::format("{}: {} channels are NaN or negative; they count as "
+                                               "black",
+                                               series.files[i], photographs.invalid[i])});
   return merged;
 }
 

@@ -55,6 +55,11 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
     }
     result.levels.push_back(std::move(image));
   }
+  for (Image& image : result.levels) {
+    size_t& invalid = result.invalid.emplace_back(0);
+    for (float& texel : image.texels)
+      if (!(texel >= 0)) ++invalid, texel = 0;
+  }
   if (resizes) toSmallestSize(result.levels);
   if (result.bits > 0) return result;
   result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));

@@ -11,9 +11,10 @@
 namespace chromeball {
 
 struct PhotographLevels {
-  std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
-  int bits = 0;               // of the files' channels; 0: floats
-  float white = 1;            // the texel of the files that is level 1
+  std::vector<Image> levels;    // as encoded, divided by `white`; three channels; of one size
+  int bits = 0;                 // of the files' channels; 0: floats
+  float white = 1;              // the texel of the files that is level 1
+  std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
 };
 
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled

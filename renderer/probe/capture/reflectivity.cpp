@@ -29,6 +29,8 @@ PatchMean patchMean(const Image& image, const PixelRectangle& r, double saturati
   if (r.x < 0 || r.y < 0 || r.width > image.width - r.x || r.height > image.height - r.y)
     throwInput("{}: {},{},{},{} reaches outside the picture of {} x {} pixels", location, r.x, r.y,
                r.width, r.height, image.width, image.height);
+  if (r.width == 1 && r.height == 1)
+    throwInput("{}: one pixel has no standard error; give a rectangle of several", location);
   glm::dvec3 sum(0), squares(0);
   const glm::dvec3 first(image.rgb(r.x, r.y));  // of which the others differ little
   for (int y = r.y; y < r.y + r.height; ++y)
@@ -47,12 +49,8 @@ PatchMean patchMean(const Image& image, const PixelRectangle& r, double saturati
       squares += difference * difference;
     }
   const double n = double(r.width) * r.height;
-  PatchMean patch{first + sum / n, glm::dvec3(0), size_t(n)};
-  if (n > 1) {
-    const glm::dvec3 variance = glm::max(squares - sum * sum / n, 0.0) / (n - 1);
-    patch.standardError = glm::sqrt(variance / n);
-  }
-  return patch;
+  const glm::dvec3 variance = glm::max(squares - sum * sum / n, 0.0) / (n - 1);
+  return {first + sum / n, glm::sqrt(variance / n), size_t(n)};
 }
 
 Reflectivity reflectivity(const PatchMean& numerator, const PatchMean& denominator,

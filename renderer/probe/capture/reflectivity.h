@@ -23,7 +23,8 @@ struct PatchMean {
 };
 
 // The mean of linear values. Throws InputError, begun by `location`, if the rectangle reaches
-// outside the image, or if a channel of it is negative, not finite, or at least `saturation`.
+// outside the image or has only one pixel, which has no standard error, or if a channel of it is
+// negative, not finite, or at least `saturation`.
 PatchMean patchMean(const Image& image, const PixelRectangle& rectangle, double saturation,
                     std::string_view location);
 
