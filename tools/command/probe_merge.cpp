@@ -31,7 +31,7 @@ Json toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
                          {"factor", toJson(merged.factors[i])},
                          {"used_pixels", merged.image.uses[i].weighted},
                          {"saturated_pixels", merged.image.uses[i].saturated}});
-  for (const Agreement& a : merged.agreements)
+  for (const ExposureAgreement& a : merged.agreements)
     agreements.push_back(
         {{"longer", a.longer + 1},
          {"shorter", a.shorter + 1},
@@ -74,7 +74,7 @@ void print(const PhotographSeries& series, const MergedPhotographs& merged) {
                series.files[i], settingsText(merged.settings[i]), factorText(merged.factors[i]),
                double(merged.image.uses[i].weighted) / pixels,
                double(merged.image.uses[i].saturated) / pixels);
-  for (const Agreement& a : merged.agreements)
+  for (const ExposureAgreement& a : merged.agreements)
     if (const auto error = a.error())
       fmt::print("ratio {:>3} : {:<3}   given {:.5g}, found {} {} {} ({:.2g}% off)\n", a.longer + 1,
                  a.shorter + 1, a.factor, ratioText(a.factor * a.found.x),

@@ -49,7 +49,7 @@ double medianRatio(const Exposure& longer, const Exposure& shorter, const Respon
 
 }  // namespace
 
-std::optional<double> Agreement::error() const {
+std::optional<double> ExposureAgreement::error() const {
   std::optional<double> largest;
   for (int c = 0; c < 3; ++c)
     if (const double difference = std::abs(found[c] - 1); difference >= largest.value_or(0))
@@ -57,17 +57,17 @@ std::optional<double> Agreement::error() const {
   return largest;
 }
 
-std::vector<Agreement> exposureAgreement(std::span<const Exposure> exposures,
-                                         const ResponseCurve& response) {
+std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
+                                                 const ResponseCurve& response) {
   std::vector<size_t> order(exposures.size());
   std::iota(order.begin(), order.end(), size_t(0));
   std::ranges::stable_sort(
       order, [&](size_t a, size_t b) { return exposures[a].factor.y > exposures[b].factor.y; });
-  std::vector<Agreement> agreements;
+  std::vector<ExposureAgreement> agreements;
   for (size_t i = 0; i + 1 < order.size(); ++i) {
     const Exposure &longer = exposures[order[i]], &shorter = exposures[order[i + 1]];
-    Agreement agreement{order[i], order[i + 1], longer.factor.y / shorter.factor.y, dvec3(0),
-                        std::numeric_limits<size_t>::max()};
+    ExposureAgreement agreement{order[i], order[i + 1], longer.factor.y / shorter.factor.y,
+                                dvec3(0), std::numeric_limits<size_t>::max()};
     for (int c = 0; c < 3; ++c)
       agreement.found[c] = medianRatio(longer, shorter, response, c, agreement.pixels);
     agreements.push_back(agreement);

@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-struct Agreement {
+struct ExposureAgreement {
   size_t longer, shorter;  // two exposures, by index
   double factor;           // of their green channels' exposures, as given
   // What was found instead, over what was given: the median over pixels for each channel; NaN for a
@@ -24,7 +24,7 @@ struct Agreement {
 
 // For each exposure but the longest, with the next longer one. Pixels are compared where both have
 // between 1% and 85% of the exposure of white.
-std::vector<Agreement> exposureAgreement(std::span<const Exposure> exposures,
-                                         const ResponseCurve& response);
+std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
+                                                 const ResponseCurve& response);
 
 }  // namespace chromeball

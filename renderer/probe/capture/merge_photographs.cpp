@@ -119,7 +119,7 @@ void addWarnings(const PhotographSeries& series, MergedPhotographs& merged) {
   const auto warn = [&](std::string text) {
     merged.warnings.push_back({Message::Kind::Warning, std::move(text)});
   };
-  for (const Agreement& agreement : merged.agreements) {
+  for (const ExposureAgreement& agreement : merged.agreements) {
     const std::string &longer = series.files[agreement.longer],
                       &shorter = series.files[agreement.shorter];
     const auto error = agreement.error();

@@ -41,7 +41,7 @@ struct MergedPhotographs {
   MergedExposures image;
   std::vector<CameraSettings> settings;  // of each photograph
   std::vector<dvec3> factors;
-  std::vector<Agreement> agreements;
+  std::vector<ExposureAgreement> agreements;
   ResponseCurve response = ResponseCurve::linear();
   std::string responseName;
   float white = 1;
