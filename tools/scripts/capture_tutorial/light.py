@@ -68,14 +68,14 @@ def response(run, photographs):
     found, error = levels_of_error(run, "response.csv")
     _, even = levels_of_error(run, "even.csv")
     response_plot(run.pictures / "response.svg", found)
-    contact_sheet(run, [f"front-{a}-{b}.png" for a, b in camera.TIMES[1:6]], "exposures.png")
+    contact_sheet(run, [f"front-{a}-{b}.png" for a, b in camera.TIMES[1:6]], "exposures.jpg")
     return Step(
         "The response of the camera",
         "Photograph the mirror ball with the camera fixed, in manual mode, with exposure times that step by *different* "
         "factors of 2 to 4. The darkest shows no white but the sun, the brightest no black. "
         "`--response solve` finds the camera's response from them; the other series use its file.",
         ["chromeball probe merge front-*.png --response solve --write-response response.csv -o front.exr"], said,
-        [("exposures.png", "Five of the seven exposures"),
+        [("exposures.jpg", "Five of the seven exposures"),
          ("response.svg", "The solved response of the three channels, and the true one (black)")],
         [("response, largest error of levels 5 to 250", f"{error:.1f} levels", "0", f"{error:.1f} levels")],
         f"With six exposures in even steps of 4 the largest error is {even:.1f} levels: brackets of one ratio leave part "
@@ -102,14 +102,14 @@ def reflectivity(run):
     arguments = ["probe", "reflectivity", "card.exr", "--direct", DIRECT, "--reflected", REFLECTED]
     found = run.json(*arguments)["reflectivity"]
     truth = [f + (1 - f) * (1 - math.sqrt(0.5)) ** 5 for f in place.CHROME]
-    run.picture("card.exr", "card.png", "--exposure", -9)
+    run.picture("card.exr", "card.jpg", "--exposure", -9)
     worst = max(abs(a / b - 1) for a, b in zip(found, truth))
     return found, Step(
         "The reflectivity of the ball",
         "A mirror ball is not a perfect mirror. One photograph shows a white card directly and in the ball; the card "
         "faces the middle between camera and ball. Give a rectangle in each, X,Y,WIDTH,HEIGHT in pixels.",
         [f"chromeball probe reflectivity card.exr --direct {DIRECT} --reflected {REFLECTED}"],
-        run.said(*arguments), [("card.png", "The card and its reflection at the right side of the ball")],
+        run.said(*arguments), [("card.jpg", "The card and its reflection at the right side of the ball")],
         [("reflectivity, worst channel", ", ".join(f"{v:.3f}" for v in found),
           ", ".join(f"{v:.3f}" for v in truth), f"{100 * worst:.1f}%")],
         "The truth is the ball's colour by Schlick's formula at the 45 degrees of this reflection.")
@@ -125,7 +125,7 @@ def assemble(run, photographs, measured):
     run("probe", "edit", photographs.truth, "clipped-truth.pfm", "--clip", f"{white:.6g}")
     truth = irradiance(run, "clipped-truth.pfm", "e1.pfm", camera.unit())
     mean, largest = irradiance_error(irradiance(run, "probe.exr", "e2.pfm"), truth)
-    run.picture("probe.exr", "probe.png", "--exposure", -9)
+    run.picture("probe.exr", "probe.jpg", "--exposure", -9)
     return Step(
         "The probe",
         "The camera stood before the ball (azimuth 0) and at its right (azimuth 90), ten radii from its centre. In truth "
@@ -133,7 +133,7 @@ def assemble(run, photographs, measured):
         "the other one. The circles are found; `--preview` shows them, `--circle` replaces them.",
         ["chromeball probe assemble front.exr side.exr --azimuth 0,90 --distance 10 --schlick \\\n"
          f"  --reflectivity {reflectance} -o probe.exr --preview assemble.png"],
-        said, [("probe.png", "The probe, as a lat-long map")],
+        said, [("probe.jpg", "The probe, as a lat-long map")],
         [("azimuth of the second camera", f"{angle:.2f}", f"{place.SECOND_AZIMUTH}",
           f"{abs(angle - place.SECOND_AZIMUTH):.2f} degrees"),
          ("irradiance without the sun's clipped part, mean / largest", "", "", f"{mean:.2f}% / {largest:.1f}%")],
@@ -159,7 +159,7 @@ def sun(run, photographs):
     real = run.json("probe", "info", photographs.truth)["suns"][0]["direction"]
     angle = angle_between(direction, real)
     worst = max(abs(a / b - 1) for a, b in zip(found["irradiance"], lost))
-    run.picture("grey.exr", "grey.png", "--exposure", -8.5)
+    run.picture("grey.exr", "grey.jpg", "--exposure", -8.5)
     return Step(
         "The sun",
         "The shortest exposure is white in the sun: its irradiance is lost. A grey matte ball in the same light, "
@@ -167,7 +167,7 @@ def sun(run, photographs):
         "`--paint` is the reflectance of the ball; `probe reflectivity` measures it against a standard.",
         [f"chromeball probe sun probe.exr --diffuse grey.exr --circle {circle} --paint {paint} \\\n"
          f"  --camera 0,0 --distance 10 -o sunny.exr"], said,
-        [("grey.png", "The grey ball")],
+        [("grey.jpg", "The grey ball")],
         [("direction of the sun", "", "", f"{angle:.2f} degrees"),
          ("irradiance of the sun, worst channel", ", ".join(f"{v:.0f}" for v in found["irradiance"]),
           ", ".join(f"{v:.0f}" for v in lost), f"{100 * worst:.1f}%"),

@@ -41,17 +41,40 @@ def write_png(path, rows, exif=b""):
 
 
 def read_png(path):
-    """What write_png wrote."""
+    """Of 8 bits, (r, g, b), without an alpha channel or interlacing."""
     data, at, packed = path.read_bytes(), 8, b""
     while at < len(data):
         size, name = struct.unpack_from(">I4s", data, at)
         body = data[at + 8:at + 8 + size]
         if name == b"IHDR":
             width, height = struct.unpack_from(">II", body)
+            assert body[8:] == b"\10\2\0\0\0", "8 bits, RGB"
         packed += body if name == b"IDAT" else b""
         at += size + 12
     lines, stride = zlib.decompress(packed), 3 * width + 1
-    return [[tuple(lines[y * stride + 3 * x + 1:y * stride + 3 * x + 4]) for x in range(width)] for y in range(height)]
+    rows, above = [], bytes(3 * width)
+    for y in range(height):
+        above = _unfiltered(lines[y * stride], bytearray(lines[y * stride + 1:(y + 1) * stride]), above)
+        rows.append([tuple(above[3 * x:3 * x + 3]) for x in range(width)])
+    return rows
+
+
+def _unfiltered(kind, line, above):
+    """The filters of PNG, section 9."""
+    for i in range(len(line)):
+        a, b, c = (line[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
+        if kind == 1:
+            guess = a
+        elif kind == 2:
+            guess = b
+        elif kind == 3:
+            guess = (a + b) // 2
+        elif kind == 4:
+            guess = min((a, b, c), key=lambda v: abs(a + b - c - v))
+        else:
+            break
+        line[i] = (line[i] + guess) & 255
+    return bytes(line)
 
 
 def exif(seconds, f_number, iso):

@@ -31,7 +31,7 @@ def flat_field(run, photographs):
     unit = camera.unit()
     pixels.write_pfm(run.scratch / "true-plate-scaled.pfm", [[tuple(unit * v for v in p) for p in row] for row in scaled])
     plate = run.json("image", "error", "plate.exr", "true-plate-scaled.pfm", "--flip")
-    contact_sheet(run, [f"plate-{a}-{b}.png" for a, b in camera.TIMES[3:6]], "plates.png")
+    contact_sheet(run, [f"plate-{a}-{b}.png" for a, b in camera.TIMES[3:6]], "plates.jpg")
     corner = 1 + sum(simulate.FALLOFF)
     return Step(
         "The plate, without the falloff of the lens",
@@ -42,7 +42,7 @@ def flat_field(run, photographs):
          "chromeball image flat-field lamp?.exr -o flat.exr",
          "chromeball probe merge plate-*.png --response response.csv --flat-field flat.exr -o plate.exr"],
         said + "\n" + some_lines(merged, "clipped"),
-        [("plates.png", "Three of the seven exposures of the plate")],
+        [("plates.jpg", "Three of the seven exposures of the plate")],
         [("falloff, largest error in the image", "", "", f"{100 * error:.1f}%"),
          ("plate, relMSE and FLIP", "", "", f"{plate['relmse']:.1e}, {plate['flip']:.3f}")])
 
@@ -59,8 +59,9 @@ def solve(run):
     run("image", "view", "plate.exr", "plate.png", "--exposure", -9)
     arguments = ["camera", "solve", "measured.gltf", "plate.png", "--points", "points.csv", "--distortion", "-o",
                  "camera.toml"]
-    said = run.said(*arguments, "--preview", run.pictures / "camera.png")
+    said = run.said(*arguments, "--preview", "camera.png")
     found = run.json(*arguments)
+    run.picture("camera.png", "camera.jpg")
     return found, said, len(lines) - 1, lines
 
 
@@ -77,7 +78,7 @@ def camera_step(run):
         ["chromeball image view plate.exr plate.png --exposure -9",
          "chromeball camera solve measured.gltf plate.png --points points.csv --distortion \\\n"
          "  -o camera.toml --preview camera.png"], said,
-        [("camera.png", "The edges of the model over the plate (also of the objects); crosses were picked, circles are what the "
+        [("camera.jpg", "The edges of the model over the plate (also of the objects); crosses were picked, circles are what the "
                         "camera sees")],
         [("position", _numbers(found["position"], 3), _numbers(truth.position, 3),
           f"{offset:.0f} mm (standard error {1000 * math.hypot(*sigma['position']):.0f} mm)"),
@@ -106,7 +107,8 @@ local_scene = ["floor", "wall", "step", "post"]
 reflectance = "plate"
 
 [render]
-samples = 256
+samples = 48
+denoise = true
 
 [output]
 file = "composite.exr"
@@ -132,17 +134,17 @@ def composite(run, photographs):
         (run.scratch / f"{name}.toml").write_text(SCENE.replace(old, new).replace(
             'composite.exr"', f'{name}.exr"').replace("[composite]", f"scale = {camera.unit() if name == 'light' else 1}\n\n[composite]"))
         run("render", f"{name}.toml", "--quiet")
-    catcher = SCENE[:SCENE.index("[composite]")] + "[render]\nsize = [480, 320]\nsamples = 256\n"
+    catcher = SCENE[:SCENE.index("[composite]")] + "[render]\nsize = [480, 320]\nsamples = 48\n"
     (run.scratch / "catcher.toml").write_text(catcher)
     run("render", "catcher.toml", "--shadow-catcher", ",".join(place.LOCAL), "-o", "catcher.exr", "--quiet")
     over(run, "catcher.exr")
     full = place.the_set(run.scratch, "full.gltf", True, True)
     scene = place.scene(run.scratch, "full.toml", full, place.PLATE, photographs.truth, camera.unit())
-    run.render(scene, "full.exr", "--samples", 512)
+    run.render(scene, "full.exr", "--samples", 128)
     errors = {name: run.json("image", "error", name, "full.exr", "--flip")
               for name in ("composite.exr", "sun.exr", "light.exr", "over.pfm", "plate.exr")}
-    for name, picture in (("composite.exr", "composite.png"), ("full.exr", "full.png"), ("sun.exr", "no-sun.png"),
-                          ("over.pfm", "over.png")):
+    for name, picture in (("composite.exr", "composite.jpg"), ("full.exr", "full.jpg"), ("sun.exr", "no-sun.jpg"),
+                          ("over.pfm", "over.jpg")):
         run.picture(name, picture, "--exposure", -9.5)
 
     def row(what, name):
@@ -155,8 +157,8 @@ def composite(run, photographs):
         "camera took both with one response: no scale is needed.\n\ncomposite.toml:\n\n"
         + "\n".join("    " + line if line else "" for line in SCENE.splitlines()),
         ["chromeball render composite.toml"], said,
-        [("composite.png", "The composite"), ("full.png", "The truth: a render of the real set with the objects"),
-         ("no-sun.png", "The composite without the sun of step 5")],
+        [("composite.jpg", "The composite"), ("full.jpg", "The truth: a render of the real set with the objects"),
+         ("no-sun.jpg", "The composite without the sun of step 5")],
         [row("composite, relMSE and FLIP", "composite.exr"), row("the same with the true probe", "light.exr"),
          row("the same without the sun of step 5", "sun.exr"), row("the plate without objects", "plate.exr"),
          row("shadow catcher over the plate", "over.pfm")],
@@ -164,7 +166,7 @@ def composite(run, photographs):
         "For a compositing program, `--shadow-catcher` renders the objects and what they do to the plate as layers "
         "(catcher.toml is composite.toml without `[composite]`):\n\n"
         f"    chromeball render catcher.toml --shadow-catcher {','.join(place.LOCAL)} -o catcher.exr\n\n"
-        "The last row is plate x (1 - `alpha`) x `ratio` + `objects`. ![The same by layers](pictures/capture/over.png)")
+        "The last row is plate x (1 - `alpha`) x `ratio` + `objects`. ![The same by layers](pictures/capture/over.jpg)")
 
 
 def steps(run, photographs):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures that the program does not make: the response, and photographs beside each other."""
 import camera
+import jpeg
 import pixels
 
 COLORS = ["#c33", "#393", "#33c"]
@@ -37,5 +38,5 @@ def contact_sheet(run, names, picture, step=2):
     for name in names:
         rows = pixels.read_png(run.scratch / name)
         sheets.append([row[::step] for row in rows[::step]])
-    pixels.write_png(run.pictures / picture, [[p for row in rows for p in row] for rows in zip(*sheets)])
+    jpeg.write(run.pictures / picture, [[p for row in rows for p in row] for rows in zip(*sheets)])
     return picture

@@ -5,6 +5,9 @@ import pathlib
 import shlex
 import subprocess
 
+import jpeg
+import pixels
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 CHROMEBALL = ROOT / "build" / "chromeball"
 NOON = ROOT / "probes" / "noon.exr"
@@ -35,6 +38,7 @@ class Run:
         return self.scratch / out
 
     def picture(self, image, name, *options):
-        """An image of the program as a picture of the page."""
-        self("image", "view", image, self.pictures / name, *options)
+        """An image of the program as a picture of the page, a .jpg."""
+        self("image", "view", image, "picture.png", *options)
+        jpeg.write(self.pictures / name, pixels.read_png(self.scratch / "picture.png"))
         return name

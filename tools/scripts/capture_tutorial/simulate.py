@@ -33,16 +33,21 @@ class Photographs:
     def __init__(self, run):
         folder = run.scratch
         self.run = run
-        self.truth = surroundings.write(run, "true.pfm")
+        self.truth = folder / "true.pfm"
+        finished = folder / "photographs.txt"
+        if finished.exists():
+            return
+        surroundings.write(run, self.truth.name)
         ball, grey = place.mirror_ball(folder, False), place.grey_ball(folder)
-        self._take("front", ball, place.sphere_view(0, place.BALL_SIZE), 100)
-        self._take("side", ball, place.sphere_view(place.SECOND_AZIMUTH, place.BALL_SIZE), 100)
+        self._take("front", ball, place.sphere_view(0, place.BALL_SIZE), 64)
+        self._take("side", ball, place.sphere_view(place.SECOND_AZIMUTH, place.BALL_SIZE), 64)
         self._take("card", place.mirror_ball(folder, True), CARD_VIEW, 64)
-        self._take("grey", grey, place.sphere_view(0, place.GREY_SIZE), 100)
-        self._take("plate", place.the_set(folder, "real.gltf", True, False), place.PLATE, 256, falloff)
+        self._take("grey", grey, place.sphere_view(0, place.GREY_SIZE), 64)
+        self._take("plate", place.the_set(folder, "real.gltf", True, False), place.PLATE, 96, falloff)
         camera.bracket(folder, "even", self.radiance("front"), "even", camera.EVEN_TIMES)
         for i, spot in enumerate(SPOTS):
             camera.bracket(folder, f"lamp{i}", lamp_at(spot), f"lamp{i}", LAMP_TIMES, falloff)
+        finished.write_text("The photographs are complete.\n")
 
     def _take(self, name, model, view, samples, darkening=None):
         scene = place.scene(self.run.scratch, f"{name}.toml", model, view, self.truth)
