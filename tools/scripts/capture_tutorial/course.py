@@ -91,15 +91,18 @@ def exposures(run):
     run(*common, "--resize", "--unaligned")
     return [
         "## Part 2: photographs of a course work",
-        "Photographs with which a student made a composite: three exposures of a mirror ball, cropped by hand, and a plate "
+        "Photographs with which a student made a composite: three exposures of a mirror ball, cropped by hand, and "
+        "a plate "
         "of an office desk. They have no licence, so this part has numbers only. It needs "
         f"`$CHROMEBALL_DATA/{FOLDER}`. It shows what to expect of photographs that were not taken for this program.",
         "### Merge",
         "The crops have no EXIF; their names tell the times. They have three sizes:",
         indented(f"chromeball probe merge 10.JPG 40.JPG 160.JPG --exposures {TIMES} -o merged.exr"), fenced(sizes),
-        "`--resize` takes them as crops of one ball. They were cropped by hand, so they are shifted too:", fenced(shifted),
+        "`--resize` takes them as crops of one ball. They were cropped by hand, so they are shifted "
+        "too:", fenced(shifted),
         "With `--resize --unaligned` they merge, and the program says what is wrong with them:", fenced(said),
-        "Neighbouring exposures disagree: the phone has its own tone curve, which may change from one picture to the next, and "
+        "Neighbouring exposures disagree: the phone has its own tone curve, which may change from one picture to "
+        "the next, and "
         "the crops are not aligned to a pixel. The response cannot be solved from them:", fenced(solved),
         "Use a tripod, manual exposure, and crop after the merge, not before."]
 
@@ -108,10 +111,12 @@ def ball(run):
     command = ["probe", "assemble", "merged.exr", "--azimuth", "0:30", "--reflectivity", "0.6", "-o", "ball.exr"]
     said = run.said(*command)
     info = some_lines(run.said("probe", "info", "ball.exr"), "dynamic", "clipped", "brightest 10 ", "suns")
-    return ["### The probe", "There is one photograph, from above: with an elevation of 30 degrees the horizon of the probe is "
+    return ["### The probe", "There is one photograph, from above: with an elevation of 30 degrees the horizon of "
+                             "the probe is "
             "level. The reflectivity is assumed.",
             indented("chromeball " + " ".join(command)), fenced(said),
-            "One photograph shows the camera in its middle, and what is behind the ball as a few stretched pixels at its rim. "
+            "One photograph shows the camera in its middle, and what is behind the ball as a few stretched pixels "
+            "at its rim. "
             "The crop cuts the ball. `probe info` says of the result:", fenced(info)]
 
 
@@ -120,7 +125,8 @@ def camera(run):
     objects(run.scratch / "objects.gltf")
     command = ["camera", "solve", "objects.gltf", "empty.jpg", "--lines", "lines.csv", "-o", "desk.toml"]
     said = run.said(*command)
-    return ["### The camera", "Nobody measured points on this desk. Its edges are enough: two lines or more along each of two "
+    return ["### The camera", "Nobody measured points on this desk. Its edges are enough: two lines or more along "
+                              "each of two "
             "axes. The ends were read off the photograph by eye, at four times its size. The scale is that of "
             "one line of known length; here the depth of the desk is assumed to be 0.762 m, a usual size. lines.csv:",
             indented(LINES), indented("chromeball " + " ".join(command)), fenced(said),
@@ -131,12 +137,16 @@ def camera(run):
 def composite(run):
     (run.scratch / "desk-scene.toml").write_text(SCENE)
     said = run.said("render", "desk-scene.toml")
-    return ["### The composite", "A ground at the height of the desk's top is the whole local scene. The plate is another place "
-            "than the ball's, taken by another camera, so `scale = \"plate\"` takes the brightness of the light from the "
+    return ["### The composite", "A ground at the height of the desk's top is the whole local scene. The plate is "
+                                 "another place "
+            "than the ball's, taken by another camera, so `scale = \"plate\"` takes the brightness of the light "
+            "from the "
             "plate. The objects are a ball, a box and a ring of 10 cm. desk-scene.toml:", indented(SCENE),
             indented("chromeball render desk-scene.toml"), fenced(said),
-            "The picture shows objects that stand on the desk in the right perspective. There is no truth to measure its light "
-            "by: the ball was in another room. The scatter is large, because what the camera sees below the horizon is mostly "
+            "The picture shows objects that stand on the desk in the right perspective. There is no truth to "
+            "measure its light "
+            "by: the ball was in another room. The scatter is large, because what the camera sees below the "
+            "horizon is mostly "
             "not the desk; a model of the desk as the local scene is better than an endless ground."]
 
 
@@ -146,7 +156,9 @@ def merged(run, folder):
         said = run.said("probe", "info", folder / f"{name}.hdr")
         rows.append(f"{name + '.hdr':18}{some_lines(said, 'dynamic')[17:]}")
     return ["### Merged images of another course work",
-            f"`{SAMPLES}` has one ball, merged by its author in four ways. `probe info` reads them as mirror balls and tells their "
+            f"`{SAMPLES}` has one ball, merged by its author in four ways. `probe info` reads them as mirror balls "
+            f"and tells their "
             "dynamic range:", fenced("\n".join(rows)),
-            "None exceeds 13 : 1, less than one photograph holds, and the largest number is below 1: these images were scaled for "
+            "None exceeds 13 : 1, less than one photograph holds, and the largest number is below 1: these images "
+            "were scaled for "
             "display. For lighting, merge the exposures again."]

@@ -71,14 +71,16 @@ def response(run, photographs):
     contact_sheet(run, [f"front-{a}-{b}.png" for a, b in camera.TIMES[1:6]], "exposures.jpg")
     return Step(
         "The response of the camera",
-        "Photograph the mirror ball with the camera fixed, in manual mode, with exposure times that step by *different* "
+        "Photograph the mirror ball with the camera fixed, in manual mode, with exposure times that step by "
+        "*different* "
         "factors of 2 to 4. The darkest shows no white but the sun, the brightest no black. "
         "`--response solve` finds the camera's response from them; the other series use its file.",
         ["chromeball probe merge front-*.png --response solve --write-response response.csv -o front.exr"], said,
         [("exposures.jpg", "Five of the seven exposures"),
          ("response.svg", "The solved response of the three channels, and the true one (black)")],
         [("response, largest error of levels 5 to 250", f"{error:.1f} levels", "0", f"{error:.1f} levels")],
-        f"With six exposures in even steps of 4 the largest error is {even:.1f} levels: brackets of one ratio leave part "
+        f"With six exposures in even steps of 4 the largest error is {even:.1f} levels: brackets of one ratio "
+        f"leave part "
         "of the response [undetermined](methods.md#exposures-and-the-sun). EXIF gives times, f-numbers and ISO; "
         "without it give `--exposures`. The ratios compare neighbouring exposures. A warning about the darkest one "
         "can be ignored here: few of its pixels are well exposed, and noise chooses them.")
@@ -92,7 +94,8 @@ def merge(run, photographs):
     return Step(
         "Photographs of high dynamic range",
         "Merge all series of balls with this response.",
-        ["for s in front side card grey; do\n  chromeball probe merge $s-*.png --response response.csv -o $s.exr\ndone"],
+        ["for s in front side card grey; do\n  chromeball probe merge $s-*.png --response response.csv -o "
+         "$s.exr\ndone"],
         some_lines(said["side"], "response", "clipped", "under"), [],
         [(f"radiance of `{worst}`, RMS of the channels that are not clipped", "", "", f"{errors[worst]:.1f}%")],
         "The sun is white in all exposures. The layer `clipped` marks its pixels; step 5 finds its irradiance.")
@@ -102,7 +105,7 @@ def reflectivity(run):
     arguments = ["probe", "reflectivity", "card.exr", "--direct", DIRECT, "--reflected", REFLECTED]
     found = run.json(*arguments)["reflectivity"]
     truth = [f + (1 - f) * (1 - math.sqrt(0.5)) ** 5 for f in place.CHROME]
-    run.picture("card.exr", "card.jpg", "--exposure", -9)
+    run.picture("card.exr", "card.jpg", "--exposure", -10)
     worst = max(abs(a / b - 1) for a, b in zip(found, truth))
     return found, Step(
         "The reflectivity of the ball",
@@ -125,11 +128,13 @@ def assemble(run, photographs, measured):
     run("probe", "edit", photographs.truth, "clipped-truth.pfm", "--clip", f"{white:.6g}")
     truth = irradiance(run, "clipped-truth.pfm", "e1.pfm", camera.unit())
     mean, largest = irradiance_error(irradiance(run, "probe.exr", "e2.pfm"), truth)
-    run.picture("probe.exr", "probe.jpg", "--exposure", -9)
+    run.picture("probe.exr", "probe.jpg", "--exposure", -9.7)
     return Step(
         "The probe",
-        "The camera stood before the ball (azimuth 0) and at its right (azimuth 90), ten radii from its centre. In truth "
-        f"it stood at {place.SECOND_AZIMUTH} degrees the second time. Each photograph replaces the camera's reflection in "
+        "The camera stood before the ball (azimuth 0) and at its right (azimuth 90), ten radii from its centre. In "
+        "truth "
+        f"it stood at {place.SECOND_AZIMUTH} degrees the second time. Each photograph replaces the camera's "
+        f"reflection in "
         "the other one. The circles are found; `--preview` shows them, `--circle` replaces them.",
         ["chromeball probe assemble front.exr side.exr --azimuth 0,90 --distance 10 --schlick \\\n"
          f"  --reflectivity {reflectance} -o probe.exr --preview assemble.png"],
@@ -137,8 +142,10 @@ def assemble(run, photographs, measured):
         [("azimuth of the second camera", f"{angle:.2f}", f"{place.SECOND_AZIMUTH}",
           f"{abs(angle - place.SECOND_AZIMUTH):.2f} degrees"),
          ("irradiance without the sun's clipped part, mean / largest", "", "", f"{mean:.2f}% / {largest:.1f}%")],
-        "The error of irradiance is over all normals, in percent of the mean irradiance; `probe irradiance` gives the maps. "
-        "The truth is clipped at the white of the darkest exposure. A real ball of chrome has `--ball-ior 3.18,3.31` in "
+        "The error of irradiance is over all normals, in percent of the mean irradiance; `probe irradiance` gives "
+        "the maps. "
+        "The truth is clipped at the white of the darkest exposure. A real ball of chrome has `--ball-ior "
+        "3.18,3.31` in "
         "place of `--schlick`, which is what rendered balls do.")
 
 
@@ -159,7 +166,7 @@ def sun(run, photographs):
     real = run.json("probe", "info", photographs.truth)["suns"][0]["direction"]
     angle = angle_between(direction, real)
     worst = max(abs(a / b - 1) for a, b in zip(found["irradiance"], lost))
-    run.picture("grey.exr", "grey.jpg", "--exposure", -8.5)
+    run.picture("grey.exr", "grey.jpg", "--exposure", -8.3)
     return Step(
         "The sun",
         "The shortest exposure is white in the sun: its irradiance is lost. A grey matte ball in the same light, "
@@ -173,7 +180,8 @@ def sun(run, photographs):
           ", ".join(f"{v:.0f}" for v in lost), f"{100 * worst:.1f}%"),
          ("irradiance of the probe, mean / largest", "", "", f"{after[0]:.2f}% / {after[1]:.1f}%"),
          ("the same without this step", "", "", f"{before[0]:.0f}% / {before[1]:.0f}%")],
-        "The truth of the sun's irradiance is what the clipped probe lacks of the true one on a surface that faces the sun.")
+        "The truth of the sun's irradiance is what the clipped probe lacks of the true one on a surface that faces "
+        "the sun.")
 
 
 def angle_between(a, b):
@@ -188,10 +196,13 @@ def align(run, photographs):
     angle = 2 * math.degrees(math.acos(min(1, abs(quaternion[3]))))
     return Step(
         "The orientation of the probe",
-        "`probe align` compares the probe with another of the same place; here with the true one. The rotation should be 0.",
-        ["chromeball probe align true.pfm sunny.exr"], run.said(*arguments).replace(str(photographs.truth), "true.pfm"), [],
+        "`probe align` compares the probe with another of the same place; here with the true one. The rotation "
+        "should be 0.",
+        ["chromeball probe align true.pfm "
+         "sunny.exr"], run.said(*arguments).replace(str(photographs.truth), "true.pfm"), [],
         [("rotation of the probe", f"{angle:.2f} degrees", "0", f"{angle:.2f} degrees")],
-        "An error of the azimuths that were written down turns the whole probe. Without a second probe, check the direction "
+        "An error of the azimuths that were written down turns the whole probe. Without a second probe, check the "
+        "direction "
         "of the sun against a shadow in the plate.")
 
 

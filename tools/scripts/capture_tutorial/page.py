@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps of the tutorial, and the page as Markdown."""
+import textwrap
 from dataclasses import dataclass, field
 
 
@@ -46,7 +47,7 @@ From a set, a person brings back
 
 - photographs of a mirror ball from two sides, each in several exposures;
 - a photograph of a grey ball and one of a white card beside the mirror ball, in several exposures;
-- photographs of the place for the objects (the plate), in several exposures, without and with nothing moved;
+- photographs of the place without the objects (the plate), in several exposures, and of a lamp for its lens;
 - the measured positions of six or more points that the plate shows.
 
 They get a light probe with its sun in the units of the plate, the plate's camera, and a composite in which objects
@@ -63,5 +64,13 @@ def page(place, steps, course, seconds, folder):
     parts += [step_text(i, step, folder) for i, step in enumerate(steps, 1)]
     rows = [(f"{i}. {step.title}", what, error)
             for i, step in enumerate(steps, 1) for what, _, _, error in step.checks]
-    parts += ["### All errors", table(["step", "of what", "error"], rows), course, f"Made in {seconds / 60:.1f} minutes."]
-    return "\n\n".join(parts) + "\n"
+    parts += ["### All errors", table(["step", "of what", "error"], rows), course,
+              f"Made in {seconds / 60:.1f} minutes."]
+    return "\n\n".join(map(wrapped, "\n\n".join(parts).split("\n\n"))) + "\n"
+
+
+def wrapped(block):
+    """A paragraph of text in lines; anything else as it is."""
+    if block.startswith(("    ", "```", "|", "#", "!", "- ")):
+        return block
+    return textwrap.fill(block, 116, break_long_words=False, break_on_hyphens=False)

@@ -27,18 +27,20 @@ def flat_field(run, photographs):
                 for x, pixel in enumerate(row) for v in pixel)
     merged = run.said("probe", "merge", *photographs.files("plate"), "--response", "response.csv", "--flat-field",
                       "flat.exr", "-o", "plate.exr")
-    scaled = pixels.read_pfm(run.scratch / "true-plate.pfm")
     unit = camera.unit()
-    pixels.write_pfm(run.scratch / "true-plate-scaled.pfm", [[tuple(unit * v for v in p) for p in row] for row in scaled])
+    truth = [[tuple(unit * v for v in pixel) for pixel in row] for row in photographs.radiance("plate")]
+    pixels.write_pfm(run.scratch / "true-plate-scaled.pfm", truth)
     plate = run.json("image", "error", "plate.exr", "true-plate-scaled.pfm", "--flip")
     contact_sheet(run, [f"plate-{a}-{b}.png" for a, b in camera.TIMES[3:6]], "plates.jpg")
     corner = 1 + sum(simulate.FALLOFF)
     return Step(
         "The plate, without the falloff of the lens",
-        f"The lens darkens the corners to {100 * corner:.0f}%. Photograph one lamp in at least four places of the picture, "
+        f"The lens darkens the corners to {100 * corner:.0f}%. Photograph one lamp in at least four places of the "
+        f"picture, "
         "from the middle to a corner; merge each with the response. `image flat-field` fits the falloff, and "
         "`probe merge` divides the plate by it.",
-        ["for i in 0 1 2 3 4 5 6; do\n  chromeball probe merge lamp$i-*.png --response response.csv -o lamp$i.exr\ndone",
+        ["for i in 0 1 2 3 4 5 6; do\n  chromeball probe merge lamp$i-*.png --response response.csv -o "
+         "lamp$i.exr\ndone",
          "chromeball image flat-field lamp?.exr -o flat.exr",
          "chromeball probe merge plate-*.png --response response.csv --flat-field flat.exr -o plate.exr"],
         said + "\n" + some_lines(merged, "clipped"),
@@ -73,19 +75,23 @@ def camera_step(run):
     picked = "\n".join("    " + line for line in lines[:4])
     return Step(
         "The camera of the plate",
-        f"Measure points of the set by tape, find them in the plate, and write both to a table, points.csv. Here {count} points "
-        f"are picked with an error of {PICK_ERROR} pixels (standard deviation, in each direction):\n\n{picked}\n    ...",
+        f"Measure points of the set by tape, find them in the plate, and write both to a table, points.csv. Here "
+        f"{count} points "
+        f"are picked with an error of {PICK_ERROR} pixels (standard deviation, in each direction):\n\n{picked}\n   "
+        f" ...",
         ["chromeball image view plate.exr plate.png --exposure -9",
          "chromeball camera solve measured.gltf plate.png --points points.csv --distortion \\\n"
          "  -o camera.toml --preview camera.png"], said,
-        [("camera.jpg", "The edges of the model over the plate (also of the objects); crosses were picked, circles are what the "
+        [("camera.jpg", "The edges of the model over the plate (also of the objects); crosses were picked, circles "
+                        "are what the "
                         "camera sees")],
         [("position", _numbers(found["position"], 3), _numbers(truth.position, 3),
           f"{offset:.0f} mm (standard error {1000 * math.hypot(*sigma['position']):.0f} mm)"),
          ("vertical field of view, degrees", f"{found['fov']:.2f}", f"{truth.fov}",
           f"{abs(found['fov'] - truth.fov):.2f} ({sigma['fov']:.2f})"),
          ("distortion k1", f"{k1:.3f}", f"{truth.k1}", f"{abs(k1 - truth.k1):.3f} ({sigma['k1']:.3f})")],
-        "In brackets are the standard errors that the program states. Position and field of view are wrong together: the "
+        "In brackets are the standard errors that the program states. Position and field of view are wrong "
+        "together: the "
         "picture that the camera shows is better than each of them.")
 
 
@@ -129,10 +135,10 @@ def over(run, catcher):
 def composite(run, photographs):
     (run.scratch / "composite.toml").write_text(SCENE)
     said = run.said("render", "composite.toml")
-    variants = {"sun": ("sunny.exr", "probe.exr"), "light": ("sunny.exr", str(photographs.truth))}
-    for name, (old, new) in variants.items():
-        (run.scratch / f"{name}.toml").write_text(SCENE.replace(old, new).replace(
-            'composite.exr"', f'{name}.exr"').replace("[composite]", f"scale = {camera.unit() if name == 'light' else 1}\n\n[composite]"))
+    for name, probe, scale in (("sun", "probe.exr", 1), ("light", photographs.truth, camera.unit())):
+        text = SCENE.replace("composite.exr", f"{name}.exr")
+        text = text.replace('"sunny.exr"\n', f'"{probe}"\nscale = {scale:.9g}\n')
+        (run.scratch / f"{name}.toml").write_text(text)
         run("render", f"{name}.toml", "--quiet")
     catcher = SCENE[:SCENE.index("[composite]")] + "[render]\nsize = [480, 320]\nsamples = 48\n"
     (run.scratch / "catcher.toml").write_text(catcher)
@@ -153,7 +159,8 @@ def composite(run, photographs):
     return Step(
         "The composite",
         "The model has a grey copy of the set, as one builds it from the measured points, and the objects. "
-        "`reflectance = \"plate\"` gives the copy the plate's colours. Plate and probe have one unit, because the same "
+        "`reflectance = \"plate\"` gives the copy the plate's colours. Plate and probe have one unit, because the "
+        "same "
         "camera took both with one response: no scale is needed.\n\ncomposite.toml:\n\n"
         + "\n".join("    " + line if line else "" for line in SCENE.splitlines()),
         ["chromeball render composite.toml"], said,
@@ -166,7 +173,9 @@ def composite(run, photographs):
         "For a compositing program, `--shadow-catcher` renders the objects and what they do to the plate as layers "
         "(catcher.toml is composite.toml without `[composite]`):\n\n"
         f"    chromeball render catcher.toml --shadow-catcher {','.join(place.LOCAL)} -o catcher.exr\n\n"
-        "The last row is plate x (1 - `alpha`) x `ratio` + `objects`. ![The same by layers](pictures/capture/over.jpg)")
+        "The last row is plate x (1 - `alpha`) x `ratio` + `objects`. It has a larger error because its set stays "
+        "grey: "
+        "the objects mirror it.\n\n![The same by layers](pictures/capture/over.jpg)")
 
 
 def steps(run, photographs):
