@@ -144,7 +144,9 @@ def assemble(run, photographs, measured):
          ("irradiance without the sun's clipped part, mean / largest", "", "", f"{mean:.2f}% / {largest:.1f}%")],
         "The error of irradiance is over all normals, in percent of the mean irradiance; `probe irradiance` gives "
         "the maps. "
-        "The truth is clipped at the white of the darkest exposure. A real ball of chrome has `--ball-ior "
+        "The truth is clipped at the white of the darkest exposure; most of the error is next to the sun, which is "
+        "wider in "
+        "pixels of the ball than in the truth. Step 5 replaces it. A real ball of chrome has `--ball-ior "
         "3.18,3.31` in "
         "place of `--schlick`, which is what rendered balls do.")
 
@@ -201,7 +203,8 @@ def align(run, photographs):
         ["chromeball probe align true.pfm "
          "sunny.exr"], run.said(*arguments).replace(str(photographs.truth), "true.pfm"), [],
         [("rotation of the probe", f"{angle:.2f} degrees", "0", f"{angle:.2f} degrees")],
-        "An error of the azimuths that were written down turns the whole probe. Without a second probe, check the "
+        "The error is a third of a texel of the probe. An error of the azimuths that were written down turns the "
+        "whole probe. Without a second probe, check the "
         "direction "
         "of the sun against a shadow in the plate.")
 

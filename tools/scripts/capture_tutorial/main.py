@@ -44,7 +44,7 @@ def main():
         steps += plate.steps(run, photographs)
         tell("course data")
         real = course.text(run)
-    (docs / "capture.md").write_text(page(PLACE, steps, real, time.monotonic() - start, "pictures/capture"))
+    (docs / "capture.md").write_text(page(PLACE, steps, real, "pictures/capture"))
     tell(docs / "capture.md")
 
 

@@ -59,13 +59,12 @@ part does it with real photographs, of a student's course work, as far as they g
 The theory is in [methods.md](methods.md#exposures-and-the-sun)."""
 
 
-def page(place, steps, course, seconds, folder):
+def page(place, steps, course, folder):
     parts = [INTRODUCTION, "## Part 1: photographs of known truth", place]
     parts += [step_text(i, step, folder) for i, step in enumerate(steps, 1)]
     rows = [(f"{i}. {step.title}", what, error)
             for i, step in enumerate(steps, 1) for what, _, _, error in step.checks]
-    parts += ["### All errors", table(["step", "of what", "error"], rows), course,
-              f"Made in {seconds / 60:.1f} minutes."]
+    parts += ["### All errors", table(["step", "of what", "error"], rows), course]
     return "\n\n".join(map(wrapped, "\n\n".join(parts).split("\n\n"))) + "\n"
 
 
