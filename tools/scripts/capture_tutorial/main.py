@@ -21,8 +21,8 @@ lens has distortion and darkens the corners."""
 def main():
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", type=pathlib.Path, help="a folder, in place of docs/")
-    options.add_argument("--scratch", type=pathlib.Path, help="keep the files in this folder, and use its "
-        "photographs again")
+    options.add_argument("--scratch", type=pathlib.Path,
+                         help="keep the files in this folder, and use its photographs again")
     given = options.parse_args()
     docs = given.out or ROOT / "docs"
     pictures = docs / "pictures" / "capture"
