@@ -11,30 +11,25 @@ namespace {
 
 constexpr size_t kMinPixels = 20;
 
-// The levels that are compared.
-struct Range {
-  double low, high;  // logarithms of exposure
-  Range(const ResponseCurve& response, int channel) {
-    const double white = response.logExposure(channel, 1);
-    low = white + std::log(0.01), high = white + std::log(0.85);
-  }
-  bool contains(double logExposure) const { return logExposure >= low && logExposure <= high; }
-};
+// The exposures of white at which pixels are compared.
+constexpr double kDarkest = 0.01, kBrightest = 0.85;
 
 // The median of found / given.
 double medianRatio(const Exposure& longer, const Exposure& shorter, const ResponseCurve& response,
                    int channel, size_t& pixels) {
-  const Range range(response, channel);
+  const double white = response.logExposure(channel, 1);
+  const double low = white + std::log(kDarkest * longer.factor[channel] / shorter.factor[channel]);
+  const double high = white + std::log(kBrightest);
   const int step = sampleStep(longer.levels);
   std::vector<double> ratios;
   for (int y = step / 2; y < longer.levels.height; y += step)
     for (int x = step / 2; x < longer.levels.width; x += step) {
-      const auto logOf = [&](const Exposure& exposure) {
-        const float level = exposure.levels.at(x, y)[channel];
-        return hatWeight(level) > 0 ? response.logExposure(channel, level) : range.low - 1;
-      };
-      const double a = logOf(longer), b = logOf(shorter);
-      if (!range.contains(a) || !range.contains(b)) continue;
+      const float ofLonger = longer.levels.at(x, y)[channel];
+      const float ofShorter = shorter.levels.at(x, y)[channel];
+      if (hatWeight(ofLonger) == 0 || hatWeight(ofShorter) == 0) continue;
+      const double a = response.logExposure(channel, ofLonger);
+      const double b = response.logExposure(channel, ofShorter);
+      if (!(a >= low && a <= high)) continue;
       double flat = 0;
       if (longer.flatField) flat += std::log(longer.flatField->at(x, y)[channel]);
       if (shorter.flatField) flat -= std::log(shorter.flatField->at(x, y)[channel]);

@@ -22,8 +22,9 @@ struct ExposureAgreement {
   std::optional<double> error() const;
 };
 
-// For each exposure but the longest, with the next longer one. Pixels are compared where both have
-// between 1% and 85% of the exposure of white.
+// For each exposure but the longest, with the next longer one. Pixels are compared where, by the
+// longer one, it has at most 85% and the shorter one at least 1% of the exposure of white: a choice
+// by the shorter one would prefer those that noise brightens.
 std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
                                                  const ResponseCurve& response);
 
