@@ -196,7 +196,8 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
   w.root["scene"] = 0;
   w.root["extensions"] = {{"KHR_materials_variants", {{"variants", {{{"name", "Red"}}}}}}};
   writeImage(folder_ / "other.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.6, 0.3, 0.6}));
-  std::ofstream(folder_ / "camera.toml") << "position = [0, 0, 4]\nlook_at = [0, 0, 0]\nfov = 40\n";
+  std::ofstream(folder_ / "camera.toml")
+      << "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\nfov = 40\n";
   const std::map<std::string, Words> changes = {{"probe", {folder_ / "other.exr"}},
                                                 {"probe-mapping", {"lat-long"}},
                                                 {"probe-rotation", {"30"}},

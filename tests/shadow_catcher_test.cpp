@@ -21,7 +21,7 @@ using Strings = std::vector<std::string>;
 constexpr const char* kBelow =  // the camera looks under the object at the floor
     "[camera]\nposition = [0.3, -1.5, 0.6]\nlook_at = [0.3, 0.3, 0]\nfov = 3\n";
 constexpr const char* kBoth =
-    "[camera]\nposition = [0.5, -3, 2]\nlook_at = [0.5, 0.2, 0.6]\nfov = 32\n";
+    "[camera]\nposition = [0.5, -1.2, 3.2]\nlook_at = [0.4, 0.4, 0.6]\nfov = 36\n";
 
 // A white floor, z = 0, under a triangle at z = 1.
 class FloorAndObject {

@@ -18,7 +18,9 @@ struct FoundCircle {
 // of at most 400 pixels; pairs of them, chosen at random from a fixed seed, propose circles, of
 // which the best is fitted by least squares to edges across it, first in the copy and then in the
 // picture itself. Parts of the circle may be outside the picture. nullopt if no circle of at least
-// 5% of the picture's shorter side in radius has half of its outline on edges.
+// 5% of the picture's shorter side in radius has half of its outline on edges. A rendered ball in
+// front of a distant probe has no outline, as its rim, of reflectance 1, continues what is behind
+// it: there the circle may be several pixels too small.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 }  // namespace chromeball
