@@ -44,15 +44,15 @@ Tile photograph(const Probe& place, const Rotation& pose, double fov, int width,
   return tile;
 }
 
-// Two rows of nine upright tiles, 50 degrees wide and 96 high: together they see all.
+// Two rows of nine upright tiles, 64 degrees wide and 96 high: together they see all.
 std::vector<Tile> photographs(const Probe& place, int width = 100) {
   constexpr double kFov = 96;
-  const double aspect = std::tan(glm::radians(25.)) / std::tan(glm::radians(kFov / 2));
+  const double aspect = std::tan(glm::radians(32.)) / std::tan(glm::radians(kFov / 2));
   std::vector<Tile> tiles;
   for (int row = 0; row < 2; ++row)
     for (int i = 0; i < 9; ++i)
       tiles.push_back(photograph(place,
-                                 Rotation::ofAngles({40. * i + 20 * row, row ? 43. : -43., 2. * i}),
+                                 Rotation::ofAngles({40. * i + 20 * row, row ? 43. : -43., 1. * i}),
                                  kFov, width, int(std::lround(width / aspect))));
   return tiles;
 }
