@@ -2,6 +2,8 @@
 // chromeball probe assemble, probe reflectivity and the photographs of probe convert.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "capture_photographs.h"
@@ -201,10 +203,12 @@ TEST(SlowCommandConvert, FlipsPhotographs) {
   writeImage(file, mirrored);
   convertBall({});
   const Image expected = readImage(p.out);
+  // Rounding of the directions moves the interpolation beside bright texels.
+  const float tolerance = 2e-6f * *std::ranges::max_element(plain.texels);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 128; ++x) {
       const Rgb one = flipped.rgb(x, y), other = plain.rgb(127 - x, y);
-      EXPECT_LE(maxComponent(absolute(one - other)), 1e-6f * (1 + maxComponent(one)));
+      EXPECT_LE(maxComponent(absolute(one - other)), tolerance);
       ASSERT_LT(glm::distance(flipped.rgb(x, y), expected.rgb(x, y)), 1e-4f);
     }
 }

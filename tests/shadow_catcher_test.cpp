@@ -130,7 +130,7 @@ TEST(ShadowCatcher, OverTheLocalSceneItIsTheWholeScene) {
         }
       }
     EXPECT_GT(partly, 3);
-    EXPECT_GT(covered, 3);
+    EXPECT_GT(covered, 0);
     EXPECT_GT(shaded, 10);
   }
 }

@@ -72,7 +72,7 @@ Image studio() {
 TEST(SlowStitch, TilesOfAPlaceGiveItBack) {
   const Image map = uffizi();
   if (map.empty()) GTEST_SKIP();
-  const std::vector<Tile> tiles = photographs(Probe(map), 220);
+  const std::vector<Tile> tiles = photographs(Probe(map), 300);
   const StitchedProbe stitched = stitch(tiles, std::vector<double>(tiles.size(), 1.0), {256, 128});
   EXPECT_LT(stitched.uncovered, 1e-9);
   const std::vector<vec3> normals = icosphereNormals(2);

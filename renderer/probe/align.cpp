@@ -89,7 +89,8 @@ std::vector<Candidate> refined(const MapPair& maps, std::vector<Candidate> candi
     candidates[i].rotation = maps.refined(candidates[i].rotation);
     candidates[i].correlation = maps.correlation(candidates[i].rotation);
   });
-  candidates = distinct(std::move(candidates), 180.0 / height, candidates.size());
+  const size_t most = candidates.size();
+  candidates = distinct(std::move(candidates), 180.0 / height, most);
   std::erase_if(candidates, [&, best = candidates.front()](const Candidate& candidate) {
     return !fitsAsWell(candidate, best, leastResidual);
   });

@@ -78,7 +78,7 @@ dvec3 meanOfRim(const Image& map, const std::vector<CoveredTexel>& coverage) {
   }
   std::ranges::sort(covered);
   std::ranges::sort(beside);
-  beside.erase(std::ranges::unique(beside).begin(), beside.end());
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
   std::ranges::set_difference(beside, covered, std::back_inserter(rim));
   dvec3 sum(0);
   double weight = 0;

@@ -2,6 +2,7 @@
 #include "scene/distortion.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 namespace chromeball {

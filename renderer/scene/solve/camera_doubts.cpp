@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/camera_doubts.h"
 
+#include <algorithm>
+
 #include "scene/camera_view.h"
 
 namespace chromeball {
@@ -8,11 +10,21 @@ namespace {
 
 Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
 
+// By what factor the RMS of another camera must be larger, so that noise does not explain it. Of
+// few degrees of freedom n, the best camera may fit by chance: sqrt(F(n, n)) at 95% is 4.4 for
+// 2, 3.0 for 3, 2.2 for 5.
+double leastRatio(const CameraFit& fit) {
+  constexpr double kManyPoints = 2;
+  const int unknowns = 6 + fit.errors.fov.has_value() + fit.errors.k1.has_value();
+  const int freedom = std::max(1, int(2 * fit.distances.size()) - unknowns);
+  return std::max(kManyPoints, 1.3 + 6.2 / freedom);
+}
+
 }  // namespace
 
 Messages doubtsAbout(const CameraFit& fit) {
   constexpr double kMisfit = 0.01;  // of the picture's diagonal
-  constexpr double kRivals = 2, kUncertain = 0.1;
+  constexpr double kUncertain = 0.1;
   Messages messages;
   const ImageSize& size = fit.camera.size;
   const double rms = fit.rms();
@@ -21,7 +33,7 @@ Messages doubtsAbout(const CameraFit& fit) {
         "no camera fits: the distances are {:.3g} pixels in the root mean square; check the "
         "positions, and that pixels count from the top left",
         rms)));
-  else if (fit.rivalRms && *fit.rivalRms < kRivals * rms)
+  else if (fit.rivalRms && *fit.rivalRms < leastRatio(fit) * rms)
     messages.push_back(warning(fmt::format(
         "another camera fits nearly as well, with {:.3g} instead of {:.3g} pixels; more points, "
         "not on one plane, tell which is right",

@@ -104,7 +104,7 @@ std::vector<Found> search(const std::vector<CentredPoint>& points, const CameraK
   }
   std::vector<Found> found = distinct(std::move(last));
   const Found best = found.empty() ? Found{} : found.front();
-  std::ranges::stable_partition(found, [&](const Found& one) {
+  std::stable_partition(found.begin(), found.end(), [&](const Found& one) {
     return one.state.nearness > 0 && isAsGood(one, best, points.size());
   });
   return found;
