@@ -6,7 +6,7 @@ import sys
 from page import Row, table
 from run import ROOT, luminance, read_pfm
 
-sys.path.append(str(ROOT / "tools" / "scripts"))
+sys.path.append(str(ROOT / "tools" / "scripts" / "capture_tutorial"))
 from gltf import Model  # noqa: E402
 
 PAINT = 0.5
