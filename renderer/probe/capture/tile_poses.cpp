@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "base/error.h"
 #include "math/least_squares.h"
@@ -72,36 +73,38 @@ std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<dou
 
 // The difference of two tiles in a direction, and its derivatives by turns of each about X, Y, Z.
 struct Difference {
-  dvec3 channels;
-  std::array<dvec3, 3> first, second;
+  dvec3 channels{0};
+  std::array<dvec3, 3> first{}, second{};
 };
 
-dvec3 seen(const TileView& view, const dvec3& direction) {
-  return dvec3(view.at(glm::normalize(direction)).radiance);
-}
-
-// A turn of the tile by w moves what was seen at d - w x d to d.
-std::array<dvec3, 3> derivativesOf(const TileView& view, const dvec3& direction) {
+// A turn of the tile by w moves what was seen at d - w x d to d. nullopt next to the tile's edge,
+// beyond which it shows nothing.
+std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dvec3& direction) {
   const double step = 0.5 * view.pixelAngle();
   std::array<dvec3, 3> derivatives;
   for (int axis = 0; axis < 3; ++axis) {
     dvec3 turn(0);
     turn[axis] = step;
     const dvec3 shift = glm::cross(turn, direction);
-    derivatives[size_t(axis)] =
-        (seen(view, direction - shift) - seen(view, direction + shift)) / (2 * step);
+    const TileView::Seen before = view.at(glm::normalize(direction - shift));
+    const TileView::Seen after = view.at(glm::normalize(direction + shift));
+    if (before.weight == 0 || after.weight == 0) return std::nullopt;
+    derivatives[size_t(axis)] = (dvec3(before.radiance) - dvec3(after.radiance)) / (2 * step);
   }
   return derivatives;
 }
 
+// Without derivatives, which take no part in the equations, next to the edge of one of the tiles:
+// it is not that of the other, so that wrong ones would hold all tiles together against the first.
 std::vector<Difference> differencesAt(const std::vector<TileView>& views,
                                       const std::vector<Overlap>& overlaps) {
   std::vector<Difference> all(overlaps.size());
   tbb::parallel_for(size_t(0), overlaps.size(), [&](size_t i) {
     const Overlap& o = overlaps[i];
     const TileView &a = views[size_t(o.first)], &b = views[size_t(o.second)];
-    all[i] = {seen(a, o.direction) - seen(b, o.direction), derivativesOf(a, o.direction),
-              derivativesOf(b, o.direction)};
+    all[i].channels = dvec3(a.at(o.direction).radiance) - dvec3(b.at(o.direction).radiance);
+    const auto first = derivativesOf(a, o.direction), second = derivativesOf(b, o.direction);
+    if (first && second) all[i].first = *first, all[i].second = *second;
   });
   return all;
 }
