@@ -103,7 +103,7 @@ void compositeError(benchmark::State& state, const Mistake& mistake) {
       vec4& color = scene.materials[size_t(scene.instances[i].material)].baseColor;
       color = vec4(Rgb(color) * mistake.albedo, color.w);
     }
-  const Probe probe(reference.probe, 0, mistake.exposure);
+  const Probe probe(reference.probe, 0, Rgb(mistake.exposure));
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "benchmark");
   const Camera& camera = scene.cameras.front();
   RenderSettings settings = settingsOf(kCompositeSamples, 3);
