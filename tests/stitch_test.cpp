@@ -138,8 +138,7 @@ TEST(SlowStitch, DisturbedPosesAreRecovered) {
   EXPECT_EQ(refinement.turns[0], 0);
   for (size_t i = 0; i < tiles.size(); ++i) {
     const double cosine = std::fabs(glm::dot(tiles[i].pose.quaternion(), expected[i].quaternion()));
-    // Interpolation of pixels of 0.3 degrees leaves about half a pixel.
-    EXPECT_LT(glm::degrees(2 * std::acos(std::min(cosine, 1.0))), 0.2) << i;
+    EXPECT_LT(glm::degrees(2 * std::acos(std::min(cosine, 1.0))), 0.02) << i;
   }
 }
 

@@ -71,10 +71,12 @@ std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<dou
   return logs;
 }
 
-// The difference of two tiles in a direction, and its derivatives by turns of each about X, Y, Z.
+// The difference of two tiles in a direction, and its derivatives by turns of the first about X, Y,
+// Z and by the logarithm of its gain; those of the second are their opposites.
 struct Difference {
   dvec3 channels{0};
-  std::array<dvec3, 3> first{}, second{};
+  std::array<dvec3, 3> byTurn{};
+  dvec3 byGain{0};
 };
 
 // A turn of the tile by w moves what was seen at d - w x d to d. nullopt next to the tile's edge,
@@ -94,17 +96,23 @@ std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dv
   return derivatives;
 }
 
-// Without derivatives, which take no part in the equations, next to the edge of one of the tiles:
-// it is not that of the other, so that wrong ones would hold all tiles together against the first.
+// The derivatives are the means of those of both tiles, so that turns of all tiles together change
+// only their differences from the first tile: own derivatives would turn all to where they differ
+// less by chance. Next to the edge of a tile they are 0, and take no part in the equations.
 std::vector<Difference> differencesAt(const std::vector<TileView>& views,
                                       const std::vector<Overlap>& overlaps) {
   std::vector<Difference> all(overlaps.size());
   tbb::parallel_for(size_t(0), overlaps.size(), [&](size_t i) {
     const Overlap& o = overlaps[i];
     const TileView &a = views[size_t(o.first)], &b = views[size_t(o.second)];
-    all[i].channels = dvec3(a.at(o.direction).radiance) - dvec3(b.at(o.direction).radiance);
+    const dvec3 ofFirst(a.at(o.direction).radiance), ofSecond(b.at(o.direction).radiance);
+    all[i].channels = ofFirst - ofSecond;
     const auto first = derivativesOf(a, o.direction), second = derivativesOf(b, o.direction);
-    if (first && second) all[i].first = *first, all[i].second = *second;
+    if (!first || !second) return;
+    for (size_t axis = 0; axis < 3; ++axis)
+      all[i].byTurn[axis] = 0.5 * ((*first)[axis] + (*second)[axis]);
+    // Of log(k x + floor) by log k.
+    all[i].byGain = 1.0 - 0.5 * double(kFloor) * (glm::exp(-ofFirst) + glm::exp(-ofSecond));
   });
   return all;
 }
@@ -119,30 +127,46 @@ double rms(const std::vector<Overlap>& overlaps, const std::vector<Difference>& 
   return weight > 0 ? std::sqrt(sum / weight) : 0;
 }
 
-// The turns of all tiles but the first, which has none.
-std::vector<dvec3> stepOf(const std::vector<Tile>& tiles, const std::vector<Overlap>& overlaps,
+struct Step {
+  dvec3 turn{0};
+  double logGain = 0;
+};
+
+// For all tiles; that of the first is 0. Turns and gains together: where one side of an overlap is
+// brighter, a wrong gain looks like a turn.
+std::vector<Step> stepsOf(const std::vector<Tile>& tiles, const std::vector<Overlap>& overlaps,
                           const std::vector<Difference>& differences) {
-  LeastSquares equations(3 * (int(tiles.size()) - 1));
+  LeastSquares equations(4 * (int(tiles.size()) - 1));
   std::vector<LeastSquares::Term> row;
   for (size_t i = 0; i < overlaps.size(); ++i)
     for (int channel = 0; channel < 3; ++channel) {
       row.clear();
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto add = [&](int tile, double coefficient) {
-          if (tile > 0) row.push_back({3 * (tile - 1) + axis, coefficient});
-        };
-        add(overlaps[i].first, differences[i].first[size_t(axis)][channel]);
-        add(overlaps[i].second, -differences[i].second[size_t(axis)][channel]);
-      }
+      const auto add = [&](int tile, double sign) {
+        if (tile == 0) return;
+        for (int axis = 0; axis < 3; ++axis)
+          row.push_back(
+              {4 * (tile - 1) + axis, sign * differences[i].byTurn[size_t(axis)][channel]});
+        row.push_back({4 * (tile - 1) + 3, sign * differences[i].byGain[channel]});
+      };
+      add(overlaps[i].first, 1);
+      add(overlaps[i].second, -1);
       equations.add(row, -differences[i].channels[channel], double(overlaps[i].weight));
     }
   const auto solution = equations.solve();
   if (!solution)
     throwInput("{}: the overlaps of the tiles do not determine their poses", tiles[0].name);
-  std::vector<dvec3> turns{dvec3(0)};
-  for (size_t i = 0; i + 2 < solution->size(); i += 3)
-    turns.emplace_back((*solution)[i], (*solution)[i + 1], (*solution)[i + 2]);
-  return turns;
+  const std::vector<double>& x = *solution;
+  std::vector<Step> steps(1);
+  for (size_t i = 0; i + 3 < x.size(); i += 4)
+    steps.push_back({dvec3(x[i], x[i + 1], x[i + 2]), x[i + 3]});
+  return steps;
+}
+
+// Multiplies the radiance of which the image has log(x + floor).
+void brighten(Image& logs, double logGain) {
+  const float gain = float(std::exp(logGain));
+  for (float& channel : logs.texels)
+    channel = std::log(std::max(std::exp(channel) - kFloor, 0.0f) * gain + kFloor);
 }
 
 constexpr int kMaxDirections = 256;  // rows of the map of directions
@@ -167,14 +191,16 @@ void refineAt(std::vector<Tile>& tiles, int rows) {
   for (int i = 0; i < kMaxSteps && largest > kEnough; ++i) {
     const std::vector<TileView> views(logs.begin(), logs.end());
     const std::vector<Overlap> overlaps = overlapsAt(views, rows);
-    const std::vector<dvec3> turns = stepOf(tiles, overlaps, differencesAt(views, overlaps));
+    const std::vector<Step> steps = stepsOf(tiles, overlaps, differencesAt(views, overlaps));
     largest = 0;
     for (size_t t = 0; t < tiles.size(); ++t) {
-      const double angle = glm::length(turns[t]);
+      const dvec3& turn = steps[t].turn;
+      const double angle = glm::length(turn);
       largest = std::max(largest, angle / views[t].pixelAngle());
       if (angle > 0)
-        tiles[t].pose = logs[t].pose = Rotation::ofQuaternion(
-            glm::angleAxis(angle, turns[t] / angle) * tiles[t].pose.quaternion());
+        tiles[t].pose = logs[t].pose = Rotation::ofQuaternion(glm::angleAxis(angle, turn / angle) *
+                                                              tiles[t].pose.quaternion());
+      brighten(logs[t].image, steps[t].logGain);
     }
   }
 }
