@@ -54,7 +54,7 @@ def madsen_2003(run):
         return []
     pictures = []
     if lobby := run.probe("Lobby"):
-        run("probe", "convert", lobby, "small.exr", "--to", "lat-long", "--size", "480x240")
+        run("probe", "convert", lobby, "small.exr", "--to", "lat-long", "--size", "320x160")
         run("lights", "small.exr", "--method", "irradiance-fit-ambient", "--count", 4, "-o", "l.json",
             "--sphere", "spheres.exr", "--preview", run.pictures / "lobby-lights.png")
         pictures = [("lobby-lights.png", "Four lights, fitted with ambient light to the lobby's irradiance")]

@@ -57,9 +57,12 @@ def diffuse_ball(run):
     scene = run.scratch / "ball.toml"
     rows = []
     for name, file in run.probes(["Qwantani", "Kloppenheim", "Hilly terrain"]).items():
+        sun = run.json("probe", "info", file)["suns"][0]
+        x, _, z = sun["direction"]  # the camera sees the ball from the side of the sun
+        azimuth = math.atan2(x, z)
         scene.write_text(f"""model = "{ball}"
 [camera]
-position = [0, 0, {distance}]
+position = [{distance * math.sin(azimuth)}, 0, {distance * math.cos(azimuth)}]
 look_at = [0, 0, 0]
 fov = {fov}
 [probe]
@@ -69,17 +72,17 @@ file = "{file}"
         run("probe", "edit", file, "clipped.exr", "--clip-stops", 4)
         radius = size / 2 / 1.1
         found = run.json("probe", "sun", "clipped.exr", "--diffuse", "ball.exr", "--circle",
-                         f"{size / 2},{size / 2},{radius}", "--paint", ",".join([str(PAINT)] * 3), "--camera", "0,0",
+                         f"{size / 2},{size / 2},{radius}", "--paint", ",".join([str(PAINT)] * 3), "--camera",
+                         f"{math.degrees(azimuth)},0",
                          "--distance", distance)
-        true = run.json("probe", "info", file)["suns"][0]["irradiance"]
-        rows.append([name, f"{luminance(found['irradiance']):.3g}", f"{luminance(true):.3g}",
+        rows.append([name, f"{luminance(found['irradiance']):.3g}", f"{luminance(sun['irradiance']):.3g}",
                      f"{100 * found['rms']:.2g}", f"{100 * found['rms_clipped']:.3g}"])
     if not rows:
         return []
     return [Row(
         "HDRI figures 9.14 to 9.17: a clipped sun from a diffuse ball",
         "The sun's intensity is solved from a photograph of a grey ball; its render differs by less than 2%.",
-        ["chromeball probe sun clipped.exr --diffuse ball.exr --circle X,Y,R --paint 0.5,0.5,0.5 --camera 0,0"],
+        ["chromeball probe sun clipped.exr --diffuse ball.exr --circle X,Y,R --paint 0.5 --camera AZIMUTH,0"],
         table(["probe", "irradiance of the sun found", "of `probe info`", "RMS left, %",
                "RMS of the clipped probe alone, %"], rows),
         "The photographs are rendered here, and the probes clipped at 16 times their mean. `probe info` counts as sun "
