@@ -211,7 +211,7 @@ TEST_F(CommandCamera, RefusesBadOptions) {
   expectError(solve({"--points", list, "--up", "z"}), "--up: is for --fspy");
   expectError(solve({"--fspy", list, "--fov", "40"}), "--fov: is for --points and --lines");
   expectError(solve({"--fspy", list, "--up", "x"}), "--up: `x` should be y or z");
-  expectError(solve({"--points", list, "--fov", "180"}), "--fov: 180 should be above 0");
+  expectError(solve({"--points", list, "--fov", "180"}), "--fov: 180 should be 0.01 to 179");
   expectError(solve({"--points", list, "--focal35", "-1"}), "--focal35: -1 should be");
   expectError(solve({"--points", list, "--fov", "40", "--focal35", "28"}),
               "--fov: excludes --focal35");

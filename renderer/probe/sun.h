@@ -9,7 +9,7 @@ namespace chromeball {
 struct Sun {
   glm::dvec3 direction;   // unit, towards its centre
   glm::dvec3 irradiance;  // on a surface that faces it
-  double angle;      // angular diameter, degrees; above 0
+  double angle;           // angular diameter, degrees; above 0
 
   glm::dvec3 radiance() const;  // irradiance / (pi sin^2(angle / 2))
 

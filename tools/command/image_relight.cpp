@@ -47,7 +47,8 @@ std::map<std::string, Rgb> parseGains(const std::string& text) {
     gains[group] =
         isGrey ? Rgb(float(values[0])) : Rgb(float(values[0]), float(values[1]), float(values[2]));
     if (!isFinite(gains[group])) throwInput("--gain {}: is too large", group);
-    if (const Rgb& g = gains[group]; std::min({g.x, g.y, g.z}) < 0) throwInput("--gain {}: must not be negative", group);
+    if (const Rgb& g = gains[group]; std::min({g.x, g.y, g.z}) < 0)
+      throwInput("--gain {}: must not be negative", group);
   }
   return gains;
 }

@@ -25,7 +25,8 @@ def table(head, rows):
 
 
 def row_text(row, picture_folder):
-    parts = [f"### {row.title}", f"**Source.** {row.source}", f"**Here.** {row.ours}"]
+    gap = "\n\n" if row.ours.startswith(("|", "- ")) else " "  # tables and lists start a paragraph
+    parts = [f"### {row.title}", f"**Source.** {row.source}", f"**Here.**{gap}{row.ours}"]
     if row.commands:
         parts.append("\n".join("    " + command for command in row.commands))
     if row.why:
