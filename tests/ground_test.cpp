@@ -24,7 +24,7 @@ TEST(Ground, ReachesFarOnAllSides) {
   const Bounds ball = bounds(unitBall());
   const double size = glm::length(ball.size());
   const Camera level = Camera::lookAt({3, 2, 8}, {0, 1.9f, 0}, {0, 1, 0}, 0.8f);
-  const Ground ground = groundSeenBy(level, 1.5f, ball, 0.5f, "scene.toml:3");
+  const Ground ground = groundAround(level, 1.5f, ball, 0.5f, "scene.toml:3");
   const double reach = 30 * (size + glm::distance(glm::dvec3(3, 2, 8), glm::dvec3(0, 1, 0)));
   EXPECT_EQ(ground.height, 0.5f);
   for (int axis = 0; axis < 2; ++axis) {
@@ -37,7 +37,7 @@ TEST(Ground, CamerasMustSeeIt) {
   const Bounds ball = bounds(unitBall());
   const auto reason = [&](const Camera& camera, float height) -> std::string {
     try {
-      groundSeenBy(camera, 1, ball, height, "scene.toml:3");
+      groundAround(camera, 1, ball, height, "scene.toml:3");
     } catch (const InputError& error) {
       return error.what();
     }

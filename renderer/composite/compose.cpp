@@ -47,9 +47,8 @@ Rgb ratioGain(const Rgb& plate, const dvec3& local, const dvec3& mean) {
 // Premultiplied colour and alpha.
 glm::vec4 caught(const DifferentialPixel& p) {
   if (!(p.count > 0)) return glm::vec4(0);
-  double kept = 1;
-  for (int c = 0; c < 3; ++c)
-    if (p.local[c] > 0) kept = std::clamp((p.local[c] + p.difference[c]) / p.local[c], 0.0, kept);
+  const dvec3 ratio = p.ratio();
+  const double kept = std::clamp(std::min({ratio.x, ratio.y, ratio.z}), 0.0, 1.0);
   const dvec3 color = (p.objects + p.local + p.difference - kept * p.local) / p.count;
   return {glm::max(Rgb(color), Rgb(0)), float(1 - (1 - alphaOf(p)) * kept)};
 }

@@ -13,6 +13,14 @@ struct DifferentialPixel {
   glm::dvec3 behind{0};           // L_noobj of the covered samples, if requested
   glm::dvec3 local{0};            // L_noobj of the other samples
   glm::dvec3 difference{0};  // L_obj - L_noobj of the other samples; exactly 0 without any effect
+
+  // L_obj / L_noobj of the other samples; 1 where L_noobj is 0.
+  glm::dvec3 ratio() const {
+    glm::dvec3 ratio(1);
+    for (int c = 0; c < 3; ++c)
+      if (local[c] > 0) ratio[c] = (local[c] + difference[c]) / local[c];
+    return ratio;
+  }
 };
 
 // A view of an integrator's layers.

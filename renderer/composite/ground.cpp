@@ -21,7 +21,7 @@ bool looksDown(const Camera& camera, float aspectRatio) {
 
 }  // namespace
 
-Ground groundSeenBy(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
+Ground groundAround(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
                     const std::string& location) {
   constexpr float kReach = 30;
   if (!(camera.position.y > height))

@@ -18,7 +18,7 @@ struct Ground {
 // camera together, on all sides: the ground behind the camera lights the objects too, and what lies
 // beyond is within 2 degrees of their horizon. Throws InputError, begun by `location`, if the
 // camera is below the plane or does not see it.
-Ground groundSeenBy(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
+Ground groundAround(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
                     const std::string& location);
 
 // The name of the node that addGround() adds, which no node of a model has.

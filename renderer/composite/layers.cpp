@@ -7,13 +7,6 @@
 namespace chromeball {
 namespace {
 
-Rgb ratioOf(const DifferentialPixel& p) {
-  Rgb ratio(1);
-  for (int c = 0; c < 3; ++c)
-    if (p.local[c] > 0) ratio[c] = float((p.local[c] + p.difference[c]) / p.local[c]);
-  return ratio;
-}
-
 Rgb valueOf(const DifferentialPixel& p, CompositeLayer layer) {
   const double count = std::max(p.count, 1.0);
   switch (layer) {
@@ -24,7 +17,7 @@ Rgb valueOf(const DifferentialPixel& p, CompositeLayer layer) {
     case CompositeLayer::Difference:
       return Rgb(p.difference / count);
     case CompositeLayer::Ratio:
-      return ratioOf(p);
+      return Rgb(p.ratio());
     case CompositeLayer::Objects:
       return Rgb(p.objects / count);
     default:

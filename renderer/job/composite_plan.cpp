@@ -76,7 +76,7 @@ void placeGround(const RenderJob& job, LoadedScene& loaded) {
   const double height = settings.get<double>("composite.ground_height") - loaded.origin.y;
   const Bounds objects = bounds(loaded.scene);
   Ground ground =
-      groundSeenBy(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
+      groundAround(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
                    float(height), location);
   if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
   const double depth = double(ground.height) - double(objects.min.y);

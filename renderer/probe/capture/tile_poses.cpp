@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "image/resample.h"
 #include "math/least_squares.h"
 #include "probe/capture/stitch.h"
 #include "probe/capture/tile_overlaps.h"
@@ -18,33 +19,6 @@ using glm::dvec3;
 
 constexpr int kCoarsestRows = 64, kFinestRows = 512;  // of images
 constexpr float kFloor = 0.05f;
-
-// The mean over [begin, end) of what `at` gives for whole numbers.
-template <class At>
-Rgb meanOver(double begin, double end, const At& at) {
-  Rgb sum(0);
-  for (int i = int(begin); i < end; ++i)
-    sum += float(std::min(end, i + 1.0) - std::max(begin, double(i))) * at(i);
-  return sum / float(end - begin);
-}
-
-// With so many rows: each pixel is the mean over the area that it covers.
-Image reduced(const Image& image, int rows) {
-  const int columns = std::max(1, int(std::lround(double(image.width) * rows / image.height)));
-  const double width = double(image.width) / columns, height = double(image.height) / rows;
-  Image narrow(columns, image.height, 3), small(columns, rows, 3);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < columns; ++x)
-      narrow.setRgb(x, y,
-                    meanOver(x * width, std::min((x + 1) * width, double(image.width)),
-                             [&](int i) { return image.rgb(i, y); }));
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x)
-      small.setRgb(x, y,
-                   meanOver(y * height, std::min((y + 1) * height, double(image.height)),
-                            [&](int i) { return narrow.rgb(x, i); }));
-  return small;
-}
 
 // The median of luminance over all tiles; 1 if that is black.
 float medianLuminance(const std::vector<Tile>& tiles) {
@@ -63,7 +37,9 @@ std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<dou
   std::vector<Tile> logs = tiles;
   for (size_t i = 0; i < tiles.size(); ++i) {
     Image& image = logs[i].image;
-    if (image.height > rows) image = reduced(image, rows);
+    if (image.height > rows)
+      image = resampled(
+          image, std::max(1, int(std::lround(double(image.width) * rows / image.height))), rows);
     const float factor = float(gains[i]) / unit;
     for (float& channel : image.texels)
       channel = std::log(factor * std::max(channel, 0.0f) + kFloor);

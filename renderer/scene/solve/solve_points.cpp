@@ -25,8 +25,26 @@ void checkCount(size_t count, const CameraKnowledge& known, const std::string& f
       file, count, fewestPoints(known), fewestPoints({.focalLength = 1}));
 }
 
-// The largest and the second largest extent along orthogonal axes tell a line.
-void checkSpread(const std::vector<ObservedPoint>& points, const dvec3& middle,
+// The extents of the points along orthogonal axes, the largest first, and the last axis: the normal
+// of the plane that they lie on, or are nearest to.
+struct Extents {
+  dvec3 lengths;
+  dvec3 normal;
+
+  explicit Extents(const std::vector<CentredPoint>& points) {
+    Eigen::MatrixXd positions(points.size(), 3);
+    for (size_t i = 0; i < points.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        positions(Eigen::Index(i), axis) = points[i].position[axis];
+    const auto svd = positions.jacobiSvd(Eigen::ComputeFullV);
+    for (int axis = 0; axis < 3; ++axis) {
+      lengths[axis] = svd.singularValues()[axis];
+      normal[axis] = svd.matrixV()(axis, 2);
+    }
+  }
+};
+
+void checkSpread(const std::vector<ObservedPoint>& points, const Extents& extents,
                  const std::string& file) {
   constexpr double kThin = 1e-6;
   for (size_t i = 0; i < points.size(); ++i)
@@ -34,25 +52,10 @@ void checkSpread(const std::vector<ObservedPoint>& points, const dvec3& middle,
       if (points[i].position == points[k].position)
         throwInput("{}: `{}` is at the same position as `{}`", points[i].location, points[i].name,
                    points[k].name);
-  Eigen::MatrixXd positions(points.size(), 3);
-  for (size_t i = 0; i < points.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      positions(Eigen::Index(i), axis) = points[i].position[axis] - middle[axis];
-  const Eigen::VectorXd extents = positions.jacobiSvd().singularValues();
-  if (!(extents[1] > kThin * extents[0]))
+  if (!(extents.lengths[1] > kThin * extents.lengths[0]))
     throwInput("{}: the points lie on a line; a camera needs some beside it", file);
   if (std::ranges::all_of(points, [&](const auto& p) { return p.pixel == points[0].pixel; }))
     throwInput("{}: all points have the same place in the picture", file);
-}
-
-// The unit normal of the plane that the points lie on, or are nearest to.
-dvec3 normalOf(const std::vector<CentredPoint>& points) {
-  Eigen::MatrixXd positions(points.size(), 3);
-  for (size_t i = 0; i < points.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      positions(Eigen::Index(i), axis) = points[i].position[axis];
-  const Eigen::Vector3d normal = positions.jacobiSvd(Eigen::ComputeFullV).matrixV().col(2);
-  return {normal[0], normal[1], normal[2]};
 }
 
 // A view that shows points of a plane at the same places, with depths and nearness reversed: q.z
@@ -73,7 +76,8 @@ bool isAsGood(const Found& found, const Found& best, size_t points) {
 }
 
 // Minima of different rotations, the best first; of equal ones, those in front of the camera.
-std::vector<Found> search(const std::vector<CentredPoint>& points, const CameraKnowledge& known) {
+std::vector<Found> search(const std::vector<CentredPoint>& points, const dvec3& normal,
+                          const CameraKnowledge& known) {
   constexpr int kStarts = 128, kFirstSteps = 10, kMostSteps = 300;
   constexpr size_t kKept = 12;
   const double kDifferent = glm::radians(3.0);
@@ -93,7 +97,6 @@ std::vector<Found> search(const std::vector<CentredPoint>& points, const CameraK
     if (const auto start = simple.viewWith(rotation))
       first.push_back(minimise(simple, *start, kFirstSteps));
   const PointProblem whole(points, known.focalLength, known.findsDistortion);
-  const dvec3 normal = normalOf(points);
   Eigen::VectorXd residual;
   for (const Found& start : distinct(std::move(first))) {
     last.push_back(minimise(whole, start.state, kMostSteps));
@@ -205,13 +208,15 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   checkCount(observed.size(), known, file);
   dvec3 middle(0);
   for (const ObservedPoint& p : observed) middle += p.position / double(observed.size());
-  checkSpread(observed, middle, file);
   const dvec2 axis = known.principalPoint * dvec2(known.size.width, known.size.height);
   std::vector<CentredPoint> points;
   for (const ObservedPoint& p : observed)
     points.push_back({p.position - middle, {p.pixel.x - axis.x, axis.y - p.pixel.y}});
 
-  const std::vector<Found> found = search(points, known);
+  const Extents extents(points);
+  checkSpread(observed, extents, file);
+
+  const std::vector<Found> found = search(points, extents.normal, known);
   if (found.empty())
     throwInput("{}: no camera sees all points in front of it; check their positions", file);
   const Found& best = found.front();

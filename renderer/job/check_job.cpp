@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/check_job.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "lighting/strategy.h"
+
+namespace chromeball {
+namespace {
+
+void checkTwoPass(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (!s.get<bool>("two-pass")) return;
+  if (!file.composite || isShadowCatcher(s))
+    throwInput("{}: is for composites with a plate; the scene file has no [composite] plate",
+               s.location("two-pass"));
+  const auto refuse = [&](const char* name) {
+    throwInput("{}: is biased; leave it out in a reference of two passes", s.location(name));
+  };
+  if (s.has("clamp")) refuse("clamp");
+  for (const char* name : {"render.regularize", "render.denoise"})
+    if (s.get<bool>(name)) refuse(name);
+  if (s.get<std::string>("render.glass_shadows") == "straight") refuse("render.glass_shadows");
+}
+
+void checkGuide(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (s.get<std::string>("render.guide") != "on") return;
+  const std::string location = s.location("render.guide");
+  const std::string strategy = resolveStrategy(s.get<std::string>("lighting.strategy"));
+  if (s.get<bool>("two-pass"))
+    throwInput("{}: a reference of two passes is not guided; leave one of the two out", location);
+  if (strategy != "importance")
+    throwInput("{}: guides renders with the strategy `importance`, not with `{}`", location,
+               strategy);
+}
+
+void checkShowLights(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const std::string strategy = s.get<std::string>("lighting.strategy");
+  if (s.get<bool>("lighting.show_lights") && !hasLights(strategy))
+    throwInput(
+        "{}: the strategy `{}` has no lights; give one that replaces the probe by lights, "
+        "such as median-cut:64",
+        s.location("lighting.show_lights"), resolveStrategy(strategy));
+}
+
+void checkDenoise(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  const bool wantsLayers = std::ranges::count(layers, "denoise") > 0;
+  const bool denoises = s.get<bool>("render.denoise");
+  if (!denoises && !wantsLayers) return;
+  const std::string location = s.location(denoises ? "render.denoise" : "output.aovs");
+  if (file.composite && wantsLayers)
+    throwInput("{}: composites have no layers to denoise later; give --denoise",
+               s.location("output.aovs"));
+  if (s.has("render.samples") && s.get<uint64_t>("render.samples") < 2)
+    throwInput("{}: needs at least 2 samples per pixel", location);
+}
+
+void checkGroups(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  const auto found = std::ranges::find_if(layers, isOfLight);
+  if (found == layers.end()) return;
+  if (file.composite)
+    throwInput("{}: composites have no `{}`; render the scene without [composite]",
+               s.location("output.aovs"), *found);
+  if (s.get<bool>("render.denoise"))
+    throwInput("{}: `{}` would not add up to the denoised picture; leave one of the two out",
+               s.location("render.denoise"), *found);
+}
+
+void checkParts(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (s.get<bool>("resume") && !s.has("checkpoint"))
+    throwInput("{}: needs --checkpoint FILE.exr", s.location("resume"));
+  if (s.has("checkpoint-every") && !s.has("checkpoint"))
+    throwInput("{}: needs --checkpoint FILE.exr", s.location("checkpoint-every"));
+  if (!s.get<bool>("two-pass")) return;
+  for (const char* name : {"shard", "crop", "checkpoint", "write-every", "preview", "display"})
+    if (s.has(name))
+      throwInput("{}: not for a reference of two passes; leave one of the two out",
+                 s.location(name));
+}
+
+void checkOrbit(const SceneFile& file) {
+  if (file.composite && !isShadowCatcher(file.settings) && file.settings.has("orbit"))
+    throwInput("{}: the plate of a composite does not turn", file.settings.location("orbit"));
+}
+
+void checkTransparent(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (file.composite && s.get<bool>("transparent"))
+    throwInput("{}: is for plain renders; the layer alpha of a composite shows its objects",
+               s.location("transparent"));
+}
+
+void checkPlateScale(const SceneFile& file) {
+  if (!file.plateScale) return;
+  const Settings& s = file.settings;
+  const auto refuse = [&](const char* why) {
+    throwInput("{}: scale = \"plate\" {}", *file.plateScale, why);
+  };
+  if (!file.composite || !s.get<bool>("composite.ground"))
+    refuse("needs [composite] with `ground = true`; else give a number");
+  if (isShadowCatcher(s)) refuse("needs a plate, and a shadow catcher has none");
+  if (!s.has("probe.file")) refuse("needs a probe's `file`");
+  if (file.surroundings) refuse("needs a distant probe, and there are [surroundings]");
+  if (!file.lamps.empty()) refuse("needs the probe as the only light, and there are [[light]]");
+  if (s.get<std::string>("lighting.from") != "all")
+    refuse("needs the whole light; give the numbers that a render with all of it prints");
+}
+
+}  // namespace
+
+void checkJob(const SceneFile& file) {
+  checkTwoPass(file);
+  checkGuide(file);
+  checkShowLights(file);
+  checkDenoise(file);
+  checkGroups(file);
+  checkParts(file);
+  checkOrbit(file);
+  checkTransparent(file);
+  checkPlateScale(file);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings that contradict each other.
+#pragma once
+
+#include <string_view>
+
+#include "job/scene_file.h"
+
+namespace chromeball {
+
+// Throws InputError, begun by the location of one of the settings. `file`: with the given settings.
+void checkJob(const SceneFile& file);
+
+// Names of layers that are by source of light.
+inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
+
+inline bool isOfLight(std::string_view layer) {
+  return layer == kLightGroups || layer == kShadowMattes;
+}
+
+}  // namespace chromeball
