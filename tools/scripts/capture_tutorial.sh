@@ -7,4 +7,4 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 [[ -x build/chromeball ]] || tools/build.sh
-exec /usr/bin/env python3 tools/scripts/capture_tutorial/main.py "$@"
+exec env PYTHONPATH=tools/scripts/shared python3 tools/scripts/capture_tutorial/main.py "$@"

@@ -6,6 +6,7 @@ import camera
 import pixels
 import place
 from page import Step, some_lines
+from pfm import read_pfm
 from plots import contact_sheet, response_plot
 
 DIRECT, REFLECTED = "300,128,30,24", "182,136,7,7"
@@ -25,7 +26,7 @@ def solid_angle_mean(rows):
 
 def irradiance(run, probe, name, scale=1.0):
     run("probe", "irradiance", probe, name, "--size", "128x64")
-    return [[tuple(scale * value for value in pixel) for pixel in row] for row in pixels.read_pfm(run.scratch / name)]
+    return [[tuple(scale * value for value in pixel) for pixel in row] for row in read_pfm(run.scratch / name)]
 
 
 def irradiance_error(found, truth):

@@ -5,6 +5,7 @@ import pixels
 import place
 import surroundings
 from camera import View
+from pfm import read_pfm
 
 CARD_VIEW = View((0, 0, 10), (1.2, 0, 0), 24, (420, 280))
 # Constants of the lens: 1 + a2 r^2 + a4 r^4, r = 1 in the corners.
@@ -55,7 +56,7 @@ class Photographs:
         camera.bracket(self.run.scratch, name, self.radiance(name), name, falloff=darkening)
 
     def radiance(self, name):
-        return pixels.read_pfm(self.run.scratch / f"true-{name}.pfm")
+        return read_pfm(self.run.scratch / f"true-{name}.pfm")
 
     @staticmethod
     def files(name, times=None):

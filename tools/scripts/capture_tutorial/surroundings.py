@@ -4,6 +4,7 @@ import math
 import random
 
 import pixels
+from pfm import read_pfm
 from run import NOON
 
 WIDTH, HEIGHT = 768, 384
@@ -46,7 +47,7 @@ def stone_at(azimuth, elevation, radiance):
 def write(run, name):
     """The lat-long map `name` (.pfm) in the scratch folder."""
     run("probe", "convert", NOON, "sky.pfm", "--to", "lat-long", "--size", f"{WIDTH}x{HEIGHT}")
-    rows = pixels.read_pfm(run.scratch / "sky.pfm")
+    rows = read_pfm(run.scratch / "sky.pfm")
     row = houses()
     for y in range(HEIGHT):
         elevation = 90 - 180 * (y + 0.5) / HEIGHT

@@ -3,7 +3,8 @@
 import math
 
 from page import Row, table
-from run import NOON, luminance, read_pfm
+from pfm import read_pfm
+from run import NOON, luminance
 
 ALL = ["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi", "Beach", "Ennis", "Lobby", "Studio",
        "Qwantani", "Kloppenheim", "Hilly terrain"]
@@ -34,8 +35,8 @@ def compare_irradiance(run, file, more, small):
     """Mean, maximum in % of the mean; share of texels below 0; of two irradiance maps."""
     run("probe", "irradiance", file, "exact.pfm", "--size", "64x32")
     run("probe", "irradiance", small, "other.pfm", "--size", "64x32", *more)
-    width, height, exact = read_pfm(run.scratch / "exact.pfm")
-    other = read_pfm(run.scratch / "other.pfm")[2]
+    exact, other = (read_pfm(run.scratch / name) for name in ("exact.pfm", "other.pfm"))
+    height, width = len(exact), len(exact[0])
     total = difference = worst = below = weight = 0.0
     for y in range(height):
         solid_angle = math.sin(math.pi * (y + 0.5) / height)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the program; finds probes; reads what the program writes."""
-import array
 import csv
 import json
 import os
@@ -80,20 +79,6 @@ class Run:
         """An image of the program as a picture of the page."""
         self("image", "view", image, self.pictures / name, *options)
         return name
-
-
-def read_pfm(path):
-    """(width, height, rows from the top: [y][x] = (r, g, b))"""
-    with open(path, "rb") as file:
-        assert file.readline().strip() == b"PF"
-        width, height = map(int, file.readline().split())
-        little = float(file.readline()) < 0
-        values = array.array("f", file.read())
-    if not little:
-        values.byteswap()
-    rows = [[tuple(values[3 * (y * width + x):3 * (y * width + x) + 3]) for x in range(width)]
-            for y in range(height)]
-    return width, height, rows[::-1]
 
 
 def luminance(color):

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Suns: HDRI's figures 9.14 to 9.17, and the numbers of section 9.6.1."""
 import math
-import sys
 
+from gltf import Model
 from page import Row, table
-from run import ROOT, luminance, read_pfm
-
-sys.path.append(str(ROOT / "tools" / "scripts" / "capture_tutorial"))
-from gltf import Model  # noqa: E402
+from pfm import read_pfm
+from run import luminance
 
 PAINT = 0.5
 
@@ -20,8 +18,8 @@ def model(run, name, add):
 
 
 def mean(run, image):
-    width, height, rows = read_pfm(run.scratch / image)
-    return [sum(color[c] for row in rows for color in row) / (width * height) for c in range(3)]
+    pixels = [color for row in read_pfm(run.scratch / image) for color in row]
+    return [sum(channel) / len(pixels) for channel in zip(*pixels)]
 
 
 def floor(run):
