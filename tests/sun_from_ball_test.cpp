@@ -23,22 +23,20 @@ const dvec3 kPaint(0.32, 0.333, 0.346);
 const Image kNoMask;
 
 DiffuseBall ballOf(double radius, double azimuth, double elevation) {
-  return {.centre = {radius + 3.4, radius + 5.1},
-          .radius = radius,
+  return {.circle = {{radius + 3.4, radius + 5.1}, radius},
           .paint = kPaint,
-          .azimuth = azimuth,
-          .elevation = elevation};
+          .camera = {azimuth, elevation}};
 }
 
 // What the camera sees of the ball in the light of a probe.
 Image photographOf(const DiffuseBall& ball, const Image& probe) {
-  const int side = int(2 * ball.radius) + 10;
+  const int side = int(2 * ball.circle.radius) + 10;
   Image photograph(side, side, 3);
   std::vector<vec3> normals;
   const auto forPixels = [&](const auto& visit) {
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
-        const dvec2 point = (dvec2(x + 0.5, y + 0.5) - ball.centre) / ball.radius;
+        const dvec2 point = (dvec2(x + 0.5, y + 0.5) - ball.circle.centre) / ball.circle.radius;
         if (glm::length(point) < 1) visit(x, y, dvec2(point.x, -point.y));
       }
   };
@@ -62,7 +60,7 @@ TEST(DiffuseBall, TheCentreFacesTheCamera) {
     const dvec3 rim = ball.normalAt({1, 0});
     EXPECT_NEAR(rim.x, std::isfinite(distance) ? 1 / distance : 0, 1e-7);
   }
-  EXPECT_LT(glm::distance(ballOf(50, 0, 90).towardsCamera(), dvec3(0, 1, 0)), 1e-12);
+  EXPECT_LT(glm::distance(ballOf(50, 0, 90).camera.axes()[2], dvec3(0, 1, 0)), 1e-12);
 }
 
 // HDRI book, section 9.3.5: 1 in the mean over a disc is the closed form of the header; 0.4675 at
@@ -142,7 +140,7 @@ TEST(SunFromBall, BadInputIsRejected) {
   for (float& texel : mask.texels) texel = 1;
   EXPECT_THROW(sampleBall(ball, photograph, mask, "ball"), InputError);
   DiffuseBall outside = ball;
-  outside.centre.x = 1;
+  outside.circle.centre.x = 1;
   EXPECT_THROW(sampleBall(outside, photograph, kNoMask, "ball"), InputError);
   Image invalid = photograph;
   invalid.setRgb(20, 20, Rgb(NAN));

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/plate_scale.h"
 
-#include <algorithm>
-
+#include "math/quantile.h"
 #include "trace/accel.h"
 
 namespace chromeball {
-namespace {
-
-double quantile(std::vector<double>& values, double fraction) {
-  const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-}  // namespace
-
 std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
                                    int width, int height) {
   const Accel accel(localScene);
@@ -45,11 +34,13 @@ PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
     return values;
   };
   for (int c = 0; c < 3; ++c) {
-    std::vector<double> radiance = valuesOf([c](const Rgb& pixel) { return double(pixel[c]); });
+    const std::vector<double> radiance =
+        valuesOf([c](const Rgb& pixel) { return double(pixel[c]); });
     result.scale[c] =
         float(kPiD * quantile(radiance, 0.5) / (double(reflectance[c]) * double(irradiance[c])));
   }
-  std::vector<double> luminances = valuesOf([](const Rgb& p) { return luminance(glm::dvec3(p)); });
+  const std::vector<double> luminances =
+      valuesOf([](const Rgb& p) { return luminance(glm::dvec3(p)); });
   const double spread = quantile(luminances, kHigh) - quantile(luminances, kLow);
   result.scatter = 0.5 * spread / quantile(luminances, 0.5);
   return result;

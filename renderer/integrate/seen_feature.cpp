@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrate/path.h"
+#include "math/quantile.h"
 #include "math/warp.h"
 
 namespace chromeball {
@@ -21,9 +22,8 @@ float medianLuminance(const SceneSources& sources, const LightSource& lighting) 
     for (const size_t s : sources.distant) radiance += sources.all[s]->background({}, direction);
     luminances.push_back(luminance(radiance));
   }
-  const auto middle = luminances.begin() + kSide * kSide / 2;
-  std::nth_element(luminances.begin(), middle, luminances.end());
-  return *middle > 0 && std::isfinite(*middle) ? *middle : 1;
+  const float middle = median(std::move(luminances));
+  return middle > 0 && std::isfinite(middle) ? middle : 1;
 }
 
 bool isSeen(const PathState& state) { return state.lobes == Lobes::Narrow && !state.first->direct; }

@@ -37,17 +37,16 @@ DiffuseBall parseBall(const Arguments& arguments) {
   std::vector<double> paint = parseNumbers(arguments.paint, isGrey ? 1 : 3, "--paint");
   if (isGrey) paint.resize(3, paint.front());
   const std::vector<double> camera = parseNumbers(arguments.camera, 2, "--camera");
-  DiffuseBall ball{.centre = {circle[0], circle[1]},
-                   .radius = circle[2],
+  DiffuseBall ball{.circle = {{circle[0], circle[1]}, circle[2]},
                    .paint = {paint[0], paint[1], paint[2]},
-                   .azimuth = camera[0],
-                   .elevation = camera[1]};
-  if (!(ball.radius >= 8)) throwInput("--circle: the radius {} should be at least 8", ball.radius);
+                   .camera = {camera[0], camera[1]}};
+  if (!(ball.circle.radius >= 8))
+    throwInput("--circle: the radius {} should be at least 8", ball.circle.radius);
   for (const double channel : paint)
     if (!(channel > 0 && channel <= 1))
       throwInput("--paint: {} should be a reflectance, above 0 and at most 1", arguments.paint);
-  if (std::abs(ball.elevation) > 90)
-    throwInput("--camera: the elevation {} should be -90 to 90 degrees", ball.elevation);
+  if (std::abs(ball.camera.elevation) > 90)
+    throwInput("--camera: the elevation {} should be -90 to 90 degrees", ball.camera.elevation);
   if (!arguments.distance.empty())
     ball.distance = parseNumbers(arguments.distance, 1, "--distance").front();
   if (!(ball.distance > 1))

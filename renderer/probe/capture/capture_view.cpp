@@ -11,12 +11,7 @@ CaptureView::CaptureView(const Image& image, const Image& mask, const Circle& ci
 
 void CaptureView::setCamera(const CameraPosition& camera) {
   camera_ = camera;
-  const double azimuth = camera.azimuth * kPiD / 180, elevation = camera.elevation * kPiD / 180;
-  const double sine = std::sin(azimuth), cosine = std::cos(azimuth);
-  const dvec3 right(cosine, 0, -sine);
-  const dvec3 backwards(std::cos(elevation) * sine, std::sin(elevation),
-                        std::cos(elevation) * cosine);
-  toCamera_ = glm::transpose(glm::dmat3(right, glm::cross(backwards, right), backwards));
+  toCamera_ = glm::transpose(camera.axes());
 }
 
 CaptureView::Sample CaptureView::sample(const dvec3& direction) const {

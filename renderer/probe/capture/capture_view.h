@@ -4,16 +4,11 @@
 
 #include <memory>
 
+#include "probe/capture/camera_position.h"
 #include "probe/capture/optics.h"
 #include "probe/capture/photograph.h"
 
 namespace chromeball {
-
-// Where the camera is, seen from the ball (or, for a lens, opposite to where it looks), in degrees:
-// azimuth 0 is +Z, 90 is +X; elevation 90 is +Y. It stands upright: its right is horizontal.
-struct CameraPosition {
-  double azimuth = 0, elevation = 0;
-};
 
 class CaptureView {
  public:

@@ -19,18 +19,19 @@ class Blocks {
       : ball_(ball),
         photograph_(photograph),
         excluded_(excluded),
-        size_(int(std::ceil(ball.radius / kMaxRadius))),
-        left_(int(std::floor(ball.centre.x - ball.radius))),
-        top_(int(std::floor(ball.centre.y - ball.radius))) {}
+        size_(int(std::ceil(ball.circle.radius / kMaxRadius))),
+        left_(int(std::floor(ball.circle.centre.x - ball.circle.radius))),
+        top_(int(std::floor(ball.circle.centre.y - ball.circle.radius))) {}
 
   int size() const { return size_; }
-  int side() const { return int(std::ceil((2 * ball_.radius + 1) / size_)); }
+  int side() const { return int(std::ceil((2 * ball_.circle.radius + 1) / size_)); }
 
   // nullopt unless all of it is inside the circle and counts. Adds its invalid pixels to `invalid`.
   std::optional<BallSample> sample(int x, int y, size_t& invalid) const {
     const dvec2 corner(left_ + x * size_, top_ + y * size_);
     for (int i = 0; i < 4; ++i)
-      if (glm::distance(corner + double(size_) * dvec2(i & 1, i >> 1), ball_.centre) > ball_.radius)
+      if (glm::distance(corner + double(size_) * dvec2(i & 1, i >> 1), ball_.circle.centre) >
+          ball_.circle.radius)
         return std::nullopt;
     dvec3 sum(0);
     size_t invalidHere = 0;
@@ -44,7 +45,7 @@ class Blocks {
       }
     invalid += invalidHere;
     if (invalidHere > 0) return std::nullopt;
-    const dvec2 fromCentre = (corner + size_ / 2.0 - ball_.centre) / ball_.radius;
+    const dvec2 fromCentre = (corner + size_ / 2.0 - ball_.circle.centre) / ball_.circle.radius;
     return BallSample{x, y, vec3(ball_.normalAt({fromCentre.x, -fromCentre.y})),
                       sum / double(size_ * size_) / ball_.paint};
   }
@@ -57,11 +58,6 @@ class Blocks {
 
 }  // namespace
 
-dvec3 DiffuseBall::towardsCamera() const {
-  const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
-  return {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
-}
-
 // A point that is seen at the angle b from the axis is hit at the angle of incidence i, sin(i) =
 // distance x sin(b), and its normal is at i - b from the axis.
 dvec3 DiffuseBall::normalAt(const dvec2& point) const {
@@ -72,18 +68,17 @@ dvec3 DiffuseBall::normalAt(const dvec2& point) const {
     sine = std::sin(std::asin(std::min(distance * std::sin(b), 1.0)) - b);
   }
   const dvec2 across = r > 0 ? point * (sine / r) : dvec2(0);
-  const double a = azimuth * kPiD / 180;
-  const dvec3 back = towardsCamera(), right(std::cos(a), 0, -std::sin(a));
-  return glm::normalize(across.x * right + across.y * glm::cross(back, right) +
-                        std::sqrt(1 - sine * sine) * back);
+  return glm::normalize(camera.axes() * dvec3(across, std::sqrt(1 - sine * sine)));
 }
 
 BallSamples sampleBall(const DiffuseBall& ball, const Image& photograph, const Image& excluded,
                        const std::string& name) {
-  const dvec2 least = ball.centre - ball.radius, most = ball.centre + ball.radius;
+  const dvec2 least = ball.circle.centre - ball.circle.radius,
+              most = ball.circle.centre + ball.circle.radius;
   if (!(least.x >= 0 && least.y >= 0 && most.x <= photograph.width && most.y <= photograph.height))
     throwInput("{}: the circle {:g},{:g},{:g} is not inside its {} x {} pixels", name,
-               ball.centre.x, ball.centre.y, ball.radius, photograph.width, photograph.height);
+               ball.circle.centre.x, ball.circle.centre.y, ball.circle.radius, photograph.width,
+               photograph.height);
   const Blocks blocks(ball, photograph, excluded);
   BallSamples result{.side = blocks.side(), .block = blocks.size()};
   for (int y = 0; y < result.side; ++y)

@@ -7,20 +7,18 @@
 #include <vector>
 
 #include "image/image.h"
+#include "probe/capture/camera_position.h"
+#include "probe/capture/circle.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
 
 struct DiffuseBall {
-  dvec2 centre;  // of its circle, in pixels from the top left corner
-  double radius;
-  dvec3 paint;  // reflectance, above 0
-  // Where the camera is, seen from the ball, in degrees: azimuth 0 is +Z, 90 is +X. It stands
-  // upright.
-  double azimuth = 0, elevation = 0;
+  Circle circle;  // its outline, in pixels from the top left corner
+  dvec3 paint;    // reflectance, above 0
+  CameraPosition camera = {};
   double distance = std::numeric_limits<double>::infinity();  // to its centre, in radii; above 1
 
-  dvec3 towardsCamera() const;  // unit
   // The normal (unit) at a point of the circle, x right and y up, of radius 1.
   dvec3 normalAt(const dvec2& point) const;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/exposure_agreement.h"
+#include "math/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +38,7 @@ double medianRatio(const Exposure& longer, const Exposure& shorter, const Respon
     }
   pixels = std::min(pixels, ratios.size());
   if (ratios.size() < kMinPixels) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = ratios.begin() + std::ptrdiff_t(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::exp(*middle) * shorter.factor[channel] / longer.factor[channel];
+  return std::exp(median(std::move(ratios))) * shorter.factor[channel] / longer.factor[channel];
 }
 
 }  // namespace

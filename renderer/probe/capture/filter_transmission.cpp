@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "math/quantile.h"
 
 namespace chromeball {
 
@@ -28,12 +29,7 @@ FilterTransmission filterTransmission(const Image& with, const Image* clippedWit
   FilterTransmission result{sumWith / sumWithout, dvec3(0), ratios[0].size()};
   if (result.pixels == 0)
     throwInput("--calibrate-filter: no pixel is above 0 and not clipped in both images");
-  for (int c = 0; c < 3; ++c) {
-    auto& channel = ratios[size_t(c)];
-    const auto middle = channel.begin() + std::ptrdiff_t(channel.size() / 2);
-    std::nth_element(channel.begin(), middle, channel.end());
-    result.median[c] = *middle;
-  }
+  for (int c = 0; c < 3; ++c) result.median[c] = median(std::move(ratios[size_t(c)]));
   return result;
 }
 

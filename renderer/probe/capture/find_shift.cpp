@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/quantile.h"
 #include "probe/capture/exposure.h"
 
 namespace chromeball {
@@ -51,10 +52,7 @@ struct Bitmap {
   Bitmap(const Image& image, double percentile)
       : width(image.width), height(image.height), sides(image.texels.size()) {
     constexpr float kTooClose = 0.04f;
-    std::vector<float> sorted = image.texels;
-    const auto at = sorted.begin() + std::ptrdiff_t(percentile * double(sorted.size() - 1));
-    std::nth_element(sorted.begin(), at, sorted.end());
-    const float threshold = *at;
+    const float threshold = quantile(image.texels, percentile);
     for (size_t i = 0; i < sides.size(); ++i) {
       const float level = image.texels[i];
       sides[i] = level > (1 + kTooClose) * threshold   ? 1

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/resample.h"
 #include "math/least_squares.h"
+#include "math/quantile.h"
 #include "probe/capture/stitch.h"
 #include "probe/capture/tile_overlaps.h"
 
@@ -26,9 +27,8 @@ float medianLuminance(const std::vector<Tile>& tiles) {
   for (const Tile& tile : tiles)
     for (int y = 0; y < tile.image.height; ++y)
       for (int x = 0; x < tile.image.width; ++x) all.push_back(luminance(tile.image.rgb(x, y)));
-  const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  return *middle > 0 ? *middle : 1;
+  const float middle = median(std::move(all));
+  return middle > 0 ? middle : 1;
 }
 
 // With at most `rows` rows, and log(gain x radiance / unit + 1/20) for radiance.
