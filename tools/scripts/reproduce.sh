@@ -8,4 +8,4 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 tools/build.sh
-exec env PYTHONPATH=tools/scripts/shared /usr/bin/python3 tools/scripts/reproduction/main.py "$@"
+exec env PYTHONPATH=tools/scripts/shared python3 tools/scripts/reproduction/main.py "$@"

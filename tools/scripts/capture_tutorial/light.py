@@ -3,38 +3,13 @@
 import math
 
 import camera
-import pixels
 import place
+from exr import Exr
+from lat_long import irradiance, irradiance_error
 from page import Step, some_lines
-from pfm import read_pfm
 from plots import contact_sheet, response_plot
 
 DIRECT, REFLECTED = "300,128,30,24", "182,136,7,7"
-
-
-def solid_angle_mean(rows):
-    """Of a lat-long map of (r, g, b)."""
-    sums, total = [0, 0, 0], 0
-    for y, row in enumerate(rows):
-        weight = math.sin(math.pi * (y + 0.5) / len(rows))
-        total += weight * len(row)
-        for pixel in row:
-            for c in range(3):
-                sums[c] += weight * pixel[c]
-    return [s / total for s in sums]
-
-
-def irradiance(run, probe, name, scale=1.0):
-    run("probe", "irradiance", probe, name, "--size", "128x64")
-    return [[tuple(scale * value for value in pixel) for pixel in row] for row in read_pfm(run.scratch / name)]
-
-
-def irradiance_error(found, truth):
-    """(mean, largest) over all normals and channels, in percent of the mean irradiance of each channel."""
-    mean = solid_angle_mean(truth)
-    differences = [[tuple(100 * abs(a - b) / m for a, b, m in zip(p, q, mean)) for p, q in zip(*rows)]
-                   for rows in zip(found, truth)]
-    return sum(solid_angle_mean(differences)) / 3, max(v for row in differences for p in row for v in p)
 
 
 def at_direction(rows, direction):
@@ -54,7 +29,7 @@ def levels_of_error(run, name):
 
 def error_of_merge(run, photographs, name):
     """RMS over the channels that are not clipped, in percent."""
-    file, truth, unit = pixels.Exr(run.scratch / f"{name}.exr"), photographs.radiance(name), camera.unit()
+    file, truth, unit = Exr(run.scratch / f"{name}.exr"), photographs.radiance(name), camera.unit()
     clipped = file.plane("clipped")
     squares = [(a / (b * unit) - 1) ** 2 for y, row in enumerate(file.color()) for x, pixel in enumerate(row)
                if not clipped[y][x] for a, b in zip(pixel, truth[y][x])]

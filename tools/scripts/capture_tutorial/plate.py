@@ -8,6 +8,7 @@ import camera
 import pixels
 import place
 import simulate
+from exr import Exr
 from page import Step, some_lines
 from plots import contact_sheet
 
@@ -22,7 +23,7 @@ def flat_field(run, photographs):
             names[-1])
     arguments = ["image", "flat-field", *names, "-o", "flat.exr"]
     said = run.said(*arguments)
-    flat = pixels.Exr(run.scratch / "flat.exr").color()
+    flat = Exr(run.scratch / "flat.exr").color()
     error = max(abs(v / simulate.falloff(x + 0.5, y + 0.5) - 1) for y, row in enumerate(flat)
                 for x, pixel in enumerate(row) for v in pixel)
     merged = run.said("probe", "merge", *photographs.files("plate"), "--response", "response.csv", "--flat-field",
@@ -124,8 +125,8 @@ aovs = ["difference", "alpha"]
 
 def over(run, catcher):
     """plate (1 - alpha) ratio + objects, as a file."""
-    plate = pixels.Exr(run.scratch / "plate.exr").color()
-    layers = pixels.Exr(run.scratch / catcher)
+    plate = Exr(run.scratch / "plate.exr").color()
+    layers = Exr(run.scratch / catcher)
     ratio, objects, alpha = layers.color("ratio"), layers.color("objects"), layers.plane("alpha")
     rows = [[tuple(p * (1 - alpha[y][x]) * r + o for p, r, o in zip(plate[y][x], ratio[y][x], objects[y][x]))
              for x in range(layers.width)] for y in range(layers.height)]

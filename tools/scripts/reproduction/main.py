@@ -5,17 +5,20 @@ import pathlib
 import tempfile
 import time
 
+import capture
+import formulas
 import lights
 import probes
 import rendering
 import scenes
+import shadows
 import suns
 from page import page
 from run import ROOT, Run
 
-SECTIONS = [("Lights in place of a probe", lights.rows), ("Probes", probes.rows),
-            ("Sampling a probe", rendering.rows),
-            ("Suns", suns.rows), ("Composites and rooms", scenes.rows)]
+SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
+            ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
+            ("Suns", [suns.rows]), ("Composites and rooms", [scenes.rows, formulas.rows])]
 
 
 def main():
@@ -30,9 +33,9 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         run = Run(scratch, pictures.resolve())
         sections = []
-        for title, rows in SECTIONS:
+        for title, parts in SECTIONS:
             print(f"{time.monotonic() - start:5.0f} s  {title}", flush=True)
-            sections.append((title, rows(run)))
+            sections.append((title, [row for rows in parts for row in rows(run)]))
     text = page(sections, sorted(run.missing), time.monotonic() - start,
                 "." if out else "../scenes/gallery/reproduction")
     (docs / "reproduction.md").write_text(text)

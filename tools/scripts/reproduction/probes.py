@@ -122,17 +122,5 @@ def rays(run):
         "All three statements hold for random rays; sampling by luminance needs few even with a sun.")]
 
 
-def errata(run):
-    del run
-    facing = {d: 46700 * math.sin(math.radians(d / 2)) ** 2 for d in (0.53, 0.5323)}
-    return [Row(
-        "Errata of HDRI",
-        "A sun of radiance 46,700 gives the irradiance pi; \"10960000 10280000 866000\" is a yellowish sun.", [],
-        f"46,700 is 1 / sin^2(0.53 / 2 degrees) = {1 / math.sin(math.radians(0.265)) ** 2:,.0f}, rounded: the "
-        f"irradiance is {facing[0.53]:.4f} pi for 0.53 degrees and {facing[0.5323]:.4f} pi for 0.5323. The blue of "
-        "that sun lacks a digit: 8,660,000. Its direction (y = -0.58) is where light travels to, that of 9.3.5 "
-        "points to the sun.", "")]
-
-
 def rows(run):
-    return (mappings(run) + suns(run) + clipping(run) + rays(run) + irradiance(run) + errata(run))
+    return mappings(run) + suns(run) + clipping(run) + rays(run) + irradiance(run)

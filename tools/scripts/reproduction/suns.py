@@ -88,6 +88,7 @@ file = "{file}"
 
 
 def errata():
+    facing = {d: 46700 * math.sin(math.radians(d / 2)) ** 2 for d in (0.53, 0.5323)}
     return [Row(
         "HDRI 9.3.5, 9.4.1, 9.6.1: what to read with care",
         "Numbers and words that a program must decide about.", [],
@@ -95,7 +96,8 @@ def errata():
         "one of the text.\n- Its direction, with y = -0.58, is where the light travels; (0.748, 0.199, 0.633) of 9.3.5 "
         "points to the sun. Here all directions point to the light.\n- The ideal mirror ball has \"forward\" in its "
         "middle; a photograph of a ball shows the camera there, and is mirrored: `probe convert --flip`.\n- 46,700 is "
-        "1 / sin^2(0.53 / 2 degrees) rounded, for a sun of 0.53 degrees.", "")]
+        f"1 / sin^2(0.53 / 2 degrees) = {1 / math.sin(math.radians(0.265)) ** 2:,.0f}, rounded: the irradiance is "
+        f"{facing[0.53]:.4f} pi for 0.53 degrees and {facing[0.5323]:.4f} pi for 0.5323.", "")]
 
 
 def rows(run):
