@@ -102,7 +102,7 @@ TEST_F(SlowCommandCompare, interruptedRunKeepsItsRenders) {
   std::vector<std::string> arguments = command(endless);
   std::erase(arguments, "--quiet");
   // The largest cells take minutes; smaller ones are done when the bar shows the first per cent.
-  const CommandResult result = runCommand(arguments, "% ");
+  const CommandResult result = runExecutable(arguments, "% ");
   EXPECT_EQ(result.status, 130) << result.error;
   EXPECT_NE(result.error.find("the same command continues from there"), std::string::npos);
 }

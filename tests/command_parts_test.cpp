@@ -274,7 +274,7 @@ TEST(Checkpoint, GoesOnAfterAnInterrupt) {
   resumed.insert(resumed.end(), {"--checkpoint", checkpoint, "--resume", "--progress"});
   int interrupts = 0;
   for (CommandResult result; interrupts < 100; ++interrupts) {
-    result = runCommand(parts.words(resumed, parts.out / "image.exr"), "rendering", SIGINT);
+    result = runExecutable(parts.words(resumed, parts.out / "image.exr"), "rendering", SIGINT);
     if (result.status == 0) break;
     EXPECT_EQ(result.status, 130) << result.error;
   }
@@ -394,7 +394,7 @@ TEST(Checkpoint, StaysWhereTheDiskIsFull) {
   const std::string checkpoint = parts.out / "c.exr";
   parts.render("o.exr", {"--samples", "4", "--checkpoint", checkpoint});
   const std::string before = fileContents(checkpoint);
-  const CommandResult result = runCommand(
+  const CommandResult result = runExecutable(
       parts.words({"--samples", "8", "--checkpoint", checkpoint, "--resume"}, parts.out / "o.exr"),
       "", SIGINT, {.fileSize = 20'000});
   EXPECT_EQ(result.status, 1) << result.error;

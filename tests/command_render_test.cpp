@@ -217,9 +217,9 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
 TEST(CommandRender, ProgressSaysSamplesNoiseAndTimeLeft) {
   const RenderScene scene;
   const CommandResult result =
-      runCommand({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--noise",
-                  "0.001", "--progress", "-o", scene.out / "a.png"},
-                 "rays/s");
+      runExecutable({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--noise",
+                     "0.001", "--progress", "-o", scene.out / "a.png"},
+                    "rays/s");
   EXPECT_EQ(result.status, 130) << result.error;
   for (const char* words : {" remaining, ", " samples, noise "})
     EXPECT_NE(result.error.find(words), std::string::npos) << result.error;
@@ -392,10 +392,10 @@ TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
 TEST(SlowCommandRender, AnInterruptSavesTheImageSoFar) {
   const RenderScene scene;
   const CommandResult result =
-      runCommand({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--samples",
-                  "10000000", "--time", "60", "--progress", "-o", scene.out / "a.exr", "--stats",
-                  scene.out / "a.json", "--aov", "albedo"},
-                 "  2%");  // after a second
+      runExecutable({"render", scene.model, "--probe", scene.gradient, "--size", "64x48",
+                     "--samples", "10000000", "--time", "60", "--progress", "-o",
+                     scene.out / "a.exr", "--stats", scene.out / "a.json", "--aov", "albedo"},
+                    "  2%");  // after a second
   EXPECT_EQ(result.status, 130);
   EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the image so far is saved\n"));
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
@@ -565,8 +565,8 @@ TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
       {file, {"--camera", "Left", "--probe-scale", "2"}}};
   for (const auto& [name, options] : jobs) {
     Words words = options;
-    words.insert(words.end(), {"-o", scene.out / "a.exr"});
-    scene.renderScene(name, words);
+    words.insert(words.begin(), {"render", name, "-o", scene.out / "a.exr"});
+    ASSERT_EQ(runExecutable(words).status, 0);  // its command is recorded
     const ImageFile first = scene.image("a.exr");
     EXPECT_EQ(std::get<std::string>(first.metadata.at("scene")), name);
     Words again = optionsIn(first);

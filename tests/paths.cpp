@@ -4,3 +4,4 @@
 const char kSourceDir[] = CHROMEBALL_SOURCE_DIR;
 const char kBuildDir[] = CHROMEBALL_BUILD_DIR;
 const char kCommand[] = CHROMEBALL_COMMAND;
+const char kCommandServer[] = CHROMEBALL_COMMAND_SERVER;

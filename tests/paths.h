@@ -5,3 +5,4 @@
 extern const char kSourceDir[];  // the project
 extern const char kBuildDir[];   // this build
 extern const char kCommand[];    // the executable
+extern const char kCommandServer[];

@@ -182,7 +182,7 @@ TEST(SlowSequence, SurvivesInterruption) {
       words(model.scene(),
             {"--frames", "0:1", "--checkpoint", out / "frame.#.checkpoint.exr", "--progress"},
             out / "frame.#.exr", samples);
-  const CommandResult stopped = runCommand(frames, "2%");
+  const CommandResult stopped = runExecutable(frames, "2%");
   EXPECT_EQ(stopped.status, 130) << stopped.error;
   EXPECT_EQ(out.files(), (Words{"frame.0.checkpoint.exr"}));
   frames.push_back("--resume");

@@ -60,7 +60,7 @@ TEST_F(SlowStarved, AFileSizeLimitLeavesTheOldFile) {
   for (const char* name : {"a.exr", "a.png", "a.hdr", "a.pfm"}) {
     std::ofstream(out / name) << "old";
     const CommandLimits limits{.fileSize = 2000};
-    expectFailed(runCommand(words(out / name, {"--size", "200x200"}), "", SIGINT, limits), name);
+    expectFailed(runExecutable(words(out / name, {"--size", "200x200"}), "", SIGINT, limits), name);
     EXPECT_EQ(fileContents(out / name), "old") << name;
   }
   EXPECT_EQ(out.files(), (Words{"a.exr", "a.hdr", "a.pfm", "a.png"}));
@@ -97,7 +97,7 @@ TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
   const TemporaryFolder out;
   const CommandLimits limits{.permissions = true};
   const auto run = [&](const Words& arguments) {
-    return runCommand(arguments, "", SIGINT, limits);
+    return runExecutable(arguments, "", SIGINT, limits);
   };
   std::ofstream(out / "a.exr") << "old";
   fs::permissions(out / "", fs::perms::owner_read | fs::perms::owner_exec);
@@ -116,7 +116,7 @@ TEST_F(SlowStarved, SigintAndSigtermSaveTheImageSoFar) {
     const TemporaryFolder out;
     const Words all = words(out / "a.exr", {"--samples", "100000000", "--time", "60", "--progress",
                                             "--stats", out / "a.json", "--aov", "samples"});
-    const CommandResult result = runCommand(all, "  2%", signal);  // after a second
+    const CommandResult result = runExecutable(all, "  2%", signal);  // after a second
     EXPECT_EQ(result.status, 130) << result.error;
     EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));
     const auto stats = nlohmann::json::parse(fileContents(out / "a.json"));
@@ -133,7 +133,7 @@ TEST_F(SlowStarved, SigintAndSigtermSaveTheImageSoFar) {
 TEST_F(SlowStarved, AnInterruptInTheFirstPassLeavesTheOldFile) {
   const TemporaryFolder out;
   std::ofstream(out / "a.exr") << "old";
-  const CommandResult result = runCommand(
+  const CommandResult result = runExecutable(
       words(out / "a.exr", {"--samples", "100000000", "--size", "4000x3000", "--progress"}), "%");
   EXPECT_EQ(result.status, 130) << result.error;
   EXPECT_EQ(fileContents(out / "a.exr"), "old");
@@ -145,7 +145,7 @@ TEST_F(SlowStarved, AKillDuringTheRenderLeavesTheOldFile) {
   const TemporaryFolder out;
   std::ofstream(out / "a.exr") << "old";
   const CommandResult result =
-      runCommand(words(out / "a.exr", {"--samples", "100000000", "--progress"}), "%", SIGKILL);
+      runExecutable(words(out / "a.exr", {"--samples", "100000000", "--progress"}), "%", SIGKILL);
   EXPECT_EQ(result.status, -SIGKILL) << result.error;
   EXPECT_EQ(fileContents(out / "a.exr"), "old");
   EXPECT_EQ(out.files(), Words{"a.exr"});
@@ -188,7 +188,7 @@ TEST_F(SlowStarved, TooLargeImagesAreRejectedBeforeAllocation) {
 TEST_F(SlowStarved, OutOfMemoryIsOneLine) {
   const TemporaryFolder out;
   const CommandLimits limits{.memory = size_t(1) << 30};
-  const CommandResult result = runCommand(
+  const CommandResult result = runExecutable(
       words(out / "a.exr", {"--size", "3000x3000", "--memory", "1000"}), "", SIGINT, limits);
   expectFailed(result, "out of memory");
   EXPECT_EQ(out.files(), Words{});

@@ -224,9 +224,9 @@ TEST(TexelFile, AFullDiskIsOneLine) {
   GltfWriter w;
   const std::string model = writeTexturedModel(w, 1, 512);
   const CommandResult result =
-      runCommand({"render", model, "--probe", kProbe, "--size", "8x8", "--texture-memory", "1e-6",
-                  "-o", (w.folder() / "a.pfm").string(), "--quiet"},
-                 "", SIGINT, {.fileSize = 500000});
+      runExecutable({"render", model, "--probe", kProbe, "--size", "8x8", "--texture-memory",
+                     "1e-6", "-o", (w.folder() / "a.pfm").string(), "--quiet"},
+                    "", SIGINT, {.fileSize = 500000});
   EXPECT_EQ(result.status, 1);
   EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
   EXPECT_NE(result.error.find("temporary file for textures cannot be written"), std::string::npos)

@@ -10,7 +10,11 @@ target_precompile_headers(tests PRIVATE <gtest/gtest.h> <nlohmann/json.hpp> <fmt
 set_property(SOURCE tests/paths.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
              CHROMEBALL_BUILD_DIR="${PROJECT_BINARY_DIR}"
-             CHROMEBALL_COMMAND="$<TARGET_FILE:chromeball>")
+             CHROMEBALL_COMMAND="$<TARGET_FILE:chromeball>"
+             CHROMEBALL_COMMAND_SERVER="$<TARGET_FILE:command_server>")
+add_executable(command_server tests/command_server/main.cpp)
+chromeball_compile(command_server)
+target_link_libraries(command_server PRIVATE command_line)
 set(instrumented 0)
 if(CHROMEBALL_SANITIZE)
   set(instrumented 1)
@@ -19,5 +23,5 @@ set_property(SOURCE tests/consumer_test.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_CMAKE="${CMAKE_COMMAND}" CHROMEBALL_COMPILER="${CMAKE_CXX_COMPILER}"
              CHROMEBALL_INSTALLS=$<BOOL:${CHROMEBALL_INSTALL}>
              CHROMEBALL_INSTRUMENTED=${instrumented})
-add_dependencies(tests chromeball)
+add_dependencies(tests chromeball command_server)
 gtest_discover_tests(tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)

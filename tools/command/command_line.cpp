@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_line.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "commands.h"
+#include "messages.h"
+#include "option_typos.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kFailed = 1, kBadInput = 2, kInterrupted = 130;
+
+int report(int status, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fflush(stdout);
+  fmt::print(stderr, "chromeball: {}\n", message);
+  return status;
+}
+
+// The program and the subcommands given, outermost first.
+std::vector<const CLI::App*> namedCommands(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty())
+    commands.push_back(commands.back()->get_subcommands().front());
+  return commands;
+}
+
+// "--samples: `many` is not a whole number" for CLI11's "Could not convert: --samples = many".
+std::string describeConversion(const CLI::App& command, const std::string& error) {
+  const std::string_view kBegin = "Could not convert: ", kEquals = " = ";
+  const size_t equals = error.find(kEquals);
+  if (!error.starts_with(kBegin) || equals == std::string::npos) return "";
+  const std::string name = error.substr(kBegin.size(), equals - kBegin.size());
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const std::string type = option ? option->get_type_name() : "";
+  return fmt::format("{}: `{}` is not {}", name, error.substr(equals + kEquals.size()),
+                     type == "INT"    ? "a whole number"
+                     : type == "UINT" ? "a whole number, 0 or more"
+                                      : "a number");
+}
+
+// "--samples: given more than once" for CLI11's "--samples: At Most 1 required but received 2", and
+// "--samples: needs a value, N" for "--samples: 1 required N missing".
+std::string describeMismatch(const std::string& error) {
+  const std::string_view kTwice = ": At Most 1 required", kNone = ": 1 required ",
+                         kMissing = " missing";
+  if (const size_t twice = error.find(kTwice); twice != std::string::npos)
+    return error.substr(0, twice) + ": given more than once";
+  const size_t none = error.find(kNone);
+  if (none == std::string::npos || !error.ends_with(kMissing)) return "";
+  const size_t argument = none + kNone.size();
+  return fmt::format("{}: needs a value, {}", error.substr(0, none),
+                     error.substr(argument, error.size() - kMissing.size() - argument));
+}
+
+// Rewrites an error message of CLI11; for an unknown word, adds the nearest known one.
+std::string describe(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<const CLI::App*> commands = namedCommands(app);
+  const CLI::App& command = *commands.back();
+  std::string help = "see `";
+  for (const CLI::App* named : commands) help += named->get_name() + " ";
+  help += "--help`";
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (error.get_exit_code() == int(CLI::ExitCodes::ConversionError))
+    if (const std::string message = describeConversion(command, error.what()); !message.empty())
+      return message;
+  if (error.get_exit_code() == int(CLI::ExitCodes::ArgumentMismatch))
+    if (const std::string message = describeMismatch(error.what()); !message.empty())
+      return message;
+  if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
+
+  const std::string& word = unknown.front();
+  const bool isOption = word.starts_with("-");
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (isOption) names.push_back("--" + name);
+  for (const CLI::App* subcommand : command.get_subcommands(nullptr))
+    if (!isOption && !subcommand->get_group().empty()) names.push_back(subcommand->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string option = word.substr(0, word.find('='));
+  const std::string_view ours = isOption ? equivalentOption(option) : "";
+  if (std::find(known.begin(), known.end(), ours.substr(0, ours.find(' '))) != known.end())
+    return fmt::format("unknown option `{}`; did you mean `{}`?", option, ours);
+  return fmt::format("unknown {} `{}`; {}",
+                     isOption        ? "option"
+                     : known.empty() ? "argument"
+                                     : "command",
+                     word, known.empty() ? help : didYouMean(option, known));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Renders glTF scenes lit by HDR light probes.", "chromeball"};
+  app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
+  app.require_subcommand(1);
+  addRenderCommand(app);
+  addMergeCommand(app);
+  addCompareCommand(app);
+  addProbeCommand(app);
+  addImageCommand(app);
+  addCameraCommand(app);
+  addLightsCommand(app);
+  addLightsErrorCommand(app);
+  addReferenceCommand(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return report(kBadInput, describe(app, error));
+  }
+  if (std::fflush(stdout) != 0) throwRun("standard output: {}", std::strerror(errno));
+  return 0;
+}
+
+}  // namespace
+
+int runCommandLine(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the size limit is a failed write
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    return report(kBadInput, error.what() + inWords(error.remedy));
+  } catch (const Interrupted& error) {
+    return report(kInterrupted, error.what());
+  } catch (const std::bad_alloc&) {
+    return report(kFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return report(kFailed, error.what());
+  }
+}
+
+}  // namespace chromeball
