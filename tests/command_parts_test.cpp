@@ -126,7 +126,7 @@ TEST(Merge, OfShardsIsTheWholeImage) {
   EXPECT_FALSE(std::filesystem::exists(o));
 }
 
-TEST(Merge, OfCropsIsTheWholeImage) {
+TEST(SlowMerge, OfCropsIsTheWholeImage) {
   const Parts parts;
   const Words fixed{"--samples", "8", "--adaptive", "off", "--guide", "off"};
   const auto part = [&](const std::string& name, const Words& more) {
@@ -146,7 +146,7 @@ TEST(Merge, OfCropsIsTheWholeImage) {
 }
 
 // Large parts are read in bands of rows, of which the last may be smaller.
-TEST(Merge, OfLargePartsIsTheWholeImage) {
+TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
   const Parts parts;
   const auto part = [&](const std::string& name, const Words& more) {
     Words words{"--size", "150x230"};
@@ -212,7 +212,7 @@ TEST(Merge, FindsDamagedHeaders) {
   expectError({"merge", a, b, "-o", parts.out / "o.exr"}, "b.exr: damaged: its checksum is wrong");
 }
 
-TEST(Merge, DenoisesAndComposites) {
+TEST(SlowMerge, DenoisesAndComposites) {
   const Parts parts;
   const Words denoised{"--samples", "16", "--denoise"};
   Words one = denoised, two = denoised;
@@ -265,7 +265,7 @@ TEST(Parts, RefuseWhatIsNoPart) {
   expectError(parts.words({"--shard", "1/2"}, parts.out / "o.png"), "needs an .exr");
 }
 
-TEST(Checkpoint, GoesOnAfterAnInterrupt) {
+TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
   const Words job{"--samples", "1000", "--seed", "3", "--guide", "off"};
@@ -310,8 +310,9 @@ TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr", image = parts.out / "image.exr";
   const Words job{"--samples", "250", "--size", "24x16"};
+  const std::string whole = parts.out / "whole.exr";
   const Stopwatch watch;
-  const std::string whole = parts.render("whole.exr", job);
+  EXPECT_EQ(runExecutable(parts.words(job, whole)).status, 0);
   const double seconds = watch.seconds();
   Words resumed = job;
   resumed.insert(resumed.end(),

@@ -36,7 +36,7 @@ void expectFilesView(const std::string& layer, const std::vector<std::string>& o
   EXPECT_EQ(picture.body, fileContents(preview.folder / "view.png"));
 }
 
-TEST(Preview, ShowsWhatImageViewShows) {
+TEST(SlowPreview, ShowsWhatImageViewShows) {
   expectFilesView("color", {"--exposure", "-1.5", "--tonemap", "aces"},
                   "&exposure=-1.5&tonemap=aces");
   expectFilesView("variance", {"--layer", "variance"}, "");
@@ -54,7 +54,7 @@ TEST(Preview, SavesWhileItRenders) {
   EXPECT_EQ(preview.result().status, 130);
 }
 
-TEST(Preview, GoesOnWhereItCannotSave) {
+TEST(SlowPreview, GoesOnWhereItCannotSave) {
   PreviewRender preview;
   std::filesystem::create_directory(preview.folder / "sub");
   preview.start({"--samples", "1000000"}, "sub/o.exr");
@@ -71,7 +71,7 @@ TEST(Preview, GoesOnWhereItCannotSave) {
 }
 
 // A request that never ends.
-TEST(Preview, EndsWithoutTheEndOfRequests) {
+TEST(SlowPreview, EndsWithoutTheEndOfRequests) {
   PreviewRender preview;
   preview.start({"--samples", "1000000"});
   preview.waitForImage();
@@ -87,7 +87,7 @@ TEST(Preview, EndsWithoutTheEndOfRequests) {
   dripping.join();
 }
 
-TEST(Preview, ReducesWideImages) {
+TEST(SlowPreview, ReducesWideImages) {
   PreviewRender preview;
   preview.start({"--samples", "1000000"});
   preview.waitForImage();
@@ -104,7 +104,7 @@ TEST(Preview, ReducesWideImages) {
 }
 
 // Pages of other servers, and requests that make no sense.
-TEST(Preview, Refuses) {
+TEST(SlowPreview, Refuses) {
   PreviewRender preview;
   preview.start({"--samples", "1000000"});
   preview.waitForImage();
@@ -142,7 +142,7 @@ TEST(Preview, WaitsForNobody) {
   EXPECT_NE(result.error.find("preview at http://127.0.0.1:"), std::string::npos);
 }
 
-TEST(Preview, ShowsOneFrameAfterTheOther) {
+TEST(SlowPreview, ShowsOneFrameAfterTheOther) {
   PreviewRender preview;
   preview.start({"--samples", "20000", "--frames", "0:1", "--orbit", "90"}, "f.#.exr");
   preview.waitForImage();

@@ -35,7 +35,7 @@ class CommandServer {
       _exit(127);
     }
     close(input[0]);
-    close(output[1]);
+    close(output[1]);  // so that read() ends if the server does not start
     char ready = 0;
     check(read(output[0], &ready, 1) == 1, "no start");
     close(output[0]);

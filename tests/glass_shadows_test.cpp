@@ -119,7 +119,7 @@ TEST(GlassShadows, OpenMeshesDoNotAmplify) {
 }
 
 // A pane without another side: shadow rays and paths agree that it absorbs nothing.
-TEST(GlassShadows, OpenMeshesAbsorbNothing) {
+TEST(SlowGlassShadows, OpenMeshesAbsorbNothing) {
   for (const bool up : {false, true}) {
     Scene scene;
     const int pane = addMaterial(scene, glass());

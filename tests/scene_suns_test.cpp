@@ -129,7 +129,7 @@ TEST(SceneSuns, TheCameraSeesTheVisibleOnes) {
 
 // Lobes that are too narrow for the lights of a constellation see the probe instead of them, but
 // are lit by the scene's suns and ambient light, visible or not, like all others.
-TEST(SceneSuns, GiveHighlightsUnderEveryStrategy) {
+TEST(SlowSceneSuns, GiveHighlightsUnderEveryStrategy) {
   GltfWriter w;
   w.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0.4}}}});
   addTriangle(w, {{"material", 0}});  // faces +Z

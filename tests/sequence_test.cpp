@@ -89,7 +89,7 @@ TEST(Sequence, FramesAreStills) {
 }
 
 // The coordinates of a scene that is far away are those of its own centre, which moves.
-TEST(Sequence, FramesFarAwayAreStills) {
+TEST(SlowSequence, FramesFarAwayAreStills) {
   const Moving model;
   const std::string path = (model.w.folder() / "far.toml").string();
   std::ofstream(path)
@@ -128,7 +128,7 @@ TEST(Sequence, SeedsDifferIfAsked) {
 }
 
 // Skins and morphs.
-TEST(Sequence, FramesOfRealModelsAreStills) {
+TEST(SlowSequence, FramesOfRealModelsAreStills) {
   for (const char* name : {"Fox/glTF/Fox.gltf", "SimpleMorph/glTF/SimpleMorph.gltf",
                            "RiggedFigure/glTF/RiggedFigure.gltf"}) {
     const auto model = sharedData(std::string("gltf/") + name);

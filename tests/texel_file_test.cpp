@@ -208,7 +208,7 @@ TEST(TexelFile, ImagesHaveTheSameBitsAndMemoryIsBounded) {
   EXPECT_EQ(fits.statistics["texture_file_bytes"], 0);
 }
 
-TEST(TexelFile, RealModelsHaveTheSameBits) {
+TEST(SlowTexelFile, RealModelsHaveTheSameBits) {
   for (const char* name : {"gltf/DamagedHelmet/glTF-Binary/DamagedHelmet.glb",
                            "gltf/WaterBottle/glTF/WaterBottle.gltf",
                            "gltf/AlphaBlendModeTest/glTF/AlphaBlendModeTest.gltf"}) {

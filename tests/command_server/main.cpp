@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -43,7 +44,10 @@ void runCommand(const std::vector<char*>& strings) {
   for (auto variable = environment; variable != strings.end(); ++variable) putenv(*variable);
   std::vector<char*> argv(arguments, environment);
   argv.push_back(nullptr);
-  std::exit(chromeball::runCommandLine(int(argv.size()) - 1, argv.data()));
+  const int status = chromeball::runCommandLine(int(argv.size()) - 1, argv.data());
+  std::fflush(nullptr);
+  // Not exit(): liblog4cplus, of OpenImageIO, would join threads that only the server has.
+  _exit(status);
 }
 
 // In a process of its own, which ends with the run.

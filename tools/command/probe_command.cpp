@@ -9,6 +9,7 @@ void addProbeCommand(CLI::App& app) {
   probe->require_subcommand(1);
   addProbeInfoCommand(*probe);
   addProbeConvertCommand(*probe);
+  addProbeConvolveCommand(*probe);
   addProbeAssembleCommand(*probe);
   addProbeReflectivityCommand(*probe);
   addProbeSynthCommand(*probe);

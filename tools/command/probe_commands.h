@@ -8,6 +8,7 @@ namespace chromeball {
 
 void addProbeInfoCommand(CLI::App& probe);
 void addProbeConvertCommand(CLI::App& probe);
+void addProbeConvolveCommand(CLI::App& probe);
 void addProbeAssembleCommand(CLI::App& probe);
 void addProbeReflectivityCommand(CLI::App& probe);
 void addProbeSynthCommand(CLI::App& probe);

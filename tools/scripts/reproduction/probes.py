@@ -31,10 +31,10 @@ def mappings(run):
         [(f"noon-{m}.png", f"The project's noon as {m}") for m in ("mirror-ball", "angular", "cube-3x2")])]
 
 
-def compare_irradiance(run, file, more, small):
-    """Mean, maximum in % of the mean; share of texels below 0; of two irradiance maps."""
-    run("probe", "irradiance", file, "exact.pfm", "--size", "64x32")
-    run("probe", "irradiance", small, "other.pfm", "--size", "64x32", *more)
+def compare_irradiance(run, file, *more):
+    """Mean, maximum in % of the mean; share of texels below 0; of the irradiance map with these options."""
+    for name, options in (("exact.pfm", []), ("other.pfm", more)):
+        run("probe", "convolve", file, name, "--kernel", "diffuse", "--size", "64x32", *options)
     exact, other = (read_pfm(run.scratch / name) for name in ("exact.pfm", "other.pfm"))
     height, width = len(exact), len(exact[0])
     total = difference = worst = below = weight = 0.0
@@ -53,9 +53,8 @@ def compare_irradiance(run, file, more, small):
 def irradiance(run):
     rows = []
     for name, file in run.probes(ALL).items():
-        run("probe", "convert", file, "small.exr", "--to", "lat-long", "--size", "32x16")
-        reduced = compare_irradiance(run, file, [], "small.exr")
-        harmonics = compare_irradiance(run, file, ["--method", "sh"], file)
+        reduced = compare_irradiance(run, file, "--from-size", "32x16")
+        harmonics = compare_irradiance(run, file, "--method", "sh")
         rows.append([name, f"{reduced[0]:.2g} / {reduced[1]:.2g}", f"{harmonics[0]:.2g} / {harmonics[1]:.2g}",
                      f"{harmonics[2]:.2g}"])
     if not rows:
@@ -64,7 +63,8 @@ def irradiance(run):
         "HDRI 9.8.1, ML07: irradiance from little data",
         "Nine spherical harmonics keep 99% (HDRI); ML07 integrated every normal for 24 hours, and found faster "
         "ways to have \"too many artefacts\".",
-        ["chromeball probe irradiance PROBE OUT.exr --method sh"],
+        ["chromeball probe convolve PROBE OUT.exr --kernel diffuse --from-size 32x16",
+         "chromeball probe convolve PROBE OUT.exr --kernel diffuse --method sh"],
         "Mean / maximum error in percent of the mean irradiance, from a reduction to 32 x 16 texels and from nine "
         "harmonics, and the share of the normals whose irradiance is negative with these:\n\n"
         + table(["probe", "32 x 16", "harmonics", "negative, %"], rows),

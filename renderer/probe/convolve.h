@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prefiltered environment maps: a probe blurred by a kernel (HDRI book, section 9.8.1).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "image/image.h"
+#include "math/rotation.h"
+#include "probe/mapping.h"
+#include "probe/zonal_kernel.h"
+
+namespace chromeball {
+
+// The mean of radiance under the kernel around each of the `directions` (unit). `latLong` is finite
+// and constant over each texel, of any size. Where the kernel varies little the sum takes
+// rectangles of many texels, with their first moments; texels larger than that are divided: the
+// error is below 1e-3 of the mean under the kernel (tests/convolve_test.cpp). A constant map keeps
+// its value to 1e-6 (under a cosine to 6e-5: exactIrradiance()). Parallel; the same bits for any number of threads.
+std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
+                            std::span<const vec3> directions);
+
+// The same from nine spherical harmonics (Ramamoorthi and Hanrahan 2001): blurred more than by the
+// kernel where that is narrow, and perhaps negative.
+std::vector<dvec3> shConvolve(const Image& latLong, const ZonalKernel& kernel,
+                              std::span<const vec3> directions);
+
+// Each texel the mean of those that it covers, by solid angle. Throws InputError if `size` is
+// larger than the map.
+Image reduced(const Image& latLong, const ImageSize& size);
+
+}  // namespace chromeball

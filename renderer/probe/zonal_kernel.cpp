@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "probe/zonal_kernel.h"
+
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <cmath>
+
+#include "base/error.h"
+#include "math/vec.h"
+
+namespace chromeball {
+
+ZonalKernel ZonalKernel::phong(double exponent) {
+  if (!(exponent >= 1 && exponent <= 1e8))
+    throwInput("phong: the exponent {} should be from 1 to 1e8", exponent);
+  return {Kind::Phong, exponent, 1 / std::sqrt(exponent)};
+}
+
+ZonalKernel ZonalKernel::ggx(double roughness) {
+  if (!(roughness >= 0.01 && roughness <= 1))
+    throwInput("ggx: the roughness {} should be from 0.01 to 1; a mirror shows the map as it is",
+               roughness);
+  const double alpha = roughness * roughness;
+  return {Kind::Ggx, alpha * alpha, alpha};
+}
+
+// With the half vector at half the angle, D is proportional to 1 / q^2, q = 1 - (1 - alpha^2)
+// cos^2(angle / 2) = alpha^2 + (1 - alpha^2)(1 - cos) / 2.
+ZonalKernel::Value ZonalKernel::at(double cosine) const {
+  if (cosine <= 0) return {0, 0};
+  if (kind_ == Kind::Phong) {
+    const double power = std::pow(cosine, parameter_ - 1);
+    return {power * cosine, parameter_ * power};
+  }
+  // alpha^4 / q^2, which is 1 on the axis.
+  const double b = 1 - parameter_, q = (parameter_ + b * (1 - cosine) / 2) / parameter_;
+  return {cosine / (q * q), (1 + cosine * b / (parameter_ * q)) / (q * q)};
+}
+
+std::array<double, 3> ZonalKernel::legendreMoments() const {
+  if (kind_ == Kind::Phong) {
+    const double n = parameter_, zero = 2 * kPiD / (n + 1);
+    return {zero, 2 * kPiD / (n + 2), (3 * 2 * kPiD / (n + 3) - zero) / 2};
+  }
+  boost::math::quadrature::tanh_sinh<double> quadrature;
+  const auto moment = [&](const auto& polynomial) {
+    // t = (1 - cos) / 2 keeps the precision next to the axis.
+    const auto integrand = [&](double t) {
+      const double cosine = 1 - 2 * t, q = 1 + (1 - parameter_) * t / parameter_;
+      return polynomial(cosine) * cosine / (q * q);
+    };
+    return 4 * kPiD * quadrature.integrate(integrand, 0.0, 0.5);
+  };
+  return {moment([](double) { return 1.0; }), moment([](double c) { return c; }),
+          moment([](double c) { return (3 * c * c - 1) / 2; })};
+}
+
+}  // namespace chromeball

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels of prefiltered environment maps: functions of the angle to the direction that is
+// looked up. Not normalised; their integral over the sphere is integral().
+#pragma once
+
+#include <array>
+
+namespace chromeball {
+
+class ZonalKernel {
+ public:
+  // max(0, cos)^exponent, at least 1: the map of a Phong lobe around the mirror direction (HDRI
+  // book, section 9.8.1; Heidrich and Seidel 1999). Exponent 1 is irradiance / pi. Throws
+  // InputError if the exponent is not in [1, 1e8].
+  static ZonalKernel phong(double exponent);
+
+  // D(h) max(0, cos): the GGX distribution at the half vector, alpha = roughness^2, weighted by the
+  // cosine, seen along the normal (Karis 2013, "Real Shading in Unreal Engine 4"): the first factor
+  // of the split sum. Roughness 1 is irradiance / pi. Throws InputError if the roughness is not in
+  // [0.01, 1].
+  static ZonalKernel ggx(double roughness);
+
+  struct Value {
+    double value, slope;  // slope: derivative by the cosine
+  };
+  Value at(double cosine) const;
+
+  // Whether it is max(0, cos): irradiance / pi.
+  bool isCosine() const { return parameter_ == 1; }
+
+  // The angle from the axis, in radians, at which the kernel begins to fall.
+  double width() const { return width_; }
+
+  // 2 pi times the integral over the cosine of the kernel times the Legendre polynomials P0, P1,
+  // P2.
+  std::array<double, 3> legendreMoments() const;
+  double integral() const { return legendreMoments()[0]; }
+
+ private:
+  enum class Kind { Phong, Ggx };
+  ZonalKernel(Kind kind, double parameter, double width)
+      : kind_(kind), parameter_(parameter), width_(width) {}
+
+  Kind kind_;
+  double parameter_;  // the exponent, or alpha^2
+  double width_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prefiltered maps: closed forms, a direct sum, irradiance and harmonics.
+#include "probe/convolve.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "probe/irradiance.h"
+#include "probe/solid_angle.h"
+#include "probe/synth.h"
+
+namespace chromeball {
+namespace {
+
+const std::vector<ZonalKernel> kKernels{ZonalKernel::phong(1),   ZonalKernel::phong(20),
+                                        ZonalKernel::phong(5e3), ZonalKernel::ggx(0.05),
+                                        ZonalKernel::ggx(0.4),   ZonalKernel::ggx(1)};
+
+// The direct sum, with each texel divided into `parts`^2.
+dvec3 directSum(const Image& map, const ZonalKernel& kernel, const dvec3& axis, int parts) {
+  dvec3 sum(0);
+  double weight = 0;
+  const ImageSize fine{map.width * parts, map.height * parts};
+  for (int y = 0; y < fine.height; ++y)
+    for (int x = 0; x < fine.width; ++x) {
+      const double w = texelSolidAngle(y, fine.width, fine.height) *
+                       kernel.at(glm::dot(axis, texelDirection(fine, x, y))).value;
+      sum += w * dvec3(map.rgb(x / parts, y / parts));
+      weight += w;
+    }
+  return sum / weight;
+}
+
+TEST(Convolve, AConstantMapKeepsItsValue) {
+  for (const ImageSize& size : {ImageSize{1, 1}, {5, 3}, {256, 128}}) {
+    const Image map = constantProbe(size, Rgb(1e-8f, 1, 1e10f));
+    for (const ZonalKernel& kernel : kKernels)
+      for (const dvec3& mean : convolve(map, kernel, texelDirections({16, 8}))) {
+        const double tolerance = kernel.isCosine() ? 6e-5 : 1e-6;
+        EXPECT_NEAR(mean.x, 1e-8, 1e-8 * tolerance);
+        EXPECT_NEAR(mean.y, 1, tolerance);
+        EXPECT_NEAR(mean.z, 1e10, 1e10 * tolerance);
+      }
+  }
+}
+
+// 1 + s . d becomes 1 + (n + 1) / (n + 2) s . d under a Phong lobe of exponent n.
+TEST(Convolve, OfAGradientHasAClosedForm) {
+  const dvec3 s(0.3, -0.2, 0.5);
+  const Image map = gradientProbe({256, 128}, Rgb(1), s);
+  const std::vector<vec3> axes = texelDirections({16, 8});
+  for (const ZonalKernel& kernel : kKernels) {
+    const auto moments = kernel.legendreMoments();
+    const double factor = moments[1] / moments[0];
+    const std::vector<dvec3> means = convolve(map, kernel, axes);
+    for (size_t i = 0; i < axes.size(); ++i)
+      EXPECT_NEAR(means[i].x, 1 + factor * glm::dot(s, dvec3(axes[i])), 5e-4);
+  }
+  for (const double n : {1.0, 7.0, 1e4}) {
+    const auto moments = ZonalKernel::phong(n).legendreMoments();
+    EXPECT_NEAR(moments[1] / moments[0], (n + 1) / (n + 2), 1e-12);
+    EXPECT_NEAR(moments[0], 2 * kPiD / (n + 1), 1e-12);
+  }
+}
+
+// 4 pi times the integral over t = (1 - cos) / 2 in [0, 1/2] of (1 - 2 t) / (1 + b t)^2, with
+// b = 1 / alpha^2 - 1.
+TEST(Convolve, IntegralOfGgxHasAClosedForm) {
+  for (const double roughness : {0.01, 0.1, 0.5, 0.9}) {
+    const double b = std::pow(roughness, -4) - 1;
+    const double exact = 4 * kPiD * (b - 2 * std::log1p(b / 2)) / (b * b);
+    EXPECT_NEAR(ZonalKernel::ggx(roughness).integral() / exact, 1, 1e-9) << roughness;
+  }
+}
+
+TEST(Convolve, AgreesWithTheDirectSum) {
+  Image map = reduced(studioProbe({512, 256}), {96, 48});
+  map.setRgb(40, 12, Rgb(1e4f, 9e3f, 7e3f));  // a sun
+  double largest = 0;
+  for (const ZonalKernel& kernel : kKernels)
+    for (const dvec3& d : {dvec3(0, 1, 0), dvec3(0.6, 0.64, 0.48), dvec3(-0.8, -0.36, 0.48)}) {
+      const vec3 axis[] = {vec3(d)};
+      const dvec3 found = convolve(map, kernel, axis)[0], truth = directSum(map, kernel, d, 12);
+      largest = std::max(largest, glm::distance(found, truth) / glm::length(truth));
+      EXPECT_LT(glm::distance(found, truth), 2e-3 * glm::length(truth)) << kernel.width();
+    }
+  RecordProperty("largest", std::to_string(largest));
+}
+
+TEST(Convolve, ByACosineIsIrradianceOverPi) {
+  const Image map = studioProbe({256, 128});
+  const std::vector<vec3> axes = texelDirections({24, 12});
+  const std::vector<dvec3> exact = exactIrradiance(map, axes);
+  dvec3 mean(0);
+  for (const dvec3& e : exact) mean += e / kPiD / double(exact.size());
+  // The last has the general sums.
+  for (const ZonalKernel& kernel :
+       {ZonalKernel::phong(1), ZonalKernel::ggx(1), ZonalKernel::phong(1.00001)}) {
+    const std::vector<dvec3> found = convolve(map, kernel, axes);
+    for (size_t i = 0; i < axes.size(); ++i)
+      EXPECT_LT(glm::distance(found[i], exact[i] / kPiD), 1e-3 * glm::length(mean)) << i;
+  }
+}
+
+TEST(Convolve, ByANarrowKernelIsTheMap) {
+  const Image map = studioProbe({64, 32});
+  const std::vector<vec3> axes = texelDirections({64, 32});
+  const std::vector<dvec3> found = convolve(map, ZonalKernel::phong(1e8), axes);
+  for (size_t i = 0; i < axes.size(); ++i) {
+    const dvec3 texel(map.rgb(int(i) % 64, int(i) / 64));
+    EXPECT_LT(glm::distance(found[i], texel), 1e-4 * (1 + glm::length(texel))) << i;
+  }
+}
+
+TEST(Convolve, ByHarmonicsIsThatOfIrradiance) {
+  const Image map = studioProbe({128, 64});
+  const std::vector<vec3> axes = texelDirections({8, 4});
+  const std::vector<dvec3> irradiance = shIrradiance(map, axes),
+                           means = shConvolve(map, ZonalKernel::phong(1), axes);
+  for (size_t i = 0; i < axes.size(); ++i)
+    EXPECT_LT(glm::distance(means[i], irradiance[i] / kPiD), 1e-6 * glm::length(means[i]));
+}
+
+TEST(Convolve, ReductionKeepsTheMeanRadiance) {
+  const Image map = studioProbe({300, 150});
+  for (const ImageSize& size : {ImageSize{32, 16}, {7, 3}, {1, 1}, {300, 150}})
+    EXPECT_LT(glm::distance(meanRadiance(reduced(map, size)), meanRadiance(map)),
+              1e-5 * glm::length(meanRadiance(map)));
+  EXPECT_EQ(reduced(map, {300, 150}).texels, map.texels);
+  EXPECT_THROW(reduced(map, {301, 150}), InputError);
+}
+
+TEST(Convolve, KernelsOutsideTheirRangeAreRejected) {
+  for (const double n : {0.0, 0.5, -1.0, 1e9, std::nan("")})
+    EXPECT_THROW(ZonalKernel::phong(n), InputError) << n;
+  for (const double roughness : {0.0, 0.001, 1.1, -1.0, std::nan("")})
+    EXPECT_THROW(ZonalKernel::ggx(roughness), InputError) << roughness;
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chains of prefiltered cube maps, and chromeball probe convolve.
+#include "probe/cube_mips.h"
+
+#include <Imath/half.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "base/error.h"
+#include "image/io/write_image.h"
+#include "probe/irradiance.h"
+#include "probe/synth.h"
+#include "probe/zonal_kernel.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+// The direction of OpenGL 4.6, section 8.13: from face and texture coordinates in [-1, 1].
+dvec3 openGlDirection(int face, double s, double t) {
+  switch (face) {
+    case 0:
+      return {1, -t, -s};
+    case 1:
+      return {-1, -t, s};
+    case 2:
+      return {s, 1, t};
+    case 3:
+      return {s, -1, -t};
+    case 4:
+      return {s, -t, 1};
+    default:
+      return {-s, -t, -1};
+  }
+}
+
+// Each level of a gradient has its closed form, where OpenGL looks it up.
+TEST(CubeMips, LevelsOfAGradient) {
+  const dvec3 slope(0.5, -0.3, 0.2);
+  const std::vector<CubeLevel> levels =
+      cubeMips(gradientProbe({256, 128}, Rgb(1), slope), 64, MipRoughness::Khronos);
+  ASSERT_EQ(levels.size(), 3u);
+  for (size_t k = 0; k < levels.size(); ++k) {
+    const auto& [roughness, faces] = levels[k];
+    EXPECT_EQ(roughness, double(k) / 2);
+    const int size = faces.width;
+    EXPECT_EQ(size, 64 >> k);
+    double factor = 1;
+    if (k > 0) {
+      const auto moments = ZonalKernel::ggx(roughness).legendreMoments();
+      factor = moments[1] / moments[0];
+    }
+    for (int face = 0; face < 6; ++face)
+      for (int y = 0; y < size; y += 3)
+        for (int x = 0; x < size; x += 3) {
+          const dvec3 d = glm::normalize(
+              openGlDirection(face, (2 * x + 1.0) / size - 1, (2 * y + 1.0) / size - 1));
+          EXPECT_NEAR(faces.rgb(x, face * size + y).x, 1 + factor * glm::dot(slope, d), 2e-3)
+              << k << ' ' << face;
+        }
+  }
+}
+
+TEST(CubeMips, RoughnessOfTheLevels) {
+  const Image map = constantProbe({4, 2}, Rgb(1));
+  const std::vector<CubeLevel> levels = cubeMips(map, 128, MipRoughness::Filament);
+  ASSERT_EQ(levels.size(), 4u);
+  for (size_t k = 0; k < levels.size(); ++k) {
+    const double r = levels[k].roughness;
+    EXPECT_NEAR(r * (2 - r), double(k) / 3, 1e-12);
+  }
+  EXPECT_EQ(cubeMips(map, 8, MipRoughness::Khronos).size(), 1u);
+  for (const int size : {0, -4, 3, 100, 8192})
+    EXPECT_THROW(cubeMips(map, size, MipRoughness::Khronos), InputError) << size;
+}
+
+template <class Integer>
+Integer at(const std::string& bytes, size_t offset) {
+  Integer value;
+  std::memcpy(&value, bytes.substr(offset, sizeof value).data(), sizeof value);
+  return value;
+}
+
+class CommandConvolve : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  std::string in_ = folder_ / "in.exr";
+
+  CommandConvolve() { writeImage(in_, gradientProbe({64, 32}, Rgb(2, 1, 1e5f), {0, 0.5, 0})); }
+  CommandResult run(const std::string& out, std::vector<std::string> more) {
+    more.insert(more.begin(), {"probe", "convolve", in_, folder_ / out});
+    return runCommand(more);
+  }
+};
+
+TEST_F(CommandConvolve, WritesKtx2) {
+  const CommandResult result = run("o.ktx2", {"--size", "64x64"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("exceed a half float"), std::string::npos);
+  EXPECT_NE(result.out.find("16x16: roughness 1"), std::string::npos);
+  const std::string file = fileContents(folder_ / "o.ktx2");
+  EXPECT_EQ(file.substr(0, 12), "\xABKTX 20\xBB\r\n\x1A\n");
+  const std::array<uint32_t, 9> header{97, 2, 64, 64, 0, 0, 6, 3, 0};
+  for (size_t i = 0; i < header.size(); ++i) EXPECT_EQ(at<uint32_t>(file, 12 + 4 * i), header[i]);
+  const auto descriptor = at<uint32_t>(file, 48), length = at<uint32_t>(file, 52);
+  EXPECT_EQ(at<uint32_t>(file, descriptor), length);
+  EXPECT_EQ(at<uint32_t>(file, 56), descriptor + length);
+  const auto top = [&](size_t level) {  // the middle of +Y
+    const uint64_t offset = at<uint64_t>(file, 80 + 24 * level),
+                   bytes = at<uint64_t>(file, 88 + 24 * level), size = 64 >> level;
+    EXPECT_EQ(bytes, 6 * size * size * 8);
+    EXPECT_EQ(at<uint64_t>(file, 96 + 24 * level), bytes);
+    EXPECT_EQ(offset % 8, 0u);
+    EXPECT_LE(offset + bytes, file.size());
+    half value;
+    value.setBits(at<uint16_t>(file, offset + 8 * (size * size * 2 + size * size / 2 + size / 2)));
+    return float(value);
+  };
+  EXPECT_NEAR(top(0), 3, 0.01);
+  EXPECT_NEAR(top(2), 2 * (1 + 0.5 * 2 / 3), 0.01);
+  EXPECT_EQ(at<uint64_t>(file, 80) + at<uint64_t>(file, 88), file.size());  // the largest is last
+}
+
+TEST_F(CommandConvolve, WritesMaps) {
+  ASSERT_EQ(run("d.pfm", {"--kernel", "diffuse", "--size", "16x8"}).status, 0);
+  ASSERT_EQ(run("s.pfm", {"--kernel", "diffuse", "--size", "16x8", "--method", "sh"}).status, 0);
+  ASSERT_EQ(run("p.pfm", {"--kernel", "phong:1", "--size", "16x8", "--from-size", "32x16"}).status,
+            0);
+  const Image exact = irradianceMap(readImage(in_), {16, 8});
+  for (const char* name : {"d.pfm", "s.pfm", "p.pfm"}) {
+    const Image map = readImage(folder_ / name);
+    ASSERT_EQ(map.width, 16);
+    for (int i = 0; i < 16; i += 5)
+      EXPECT_NEAR(map.rgb(i, 3).x, exact.rgb(i, 3).x * kInvPi, 5e-3) << name;
+  }
+  ASSERT_EQ(run("r.pfm", {"--kernel", "ggx:0.3", "--rotation", "0,90,0"}).status, 0);
+  const Image turned = readImage(folder_ / "r.pfm");
+  EXPECT_EQ(turned.width, 64);  // as the probe; the bright top is on +Z now
+  EXPECT_GT(turned.rgb(0, 16).x, 2.5f);
+}
+
+TEST_F(CommandConvolve, Errors) {
+  const auto fails = [&](const std::string& out, const std::vector<std::string>& more,
+                         const std::string& reason) {
+    std::vector<std::string> all{"probe", "convolve", in_, folder_ / out};
+    all.insert(all.end(), more.begin(), more.end());
+    expectError(all, reason);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / out));
+  };
+  fails("o.exr", {}, "--kernel: give diffuse");
+  fails("o.exr", {"--kernel", "blinn"}, "unknown kernel `blinn`");
+  fails("o.exr", {"--kernel", "diffuse:2"}, "unknown kernel `diffuse`");
+  fails("o.exr", {"--kernel", "ggx"}, "ggx needs a roughness");
+  fails("o.exr", {"--kernel", "phong:"}, "--kernel");
+  fails("o.exr", {"--kernel", "phong:0.5"}, "from 1 to 1e8");
+  fails("o.exr", {"--kernel", "ggx:0"}, "from 0.01 to 1");
+  fails("o.exr", {"--kernel", "ggx:nan"}, "is not 1 number");
+  fails("o.exr", {"--kernel", "diffuse", "--mips", "khronos"}, "only a .ktx2 has levels");
+  fails("o.exr", {"--kernel", "diffuse", "--method", "fast"}, "unknown method");
+  fails("o.exr", {"--kernel", "diffuse", "--from-size", "128x64"}, "larger than the map");
+  fails("o.ktx2", {"--kernel", "diffuse"}, "a .ktx2 has a level for each");
+  fails("o.ktx2", {"--mips", "unity"}, "unknown roughness of levels `unity`");
+  fails("o.ktx2", {"--size", "64x32"}, "a face of a cube is square");
+  fails("o.ktx2", {"--size", "48x48"}, "a power of two");
+  fails("none/o.ktx2", {}, "none");
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball probe convolve IN OUT --kernel KERNEL
+#include <optional>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/suggest.h"
+#include "busy_line.h"
+#include "image/io/write_image.h"
+#include "image/io/write_ktx2.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/convert.h"
+#include "probe/convolve.h"
+#include "probe/cube_mips.h"
+#include "probe/irradiance.h"
+#include "probe/load.h"
+#include "probe_commands.h"
+#include "rotation_option.h"
+#include "write_probe.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string in, out, kernel, size, fromSize, method = "exact", mips, mapping = "auto";
+  Rotation rotation;
+};
+
+// The kernel with a parameter, in the form NAME:NUMBER.
+ZonalKernel parseKernel(const std::string& text) {
+  const size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  if (text == "diffuse") return ZonalKernel::phong(1);
+  if (name != "phong" && name != "ggx")
+    throwInput("--kernel: unknown kernel `{}`; {}", name,
+               didYouMean(name, {"diffuse", "phong", "ggx"}));
+  if (colon == std::string::npos)
+    throwInput("--kernel: {} needs {}", text,
+               text == "ggx" ? "a roughness, ggx:0.3" : "an exponent, phong:20");
+  const double number = parseNumbers(text.substr(colon + 1), 1, "--kernel")[0];
+  return name == "phong" ? ZonalKernel::phong(number) : ZonalKernel::ggx(number);
+}
+
+bool isKtx(const Arguments& arguments) { return arguments.out.ends_with(".ktx2"); }
+
+void check(const Arguments& arguments) {
+  if (isKtx(arguments)) {
+    checkReplaceable(arguments.out);
+    if (!arguments.kernel.empty() || arguments.method != "exact")
+      throwInput("--kernel, --method: a .ktx2 has a level for each of several roughnesses of GGX");
+  } else {
+    checkWritable(arguments.out);
+    if (!arguments.mips.empty()) throwInput("--mips: only a .ktx2 has levels");
+    if (arguments.kernel.empty()) throwInput("--kernel: give diffuse, phong:N or ggx:ROUGHNESS");
+  }
+  checkDistinct({arguments.out}, {arguments.in});
+  if (arguments.method != "exact" && arguments.method != "sh")
+    throwInput("--method: unknown method `{}`; {}", arguments.method,
+               didYouMean(arguments.method, {"exact", "sh"}));
+}
+
+Image convolvedMap(const Arguments& arguments, const Image& latLong, const ZonalKernel& kernel,
+                   const ImageSize& size) {
+  std::vector<vec3> directions = texelDirections(size);
+  for (vec3& direction : directions) direction = arguments.rotation.back(direction);
+  const bool isExact = arguments.method == "exact";
+  const std::vector<dvec3> colors =
+      isExact ? convolve(latLong, kernel, directions) : shConvolve(latLong, kernel, directions);
+  Image map(size.width, size.height, 3);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) map.setRgb(x, y, Rgb(colors[size_t(y) * size.width + x]));
+  return map;
+}
+
+void writeLevels(const Arguments& arguments, const Image& latLong) {
+  const ImageSize face = parseSize(arguments.size.empty() ? "256x256" : arguments.size, "--size");
+  if (face.width != face.height) throwInput("--size: a face of a cube is square");
+  const std::string mips = arguments.mips.empty() ? "khronos" : arguments.mips;
+  const MipRoughness roughness = parseMipRoughness(mips, "--mips");
+  std::optional<BusyLine> busy("prefiltering the levels");
+  const Image turned = convert(latLong, Mapping::LatLong, Mapping::LatLong,
+                               {latLong.width, latLong.height}, arguments.rotation);
+  const std::vector<CubeLevel> levels = cubeMips(turned, face.width, roughness);
+  std::vector<const Image*> images;
+  for (const CubeLevel& level : levels) images.push_back(&level.faces);
+  const size_t clipped = writeKtx2(arguments.out, images);
+  busy.reset();
+  for (const CubeLevel& level : levels)
+    fmt::print("{0}x{0}: roughness {1:.4g}\n", level.faces.width, level.roughness);
+  if (clipped)
+    warn(fmt::format("{}: {} channels exceed a half float and are clipped at 65504", arguments.out,
+                     clipped));
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
+  std::optional<ZonalKernel> kernel;
+  if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
+  LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
+  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  if (!arguments.fromSize.empty())
+    probe.latLong = reduced(probe.latLong, parseSize(arguments.fromSize, "--from-size"));
+  if (!kernel) {
+    writeLevels(arguments, probe.latLong);
+    return;
+  }
+  const ImageSize size = arguments.size.empty()
+                             ? ImageSize{probe.latLong.width, probe.latLong.height}
+                             : parseSize(arguments.size, "--size");
+  std::optional<BusyLine> busy("convolving the probe");
+  const Image map = convolvedMap(arguments, probe.latLong, *kernel, size);
+  busy.reset();
+  writeProbe(arguments.out, map);
+}
+
+}  // namespace
+
+void addProbeConvolveCommand(CLI::App& probe) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = probe.add_subcommand(
+      "convolve", "Blur a probe by the lobe of a surface: a prefiltered environment map.");
+  command->add_option("IN", arguments->in, "the probe's image")->required();
+  command
+      ->add_option("OUT", arguments->out,
+                   "the lat-long map to write: .exr, .hdr, .pfm or .png; or a cube map with levels "
+                   "for the roughnesses of GGX: .ktx2")
+      ->required();
+  command->add_option("--kernel", arguments->kernel,
+                      "diffuse (irradiance / pi), phong:EXPONENT or ggx:ROUGHNESS");
+  command->add_option("--size", arguments->size,
+                      "WIDTHxHEIGHT; else the probe's, as lat-long. Of a face of a .ktx2: 256x256");
+  command->add_option("--from-size", arguments->fromSize,
+                      "reduce the probe to WIDTHxHEIGHT first: faster, and less exact");
+  command
+      ->add_option("--method", arguments->method,
+                   "exact, or sh: spherical harmonics to order 2, may be negative")
+      ->capture_default_str();
+  command->add_option("--mips", arguments->mips,
+                      "the roughness of the levels of a .ktx2: khronos (linear), or filament");
+  addRotationOption(*command, arguments->rotation);
+  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
