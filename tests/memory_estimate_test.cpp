@@ -37,7 +37,7 @@ class SlowMemoryEstimate : public testing::Test {
   // The large scene takes so much more than a small one that its category decides.
   void expectStated(const std::string& model, const std::string& probe, const Words& more) {
     const auto memory = [&](const Words& arguments) {
-      const CommandResult result = runCommand(arguments);
+      const CommandResult result = runExecutable(arguments);  // a fork shares memory
       EXPECT_EQ(result.status, 0) << result.error;
       return nlohmann::json::parse(std::ifstream(out_ / "a.json"))["memory"];
     };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/zonal_kernel.h"
 
-#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 
 #include "base/error.h"
@@ -37,21 +36,23 @@ ZonalKernel::Value ZonalKernel::at(double cosine) const {
 }
 
 std::array<double, 3> ZonalKernel::legendreMoments() const {
-  if (kind_ == Kind::Phong) {
+  if (kind_ == Kind::Phong || isCosine()) {
     const double n = parameter_, zero = 2 * kPiD / (n + 1);
     return {zero, 2 * kPiD / (n + 2), (3 * 2 * kPiD / (n + 3) - zero) / 2};
   }
-  boost::math::quadrature::tanh_sinh<double> quadrature;
-  const auto moment = [&](const auto& polynomial) {
-    // t = (1 - cos) / 2 keeps the precision next to the axis.
-    const auto integrand = [&](double t) {
-      const double cosine = 1 - 2 * t, q = 1 + (1 - parameter_) * t / parameter_;
-      return polynomial(cosine) * cosine / (q * q);
-    };
-    return 4 * kPiD * quadrature.integrate(integrand, 0.0, 0.5);
-  };
-  return {moment([](double) { return 1.0; }), moment([](double c) { return c; }),
-          moment([](double c) { return (3 * c * c - 1) / 2; })};
+  // Over t = (1 - cos) / 2 = (exp(s) - 1) / b, in which 1 / q^2 = exp(-2 s): Simpson's rule in s.
+  constexpr int kSteps = 2048;
+  const double b = 1 / parameter_ - 1, step = std::log1p(b / 2) / kSteps;
+  std::array<double, 3> moments{};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double s = step * i, cosine = 1 - 2 * std::expm1(s) / b;
+    const double weight = (i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2) * step / 3;
+    const double value = 4 * kPiD * weight * cosine * std::exp(-s) / b;
+    moments[0] += value;
+    moments[1] += value * cosine;
+    moments[2] += value * (3 * cosine * cosine - 1) / 2;
+  }
+  return moments;
 }
 
 }  // namespace chromeball
