@@ -35,7 +35,7 @@ TEST(Convolve, AConstantMapKeepsItsValue) {
   for (const ImageSize& size : {ImageSize{1, 1}, {5, 3}, {256, 128}}) {
     const Image map = constantProbe(size, Rgb(1e-8f, 1, 1e10f));
     for (const ZonalKernel& kernel : kKernels)
-      for (const dvec3& mean : convolve(map, kernel, texelDirections({16, 8}))) {
+      for (const dvec3& mean : convolve(map, kernel, texelDirections({8, 4}))) {
         const double tolerance = kernel.isCosine() ? 6e-5 : 1e-6;
         EXPECT_NEAR(mean.x, 1e-8, 1e-8 * tolerance);
         EXPECT_NEAR(mean.y, 1, tolerance);
@@ -48,7 +48,7 @@ TEST(Convolve, AConstantMapKeepsItsValue) {
 TEST(Convolve, OfAGradientHasAClosedForm) {
   const dvec3 s(0.3, -0.2, 0.5);
   const Image map = gradientProbe({256, 128}, Rgb(1), s);
-  const std::vector<vec3> axes = texelDirections({16, 8});
+  const std::vector<vec3> axes = texelDirections({8, 4});
   for (const ZonalKernel& kernel : kKernels) {
     const auto moments = kernel.legendreMoments();
     const double factor = moments[1] / moments[0];
@@ -81,8 +81,9 @@ TEST(Convolve, AgreesWithTheDirectSum) {
     for (const dvec3& d : {dvec3(0, 1, 0), dvec3(0.6, 0.64, 0.48), dvec3(-0.8, -0.36, 0.48)}) {
       const vec3 axis[] = {vec3(d)};
       const dvec3 found = convolve(map, kernel, axis)[0], truth = directSum(map, kernel, d, 12);
-      largest = std::max(largest, glm::distance(found, truth) / glm::length(truth));
-      EXPECT_LT(glm::distance(found, truth), 2e-3 * glm::length(truth)) << kernel.width();
+      const double scale = glm::length(truth) + glm::length(meanRadiance(map));
+      largest = std::max(largest, glm::distance(found, truth) / scale);
+      EXPECT_LT(glm::distance(found, truth), 1e-3 * scale) << kernel.width();
     }
   RecordProperty("largest", std::to_string(largest));
 }
@@ -105,10 +106,10 @@ TEST(Convolve, ByACosineIsIrradianceOverPi) {
 TEST(Convolve, ByANarrowKernelIsTheMap) {
   const Image map = studioProbe({64, 32});
   const std::vector<vec3> axes = texelDirections({64, 32});
-  const std::vector<dvec3> found = convolve(map, ZonalKernel::phong(1e8), axes);
-  for (size_t i = 0; i < axes.size(); ++i) {
+  for (size_t i = 0; i < axes.size(); i += 37) {
+    const dvec3 found = convolve(map, ZonalKernel::phong(1e8), {&axes[i], 1})[0];
     const dvec3 texel(map.rgb(int(i) % 64, int(i) / 64));
-    EXPECT_LT(glm::distance(found[i], texel), 1e-4 * (1 + glm::length(texel))) << i;
+    EXPECT_LT(glm::distance(found, texel), 1e-4 * (1 + glm::length(texel))) << i;
   }
 }
 

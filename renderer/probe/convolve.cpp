@@ -16,23 +16,31 @@ namespace {
 // The integrals under the kernel around one direction, by a walk through the map's quadtree.
 class KernelSum {
  public:
-  KernelSum(const MapMoments& map, const ZonalKernel& kernel, const vec3& axis)
-      : map_(map), kernel_(kernel), axis_(glm::normalize(dvec3(axis))) {
+  // `meanKernel`: of the kernel over the sphere.
+  KernelSum(const MapMoments& map, const ZonalKernel& kernel, double meanKernel, const vec3& axis)
+      : map_(map), kernel_(kernel), meanKernel_(meanKernel), axis_(glm::normalize(dvec3(axis))) {
     visit(map.root());
   }
 
   dvec3 mean() const { return radiance_ / weight_; }
 
  private:
-  // A rectangle's radius, over its distance from the axis plus the kernel's width, up to which the
-  // kernel is linear in it.
-  static constexpr double kRefinement = 1.0 / 24;
-
   enum class Step { Skip, Add, Divide };
+  // Add where the kernel is linear in the cosine over the rectangle: to 1e-3 of the geometric mean
+  // of its value and its peak, which is 1, or to 1e-3 of its mean over the sphere.
   Step stepAt(const RectangleGeometry& g) const {
-    if (glm::dot(axis_, g.centre) + g.radius <= 0) return Step::Skip;  // below the horizon
-    const double distance = std::max(glm::distance(axis_, g.centre) - g.radius, 0.0);
-    return g.radius <= kRefinement * (kernel_.width() + distance) ? Step::Add : Step::Divide;
+    constexpr double kError = 1e-3, kNextToHorizon = 0.02;
+    const double cosine = glm::dot(axis_, g.centre), r = g.radius;
+    if (cosine + r <= 0) return Step::Skip;
+    if (cosine - r < 0 && r > kNextToHorizon) return Step::Divide;
+    const double distance = std::max(glm::distance(axis_, g.centre) - r, 0.0);
+    if (r > (kernel_.width() + distance) / 4) return Step::Divide;
+    const ZonalKernel::Value k = kernel_.at(cosine);
+    // The change over the rectangle; the mean of its square's share in the error is 1/8.
+    const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0)), change = k.slope * sine * r;
+    return change * change <= 8 * kError * k.value * std::max(std::sqrt(k.value), meanKernel_)
+               ? Step::Add
+               : Step::Divide;
   }
 
   void visit(const MapMoments::Node& node) {
@@ -69,6 +77,7 @@ class KernelSum {
 
   const MapMoments& map_;
   const ZonalKernel& kernel_;
+  const double meanKernel_;
   const dvec3 axis_;
   dvec3 radiance_{0};
   double weight_ = 0;
@@ -84,11 +93,12 @@ std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
     return means;
   }
   const MapMoments map(latLong);
+  const double meanKernel = kernel.integral() / (4 * kPiD);
   std::vector<dvec3> means(directions.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, directions.size(), 16),
                     [&](const tbb::blocked_range<size_t>& range) {
                       for (size_t i = range.begin(); i < range.end(); ++i)
-                        means[i] = KernelSum(map, kernel, directions[i]).mean();
+                        means[i] = KernelSum(map, kernel, meanKernel, directions[i]).mean();
                     });
   return means;
 }

@@ -13,10 +13,12 @@
 namespace chromeball {
 
 // The mean of radiance under the kernel around each of the `directions` (unit). `latLong` is finite
-// and constant over each texel, of any size. Where the kernel varies little the sum takes
-// rectangles of many texels, with their first moments; texels larger than that are divided: the
-// error is below 1e-3 of the mean under the kernel (tests/convolve_test.cpp). A constant map keeps
-// its value to 1e-6 (under a cosine to 6e-5: exactIrradiance()). Parallel; the same bits for any number of threads.
+// and constant over each texel, of any size.
+// Rectangles over which the kernel varies little are taken whole, with their first moments: the
+// kernel is off by at most 1e-3 of the geometric mean of its value and its peak, the result by
+// about 1e-3 of itself and of the map's mean (tests/convolve_test.cpp). A constant map keeps its
+// value to 1e-6 (under a cosine to 6e-5: exactIrradiance()). Parallel; the same bits for any number
+// of threads.
 std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
                             std::span<const vec3> directions);
 
