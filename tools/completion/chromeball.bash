@@ -18,12 +18,14 @@ _chromeball() {
     'compare')
       options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
-      words='info convert assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
+      words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;
     'probe info')
       options='--help --mapping --rotation --json --mapping-report' ;;
     'probe convert')
       options='--help --to --from --size --rotation --scale --flip' ;;
+    'probe convolve')
+      options='--help --kernel --size --from-size --method --mips --rotation --mapping' ;;
     'probe assemble')
       options='--help --output --azimuth --circle --mask --distance --reflectivity --ball-ior --schlick --camera-disc --from --keep-exposure --keep-azimuth --fill --to --size --preview --json' ;;
     'probe reflectivity')
