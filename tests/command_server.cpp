@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "paths.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -24,9 +25,6 @@ class CommandServer {
   CommandServer() {
     int input[2], output[2];
     check(pipe2(input, O_CLOEXEC) == 0 && pipe2(output, O_CLOEXEC) == 0, "pipe");
-    std::string folder = (std::filesystem::temp_directory_path() / "chromeball-XXXXXX").string();
-    check(mkdtemp(folder.data()), "mkdtemp");
-    socket_ = folder + "/socket";
     const pid_t child = fork();
     if (child == 0) {
       dup2(input[0], STDIN_FILENO);
@@ -40,10 +38,6 @@ class CommandServer {
     check(read(output[0], &ready, 1) == 1, "no start");
     close(output[0]);
   }
-  ~CommandServer() {
-    std::error_code ignored;
-    std::filesystem::remove_all(std::filesystem::path(socket_).parent_path(), ignored);
-  }
 
   int connect() const {
     sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
@@ -55,7 +49,8 @@ class CommandServer {
   }
 
  private:
-  std::string socket_;
+  TemporaryFolder folder_;
+  std::string socket_ = folder_ / "socket";
 };
 
 }  // namespace

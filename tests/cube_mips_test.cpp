@@ -36,7 +36,8 @@ dvec3 openGlDirection(int face, double s, double t) {
   }
 }
 
-// Each level of a gradient has its closed form, where OpenGL looks it up.
+// Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of what it
+// changes over a texel of the map.
 TEST(CubeMips, LevelsOfAGradient) {
   const dvec3 slope(0.5, -0.3, 0.2);
   const std::vector<CubeLevel> levels =
@@ -65,11 +66,11 @@ TEST(CubeMips, LevelsOfAGradient) {
 
 TEST(CubeMips, RoughnessOfTheLevels) {
   const Image map = constantProbe({4, 2}, Rgb(1));
-  const std::vector<CubeLevel> levels = cubeMips(map, 128, MipRoughness::Filament);
-  ASSERT_EQ(levels.size(), 4u);
+  const std::vector<CubeLevel> levels = cubeMips(map, 64, MipRoughness::Filament);
+  ASSERT_EQ(levels.size(), 3u);
   for (size_t k = 0; k < levels.size(); ++k) {
     const double r = levels[k].roughness;
-    EXPECT_NEAR(r * (2 - r), double(k) / 3, 1e-12);
+    EXPECT_NEAR(r * (2 - r), double(k) / 2, 1e-12);
   }
   EXPECT_EQ(cubeMips(map, 8, MipRoughness::Khronos).size(), 1u);
   for (const int size : {0, -4, 3, 100, 8192})
@@ -123,6 +124,7 @@ TEST_F(CommandConvolve, WritesKtx2) {
   EXPECT_EQ(at<uint64_t>(file, 80) + at<uint64_t>(file, 88), file.size());  // the largest is last
 }
 
+// All three are exact for a gradient, up to its texels: 5.6 degrees, 11 in the reduced map.
 TEST_F(CommandConvolve, WritesMaps) {
   ASSERT_EQ(run("d.pfm", {"--kernel", "diffuse", "--size", "16x8"}).status, 0);
   ASSERT_EQ(run("s.pfm", {"--kernel", "diffuse", "--size", "16x8", "--method", "sh"}).status, 0);

@@ -12,41 +12,15 @@
 
 #include <algorithm>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "command_server.h"
 #include "paths.h"
-
-// A temporary folder, removed with its contents by the destructor.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "chromeball-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+#include "temporary_folder.h"
 
 struct CommandResult {
   int status = -1;  // exit status, or minus the number of the terminating signal
@@ -125,25 +99,17 @@ inline CommandResult runCommand(const std::vector<std::string>& arguments) {
   return commandResult(runInServer(words, outPath, errorPath), outPath, errorPath);
 }
 
-// Expects of a run an input error: status 2, nothing on standard output, and one line
-// `chromeball: ...` that contains `reason`.
-inline void expectInputError(const CommandResult& result, const std::string& reason) {
+// Runs the command, under limits the executable, and expects an input error: status 2, nothing on
+// standard output, and one line `chromeball: ...` that contains `reason`.
+inline CommandResult expectError(const std::vector<std::string>& arguments,
+                                 const std::string& reason,
+                                 const std::optional<CommandLimits>& limits = {}) {
+  const CommandResult result =
+      limits ? runExecutable(arguments, "", SIGINT, *limits) : runCommand(arguments);
   EXPECT_EQ(result.status, 2) << result.error;
   EXPECT_EQ(result.out, "");
   EXPECT_TRUE(result.error.starts_with("chromeball: ")) << result.error;
   EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
   EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
-}
-
-inline CommandResult expectError(const std::vector<std::string>& arguments,
-                                 const std::string& reason) {
-  const CommandResult result = runCommand(arguments);
-  expectInputError(result, reason);
-  return result;
-}
-inline CommandResult expectError(const std::vector<std::string>& arguments,
-                                 const std::string& reason, const CommandLimits& limits) {
-  const CommandResult result = runExecutable(arguments, "", SIGINT, limits);
-  expectInputError(result, reason);
   return result;
 }

@@ -6,19 +6,17 @@
 #include <vector>
 
 #include "image/image.h"
-#include "math/rotation.h"
 #include "probe/mapping.h"
 #include "probe/zonal_kernel.h"
 
 namespace chromeball {
 
 // The mean of radiance under the kernel around each of the `directions` (unit). `latLong` is finite
-// and constant over each texel, of any size.
-// Rectangles over which the kernel varies little are taken whole, with their first moments: the
-// kernel is off by at most 1e-3 of the geometric mean of its value and its peak, the result by
-// about 1e-3 of itself and of the map's mean (tests/convolve_test.cpp). A constant map keeps its
-// value to 1e-6 (under a cosine to 6e-5: exactIrradiance()). Parallel; the same bits for any number
-// of threads.
+// and constant over each texel, of any size. Rectangles over which the kernel varies little are
+// taken whole, with their first moments: the kernel is off by at most 1e-3 of the geometric mean of
+// its value and its peak, the result by about 1e-3 of itself and of the map's mean
+// (tests/convolve_test.cpp). A constant map keeps its value to 1e-6 (under a cosine to 6e-5:
+// exactIrradiance()). Parallel; the same bits for any number of threads.
 std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
                             std::span<const vec3> directions);
 
@@ -26,9 +24,5 @@ std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
 // kernel where that is narrow, and perhaps negative.
 std::vector<dvec3> shConvolve(const Image& latLong, const ZonalKernel& kernel,
                               std::span<const vec3> directions);
-
-// Each texel the mean of those that it covers, by solid angle. Throws InputError if `size` is
-// larger than the map.
-Image reduced(const Image& latLong, const ImageSize& size);
 
 }  // namespace chromeball

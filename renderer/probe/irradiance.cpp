@@ -34,20 +34,6 @@ dvec3 irradianceFrom(const Row& row, const PolarMoments& moments, const Horizon&
              dvec3(0));
 }
 
-Image toImage(const ImageSize& size, const std::vector<dvec3>& colors) {
-  Image image(size.width, size.height, 3);
-  for (size_t i = 0; i < colors.size(); ++i)
-    for (int c = 0; c < 3; ++c) image.texels[3 * i + c] = float(colors[i][c]);
-  return image;
-}
-
-// The normals of an irradiance map, in the frame of the map that is not turned.
-std::vector<vec3> normalsOf(const ImageSize& size, const Rotation& rotation) {
-  std::vector<vec3> normals = texelDirections(size);
-  for (vec3& normal : normals) normal = rotation.back(normal);
-  return normals;
-}
-
 }  // namespace
 
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals) {
@@ -91,12 +77,25 @@ std::vector<vec3> texelDirections(const ImageSize& latLong) {
   return directions;
 }
 
+std::vector<vec3> texelDirections(const ImageSize& latLong, const Rotation& rotation) {
+  std::vector<vec3> directions = texelDirections(latLong);
+  for (vec3& direction : directions) direction = rotation.back(direction);
+  return directions;
+}
+
+Image imageOf(const ImageSize& size, std::span<const dvec3> colors) {
+  Image image(size.width, size.height, 3);
+  for (size_t i = 0; i < colors.size(); ++i)
+    for (int c = 0; c < 3; ++c) image.texels[3 * i + c] = float(colors[i][c]);
+  return image;
+}
+
 Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
-  return toImage(size, exactIrradiance(latLong, normalsOf(size, rotation)));
+  return imageOf(size, exactIrradiance(latLong, texelDirections(size, rotation)));
 }
 
 Image shIrradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
-  return toImage(size, shIrradiance(latLong, normalsOf(size, rotation)));
+  return imageOf(size, shIrradiance(latLong, texelDirections(size, rotation)));
 }
 
 }  // namespace chromeball

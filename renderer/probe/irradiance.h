@@ -27,6 +27,12 @@ std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> norm
 // map.
 std::vector<vec3> texelDirections(const ImageSize& latLong);
 
+// The same of the environment that `rotation` turns: directions in the map, which is not turned.
+std::vector<vec3> texelDirections(const ImageSize& latLong, const Rotation& rotation);
+
+// Three channels; one colour a texel, row by row.
+Image imageOf(const ImageSize& size, std::span<const dvec3> colors);
+
 // Lat-long irradiance maps at those normals, three channels, of the environment that `rotation`
 // turns.
 Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation = {});

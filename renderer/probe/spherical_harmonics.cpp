@@ -33,13 +33,18 @@ ShCoefficients projectSh(const Image& latLong) {
   return coefficients;
 }
 
-dvec3 shIrradiance(const ShCoefficients& radiance, const dvec3& normal) {
-  const double a0 = kPiD, a1 = 2 * kPiD / 3, a2 = kPiD / 4;
-  const std::array<double, kShCount> cosineLobe{a0, a1, a1, a1, a2, a2, a2, a2, a2};
-  const std::array<double, kShCount> basis = shBasis(normal);
+dvec3 shConvolution(const ShCoefficients& radiance, const std::array<double, 3>& moments,
+                    const dvec3& direction) {
+  const auto [zero, one, two] = moments;
+  const std::array<double, kShCount> factors{zero, one, one, one, two, two, two, two, two};
+  const std::array<double, kShCount> basis = shBasis(direction);
   dvec3 sum(0);
-  for (int i = 0; i < kShCount; ++i) sum += cosineLobe[i] * basis[i] * radiance[i];
+  for (int i = 0; i < kShCount; ++i) sum += factors[i] * basis[i] * radiance[i];
   return sum;
+}
+
+dvec3 shIrradiance(const ShCoefficients& radiance, const dvec3& normal) {
+  return shConvolution(radiance, {kPiD, 2 * kPiD / 3, kPiD / 4}, normal);
 }
 
 }  // namespace chromeball

@@ -22,6 +22,12 @@ std::array<double, kShCount> shBasis(const dvec3& direction);
 // texel: Y_lm at the texel's centre times its exact solid angle.
 ShCoefficients projectSh(const Image& latLong);
 
+// The convolution with a function of the angle to `direction` (unit) that has these Legendre
+// moments, 2 pi times its integrals over the cosine times P0, P1 and P2 (Ramamoorthi and Hanrahan
+// 2001, eq. 7).
+dvec3 shConvolution(const ShCoefficients& radiance, const std::array<double, 3>& moments,
+                    const dvec3& direction);
+
 // Irradiance on a surface with unit `normal`: sum of A_l L_lm Y_lm(normal), with A_0 = pi,
 // A_1 = 2 pi / 3, A_2 = pi / 4 (Ramamoorthi and Hanrahan 2001, eq. 8). Bands above 2 hold less than
 // 1% of the squared irradiance over all normals, but the error is larger: over 21 captured probes

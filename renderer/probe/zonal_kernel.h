@@ -21,7 +21,7 @@ class ZonalKernel {
   static ZonalKernel ggx(double roughness);
 
   struct Value {
-    double value, slope;  // slope: derivative by the cosine
+    double value, slope, curvature;  // the latter: first and second derivative by the cosine
   };
   Value at(double cosine) const;
 
@@ -29,7 +29,7 @@ class ZonalKernel {
   bool isCosine() const { return parameter_ == 1; }
 
   // The angle from the axis, in radians, at which the kernel begins to fall.
-  double width() const { return width_; }
+  double width() const;
 
   // 2 pi times the integral over the cosine of the kernel times the Legendre polynomials P0, P1,
   // P2.
@@ -38,12 +38,10 @@ class ZonalKernel {
 
  private:
   enum class Kind { Phong, Ggx };
-  ZonalKernel(Kind kind, double parameter, double width)
-      : kind_(kind), parameter_(parameter), width_(width) {}
+  ZonalKernel(Kind kind, double parameter) : kind_(kind), parameter_(parameter) {}
 
   Kind kind_;
   double parameter_;  // the exponent, or alpha^2
-  double width_;
 };
 
 }  // namespace chromeball

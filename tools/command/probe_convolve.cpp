@@ -63,15 +63,18 @@ void check(const Arguments& arguments) {
 
 Image convolvedMap(const Arguments& arguments, const Image& latLong, const ZonalKernel& kernel,
                    const ImageSize& size) {
-  std::vector<vec3> directions = texelDirections(size);
-  for (vec3& direction : directions) direction = arguments.rotation.back(direction);
-  const bool isExact = arguments.method == "exact";
-  const std::vector<dvec3> colors =
-      isExact ? convolve(latLong, kernel, directions) : shConvolve(latLong, kernel, directions);
-  Image map(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) map.setRgb(x, y, Rgb(colors[size_t(y) * size.width + x]));
-  return map;
+  const std::vector<vec3> directions = texelDirections(size, arguments.rotation);
+  return imageOf(size, arguments.method == "exact" ? convolve(latLong, kernel, directions)
+                                                   : shConvolve(latLong, kernel, directions));
+}
+
+// Each texel the mean over its solid angle.
+Image reduced(const Arguments& arguments, const Image& latLong) {
+  const ImageSize size = parseSize(arguments.fromSize, "--from-size");
+  if (size.width > latLong.width || size.height > latLong.height)
+    throwInput("--from-size: {} is larger than the map, {}x{}", arguments.fromSize, latLong.width,
+               latLong.height);
+  return convert(latLong, Mapping::LatLong, Mapping::LatLong, size);
 }
 
 void writeLevels(const Arguments& arguments, const Image& latLong) {
@@ -100,8 +103,7 @@ void run(const Arguments& arguments) {
   if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
   LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
-  if (!arguments.fromSize.empty())
-    probe.latLong = reduced(probe.latLong, parseSize(arguments.fromSize, "--from-size"));
+  if (!arguments.fromSize.empty()) probe.latLong = reduced(arguments, probe.latLong);
   if (!kernel) {
     writeLevels(arguments, probe.latLong);
     return;

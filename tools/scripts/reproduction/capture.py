@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Photographs of mirror balls: HDRI's figures 9.2, 9.9 and 9.10."""
 import math
-import os
-import pathlib
 
 from gltf import Model
 from lat_long import irradiance, irradiance_error
@@ -60,9 +58,8 @@ def closed_loop(run):
 
 
 def real_ball(run):
-    folder = pathlib.Path(os.environ.get("CHROMEBALL_DATA", "")) / "reference/differential_rendering/bbold72_cs445_samples"
-    if "CHROMEBALL_DATA" not in os.environ or not folder.exists():
-        run.missing.add("the photographed ball of a course")
+    folder = run.data("reference/differential_rendering/bbold72_cs445_samples", "the photographed ball of a course")
+    if not folder:
         return []
     run("probe", "convert", folder / "equirectangular.hdr", "theirs.pfm", "--from", "lat-long", "--to", "lat-long")
     theirs = read_pfm(run.scratch / "theirs.pfm")

@@ -55,6 +55,6 @@ def page(sections, missing, seconds, picture_folder):
         parts.append(f"## {title}")
         parts += [row_text(row, picture_folder) for row in rows]
     if missing:
-        parts.append("## Left out\n\nThese probes are not in `$CHROMEBALL_DATA`: " + ", ".join(missing) + ".")
+        parts.append("## Left out\n\nThese are not in `$CHROMEBALL_DATA`: " + ", ".join(missing) + ".")
     parts.append(f"Made in {seconds / 60:.0f} minutes.")
     return "\n\n".join(parts) + "\n"

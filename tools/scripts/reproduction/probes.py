@@ -2,6 +2,7 @@
 """Facts about probes: mappings, irradiance, harmonics, suns, clipping, numbers of rays."""
 import math
 
+from lat_long import solid_angle_mean
 from page import Row, table
 from pfm import read_pfm
 from run import NOON, luminance
@@ -36,18 +37,11 @@ def compare_irradiance(run, file, *more):
     for name, options in (("exact.pfm", []), ("other.pfm", more)):
         run("probe", "convolve", file, name, "--kernel", "diffuse", "--size", "64x32", *options)
     exact, other = (read_pfm(run.scratch / name) for name in ("exact.pfm", "other.pfm"))
-    height, width = len(exact), len(exact[0])
-    total = difference = worst = below = weight = 0.0
-    for y in range(height):
-        solid_angle = math.sin(math.pi * (y + 0.5) / height)
-        for x in range(width):
-            e, o = (sum(color) / 3 for color in (exact[y][x], other[y][x]))
-            total += solid_angle * e
-            difference += solid_angle * abs(e - o)
-            worst = max(worst, abs(e - o))
-            below += solid_angle * (luminance(other[y][x]) < 0)
-            weight += solid_angle
-    return 100 * difference / total, 100 * worst * weight / total, 100 * below / weight
+    rows = [[(sum(a) / 3, abs(sum(a) - sum(b)) / 3, luminance(b) < 0) for a, b in zip(*pair)]
+            for pair in zip(exact, other)]
+    mean, error, below = solid_angle_mean(rows)
+    worst = max(pixel[1] for row in rows for pixel in row)
+    return 100 * error / mean, 100 * worst / mean, 100 * below
 
 
 def irradiance(run):

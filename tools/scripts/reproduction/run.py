@@ -35,7 +35,11 @@ class Run:
 
     def probe(self, name):
         """The file of a probe; None, and noted, if it is missing."""
-        file = pathlib.Path(os.environ.get("CHROMEBALL_DATA", "")) / "probes" / PROBES[name]
+        return self.data(f"probes/{PROBES[name]}", name)
+
+    def data(self, path, name):
+        """A file or folder of $CHROMEBALL_DATA; None, and noted, if it is missing."""
+        file = pathlib.Path(os.environ.get("CHROMEBALL_DATA", "")) / path
         if "CHROMEBALL_DATA" in os.environ and file.exists():
             return file
         self.missing.add(name)
