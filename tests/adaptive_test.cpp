@@ -186,7 +186,7 @@ TEST(SlowAdaptive, HasASmallerErrorAtTheSameMean) {
   EXPECT_LT(squared[1], 0.75 * squared[0]);
 }
 
-TEST(Adaptive, TheNumberOfThreadsChangesNothing) {
+TEST(SlowAdaptive, TheNumberOfThreadsChangesNothing) {
   const NamedScene named = std::move(threeScenes()[1]);
   const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
   const Probe probe(named.probe);

@@ -118,7 +118,7 @@ TEST(Align, AConstantMapHasNoOrientation) {
   }
 }
 
-TEST(Align, ASkySymmetricAboutAnAxisIsAmbiguousAboutIt) {
+TEST(SlowAlign, ASkySymmetricAboutAnAxisIsAmbiguousAboutIt) {
   const dvec3 axis = glm::normalize(dvec3(0.3, 0.9, -0.2));
   const Image sky = rasterize(Mapping::LatLong, {128, 64}, 2, [&](const dvec3& d) {
     return dvec3(1, 2, 3) * std::exp(2 * glm::dot(d, axis));

@@ -185,7 +185,7 @@ TEST(Assemble, WhatIsOutsideThePictureIsBlind) {
       }
 }
 
-TEST(Assemble, IsTheSameForAnyNumberOfThreads) {
+TEST(SlowAssemble, IsTheSameForAnyNumberOfThreads) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);
   const auto assembled = [&] {
@@ -204,7 +204,7 @@ TEST(Assemble, IsTheSameForAnyNumberOfThreads) {
 
 // Two views through a lens of 180 degrees show all of a room (Madsen et al. 2003), one of 200 with
 // some overlap.
-TEST(Assemble, TwoFisheyeViewsReturnTheProbe) {
+TEST(SlowAssemble, TwoFisheyeViewsReturnTheProbe) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);
   for (const Fisheye& lens :

@@ -30,7 +30,7 @@ TEST(BsdfTables, lambertianMaterialsNeedNone) {
   EXPECT_EQ(builtFor({lambertian(), lambertian()}), (Needs{false, false, false, false}));
 }
 
-TEST(BsdfTables, otherMaterialsNeedOnlyTheirOwn) {
+TEST(SlowBsdfTables, otherMaterialsNeedOnlyTheirOwn) {
   Material metal = lambertian(), plastic = lambertian(), coated = lambertian();
   metal.metallic = 0.1f;
   plastic.specular = 0.1f;

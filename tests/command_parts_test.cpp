@@ -92,7 +92,7 @@ void expectSameImage(const std::string& a, const std::string& b) {
   EXPECT_EQ(first.image.texels, second.image.texels);
 }
 
-TEST(Merge, OfShardsIsTheWholeImage) {
+TEST(SlowMerge, OfShardsIsTheWholeImage) {
   const Parts parts;
   const Words fixed{"--samples", "30", "--adaptive", "off", "--guide", "off"};
   const auto shard = [&](const std::string& which) {
@@ -176,7 +176,7 @@ TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
 }
 
 // The layers' names and the clamped light of the whole are told as for one render.
-TEST(Merge, KeepsWhatIsKnownAboutTheParts) {
+TEST(SlowMerge, KeepsWhatIsKnownAboutTheParts) {
   const Parts parts;
   const auto render = [&](const std::string& name, const Words& more) {
     Words words{"--samples", "8",     "--adaptive", "off",     "--guide",
@@ -197,7 +197,7 @@ TEST(Merge, KeepsWhatIsKnownAboutTheParts) {
 }
 
 // The header of a part is read first; damage to it is not taken for a difference.
-TEST(Merge, FindsDamagedHeaders) {
+TEST(SlowMerge, FindsDamagedHeaders) {
   const Parts parts;
   const Words fixed{"--samples", "4", "--guide", "off"};
   Words one = fixed, two = fixed;
@@ -246,7 +246,7 @@ TEST(SlowMerge, DenoisesAndComposites) {
   expectSameImage(crops, whole);
 }
 
-TEST(Parts, RefuseWhatIsNoPart) {
+TEST(SlowParts, RefuseWhatIsNoPart) {
   const Parts parts;
   const std::string o = parts.out / "o.exr";
   const auto refuse = [&](const Words& words, const std::string& reason) {
@@ -293,7 +293,7 @@ TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
 }
 
 // Another number of all samples would give it samples of other shards.
-TEST(Checkpoint, OfAShardKeepsItsNumberOfSamples) {
+TEST(SlowCheckpoint, OfAShardKeepsItsNumberOfSamples) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
   const auto shardOf = [&](const char* samples) {
@@ -340,7 +340,7 @@ TEST(SlowCheckpoint, SurvivesKills) {
   EXPECT_EQ(parts.out.files(), (Words{"c.exr", "image.exr", "whole.exr"}));  // nothing is left
 }
 
-TEST(Checkpoint, IsOfOneProcess) {
+TEST(SlowCheckpoint, IsOfOneProcess) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
   Child child(parts.words({"--samples", "1000000", "--checkpoint", checkpoint, "--quiet"},
@@ -352,7 +352,7 @@ TEST(Checkpoint, IsOfOneProcess) {
   parts.render("o.exr", {"--samples", "4", "--checkpoint", checkpoint});  // the lock is free
 }
 
-TEST(Checkpoint, TellsThatItHasMoreSamplesThanAskedFor) {
+TEST(SlowCheckpoint, TellsThatItHasMoreSamplesThanAskedFor) {
   const Parts parts;
   const Words job{"--checkpoint", parts.out / "c.exr", "--resume", "--guide", "off", "--samples"};
   const auto render = [&](const std::string& samples) {
@@ -390,7 +390,7 @@ TEST(Parts, MayHaveNamesThatAreNotUtf8) {
 }
 
 // A full disk while a checkpoint is written leaves the one before.
-TEST(Checkpoint, StaysWhereTheDiskIsFull) {
+TEST(SlowCheckpoint, StaysWhereTheDiskIsFull) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
   parts.render("o.exr", {"--samples", "4", "--checkpoint", checkpoint});
@@ -402,7 +402,7 @@ TEST(Checkpoint, StaysWhereTheDiskIsFull) {
   EXPECT_EQ(fileContents(checkpoint), before);
 }
 
-TEST(WriteEvery, WritesImagesThatGrow) {
+TEST(SlowWriteEvery, WritesImagesThatGrow) {
   const Parts parts;
   const std::string path = parts.out / "growing.exr";
   Child child(parts.words({"--samples", "1000000", "--write-every", "0.1", "--quiet"}, path));

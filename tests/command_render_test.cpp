@@ -214,7 +214,7 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
 }
 
 // Also under a noise limit, where the remaining time is an extrapolation.
-TEST(CommandRender, ProgressSaysSamplesNoiseAndTimeLeft) {
+TEST(SlowCommandRender, ProgressSaysSamplesNoiseAndTimeLeft) {
   const RenderScene scene;
   const CommandResult result =
       runExecutable({"render", scene.model, "--probe", scene.gradient, "--size", "64x48", "--noise",

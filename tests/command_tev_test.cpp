@@ -192,7 +192,7 @@ TEST(TevDisplay, ReceivesEachFrame) {
   for (const auto& [name, channels] : receiver.images) expectSameAsFile(channels, name);
 }
 
-TEST(TevDisplay, MayEndWhileTheRenderGoesOn) {
+TEST(SlowTevDisplay, MayEndWhileTheRenderGoesOn) {
   const TevRender tev;
   const std::string out = tev.folder / "o.exr";
   auto command = tev.start({"--time", "1", "-o", out});

@@ -297,7 +297,7 @@ TEST(Composite, DifferenceHasATenthOfTheVarianceOfTwoRenders) {
 }
 
 // The estimated error of the composite matches the variance over seeds.
-TEST(Composite, EstimatedErrorMatchesTheVarianceOverSeeds) {
+TEST(SlowComposite, EstimatedErrorMatchesTheVarianceOverSeeds) {
   Worlds w = stillLife();
   w.scene.materials[3].roughness = 1;  // caustics of the mirror would need more samples
   constexpr int kSize = 24, kRepeats = 16;

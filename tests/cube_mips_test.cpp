@@ -38,7 +38,7 @@ dvec3 openGlDirection(int face, double s, double t) {
 
 // Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of what it
 // changes over a texel of the map.
-TEST(CubeMips, LevelsOfAGradient) {
+TEST(SlowCubeMips, LevelsOfAGradient) {
   const dvec3 slope(0.5, -0.3, 0.2);
   const std::vector<CubeLevel> levels =
       cubeMips(gradientProbe({256, 128}, Rgb(1), slope), 64, MipRoughness::Khronos);
@@ -64,7 +64,7 @@ TEST(CubeMips, LevelsOfAGradient) {
   }
 }
 
-TEST(CubeMips, RoughnessOfTheLevels) {
+TEST(SlowCubeMips, RoughnessOfTheLevels) {
   const Image map = constantProbe({4, 2}, Rgb(1));
   const std::vector<CubeLevel> levels = cubeMips(map, 64, MipRoughness::Filament);
   ASSERT_EQ(levels.size(), 3u);
@@ -84,19 +84,19 @@ Integer at(const std::string& bytes, size_t offset) {
   return value;
 }
 
-class CommandConvolve : public testing::Test {
+class SlowCommandConvolve : public testing::Test {
  protected:
   TemporaryFolder folder_;
   std::string in_ = folder_ / "in.exr";
 
-  CommandConvolve() { writeImage(in_, gradientProbe({64, 32}, Rgb(2, 1, 1e5f), {0, 0.5, 0})); }
+  SlowCommandConvolve() { writeImage(in_, gradientProbe({64, 32}, Rgb(2, 1, 1e5f), {0, 0.5, 0})); }
   CommandResult run(const std::string& out, std::vector<std::string> more) {
     more.insert(more.begin(), {"probe", "convolve", in_, folder_ / out});
     return runCommand(more);
   }
 };
 
-TEST_F(CommandConvolve, WritesKtx2) {
+TEST_F(SlowCommandConvolve, WritesKtx2) {
   const CommandResult result = run("o.ktx2", {"--size", "64x64"});
   EXPECT_EQ(result.status, 0) << result.error;
   EXPECT_NE(result.error.find("exceed a half float"), std::string::npos);
@@ -125,7 +125,7 @@ TEST_F(CommandConvolve, WritesKtx2) {
 }
 
 // All three are exact for a gradient, up to its texels: 5.6 degrees, 11 in the reduced map.
-TEST_F(CommandConvolve, WritesMaps) {
+TEST_F(SlowCommandConvolve, WritesMaps) {
   ASSERT_EQ(run("d.pfm", {"--kernel", "diffuse", "--size", "16x8"}).status, 0);
   ASSERT_EQ(run("s.pfm", {"--kernel", "diffuse", "--size", "16x8", "--method", "sh"}).status, 0);
   ASSERT_EQ(run("p.pfm", {"--kernel", "phong:1", "--size", "16x8", "--from-size", "32x16"}).status,
@@ -143,7 +143,7 @@ TEST_F(CommandConvolve, WritesMaps) {
   EXPECT_GT(turned.rgb(0, 16).x, 2.5f);
 }
 
-TEST_F(CommandConvolve, Errors) {
+TEST_F(SlowCommandConvolve, Errors) {
   const auto fails = [&](const std::string& out, const std::vector<std::string>& more,
                          const std::string& reason) {
     std::vector<std::string> all{"probe", "convolve", in_, folder_ / out};

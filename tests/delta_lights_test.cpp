@@ -135,7 +135,7 @@ TEST(DeltaLights, nearMirrorsReflectTheProbe) {
 
 // White furnace test with interreflection. Light that is lost or counted twice causes an error many
 // times larger than the approximation error of the lights.
-TEST(DeltaLights, aWhiteFurnaceConservesEnergy) {
+TEST(SlowDeltaLights, aWhiteFurnaceConservesEnergy) {
   Scene scene;
   const int white = addMaterial(scene, lambert(Rgb(1)));
   addQuad(scene, white, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
@@ -322,7 +322,7 @@ TEST(StrategyTable, helpListsEveryStrategy) {
   EXPECT_NE(help.find("(N 2 to 4096, default 300)"), std::string::npos);
 }
 
-TEST(StrategyTable, resolvedNamesIncludeTheCount) {
+TEST(SlowStrategyTable, resolvedNamesIncludeTheCount) {
   EXPECT_EQ(resolveStrategy("importance"), "importance");
   EXPECT_EQ(resolveStrategy("median-cut:7"), "median-cut:7");
   EXPECT_TRUE(resolveStrategy("median-cut").starts_with("median-cut:"));

@@ -185,7 +185,7 @@ TEST(SlowEnvelopeProbe, AOneTexelSunIn16384x8192) {
   EXPECT_NEAR(validMean(r), 0.5, 5e-3);
 }
 
-TEST(EnvelopeProbe, OddShapesUnderEveryStrategy) {
+TEST(SlowEnvelopeProbe, OddShapesUnderEveryStrategy) {
   struct Case {
     const char* name;
     Image image;

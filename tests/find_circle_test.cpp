@@ -24,7 +24,7 @@ void expectCircle(const Image& image, const Circle& truth, double tolerance, con
   EXPECT_NEAR(found->circle.radius, truth.radius, tolerance) << what;
 }
 
-TEST(FindCircle, OfABallUnderAProbe) {
+TEST(SlowFindCircle, OfABallUnderAProbe) {
   const Image dusk = loadProbe(kSourceDir + std::string("/probes/dusk.exr")).latLong;
   const Probe studio(studioProbe({512, 256})), evening(dusk);
   for (const Probe* probe : {&studio, &evening})

@@ -140,7 +140,7 @@ TEST(SlowGlassShadows, OpenMeshesAbsorbNothing) {
 }
 
 // Lamps and narrow lobes: paths and shadow rays do not both find the light.
-TEST(GlassShadows, NarrowLobesAgreeWithBroadOnes) {
+TEST(SlowGlassShadows, NarrowLobesAgreeWithBroadOnes) {
   Scene scene = floorAndSlab(0.5f, 1.25f);
   scene.materials[1].metallic = 1;
   scene.materials[1].roughness = 0.1f;

@@ -178,7 +178,7 @@ TEST(GltfFile, MessagesStayOnOneLine) {
       << w.errorMessage();
 }
 
-TEST(GltfFile, RejectsAmplificationByReferences) {
+TEST(SlowGltfFile, RejectsAmplificationByReferences) {
   // 2000 primitives that all read the same 100 kB.
   GltfWriter w;
   const int positions = w.vec3s(std::vector<float>(3 * 9000, 0.0f));

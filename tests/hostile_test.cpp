@@ -151,7 +151,7 @@ TEST(SlowHostile, TheCommandRejectsInOneLine) {
 }
 
 // Headers that claim more texels than the file can hold are rejected before anything is allocated.
-TEST(Hostile, SizeBombsAreRejectedByTheirHeaders) {
+TEST(SlowHostile, SizeBombsAreRejectedByTheirHeaders) {
   const TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& bytes) {
     std::ofstream(folder / name, std::ios::binary) << bytes;
@@ -211,7 +211,7 @@ std::string exr(const std::vector<std::array<std::string, 3>>& attributes,
 
 // Found by fuzzing: for a file of 367 bytes OpenEXR allocated 1.8 GB, the stated length of a
 // string, before it checked the length of the file. It allocates its row buffers as early.
-TEST(Hostile, ExrHeadersAreChecked) {
+TEST(SlowHostile, ExrHeadersAreChecked) {
   const TemporaryFolder folder;
   const auto words = [](std::initializer_list<int32_t> numbers) {
     return std::string(reinterpret_cast<const char*>(numbers.begin()), 4 * numbers.size());
@@ -243,7 +243,7 @@ TEST(Hostile, ExrHeadersAreChecked) {
 }
 
 // OpenImageIO would try its readers of film, camera and medical formats on unknown formats.
-TEST(Hostile, OtherFormatsAreRejectedByTheirFirstBytes) {
+TEST(SlowHostile, OtherFormatsAreRejectedByTheirFirstBytes) {
   const TemporaryFolder folder;
   for (const std::string& bytes : {std::string("GIF89a\1\0\1\0", 10), std::string("BM\x46"),
                                    std::string("\0\0\1\0\1\0", 6), std::string("SIMPLE  =")}) {

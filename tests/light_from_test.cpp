@@ -81,7 +81,7 @@ std::vector<double> tileSums(const WhiteFloor& folder, const std::string& strate
 
 // Independent renders of the parts and of the whole: Welch's test of each tile, Sidak's correction
 // over the tiles of both strategies.
-TEST(LightFrom, SunsAndRestAddUpToTheWhole) {
+TEST(SlowLightFrom, SunsAndRestAddUpToTheWhole) {
   const WhiteFloor folder = litFloor();
   writeImage(folder / "sky.exr", skyWithSun());
   constexpr int kRepeats = 12, kTiles = 8;
@@ -133,7 +133,7 @@ void expectSameIrradiance(const Image& a, const Image& b, const std::string& nam
 
 // Splitting a probe and drawing its suns again keeps the irradiance of all normals, to 0.1% of the
 // mean.
-TEST(ProbeSplit, AndAddSunKeepTheIrradiance) {
+TEST(SlowProbeSplit, AndAddSunKeepTheIrradiance) {
   const TemporaryFolder folder;
   std::vector<std::string> probes{folder / "sky.exr"};
   writeImage(probes.front(), skyWithSun());

@@ -234,7 +234,7 @@ TEST(LightGroups, ShadowMatteOfAPlane) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(rest[k], light[k] / (ambient[k] + light[k]), 2e-3);
 }
 
-TEST(LightGroups, SurviveShardsCropsAndCheckpoints) {
+TEST(SlowLightGroups, SurviveShardsCropsAndCheckpoints) {
   const LitScene scene;
   const Strings groups{"--aov", "light_groups,shadow_mattes", "--samples", "32"};
   const auto with = [&](Strings more) {

@@ -75,7 +75,7 @@ bool hasWord(const std::string& text, const std::string& word) {
   return std::regex_search(text, std::regex("(^|[^\\w-])" + word + "($|[^\\w-])"));
 }
 
-TEST(Manual, HelpIsParsed) {
+TEST(SlowManual, HelpIsParsed) {
   const auto& commands = allCommands();
   ASSERT_TRUE(commands.contains("probe info"));
   EXPECT_TRUE(hasWord(joined(commands.at("probe info").options), "--json"));
@@ -84,7 +84,7 @@ TEST(Manual, HelpIsParsed) {
   EXPECT_FALSE(hasWord("--json-lines", "--json"));
 }
 
-TEST(Manual, PageDescribesEveryCommandAndOption) {
+TEST(SlowManual, PageDescribesEveryCommandAndOption) {
   const std::string page =
       std::regex_replace(projectFile("docs/chromeball.1"), std::regex("\\\\-"), "-");
   for (const auto& [command, names] : allCommands()) {

@@ -67,7 +67,7 @@ Picture renderRow(const std::string& name, const Probe& probe, uint32_t samples,
 
 Probe sunny(float scale) { return Probe(spot(64, 32, 40, 6, 500 * scale, 0.2f * scale)); }
 
-TEST(Modes, DoNotDependOnThreads) {
+TEST(SlowModes, DoNotDependOnThreads) {
   for (const char* row : kRows) {
     const auto with = [&](size_t threads) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -78,7 +78,7 @@ TEST(Modes, DoNotDependOnThreads) {
 }
 
 // A probe of any brightness gives the same image, times its brightness.
-TEST(Modes, BearRadianceFromTinyToHuge) {
+TEST(SlowModes, BearRadianceFromTinyToHuge) {
   for (const char* row : kRows) {
     const Image expected = renderRow(row, sunny(1), 24).image;
     const double mean = luminance(meanColor(expected));

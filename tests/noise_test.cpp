@@ -247,7 +247,7 @@ RenderResult renderRareLight(uint64_t period, RenderSettings settings) {
       RareLight(period), world, Camera(), settings, [](double) {}, stop);
 }
 
-TEST(Noise, DoesNotStopARenderWithoutLightSoFar) {
+TEST(SlowNoise, DoesNotStopARenderWithoutLightSoFar) {
   RenderSettings settings = smallRender(8, 8, 1u << 20, 1);
   settings.noiseLimit = 0.2;
   const RenderResult rare = renderRareLight(20000, settings);

@@ -112,7 +112,7 @@ TEST(Shard, UnionHasTheSamplesOfTheWhole) {
 
 // All shards allot samples alike: a pixel has the same number in each, give or take the last of
 // each half, and none without; the first keeps those that all begin with.
-TEST(Shard, LearnsFromTheSamplesOfAll) {
+TEST(SlowShard, LearnsFromTheSamplesOfAll) {
   const NamedScene small = threeScenes()[2];
   RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
   whole.adaptive = true;
@@ -253,7 +253,7 @@ TEST(PartSet, NamesSomeOfFourBillionShards) {
 }
 
 // Guided and adaptive parts are other estimates of the same image.
-TEST(Shard, GuidedShardsAreUnbiased) {
+TEST(SlowShard, GuidedShardsAreUnbiased) {
   const NamedScene small = threeScenes()[2];  // with a mirror
   RenderSettings settings = smallRender(kWidth, kHeight, 512, 4);
   settings.adaptive = true;

@@ -244,7 +244,7 @@ class Room {
   GltfWriter writer_;
 };
 
-TEST(PolygonLights, RenderAsTheProbeItself) {
+TEST(SlowPolygonLights, RenderAsTheProbeItself) {
   const Room room;
   const std::string polygon = "probe_polygon = [[139, 29], [171, 29], [171, 61], [139, 61]]\n";
   const Rgb whole = room.color("");

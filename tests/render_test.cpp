@@ -124,7 +124,7 @@ TEST(SlowRender, closedEmittingSphereCountsEveryBounce) {
 }
 
 // A white object under constant radiance 1 has radiance 1.
-TEST(Render, whiteFurnace) {
+TEST(SlowRender, whiteFurnace) {
   for (float metallic : {-1.0f, 0.0f, 0.5f, 1.0f})  // -1: Lambert
     for (float roughness : {0.05f, 0.5f, 1.0f}) {
       if (metallic < 0 && roughness < 1) continue;

@@ -90,7 +90,7 @@ void expectSame(const RenderResult& a, const RenderResult& b) {
   EXPECT_EQ(a.rays.bounce, b.rays.bounce);
 }
 
-TEST(Resume, GivesTheBitsOfAnUninterruptedRender) {
+TEST(SlowResume, GivesTheBitsOfAnUninterruptedRender) {
   const NamedScene small = threeScenes()[2];
   const Probe probe(small.probe);
   for (const bool adaptive : {false, true})

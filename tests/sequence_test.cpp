@@ -81,7 +81,7 @@ void expectStills(const std::string& scene, const Words& more,
   }
 }
 
-TEST(Sequence, FramesAreStills) {
+TEST(SlowSequence, FramesAreStills) {
   const Moving model;
   const auto alike = [](int) { return Words{}; };
   expectStills(model.scene(), {}, alike);
@@ -102,13 +102,13 @@ TEST(SlowSequence, FramesFarAwayAreStills) {
   expectStills(path, {"--orbit", "360"}, turned);
 }
 
-TEST(Sequence, FramesOfATurntableAreStills) {
+TEST(SlowSequence, FramesOfATurntableAreStills) {
   const Moving model;
   const auto turned = [](int number) { return Words{"--orbit", fmt::format("{}", 60 * number)}; };
   expectStills(model.scene(), {"--orbit", "360"}, turned);
 }
 
-TEST(Sequence, ProbeTurns) {
+TEST(SlowSequence, ProbeTurns) {
   const Moving model;
   const std::string keys = "rotation_keys = [[0, 20], [1, 10], [2, 50]]\n";
   expectStills(model.scene(keys), {}, [](int) { return Words{}; });
@@ -120,7 +120,7 @@ TEST(Sequence, ProbeTurns) {
               "must ascend");
 }
 
-TEST(Sequence, SeedsDifferIfAsked) {
+TEST(SlowSequence, SeedsDifferIfAsked) {
   const Moving model;
   expectStills(model.scene("[render]\nseed = 5\n"), {"--seed-per-frame"}, [](int number) {
     return Words{"--seed", fmt::format("{}", 5 + number)};
@@ -138,7 +138,7 @@ TEST(SlowSequence, FramesOfRealModelsAreStills) {
   }
 }
 
-TEST(Sequence, LeavesFinishedFramesAlone) {
+TEST(SlowSequence, LeavesFinishedFramesAlone) {
   const Moving model;
   const TemporaryFolder out;
   std::ofstream(out / "frame.1.exr") << "kept";
@@ -150,7 +150,7 @@ TEST(Sequence, LeavesFinishedFramesAlone) {
   EXPECT_EQ(readImage(out / "frame.1.exr").width, 32);
 }
 
-TEST(Sequence, OutputOfTheSceneFile) {
+TEST(SlowSequence, OutputOfTheSceneFile) {
   const Moving model;
   const std::string scene = model.scene("[output]\nfile = \"out/of-scene.#.exr\"\n");
   run({"render", scene, "--frames", "0:1", "--size", "8x8", "--samples", "2"});
@@ -192,7 +192,7 @@ TEST(SlowSequence, SurvivesInterruption) {
   EXPECT_TRUE(std::filesystem::exists(out / "frame.1.exr"));
 }
 
-TEST(Sequence, PartsOfFramesMerge) {
+TEST(SlowSequence, PartsOfFramesMerge) {
   const Moving model;
   const TemporaryFolder out;
   const Words fixed{"--frames", "0:2:2", "--adaptive", "off", "--guide", "off"};
@@ -274,7 +274,7 @@ TEST(Sequence, BuildsNothingTwiceWhereTheProbeTurns) {
 
 // Two triangles of one mesh, of which one moves, and one that appears after a second: structures
 // over meshes are built once, and what does not move again when its indices change.
-TEST(Sequence, BuildsInstancesOnce) {
+TEST(SlowSequence, BuildsInstancesOnce) {
   Moving model;
   GltfWriter& w = model.w;
   w.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 2, 0}}});
@@ -300,7 +300,7 @@ TEST(Sequence, BuildsInstancesOnce) {
 }
 
 // A material whose tables no frame before needed.
-TEST(Sequence, MaterialsMayAppear) {
+TEST(SlowSequence, MaterialsMayAppear) {
   Moving model;
   GltfWriter& w = model.w;
   const int sheen =

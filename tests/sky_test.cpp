@@ -43,7 +43,7 @@ TEST(SlowSky, SunIrradianceIsIndependentOfResolution) {
   }
 }
 
-TEST(Sky, SunHasTheGivenDiameterAndConstantRadiance) {
+TEST(SlowSky, SunHasTheGivenDiameterAndConstantRadiance) {
   ClearSky sky;
   Image image(8192, 4096, 3);
   addSunDisc(image, sunDirection(sky), kSunDiameter, dvec3(kPiD));

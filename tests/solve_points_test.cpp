@@ -68,7 +68,7 @@ TEST(SolvePoints, ExactPointsGiveTheCamera) {
 // With normal errors of 0.5 pixels, each error over its standard error has Student's t distribution
 // with 2 x 12 - 7 (or 8) degrees of freedom: its p-values are uniform, and few errors exceed three
 // standard errors.
-TEST(SolvePoints, StandardErrorsAreRight) {
+TEST(SlowSolvePoints, StandardErrorsAreRight) {
   constexpr int kTrials = 200, kBins = 10, kPoints = 12;
   for (const double k1 : {0.0, -0.05}) {
     const int unknowns = k1 == 0 ? 7 : 8, freedom = 2 * kPoints - unknowns;

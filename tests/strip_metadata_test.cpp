@@ -286,7 +286,7 @@ TEST(StripMetadata, JpegWithTooManyScansIsRejected) {
   EXPECT_NO_THROW(stripJpeg(followed, "a"));
 }
 
-TEST(StripMetadata, FilesFromFuzzing) {
+TEST(SlowStripMetadata, FilesFromFuzzing) {
   const auto folder = sharedData("hostile");
   if (!folder) GTEST_SKIP() << "no ../shared/data/hostile";
   const std::string bomb = (*folder / "bomb-progressive-65500x65500.jpg").string();

@@ -113,7 +113,7 @@ TEST(SunFromBall, ASunOfKnownIrradianceIsFound) {
 }
 
 // Blocks of 3 x 3 pixels give the same sun.
-TEST(SunFromBall, LargePhotographsAreReduced) {
+TEST(SlowSunFromBall, LargePhotographsAreReduced) {
   const Image probe = clearSkyProbe({64, 32}, {.sunElevation = 35});
   Image clipped = probe;
   clip(clipped, float(16 * luminance(meanRadiance(probe))));

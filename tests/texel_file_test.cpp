@@ -74,7 +74,7 @@ TEST(TexelFile, ReturnsWhatWasAdded) {
 }
 
 // The cache holds a sixth of the texels.
-TEST(TexelFile, ThreadsReadTheSameWhileTilesAreDiscarded) {
+TEST(SlowTexelFile, ThreadsReadTheSameWhileTilesAreDiscarded) {
   constexpr int kWidth = 2048, kHeight = 2048, kImages = 4;
   TexelFile file(0);
   for (uint64_t i = 0; i < kImages; ++i)
@@ -189,7 +189,7 @@ Outcome run(const std::string& model, const Words& more) {
           nlohmann::json::parse(std::ifstream(folder / "a.json"))};
 }
 
-TEST(TexelFile, ImagesHaveTheSameBitsAndMemoryIsBounded) {
+TEST(SlowTexelFile, ImagesHaveTheSameBitsAndMemoryIsBounded) {
   GltfWriter w;
   const std::string model = writeTexturedModel(w, 8, 2048);  // 179 MB with mip levels
   const Outcome memory = run(model, {});

@@ -106,7 +106,7 @@ TEST(Transmission, aSlabAbsorbsByBeersLaw) {
 
 // Nested bodies: refraction and reflection at a boundary depend on the indices on both sides, and
 // absorption on the innermost body. At most four nested bodies are tracked: a fifth has no effect.
-TEST(Transmission, upToFourNestedBodies) {
+TEST(SlowTransmission, upToFourNestedBodies) {
   const float iors[] = {1.5f, 1.2f, 2.0f, 1.33f, 2.4f};
   const float attenuations[] = {0.5f, 1.5f, 0.2f, 3, 9};
   for (const double sine : {0.0, 0.6})
