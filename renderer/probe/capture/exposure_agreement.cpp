@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/exposure_agreement.h"
-#include "math/quantile.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "math/quantile.h"
 
 namespace chromeball {
 namespace {
