@@ -48,7 +48,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"composite",
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "shading", "lighting", "film",
       "integrate", "denoise"}},
-    {"relight", {"base", "math", "image"}},
+    {"relight", {"base", "math", "image", "probe"}},
     {"measure", {"base", "math", "image"}},
     {"job",
      {"base", "math", "image", "image/io", "probe", "scene", "scene/gltf", "scene/solve", "trace",

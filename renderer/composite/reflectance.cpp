@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/reflectance.h"
 
-#include <utility>
-
 namespace chromeball {
 namespace {
 
@@ -83,11 +81,7 @@ class RepaintedIntegrator : public Integrator {
     if (state.first) state.first->hit = true;
     const Bsdf bsdf(material, surface, -state.ray.direction, tracer_.world().bsdfTables,
                     tracer_.mirrorAlpha());
-    if (!tracer_.scatter(state, surface, bsdf, context)) return state.radiance;
-    context.sampler.startVertex(state.depth);
-    const Rgb direct = std::exchange(state.radiance, Rgb(0));
-    state.first = nullptr;
-    return direct + tracer_.follow(state, tracer_.closestHit(state.ray, context), context);
+    return tracer_.reflected(state, surface, bsdf, context);
   }
 
  private:

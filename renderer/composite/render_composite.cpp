@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/render_composite.h"
 
+#include "integrate/surface_layers.h"
+
 namespace chromeball {
 namespace {
 
@@ -58,8 +60,12 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
   if (passes == Passes::One) {
     GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
     const CompositeWorlds worlds(world, lighting, training.guided(settings.path()));
-    RenderResult result = render(DifferentialIntegrator(worlds, plate, behindObjects), world,
-                                 camera, settings, progress, stop, &training, control);
+    const DifferentialIntegrator picture(worlds, plate, behindObjects);
+    const SurfaceLayers layers(picture, worlds.whole, settings);
+    const Integrator& integrator =
+        settings.wantsSurfaceLayers() ? layers : static_cast<const Integrator&>(picture);
+    RenderResult result =
+        render(integrator, world, camera, settings, progress, stop, &training, control);
     Image mean = result.film.mean();
     PixelErrors errors = result.film.errors();
     return {std::move(result), std::move(mean), std::move(errors)};

@@ -2,6 +2,7 @@
 #include "film/aov.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -14,15 +15,28 @@ namespace {
 
 constexpr float kNoDepth = 1e10f;
 
+// 1 of a zero vector.
+double lengthOf(const double* v) {
+  const double length = std::hypot(v[0], v[1], v[2]);
+  return length > 0 ? length : 1;
+}
+
 }  // namespace
 
 const std::vector<AovInfo>& allAovs() {
-  static const std::vector<AovInfo> infos{
-      {Aov::Albedo, "albedo", "RGB"},     {Aov::Normal, "normal", "XYZ"},
-      {Aov::Depth, "depth", "Z"},         {Aov::Alpha, "alpha", "A"},
-      {Aov::Variance, "variance", "RGB"}, {Aov::Samples, "samples", ""},
-      {Aov::Material, "material", ""},    {Aov::Node, "node", ""},
-      {Aov::Invalid, "invalid", "RGB"},   {Aov::Denoise, "denoise", ""}};
+  static const std::vector<AovInfo> infos{{Aov::Albedo, "albedo", "RGB"},
+                                          {Aov::Normal, "normal", "XYZ"},
+                                          {Aov::Depth, "depth", "Z"},
+                                          {Aov::Alpha, "alpha", "A"},
+                                          {Aov::Variance, "variance", "RGB"},
+                                          {Aov::Samples, "samples", ""},
+                                          {Aov::Material, "material", ""},
+                                          {Aov::Node, "node", ""},
+                                          {Aov::Invalid, "invalid", "RGB"},
+                                          {Aov::Denoise, "denoise", ""},
+                                          {Aov::AmbientOcclusion, "ao", ""},
+                                          {Aov::BentNormal, "bent_normal", "XYZ"},
+                                          {Aov::Irradiance, "irradiance", "RGB"}};
   return infos;
 }
 
@@ -79,6 +93,15 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
       case Aov::Alpha:
         *to += 1;
         break;
+      case Aov::AmbientOcclusion:
+        *to += first.ambientOcclusion;
+        break;
+      case Aov::BentNormal:
+        addRgb(to, first.unoccluded);
+        break;
+      case Aov::Irradiance:
+        addRgb(to, first.irradiance);
+        break;
       default:
         break;  // Variance, Samples and Invalid do not depend on the first hit
     }
@@ -122,6 +145,9 @@ Image AovFilm::finished(Aov aov) const {
         const size_t index = i / sum.channels;
         double divisor = 1;
         if (aov == Aov::Depth) divisor = hits_[index];
+        if (aov == Aov::AmbientOcclusion || aov == Aov::Irradiance)
+          divisor = std::max(hits_[index], 1u);
+        if (aov == Aov::BentNormal) divisor = lengthOf(&sum.sums[index * sum.channels]);
         if (aov == Aov::Albedo || aov == Aov::Normal || aov == Aov::Alpha)
           divisor = std::max(samples_[index], 1u);  // an interrupted render may have no samples
         image.texels[i] = divisor > 0 ? float(sum.sums[i] / divisor) : kNoDepth;

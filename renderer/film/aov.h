@@ -26,6 +26,11 @@ struct FirstHit {
   Rgb seen{0};
   // Radiance found before the path's second scattering by a broad lobe; none: all of the path's.
   std::optional<Rgb> direct;
+
+  // Of integrate/surface_layers.h; of one sample.
+  float ambientOcclusion = 0;  // 1 where the sky is visible
+  vec3 unoccluded{0};          // its direction
+  Rgb irradiance{0};           // W/m^2
 };
 
 // The names are those of the command line and of the EXR layers. Values per pixel:
@@ -37,6 +42,10 @@ struct FirstHit {
 //   material, node  index + 1, of the first sample with a hit (indices cannot be averaged); 0 if
 //                   none
 //   invalid         number of excluded samples: R NaN, G infinite, B negative
+//   ao              ambient occlusion: the visible part of the sky, weighted by the cosine; mean
+//                   over the samples with a hit, 0 if none
+//   bent_normal     unit, the mean direction of the visible sky; 0 if there is none
+//   irradiance      W/m^2, of the light on the first surface; mean over the samples with a hit
 //   denoise         what a denoiser reads: several layers (film/feature_film.h)
 enum class Aov {
   Albedo,
@@ -48,7 +57,10 @@ enum class Aov {
   Material,
   Node,
   Invalid,
-  Denoise
+  Denoise,
+  AmbientOcclusion,
+  BentNormal,
+  Irradiance
 };
 
 struct AovInfo {

@@ -2,6 +2,7 @@
 #include "integrate/path.h"
 
 #include <cmath>
+#include <utility>
 
 #include "integrate/light_groups.h"
 #include "integrate/mis.h"
@@ -24,6 +25,11 @@ bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
          (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
+void countKind(PathState& state, bool isTransmission, bool isDiffuse) {
+  if (isTransmission) return;
+  ++(isDiffuse ? state.diffuse : state.specular);
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const World& world, const LightSource& lighting,
@@ -32,6 +38,7 @@ PathTracer::PathTracer(const World& world, const LightSource& lighting,
       lighting_(lighting),
       settings_(settings),
       mirrorAlpha_(lighting.mirrorAlpha()),
+      limitsKinds_(settings.limitsKinds()),
       seen_(world, lighting),
       direct_(world, lighting, settings) {}
 
@@ -118,6 +125,8 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     }
   }
   state.scattered |= !next.isDelta;
+  if (limitsKinds_) [[unlikely]]
+    countKind(state, isTransmission(surface, next), next.isDiffuse);
   if (state.widening > 0 && !next.isDelta)
     state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.bsdfPdf));
   state.throughputBefore = throughputBefore;
@@ -145,9 +154,10 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
                                                   const Surface& surface,
                                                   const MaterialPoint& material,
                                                   PathContext& context) const {
-  const Bsdf bsdf(material, extendedPointAt(state, instance, surface),
-                  state.media.refractiveIndex(surface, state.throughput), surface,
-                  -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
+  Bsdf bsdf(material, extendedPointAt(state, instance, surface),
+            state.media.refractiveIndex(surface, state.throughput), surface, -state.ray.direction,
+            world_.bsdfTables, mirrorAlpha_);
+  if (limitsKinds_ && !limitKinds(state, bsdf) && !surface.material->isBody()) return false;
   return scatterAs<true>(state, surface, bsdf, context);
 }
 
@@ -198,8 +208,17 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     widen(material, state.minAlpha);
   if (surface.material->extended) [[unlikely]]
     return scatterLayered(state, instance, surface, material, context);
-  const Bsdf bsdf(material, surface, -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
+  Bsdf bsdf(material, surface, -state.ray.direction, world_.bsdfTables, mirrorAlpha_);
+  if (limitsKinds_ && !limitKinds(state, bsdf)) [[unlikely]]
+    return false;
   return scatterAs<false>(state, surface, bsdf, context);
+}
+
+bool PathTracer::limitKinds(const PathState& state, Bsdf& bsdf) const {
+  const KeptLobes kept{state.diffuse < settings_.maxDiffuseDepth,
+                       state.specular < settings_.maxSpecularDepth};
+  if (!kept.diffuse || !kept.specular) bsdf.keepOnly(kept);
+  return kept.diffuse || kept.specular;
 }
 
 bool PathTracer::isHiddenBack(const PathState& state, const Hit& hit) const {
@@ -232,6 +251,16 @@ Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& con
   }
   context.addRecord(state.guided, state.radiance);
   return state.radiance;
+}
+
+Rgb PathTracer::reflected(PathState state, const Surface& surface, const Bsdf& bsdf,
+                          PathContext& context) const {
+  const bool goesOn = scatter(state, surface, bsdf, context);
+  const Rgb found = std::exchange(state.radiance, Rgb(0));
+  if (!goesOn) return found;
+  context.sampler.startVertex(state.depth);
+  state.first = nullptr;
+  return found + follow(state, closestHit(state.ray, context), context);
 }
 
 Rgb PathTracer::radiance(const PathState& start, const std::optional<Hit>& hit,

@@ -24,12 +24,13 @@ struct PathState {
   Rgb throughputBefore{1};              // the bounce at `from`
   // The ray comes from the camera or a delta lobe: light sampling could not find its direction.
   bool isDelta = true;
-  float pdf = 0;                // of the ray's direction at `from`, over solid angle; if !isDelta
-  Lobes lobes = Lobes::Narrow;  // the lobes that were sampled; camera rays count as a mirror's
-  int depth = 0;                // of the next vertex
-  int straight = 0;             // vertices passed without a change of direction; not bounces
-  int transmissions = 0;        // bounces in and on solid glass, limited by maxTransmissionDepth
-  bool cutIsEstimated = false;  // estimateDepthCut() has processed this path
+  float pdf = 0;                  // of the ray's direction at `from`, over solid angle; if !isDelta
+  Lobes lobes = Lobes::Narrow;    // the lobes that were sampled; camera rays count as a mirror's
+  int depth = 0;                  // of the next vertex
+  int straight = 0;               // vertices passed without a change of direction; not bounces
+  int transmissions = 0;          // bounces in and on solid glass, limited by maxTransmissionDepth
+  int diffuse = 0, specular = 0;  // bounces by kind (PathSettings::maxDiffuseDepth)
+  bool cutIsEstimated = false;    // estimateDepthCut() has processed this path
   // pdf / BSDF pdf of the guided bounces so far. A path towards a caustic has little throughput in
   // proportion to its light; roulette treats it as if the BSDF had found it.
   float guideRatio = 1;
@@ -64,6 +65,10 @@ class PathTracer {
   // Processes one vertex: adds its emission and direct light to state.radiance and samples the next
   // ray. Returns false where the path ends. Call estimateDepthCut() first.
   bool vertex(PathState& state, const std::optional<Hit>& hit, PathContext& context) const;
+
+  // Radiance that `surface`, where the ray of a camera path ends, reflects with a given BSDF.
+  Rgb reflected(PathState state, const Surface& surface, const Bsdf& bsdf,
+                PathContext& context) const;
 
   // The part of vertex() after emission, for a given BSDF: direct light and the next direction.
   bool scatter(PathState& state, const Surface& surface, const Bsdf& bsdf,
@@ -108,6 +113,8 @@ class PathTracer {
   template <bool kLayered>
   bool scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                  PathContext& context) const;
+  // Removes the lobes whose limit of depth the path has reached. Returns false if all are.
+  bool limitKinds(const PathState& state, Bsdf& bsdf) const;
   static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                          const PathContext& context);
   void followTwice(PathState& state, const Hit& hit, PathContext& context) const;
@@ -116,6 +123,7 @@ class PathTracer {
   const LightSource& lighting_;
   PathSettings settings_;
   float mirrorAlpha_;
+  bool limitsKinds_;
   SeenFeature seen_;
   DirectLight direct_;
 };

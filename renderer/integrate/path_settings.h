@@ -2,6 +2,8 @@
 // Depth limits, MIS and visibility settings of paths.
 #pragma once
 
+#include <climits>
+
 #include "integrate/guiding/caustic_guide.h"
 #include "integrate/guiding/light_guide.h"
 #include "lighting/strategy.h"
@@ -17,8 +19,11 @@ struct PathSettings {
   int maxDepth = 8;  // 0: emission seen by the camera; 1: direct light; ...
   int maxTransmissionDepth =
       kDefaultTransmissionDepth;  // bounces in solid glass; not counted in maxDepth
-  bool hideProbe = false;         // from the camera
-  bool estimateDepthCut = true;   // estimate the light beyond the depth limits
+  // Limits of the bounces in which a diffuse or a specular lobe chose the direction; transmission
+  // in and on bodies of glass is neither.
+  int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;
+  bool hideProbe = false;        // from the camera
+  bool estimateDepthCut = true;  // estimate the light beyond the depth limits
   // For strategies that take one light sample (LightSource::takesOneSample()); null: none.
   const LightGuide* guide = nullptr;
   const CausticGuide* caustics = nullptr;  // likewise, for bounces
@@ -26,6 +31,8 @@ struct PathSettings {
   // If it differs from `visible`, shadow rays are traced with both masks, and
   // PathContext::shadowsDiffer is set if their transmittances differ.
   RayMask compared = visible;
+
+  bool limitsKinds() const { return maxDiffuseDepth < INT_MAX || maxSpecularDepth < INT_MAX; }
 };
 
 }  // namespace chromeball

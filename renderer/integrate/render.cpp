@@ -6,12 +6,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <mutex>
 
+#include "integrate/environment_map.h"
 #include "integrate/guide_training.h"
 #include "integrate/light_groups.h"
 #include "integrate/pixel_renderer.h"
 #include "integrate/render_state.h"
+#include "integrate/surface_layers.h"
 #include "integrate/tile_grid.h"
 
 namespace chromeball {
@@ -260,17 +263,28 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
 
 RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
                     const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop, RenderControl* control) {
+                    const std::atomic<bool>& stop, RenderControl* control,
+                    const EnvironmentLight* environment) {
+  const auto withLayers = [&](const Integrator& picture, GuideTraining* training) {
+    if (!settings.wantsSurfaceLayers())
+      return render(picture, world, camera, settings, progress, stop, training, control);
+    const PathTracer tracer(world, lighting, settings.path());
+    return render(SurfaceLayers(picture, tracer, settings), world, camera, settings, progress, stop,
+                  training, control);
+  };
+  if (usesEnvironment(settings.integrator)) {
+    assert(environment);
+    return withLayers(EnvironmentMapIntegrator(world, lighting, *environment, settings), nullptr);
+  }
   if (settings.wantsGroups()) {
     const LightGroups groups(world, lighting);
     GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
     const PathTracer tracer(world, lighting, training.guided(settings.path()));
-    return render(GroupIntegrator(tracer, groups), world, camera, settings, progress, stop,
-                  &training, control);
+    return withLayers(GroupIntegrator(tracer, groups), &training);
   }
   GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
-  return render(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
-                world, camera, settings, progress, stop, &training, control);
+  return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
+                    &training);
 }
 
 }  // namespace chromeball

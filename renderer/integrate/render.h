@@ -16,6 +16,7 @@
 
 namespace chromeball {
 
+class EnvironmentLight;
 class RenderControl;
 
 struct RenderResult {
@@ -51,10 +52,11 @@ struct RenderResult {
 // Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers
 // the whole image; the first takes a few samples per pixel, each later one doubles them. The result
 // does not depend on the number of threads (except under a time limit). `control`
-// (render_state.h) may be null.
+// (render_state.h) may be null. `environment`: for the integrators that use it.
 RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
                     const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop, RenderControl* control = nullptr);
+                    const std::atomic<bool>& stop, RenderControl* control = nullptr,
+                    const EnvironmentLight* environment = nullptr);
 
 // The same for any integrator. `training`: of the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "film/aov.h"
+#include "integrate/integrator_kind.h"
 #include "integrate/path_settings.h"
 #include "integrate/shard.h"
 
@@ -35,6 +36,9 @@ struct RenderSettings {
   Guiding guiding = Guiding::Auto;
   int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
+  int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;  // as in PathSettings
+  IntegratorKind integrator = IntegratorKind::Path;
+  Occlusion occlusion;
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
   bool hideProbe = false;      // from the camera
@@ -52,13 +56,18 @@ struct RenderSettings {
   Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
 
   bool wantsGroups() const { return lightGroups || shadowMattes; }
-  bool wantsFeatures() const {
-    return denoise || std::find(aovs.begin(), aovs.end(), Aov::Denoise) != aovs.end();
+  bool wantsAov(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
+  bool wantsSurfaceLayers() const {
+    return wantsAov(Aov::AmbientOcclusion) || wantsAov(Aov::BentNormal) ||
+           wantsAov(Aov::Irradiance);
   }
+  bool wantsFeatures() const { return denoise || wantsAov(Aov::Denoise); }
   PathSettings path() const {
     return {.mis = mis,
-            .maxDepth = maxDepth,
+            .maxDepth = integrator == IntegratorKind::Direct ? std::min(maxDepth, 1) : maxDepth,
             .maxTransmissionDepth = maxTransmissionDepth,
+            .maxDiffuseDepth = maxDiffuseDepth,
+            .maxSpecularDepth = maxSpecularDepth,
             .hideProbe = hideProbe};
   }
 };

@@ -73,6 +73,32 @@ void checkGroups(const SceneFile& file) {
                s.location("render.denoise"), *found);
 }
 
+void checkIntegrator(const SceneFile& file) {
+  const Settings& s = file.settings;
+  const std::string name = s.get<std::string>("render.integrator");
+  const bool approximates = name == "environment-map" || name == "ambient-occlusion";
+  for (const char* flag : {"render.ao", "render.reflection_occlusion"})
+    if (s.get<bool>(flag) && name != "environment-map")
+      throwInput("{}: is for `--integrator environment-map`", s.location(flag));
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  const auto wants = [&](const char* layer) { return std::ranges::count(layers, layer) > 0; };
+  if (s.has("render.ao_distance") && !approximates && !wants("ao") && !wants("bent_normal"))
+    throwInput("{}: is for ambient occlusion: `--aov ao,bent_normal`, or an integrator with it",
+               s.location("render.ao_distance"));
+  if (!approximates) return;
+  const std::string location = s.location("render.integrator");
+  const auto refuse = [&](std::string_view what) {
+    throwInput("{}: {} knows only light of a distant probe; leave {} out", location, name, what);
+  };
+  if (file.composite) refuse("[composite]");
+  if (file.surroundings) refuse("[surroundings]");
+  if (std::ranges::any_of(layers, isOfLight)) refuse("the light groups");
+  if (s.get<std::string>("render.guide") == "on") refuse("--guide on");
+  if (s.get<bool>("render.regularize")) refuse("--regularize");
+  if (s.has("render.max_diffuse_depth") || s.has("render.max_specular_depth"))
+    refuse("the limits of depth");
+}
+
 void checkParts(const SceneFile& file) {
   const Settings& s = file.settings;
   if (s.get<bool>("resume") && !s.has("checkpoint"))
@@ -122,6 +148,7 @@ void checkJob(const SceneFile& file) {
   checkShowLights(file);
   checkDenoise(file);
   checkGroups(file);
+  checkIntegrator(file);
   checkParts(file);
   checkOrbit(file);
   checkTransparent(file);

@@ -20,7 +20,9 @@ void FrameScene::show(RenderJob& job) {
     prepared_.world =
         std::make_unique<const World>(loaded_->scene, std::vector<RayMask>(), tables, built);
   }
-  if (change.lighting) prepared_.lighting = makeLighting(job, *loaded_);
+  if (!change.lighting) return;
+  prepared_.lighting = makeLighting(job, *loaded_);
+  prepared_.environment = makeEnvironment(job.settings.integrator, job.strategy.name, *loaded_);
 }
 
 void FrameScene::load(RenderJob& job) {

@@ -18,6 +18,10 @@ Mis misNamed(const std::string& name) {
   return name == "off" ? Mis::Off : name == "power" ? Mis::Power : Mis::Balance;
 }
 
+IntegratorKind integratorNamed(const std::string& name) {
+  return IntegratorKind(std::ranges::find(kIntegratorNames, name) - kIntegratorNames.begin());
+}
+
 Guiding guidingNamed(const std::string& name) {
   return name == "off" ? Guiding::Off : name == "on" ? Guiding::On : Guiding::Auto;
 }
@@ -187,6 +191,17 @@ RenderSettings integratorSettings(const SceneFile& file) {
   r.adaptive = s.get<std::string>("render.adaptive") == "on";
   r.guiding = guidingNamed(s.get<std::string>("render.guide"));
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
+  if (const auto depth = s.getIfGiven<uint64_t>("render.max_diffuse_depth"))
+    r.maxDiffuseDepth = int(*depth);
+  if (const auto depth = s.getIfGiven<uint64_t>("render.max_specular_depth"))
+    r.maxSpecularDepth = int(*depth);
+  if (r.path().limitsKinds()) r.guiding = Guiding::Off;  // guided bounces have no kind
+  r.integrator = integratorNamed(s.get<std::string>("render.integrator"));
+  r.occlusion.ambient = s.get<bool>("render.ao");
+  r.occlusion.reflection = s.get<bool>("render.reflection_occlusion");
+  if (const auto distance = s.getIfGiven<double>("render.ao_distance"))
+    r.occlusion.distance = float(*distance);
+  r.occlusion.uniformBent = s.get<std::string>("render.bent") == "uniform";
   r.maxTransmissionDepth = int(s.get<uint64_t>("render.max_transmission_depth"));
   r.seed = s.get<uint64_t>("render.seed");
   r.mis = misNamed(s.get<std::string>("lighting.mis"));

@@ -19,7 +19,8 @@ JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   RenderResult result = render(
       *prepared.world, loaded.camera, *prepared.lighting, job.settings,
-      [&](double fraction) { progress(share * fraction); }, stop, control);
+      [&](double fraction) { progress(share * fraction); }, stop, control,
+      prepared.environment.get());
   FinishedImage finished = finish(finishPlan(job, loaded, result), result, progress, stop);
   return {std::move(finished), std::move(result)};
 }
@@ -69,6 +70,7 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
       BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(job, loaded);
+  prepared.environment = makeEnvironment(job.settings.integrator, job.strategy.name, loaded);
   if (job.settings.wantsGroups())
     checkGroupMemory(job, loaded, *prepared.world, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();

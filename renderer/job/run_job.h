@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "integrate/environment_light.h"
 #include "integrate/world.h"
 #include "job/finish.h"
 #include "job/load_scene.h"
@@ -16,7 +17,8 @@ namespace chromeball {
 struct PreparedScene {
   std::unique_ptr<const World> world;
   std::unique_ptr<LightSource> lighting;
-  double buildSeconds = 0, prepareSeconds = 0;  // of the world, of the lighting
+  std::unique_ptr<const EnvironmentLight> environment;  // null: the integrator needs none
+  double buildSeconds = 0, prepareSeconds = 0;          // of the world, of the lighting
 };
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups

@@ -166,4 +166,12 @@ std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScen
   return makeLighting(job.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
 }
 
+std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,
+                                                        const std::string& strategy,
+                                                        const LoadedScene& loaded) {
+  if (!usesEnvironment(integrator)) return nullptr;
+  const bool splitsSuns = resolveStrategy(strategy) == "suns";
+  return std::make_unique<EnvironmentLight>(loaded.probe, loaded.scene, splitsSuns);
+}
+
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "integrate/environment_light.h"
 #include "job/render_job.h"
 #include "lighting/polygon_lights.h"
 #include "lighting/strategy.h"
@@ -63,5 +64,11 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal);
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe = false);
 std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScene& loaded);
+
+// The probe as the integrator uses it, with its suns apart under the strategy `suns`; null if it
+// does not.
+std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,
+                                                        const std::string& strategy,
+                                                        const LoadedScene& loaded);
 
 }  // namespace chromeball

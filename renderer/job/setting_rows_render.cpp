@@ -113,6 +113,48 @@ void addRender(std::vector<Setting>& rows) {
            "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the estimated "
            "standard error of what is left, `denoise_error`.",
        .renderOnly = true});
+  add({.key = "integrator",
+       .option = "integrator",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = std::string(kIntegratorNames[size_t(usual.integrator)]),
+       .choices = [] { return Names(kIntegratorNames.begin(), kIntegratorNames.end()); },
+       .help = "path: all light. Approximations: direct, paths of one bounce; environment-map, the "
+               "probe prefiltered by normal and mirror direction, without shadows and "
+               "interreflection; ambient-occlusion, the same with `ao` and "
+               "`reflection_occlusion`. With the strategy suns these cast the shadows of suns.",
+       .renderOnly = true});
+  add({.key = "ao",
+       .option = "ao",
+       .type = Flag,
+       .help = "With environment-map: ambient occlusion darkens diffuse light.",
+       .renderOnly = true});
+  add({.key = "reflection_occlusion",
+       .option = "reflection-occlusion",
+       .type = Flag,
+       .help = "With environment-map: geometry blocks the probe's reflections.",
+       .renderOnly = true});
+  add({.key = "ao_distance",
+       .option = "ao-distance",
+       .argument = "M",
+       .type = Number,
+       .range = kPositive,
+       .unit = "metres",
+       .absent = "any distance",
+       .help = "Surfaces farther away do not count in ambient occlusion and bent normals.",
+       .renderOnly = true});
+  add({.key = "bent",
+       .option = "bent",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "cosine",
+       .choices =
+           [] {
+             return Names{"cosine", "uniform"};
+           },
+       .help = "The layer bent_normal is the mean of the visible directions, weighted by the "
+               "cosine or not.",
+       .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
        .argument = "N",
@@ -120,6 +162,20 @@ void addRender(std::vector<Setting>& rows) {
        .range = {.min = 0, .max = kMaxDepth},
        .fallback = std::to_string(usual.maxDepth),
        .help = "Maximum number of bounces: 0 emission only, 1 direct light, ..."});
+  add({.key = "max_diffuse_depth",
+       .option = "max-diffuse-depth",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0, .max = kMaxDepth},
+       .absent = "max_depth",
+       .help = "Maximum number of bounces whose direction a diffuse lobe chose."});
+  add({.key = "max_specular_depth",
+       .option = "max-specular-depth",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 0, .max = kMaxDepth},
+       .absent = "max_depth",
+       .help = "Maximum number of bounces whose direction a specular lobe chose."});
   add({.key = "max_transmission_depth",
        .option = "max-transmission-depth",
        .argument = "N",
@@ -169,7 +225,8 @@ void addOutput(std::vector<Setting>& rows) {
                   .help = "Layers of the .exr beside the color. l_obj, l_noobj, difference and "
                           "reflectance are those of a composite. light_groups are layers "
                           "light.NAME, the radiance from each source; shadow_mattes are "
-                          "shadow.NAME, the factor by which its shadow darkens.",
+                          "shadow.NAME, the factor by which its shadow darkens. ao and "
+                          "bent_normal serve `image relight`.",
                   .renderOnly = true});
 }
 

@@ -14,19 +14,19 @@
 namespace chromeball {
 namespace {
 
-constexpr double kError = 1e-3;
-
 // A kernel, and what the sums of all directions need to know of it.
 struct Lobe {
   const ZonalKernel& kernel;
+  double error;
   double mean;           // over the sphere
   double horizonRadius;  // of rectangles at the horizon
 
   // There the slope jumps from 0 to `slope`. Over a strip 2 r wide the error is up to pi / 2 slope
   // r^2, of an integral of 4 pi mean.
-  explicit Lobe(const ZonalKernel& k) : kernel(k), mean(k.integral() / (4 * kPiD)) {
+  Lobe(const ZonalKernel& k, double allowed)
+      : kernel(k), error(allowed), mean(k.integral() / (4 * kPiD)) {
     const double slope = k.at(std::numeric_limits<double>::min()).slope;
-    horizonRadius = std::sqrt(8 * kError * mean / slope);  // infinite without a jump
+    horizonRadius = std::sqrt(8 * error * mean / slope);  // infinite without a jump
   }
 };
 
@@ -46,8 +46,9 @@ class KernelSum {
     return glm::dot(axis_, g.centre) + g.radius <= 0;
   }
 
-  // The kernel at the centre, where it is linear in the cosine over the rectangle: to 1e-3 of the
-  // geometric mean of its value and its peak, which is 1, or to 1e-3 of its mean over the sphere.
+  // The kernel at the centre, where it is linear in the cosine over the rectangle: to the error
+  // times the geometric mean of its value and its peak, which is 1, or times its mean over the
+  // sphere.
   std::optional<ZonalKernel::Value> linearOver(const RectangleGeometry& g) const {
     const double cosine = glm::dot(axis_, g.centre), r = g.radius;
     if (cosine - r < 0 && r > lobe_.horizonRadius) return {};
@@ -56,7 +57,7 @@ class KernelSum {
     const ZonalKernel::Value k = lobe_.kernel.at(cosine);
     // The mean of the second-order term over a disc of this radius.
     const double sine2 = std::max(1 - cosine * cosine, 0.0);
-    if (k.curvature * sine2 * r * r / 8 > kError * std::max(std::sqrt(k.value), lobe_.mean))
+    if (k.curvature * sine2 * r * r / 8 > lobe_.error * std::max(std::sqrt(k.value), lobe_.mean))
       return {};
     return k;
   }
@@ -101,14 +102,14 @@ class KernelSum {
 }  // namespace
 
 std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
-                            std::span<const vec3> directions) {
+                            std::span<const vec3> directions, double error) {
   if (kernel.isCosine()) {
     std::vector<dvec3> means = exactIrradiance(latLong, directions);
     for (dvec3& mean : means) mean /= kPiD;
     return means;
   }
   const MapMoments map(latLong);
-  const Lobe lobe(kernel);
+  const Lobe lobe(kernel, error);
   std::vector<dvec3> means(directions.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, directions.size(), 16),
                     [&](const tbb::blocked_range<size_t>& range) {

@@ -28,7 +28,8 @@ Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
   const float dielectricF0 = maxComponent(m.dielectricF0);
   surfaceAlbedo_ = (dielectricF0 * once.a + m.dielectricF90 * once.b) * gain(dielectricF0);
   diffuse_ = diffuse * (1 - surfaceAlbedo_);
-  const float specular = luminance((f0_ * once.a + f90_ * once.b) * gain_);
+  specularAlbedo_ = (f0_ * once.a + f90_ * once.b) * gain_;
+  const float specular = luminance(specularAlbedo_);
   albedo_ = specular + luminance(diffuse_);
   specularProbability_ = albedo_ > 0 ? specular / albedo_ : 1;
 }
@@ -53,7 +54,8 @@ BsdfValue Brushed::evaluate(const vec3& wi, Lobes lobes) const {
 
 bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
   out.lobes = Lobes::Broad;
-  if (lobe < specularProbability_) {
+  out.isDiffuse = !(lobe < specularProbability_);
+  if (!out.isDiffuse) {
     if (narrow_) out.lobes = Lobes::Narrow;
     const vec3 h = ggx::sampleVisibleNormal(wo_, alpha_, u);
     const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
@@ -63,6 +65,28 @@ bool Brushed::sample(vec2 u, float lobe, BsdfSample& out) const {
     out.wi = frame_.toWorld(squareToCosineHemisphere(u));
   }
   return completeSample(evaluate(out.wi, out.lobes), out);
+}
+
+void Brushed::addTo(MapLobes& lobes, float weight) const {
+  const vec3 mirrored(-wo_.x, -wo_.y, wo_.z);
+  lobes.add({weight * specularAlbedo_, glm::normalize(frame_.toWorld(mirrored)), false,
+             std::sqrt(std::sqrt(alpha_.x * alpha_.y))});
+  if (!isBlack(diffuse_)) lobes.addDiffuse(weight * diffuse_, normal());
+}
+
+void Brushed::keepOnly(KeptLobes kept) {
+  const float specular = specularProbability_ * albedo_;
+  if (!kept.diffuse) {
+    diffuse_ = Rgb(0);
+    albedo_ = specular;
+    specularProbability_ = 1;
+  }
+  if (!kept.specular) {
+    f0_ = f90_ = specularAlbedo_ = Rgb(0);
+    albedo_ -= specular;
+    specularProbability_ = 0;
+    narrow_ = false;
+  }
 }
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -30,6 +31,8 @@ class Brushed {
   const vec3& normal() const { return frame_.z; }
   float albedo() const { return albedo_; }
   float surfaceAlbedo() const { return surfaceAlbedo_; }
+  void addTo(MapLobes& lobes, float weight) const;  // as if isotropic, of the mean alpha
+  void keepOnly(KeptLobes kept);
 
  private:
   Rgb fresnel(float cosine) const;
@@ -41,8 +44,9 @@ class Brushed {
   float lambdaO_;
   bool narrow_;
   Rgb f0_, f90_;
-  Rgb gain_;                   // of the specular lobe, for multiple scattering
-  Rgb diffuse_;                // times the fraction that passes the surface
+  Rgb gain_;     // of the specular lobe, for multiple scattering
+  Rgb diffuse_;  // times the fraction that passes the surface
+  Rgb specularAlbedo_;
   float specularProbability_;  // of sampling the specular lobe
   float albedo_, surfaceAlbedo_;
 };

@@ -14,7 +14,7 @@ namespace chromeball {
 // The interface of every BSDF of the set.
 template <class T>
 concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2 u, float lobe,
-                                 BsdfSample& out) {
+                                 BsdfSample& out, MapLobes& mapLobes) {
   // f |cos| and pdf of the lobes of this kind, for a unit direction; 0 for delta lobes.
   { bsdf.evaluate(wi, lobes) } -> std::same_as<BsdfValue>;
   // Chooses a direction by `u`, and by `lobe` in [0, 1) one of several lobes. False if the
@@ -26,6 +26,8 @@ concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2
   { bsdf.transmits() } -> std::same_as<bool>;
   // Shading normal, unit, on the viewer's side.
   { bsdf.normal() } -> std::same_as<const vec3&>;
+  // Adds what environment mapping needs of each lobe, times a weight.
+  { bsdf.addTo(mapLobes, lobe) } -> std::same_as<void>;
 };
 static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && ScattersLight<Layered>);
 
@@ -60,6 +62,17 @@ class Bsdf {
   }
   const vec3& normal() const {
     return std::visit([](const auto& bsdf) -> const vec3& { return bsdf.normal(); }, set_);
+  }
+
+  MapLobes mapLobes() const {
+    MapLobes lobes;
+    std::visit([&](const auto& bsdf) { bsdf.addTo(lobes, 1); }, set_);
+    return lobes;
+  }
+
+  // Removes the other lobes; what is left stays as it was.
+  void keepOnly(KeptLobes kept) {
+    std::visit([&](auto& bsdf) { bsdf.keepOnly(kept); }, set_);
   }
 
   // Whether light may also come from beyond the hemisphere of normal(): through the surface, or to

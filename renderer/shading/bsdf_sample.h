@@ -20,11 +20,12 @@ struct BsdfValue {
 };
 
 struct BsdfSample {
-  vec3 wi;       // unit, away from the surface
-  Rgb weight;    // f |cos| / pdf, both of the lobes that were sampled
-  float pdf;     // over solid angle; 0 for a delta
-  Lobes lobes;   // that were sampled
-  bool isDelta;  // wi is the only direction of a perfect mirror or a smooth refraction
+  vec3 wi;                 // unit, away from the surface
+  Rgb weight;              // f |cos| / pdf, both of the lobes that were sampled
+  float pdf;               // over solid angle; 0 for a delta
+  Lobes lobes;             // that were sampled
+  bool isDelta;            // wi is the only direction of a perfect mirror or a smooth refraction
+  bool isDiffuse = false;  // a diffuse lobe chose the direction
 };
 
 // Completes a sample in the direction out.wi, for which out.lobes have `value`. Returns false if

@@ -139,8 +139,20 @@ bool Glass::sample(vec2 u, float lobe, BsdfSample& out) const {
   out.wi = frame_.toWorld(local);
   if ((local.z > 0) != (glm::dot(geometricNormal_, out.wi) > 0)) return false;
   out.lobes = lobes_;
+  out.isDiffuse = false;
   if (smooth_) return completeDelta(weight, out);
   return completeSample(evaluate(out.wi, lobes_), out);
+}
+
+void Glass::addTo(MapLobes& lobes, float weight) const {
+  const Rgb reflectance = fresnel(std::min(wo_.z, 1.0f));
+  const float roughness = smooth_ ? 0 : std::sqrt(alpha_);
+  const vec3 mirrored(-wo_.x, -wo_.y, wo_.z);
+  lobes.add({weight * reflectance, glm::normalize(frame_.toWorld(mirrored)), false, roughness});
+  const Rgb transmitted = tint_ * (1.0f - reflectance);
+  if (isBlack(transmitted)) return;
+  const vec3 through = frame_.toWorld(refracted(wo_, vec3(0, 0, 1), eta_.y));
+  lobes.add({weight * transmitted, glm::normalize(through), false, roughness});
 }
 
 }  // namespace chromeball

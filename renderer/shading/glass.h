@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -35,6 +36,9 @@ class Glass {
   bool has(Lobes lobes) const { return !smooth_ && lobes == lobes_; }
   const vec3& normal() const { return frame_.z; }
   float albedo() const;
+  // What is refracted is looked up in the direction inside the body, that of green.
+  void addTo(MapLobes& lobes, float weight) const;
+  void keepOnly(KeptLobes) {}  // glass has a limit of its own
 
  private:
   Rgb fresnel(float cosine) const;  // of each channel

@@ -18,6 +18,7 @@ bool Lambert::sample(vec2 u, float, BsdfSample& out) const {
   out.pdf = glm::dot(normal(), out.wi) * kInvPi;
   out.lobes = Lobes::Broad;
   out.isDelta = false;
+  out.isDiffuse = true;
   return out.pdf > 0 && glm::dot(geometricNormal_, out.wi) > 0;
 }
 

@@ -5,6 +5,7 @@
 #include "math/frame.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -22,6 +23,11 @@ class Lambert {
 
   float albedo() const { return luminance(albedo_); }
   float surfaceAlbedo() const { return 0; }
+
+  void addTo(MapLobes& lobes, float weight) const { lobes.addDiffuse(weight * albedo_, normal()); }
+  void keepOnly(KeptLobes kept) {
+    if (!kept.diffuse) albedo_ = Rgb(0);
+  }
 
  private:
   Rgb albedo_;

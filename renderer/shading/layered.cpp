@@ -58,7 +58,11 @@ Layered::Layered(const MaterialPoint& m, const ExtendedPoint& e, const Refractiv
     metalF0 = filmed(m.baseColor);
   }
   addBase({e, index, surface, wo, tables, mirrorAlpha}, base, metalF0, through);
+  chooseProbabilities();
+}
 
+// In proportion to what the lobes reflect, which is in `probability`.
+void Layered::chooseProbabilities() {
   float total = 0;
   forEachLobe(*this, [&](auto& part) { total += part.probability; });
   forEachLobe(*this, [&](auto& part) {
@@ -163,6 +167,19 @@ bool Layered::sample(vec2 u, float lobe, BsdfSample& out) const {
     lobe -= part.probability;
   });
   return passed;
+}
+
+void Layered::addTo(MapLobes& lobes, float weight) const {
+  forEachLobe(*this, [&](const auto& part) { part.lobe.addTo(lobes, weight * part.weight); });
+}
+
+void Layered::keepOnly(KeptLobes kept) {
+  hasBroad_ = hasNarrow_ = false;
+  forEachLobe(*this, [&](auto& part) {
+    part.lobe.keepOnly(kept);
+    part.probability = part.weight * part.lobe.albedo();
+  });
+  chooseProbabilities();
 }
 
 }  // namespace chromeball

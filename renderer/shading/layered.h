@@ -38,6 +38,8 @@ class Layered {
     return (glass_ && glass_->lobe.has(Lobes::Broad)) || (sheet_ && sheet_->lobe.has(Lobes::Broad));
   }
   const vec3& normal() const { return normal_; }
+  void addTo(MapLobes& lobes, float weight) const;
+  void keepOnly(KeptLobes kept);
 
  private:
   template <class Lobe>
@@ -76,6 +78,8 @@ class Layered {
   Rgb addOpaqueLobe(std::optional<Weighted<Lobe>>& to, const Point& point,
                     const MaterialPoint& material, const Rgb& diffuse, float weight,
                     const LobeOf& lobeOf);
+
+  void chooseProbabilities();
 
   vec3 normal_;
   bool hasBroad_ = false, hasNarrow_ = false;

@@ -91,10 +91,12 @@ BsdfValue MetallicRoughness::evaluateLocal(const vec3& wi, Lobes lobes) const {
 bool MetallicRoughness::sample(vec2 u, float lobe, BsdfSample& out) const {
   if (!(lobe < specularProbability_)) {
     out.lobes = Lobes::Broad;
+    out.isDiffuse = true;
     out.wi = frame_.toWorld(squareToCosineHemisphere(u));
     return completeSample(evaluate(out.wi, out.lobes), out);
   }
   out.lobes = narrow_ ? Lobes::Narrow : Lobes::Broad;
+  out.isDiffuse = false;
   const vec3 h = smooth_ ? vec3(0, 0, 1) : ggx::sampleVisibleNormal(wo_, alpha_, u);
   const vec3 local = 2 * glm::dot(wo_, h) * h - wo_;
   if (local.z <= 0) return false;
@@ -104,6 +106,33 @@ bool MetallicRoughness::sample(vec2 u, float lobe, BsdfSample& out) const {
     return completeDelta(fresnelSchlick(f0_, f90_, std::min(wo_.z, 1.0f)) / specularProbability_,
                          out);
   return completeSample(evaluate(out.wi, out.lobes), out);
+}
+
+void MetallicRoughness::addTo(MapLobes& lobes, float weight) const {
+  const SpecularAlbedo toViewer = energy_.at(wo_.z), mean = energy_.average();
+  const Rgb specular = smooth_ ? fresnelSchlick(f0_, f90_, std::min(wo_.z, 1.0f))
+                               : f0_ * toViewer.a + f90_ * toViewer.b;
+  const vec3 mirrored(-wo_.x, -wo_.y, wo_.z);
+  lobes.add({weight * specular, glm::normalize(frame_.toWorld(mirrored)), false,
+             smooth_ ? 0 : std::sqrt(alpha_)});
+  const Rgb diffuse = diffuse_ * (1 - dielectric_.albedo(mean)) + multiple_ * (1 - mean.a - mean.b);
+  if (!isBlack(diffuse)) lobes.addDiffuse(weight * diffuse, normal());
+}
+
+void MetallicRoughness::keepOnly(KeptLobes kept) {
+  const float specular = specularProbability_ * albedo_;
+  if (!kept.diffuse) {
+    diffuse_ = multiple_ = Rgb(0);
+    albedo_ = specular;
+    specularProbability_ = 1;
+    hasBroad_ = !narrow_;
+  }
+  if (!kept.specular) {
+    f0_ = f90_ = Rgb(0);
+    albedo_ -= specular;
+    specularProbability_ = 0;
+    hasNarrow_ = false;
+  }
 }
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -42,6 +43,10 @@ class MetallicRoughness {
   float albedo() const { return albedo_; }
   // S(wo): the fraction of light that does not reach the layer beneath.
   float surfaceAlbedo() const { return surfaceAlbedo_; }
+
+  void addTo(MapLobes& lobes, float weight) const;
+  // The light that microfacets scatter more than once counts as diffuse.
+  void keepOnly(KeptLobes kept);
 
  private:
   // The dielectric surface of a material, with the largest component of its F0:

@@ -29,6 +29,7 @@ BsdfValue Sheen::evaluate(const vec3& wi, Lobes lobes) const {
 
 bool Sheen::sample(vec2 u, float, BsdfSample& out) const {
   out.lobes = Lobes::Broad;
+  out.isDiffuse = true;
   out.wi = frame_.toWorld(squareToUniformHemisphere(u));
   return completeSample(evaluate(out.wi), out);
 }

@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -21,6 +22,13 @@ class Sheen {
   float albedo() const { return luminance(color_) * whiteAlbedo_; }
   // Fraction of light that does not reach the layers beneath.
   float surfaceAlbedo() const { return maxComponent(color_) * whiteAlbedo_; }
+  // As if it were diffuse.
+  void addTo(MapLobes& lobes, float weight) const {
+    lobes.addDiffuse(weight * whiteAlbedo_ * color_, frame_.z);
+  }
+  void keepOnly(KeptLobes kept) {
+    if (!kept.diffuse) color_ = Rgb(0);
+  }
 
  private:
   Frame frame_;

@@ -34,6 +34,7 @@ BsdfValue Sheet::evaluate(const vec3& wi, Lobes lobes) const {
 }
 
 bool Sheet::sample(vec2 u, float, BsdfSample& out) const {
+  out.isDiffuse = false;
   if (smooth_) {
     out.wi = -wo_;
     out.lobes = lobes_;

@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
+#include "shading/map_lobes.h"
 
 namespace chromeball {
 
@@ -22,6 +23,12 @@ class Sheet {
   bool sample(vec2 u, float lobe, BsdfSample& out) const;
   bool has(Lobes lobes) const { return !smooth_ && lobes == lobes_; }
   float albedo() const { return luminance(fraction_); }
+  void addTo(MapLobes& lobes, float weight) const {
+    lobes.add({weight * fraction_, -wo_, false, smooth_ ? 0 : std::sqrt(alpha_)});
+  }
+  void keepOnly(KeptLobes kept) {
+    if (!kept.specular) fraction_ = Rgb(0);
+  }
 
  private:
   Frame frame_;

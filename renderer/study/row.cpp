@@ -2,6 +2,7 @@
 #include "study/row.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "base/error.h"
 #include "lighting/methods.h"
@@ -17,15 +18,57 @@ constexpr ModeName kModes[] = {{Mode::Adaptive, "adaptive"},
                                {Mode::Guide, "guide"},
                                {Mode::Regularize, "regularize"},
                                {Mode::GlassShadows, "glass-shadows"},
-                               {Mode::Denoise, "denoise"}};
+                               {Mode::Denoise, "denoise"},
+                               {Mode::AmbientOcclusion, "ao"},
+                               {Mode::ReflectionOcclusion, "reflection-occlusion"}};
+constexpr std::string_view kDiffuseDepth = "diffuse-depth:", kSpecularDepth = "specular-depth:";
 
-Mode modeNamed(const std::string& name, const std::string& location) {
-  std::vector<std::string> known;
+int depthOf(std::string_view text, const std::string& name, const std::string& location) {
+  int depth = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth);
+  if (error != std::errc() || end != text.data() + text.size() || depth < 0)
+    throwInput("{}: `{}` needs a whole number from 0", location, name);
+  return depth;
+}
+
+void addMode(const std::string& name, const std::string& location, Row& row) {
+  if (name.starts_with(kDiffuseDepth)) {
+    row.diffuseDepth = depthOf(std::string_view(name).substr(kDiffuseDepth.size()), name, location);
+    return;
+  }
+  if (name.starts_with(kSpecularDepth)) {
+    row.specularDepth =
+        depthOf(std::string_view(name).substr(kSpecularDepth.size()), name, location);
+    return;
+  }
+  const auto integrator = std::ranges::find(kIntegratorNames, name);
+  if (integrator != kIntegratorNames.end()) {
+    row.integrator = IntegratorKind(integrator - kIntegratorNames.begin());
+    return;
+  }
+  std::vector<std::string_view> known;
   for (const auto& [mode, modeName] : kModes) {
-    if (name == modeName) return mode;
+    if (name == modeName) {
+      if (!row.has(mode)) row.modes.push_back(mode);
+      return;
+    }
     known.push_back(modeName);
   }
-  throwInput("{}: `{}` is not a mode; modes are {}", location, name, fmt::join(known, ", "));
+  known.insert(known.end(), kIntegratorNames.begin(), kIntegratorNames.end());
+  throwInput("{}: `{}` is not a mode; modes are {}, {}N and {}N", location, name,
+             fmt::join(known, ", "), kDiffuseDepth, kSpecularDepth);
+}
+
+void check(const Row& row, const std::string& location) {
+  const bool hasOcclusion = row.has(Mode::AmbientOcclusion) || row.has(Mode::ReflectionOcclusion);
+  if (hasOcclusion && row.integrator != IntegratorKind::EnvironmentMap)
+    throwInput("{}: {}: ao and reflection-occlusion are modes of environment-map", location,
+               row.name());
+  if (!usesEnvironment(row.integrator)) return;
+  if (row.has(Mode::Guide) || row.has(Mode::Regularize) || row.has(Mode::GlassShadows) ||
+      row.diffuseDepth || row.specularDepth)
+    throwInput("{}: {}: {} follows no paths", location, row.name(),
+               kIntegratorNames[size_t(row.integrator)]);
 }
 
 }  // namespace
@@ -33,13 +76,18 @@ Mode modeNamed(const std::string& name, const std::string& location) {
 bool Row::has(Mode mode) const { return std::ranges::count(modes, mode) > 0; }
 
 bool Row::isBiased() const {
-  return has(Mode::Regularize) || has(Mode::GlassShadows) || has(Mode::Denoise);
+  return integrator != IntegratorKind::Path || has(Mode::Regularize) || has(Mode::GlassShadows) ||
+         has(Mode::Denoise) || diffuseDepth || specularDepth;
 }
 
 std::string Row::name() const {
   std::string name = strategy;
+  if (integrator != IntegratorKind::Path)
+    name += fmt::format("+{}", kIntegratorNames[size_t(integrator)]);
   for (const auto& [mode, modeName] : kModes)
     if (has(mode)) name += std::string("+") + modeName;
+  if (diffuseDepth) name += fmt::format("+{}{}", kDiffuseDepth, *diffuseDepth);
+  if (specularDepth) name += fmt::format("+{}{}", kSpecularDepth, *specularDepth);
   return name;
 }
 
@@ -48,19 +96,25 @@ RenderSettings Row::applied(RenderSettings settings) const {
   settings.guiding = has(Mode::Guide) ? Guiding::On : Guiding::Off;
   settings.regularize = has(Mode::Regularize);
   settings.denoise = has(Mode::Denoise);
+  settings.integrator = integrator;
+  settings.occlusion.ambient = has(Mode::AmbientOcclusion);
+  settings.occlusion.reflection = has(Mode::ReflectionOcclusion);
+  settings.maxDiffuseDepth = diffuseDepth.value_or(settings.maxDiffuseDepth);
+  settings.maxSpecularDepth = specularDepth.value_or(settings.maxSpecularDepth);
   return settings;
 }
 
 Row rowNamed(const std::string& name, const std::string& location) {
   size_t end = name.find('+');
-  Row row{resolveStrategy(name.substr(0, end)), {}};
+  Row row;
+  row.strategy = resolveStrategy(name.substr(0, end));
   while (end != std::string::npos) {
     const size_t begin = end + 1;
     end = name.find('+', begin);
-    const Mode mode = modeNamed(name.substr(begin, end - begin), location);
-    if (!row.has(mode)) row.modes.push_back(mode);
+    addMode(name.substr(begin, end - begin), location, row);
   }
   std::ranges::sort(row.modes);
+  check(row, location);
   return row;
 }
 

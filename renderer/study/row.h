@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a study compares: a lighting strategy, with ways of rendering that it is combined with.
+// What a study compares: a lighting strategy, with the integrator and the ways of rendering that it
+// is combined with.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,15 +12,27 @@
 namespace chromeball {
 
 // A way of rendering besides the lighting strategy.
-enum class Mode { Adaptive, Guide, Regularize, GlassShadows, Denoise };
+enum class Mode {
+  Adaptive,
+  Guide,
+  Regularize,
+  GlassShadows,
+  Denoise,
+  AmbientOcclusion,
+  ReflectionOcclusion
+};
 
-// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise".
+// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise" or
+// "suns+environment-map+ao". The integrators but `path` are such modes, and so are
+// "diffuse-depth:N" and "specular-depth:N".
 struct Row {
-  std::string strategy;     // complete name ("median-cut:64")
+  std::string strategy;  // complete name ("median-cut:64")
+  IntegratorKind integrator = IntegratorKind::Path;
   std::vector<Mode> modes;  // without repetition, in the order of Mode
+  std::optional<int> diffuseDepth, specularDepth;
 
   bool has(Mode mode) const;
-  bool isBiased() const;  // by a mode
+  bool isBiased() const;  // by more than its strategy
   std::string name() const;
   // `settings` with these modes, and no others.
   RenderSettings applied(RenderSettings settings) const;

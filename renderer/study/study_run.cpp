@@ -25,6 +25,10 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     built.strategy = makeLighting({built.row.strategy, location}, settings.mis, loaded);
     if (built.row.has(Mode::Guide) && !built.strategy->takesOneSample())
       throwInput("{}: {}: only renders with the strategy `importance` are guided", location, row);
+    built.environment = makeEnvironment(built.row.integrator, built.row.strategy, loaded);
+    if (usesEnvironment(built.row.integrator) && loaded.surroundings)
+      throwInput("{}: {}: knows only light of a distant probe; the scene has [surroundings]",
+                 location, row);
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
@@ -58,7 +62,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
   return chromeball::render(worldOf(row), loaded_.camera, strategy(key.strategy), settings,
-                            progress, stop);
+                            progress, stop, nullptr, built_.at(key.strategy).environment.get());
 }
 
 double StudyRun::estimatedSeconds(const RenderKey& key) const {

@@ -38,6 +38,7 @@ class StudyRun {
   struct Built {
     Row row;
     std::unique_ptr<LightSource> strategy;
+    std::unique_ptr<const EnvironmentLight> environment;  // of approximate integrators
     double prepareSeconds = 0;
     double secondsPerSample = 0;  // of the last render; 0 if there was none
   };

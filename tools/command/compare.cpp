@@ -34,13 +34,25 @@ std::atomic<bool> interrupted = false;
 
 struct Arguments {
   SceneOptions scene;
-  std::vector<std::string> strategies{"all"};
+  std::vector<std::string> strategies{"all"}, integrators{"path"};
   std::vector<int> samples;
   std::vector<double> times;
   int repeats = 4;
   std::string reference, referenceStrategy = "auto", baseline, folder;
   std::optional<int> referenceSamples;
 };
+
+// Each strategy with each integrator.
+std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
+                                     const std::vector<std::string>& integrators) {
+  std::vector<std::string> names;
+  for (const std::string& strategy : strategies)
+    for (const std::string& integrator : integrators) {
+      const std::string name = rowNamed(strategy + "+" + integrator, "--integrators").name();
+      if (std::ranges::count(names, name) == 0) names.push_back(name);
+    }
+  return names;
+}
 
 std::vector<std::string> resolveStrategies(const std::vector<std::string>& given) {
   std::vector<std::string> names;
@@ -95,7 +107,7 @@ int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets)
 Study planStudy(const Arguments& a) {
   Study study;
   study.folder = a.folder;
-  study.strategies = resolveStrategies(a.strategies);
+  study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
   study.budgets = planBudgets(a);
   if (a.repeats < Study::kMinRepeats)
     throwInput("--repeats: {} is not {} or more", a.repeats, Study::kMinRepeats);
@@ -229,8 +241,16 @@ void addCompareCommand(CLI::App& app) {
   command
       ->add_option("--strategies", a.strategies,
                    "NAME or NAME:COUNT, separated by commas; all if not given. With +adaptive, "
-                   "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise")
+                   "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise; "
+                   "+environment-map with +ao, +reflection-occlusion; +diffuse-depth:N, "
+                   "+specular-depth:N")
       ->delimiter(',');
+  command
+      ->add_option("--integrators", a.integrators,
+                   "Renders each strategy with each of these, separated by commas: path, direct, "
+                   "ambient-occlusion, environment-map (as modes: NAME+ambient-occlusion)")
+      ->delimiter(',')
+      ->capture_default_str();
   command
       ->add_option("--samples", a.samples,
                    "Samples per pixel; 1,4,16,64 if neither these nor --times are given")

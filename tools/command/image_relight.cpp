@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball image relight GROUPS.exr --gain sun=2,lamp=1,0.8,0.6 -o OUT.exr
+// chromeball image relight AO.exr --probe PROBE -o OUT.exr
+#include <array>
 #include <map>
 
 #include "base/error.h"
@@ -9,7 +11,12 @@
 #include "image_commands.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "probe/load.h"
+#include "probe/probe.h"
+#include "probe/sun_extraction.h"
 #include "relight/light_layers.h"
+#include "relight/occlusion_layers.h"
+#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -19,6 +26,10 @@ constexpr std::string_view kPrefix = "light.";
 struct Arguments {
   std::string in, out, gains, tone = "none";
   float exposure = 0;
+  // With a probe:
+  std::string probe, mapping = "auto", scale = "1", added;
+  Rotation rotation;
+  bool bent = false, leavesSunsOut = false;
 };
 
 // "sun=2,lamp=1,0.8,0.6": a number (grey) or three for each name.
@@ -95,10 +106,52 @@ Layer withAlphaOf(const ImageFile& file, const Image& color) {
   return {"", "RGBA", std::move(both)};
 }
 
-void run(const Arguments& arguments) {
-  checkWritable(arguments.out);
-  checkDistinct({arguments.out}, {arguments.in});
-  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+Image neededLayer(const ImageFile& file, const std::string& path, const std::string& name,
+                  int channels) {
+  const std::optional<Image> layer = findLayer(file, name);
+  if (!layer || layer->channels != channels)
+    throwInput(
+        "{}: has no layer `{}`; `render --aov albedo,normal,ao,bent_normal` writes what "
+        "--probe needs",
+        path, name);
+  return *layer;
+}
+
+Image lightMap(const Arguments& arguments) {
+  Image map = loadProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
+  map = Probe(map, {}, parseColor(arguments.scale, "--scale")).latLong();
+  return arguments.leavesSunsOut ? extractSuns(map).remainder : map;
+}
+
+void checkFinite(const Image& color, const std::string& path) {
+  for (const float texel : color.texels)
+    if (!std::isfinite(texel))
+      throwInput("{}: the picture exceeds the largest float, 3.4e38, or has such texels", path);
+}
+
+void runProbe(const Arguments& arguments, const DisplayTransform& transform) {
+  const ImageFile file = readImageFile(arguments.in);
+  const OcclusionLayers layers{
+      neededLayer(file, arguments.in, "albedo", 3),
+      neededLayer(file, arguments.in, arguments.bent ? "bent_normal" : "normal", 3),
+      neededLayer(file, arguments.in, "ao", 1)};
+  Image color = relit(layers, lightMap(arguments), arguments.rotation);
+  if (!arguments.added.empty()) {
+    const Image added = readImage(arguments.added);
+    if (added.width != color.width || added.height != color.height)
+      throwInput("{}: has {} x {} pixels; {} has {} x {}", arguments.added, added.width,
+                 added.height, arguments.in, color.width, color.height);
+    color = sumOf(std::array{std::move(color), added});
+  }
+  checkFinite(color, arguments.in);
+  OutputImage output;
+  output.metadata = file.metadata;
+  output.placement = file.placement;
+  output.layers.push_back(withAlphaOf(file, color));
+  writeImage(arguments.out, output, transform);
+}
+
+void runGains(const Arguments& arguments, const DisplayTransform& transform) {
   const std::map<std::string, Rgb> given = parseGains(arguments.gains);
   const ImageFile file = readImageFile(arguments.in);
   Groups groups = readGroups(file, arguments.in);
@@ -108,14 +161,20 @@ void run(const Arguments& arguments) {
   output.metadata = file.metadata;
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, sumOf(groups.layers)));
-  for (const float texel : output.layers.front().image.texels)
-    if (!std::isfinite(texel))
-      throwInput("--gain: the picture exceeds the largest float, 3.4e38, or {} has such texels",
-                 arguments.in);
+  checkFinite(output.layers.front().image, arguments.in);
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
   writeImage(arguments.out, output, transform);
+}
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in, arguments.probe, arguments.added});
+  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+  if (arguments.gains.empty() == arguments.probe.empty())
+    throwInput("--gain, --probe: give one of the two");
+  arguments.probe.empty() ? runGains(arguments, transform) : runProbe(arguments, transform);
 }
 
 }  // namespace
@@ -123,12 +182,25 @@ void run(const Arguments& arguments) {
 void addImageRelightCommand(CLI::App& image) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = image.add_subcommand(
-      "relight", "Mix the light groups of a render anew (`render --aov light_groups`).");
-  command->add_option("GROUPS", arguments->in, "the .exr with the layers light.NAME")->required();
-  command
-      ->add_option("--gain", arguments->gains,
-                   "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6")
-      ->required();
+      "relight",
+      "Mix the light groups of a render anew (`render --aov light_groups`), or light its surfaces "
+      "by another probe (`render --aov albedo,normal,ao,bent_normal`).");
+  command->add_option("GROUPS", arguments->in, "the .exr with the layers")->required();
+  command->add_option("--gain", arguments->gains,
+                      "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
+  command->add_option("--probe", arguments->probe,
+                      "light by this probe: albedo / pi times ambient occlusion times irradiance");
+  command->add_flag("--bent", arguments->bent, "with --probe: irradiance on the bent normals");
+  command->add_flag("--suns", arguments->leavesSunsOut,
+                    "with --probe: without its suns, which `render --light-from suns` renders "
+                    "with their shadows");
+  command->add_option("--add", arguments->added,
+                      "with --probe: a picture to add, such as that of the suns");
+  addRotationOption(*command, arguments->rotation);
+  command->add_option("--scale", arguments->scale, "X or R,G,B: factor of the probe")
+      ->capture_default_str();
+  command->add_option("--mapping", arguments->mapping, "of the probe; auto detects it")
+      ->capture_default_str();
   command
       ->add_option("-o,--output", arguments->out,
                    "the image to write: .exr (with the changed groups), .hdr, .pfm or .png")

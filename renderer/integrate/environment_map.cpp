@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/environment_map.h"
+
+#include "integrate/first_surface.h"
+#include "math/frame.h"
+#include "shading/ggx.h"
+
+namespace chromeball {
+namespace {
+
+// Light samples alone find the light of sources.
+PathSettings withoutMis(PathSettings settings) {
+  settings.mis = Mis::Off;
+  settings.estimateDepthCut = false;
+  return settings;
+}
+
+// A direction in which microfacets reflect what is seen along wo; their normals are around the
+// bisector of wo and the middle of the lobe.
+vec3 reflectedBy(const MapLobe& lobe, const vec3& wo, vec2 u) {
+  const float alpha = lobe.roughness * lobe.roughness;
+  if (alpha < ggx::kSmoothAlpha) return lobe.direction;
+  const Frame frame(glm::normalize(wo + lobe.direction));
+  const vec3 local = frame.toLocal(wo);
+  const vec3 h = ggx::sampleVisibleNormal(local, alpha, u);
+  return frame.toWorld(2 * glm::dot(local, h) * h - local);
+}
+
+}  // namespace
+
+struct EnvironmentMapIntegrator::Point {
+  const FirstSurface& first;
+  const PathState& state;
+  const Bsdf& bsdf;
+  Vertex vertex;
+};
+
+EnvironmentMapIntegrator::EnvironmentMapIntegrator(const World& world, const LightSource& lighting,
+                                                   const EnvironmentLight& environment,
+                                                   const RenderSettings& settings)
+    : environment_(environment),
+      occlusion_(settings.occlusion),
+      tracer_(world, lighting, withoutMis(settings.path())),
+      direct_(world, lighting, tracer_.settings()) {
+  if (settings.integrator == IntegratorKind::AmbientOcclusion)
+    occlusion_.ambient = occlusion_.reflection = true;
+  if (const LightSource* suns = environment.suns())
+    directSuns_.emplace(world, *suns, tracer_.settings());
+}
+
+Sample EnvironmentMapIntegrator::sample(const CameraSample& camera, PathContext& context) const {
+  ++context.counts.camera;
+  context.sampler.startVertex(0);
+  PathState state = camera.path();
+  const auto first = firstSurface(tracer_, state, camera.hit, context);
+  if (!first) {
+    tracer_.vertex(state, std::nullopt, context);
+    return context.clamp(state.radiance);
+  }
+  Rgb radiance(0);
+  if (first->surface.material->emits())
+    radiance += tracer_.foundEmission(state, first->surface, first->instance);
+  if (first->surface.material->unlit) return context.clamp(radiance);
+  const Bsdf bsdf = first->bsdf(tracer_, state);
+  const GuidedBsdf guided(bsdf, first->surface.position, -state.ray.direction, nullptr);
+  const LightPoint light{first->surface.position, bsdf.normal(), &bsdf, 0, bsdf.transmits()};
+  const Point point{
+      *first, state, bsdf, {light, first->surface, guided, state.media, nullptr, state.throughput}};
+  radiance += ofSources(point, context) + ofProbe(point, context);
+  return context.clamp(radiance);
+}
+
+Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context) const {
+  Rgb sum(0);
+  for (size_t i = 0; i < tracer_.world().sources.all.size(); ++i)
+    sum += direct_.ofScene(i, point.vertex, context);
+  if (directSuns_) sum += directSuns_->probe(point.vertex, context);
+  return sum;
+}
+
+// What geometry lets pass of the light of a lobe.
+Rgb EnvironmentMapIntegrator::passed(const Point& point, const MapLobe& lobe,
+                                     PathContext& context) const {
+  const World& world = tracer_.world();
+  const Surface& surface = point.first.surface;
+  const RayMask visible = tracer_.settings().visible;
+  if (lobe.isDiffuse) {
+    if (!occlusion_.ambient) return Rgb(1);
+    return cosineSkyRay(world, surface, lobe.direction, occlusion_.distance, visible, context)
+        .transmittance;
+  }
+  const bool isTransmitted = glm::dot(surface.geometricNormal, lobe.direction) <= 0;
+  if (!occlusion_.reflection || isTransmitted) return Rgb(1);
+  const vec3 wi =
+      reflectedBy(lobe, -point.state.ray.direction, context.sampler.get2(dimension::kBsdf));
+  if (glm::dot(surface.geometricNormal, wi) <= 0) return Rgb(0);
+  ++context.counts.shadow;
+  return world.accel.transmittance({surface.rayOrigin(wi), wi}, visible);
+}
+
+Rgb EnvironmentMapIntegrator::ofProbe(const Point& point, PathContext& context) const {
+  const PrefilteredProbe& maps = environment_.maps();
+  Rgb sum(0);
+  for (const MapLobe& lobe : point.bsdf.mapLobes()) {
+    const Rgb radiance = lobe.isDiffuse ? maps.irradiance(lobe.direction) * kInvPi
+                                        : maps.radiance(lobe.direction, lobe.roughness);
+    sum += lobe.albedo * radiance * passed(point, lobe, context);
+    // Light samples find the suns, except in smooth lobes.
+    if (environment_.suns() && !lobe.isDiffuse && lobe.roughness == 0)
+      sum += lobe.albedo * environment_.suns()->background({}, lobe.direction);
+  }
+  return sum;
+}
+
+}  // namespace chromeball

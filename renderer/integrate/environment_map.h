@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Environment mapping and ambient occlusion: approximations without paths (HDRI book, sections
+// 9.8.1 and 9.8.2).
+#pragma once
+
+#include "integrate/environment_light.h"
+#include "integrate/integrator.h"
+#include "integrate/occlusion.h"
+#include "integrate/render_settings.h"
+
+namespace chromeball {
+
+// At the first surface: emission; the light of lamps, emitting surfaces and suns, by light samples
+// with shadows; and of the probe, lobe by lobe (shading/map_lobes.h),
+//   diffuse   albedo / pi E(n)
+//   specular  albedo L'(R, roughness), R the mirror direction; of glass and sheets also what they
+//             transmit, looked up straight behind the first boundary.
+// Light that other surfaces reflect is missing. Without occlusion geometry blocks nothing, so that
+// only convex objects are right; then a ray is traced from the camera alone, unless there are
+// lamps. With ambient occlusion, a cosine-distributed ray decides on the diffuse light; with
+// reflection occlusion, one that GGX microfacets reflect on that of each specular lobe. Transmitted
+// light is never blocked.
+class EnvironmentMapIntegrator : public Integrator {
+ public:
+  // All arguments must outlive this. `lighting`: what the camera sees behind the scene.
+  EnvironmentMapIntegrator(const World& world, const LightSource& lighting,
+                           const EnvironmentLight& environment, const RenderSettings& settings);
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override;
+
+ private:
+  struct Point;
+  Rgb ofSources(const Point& point, PathContext& context) const;
+  Rgb ofProbe(const Point& point, PathContext& context) const;
+  Rgb passed(const Point& point, const MapLobe& lobe, PathContext& context) const;
+
+  const EnvironmentLight& environment_;
+  Occlusion occlusion_;
+  PathTracer tracer_;
+  DirectLight direct_;                     // of the scene's sources
+  std::optional<DirectLight> directSuns_;  // of the probe's
+};
+
+}  // namespace chromeball

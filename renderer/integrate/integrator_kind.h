@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integrators by name, and what is asked of the approximate ones.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace chromeball {
+
+enum class IntegratorKind {
+  Path,
+  Direct,            // paths of one bounce
+  AmbientOcclusion,  // environment mapping with both kinds of occlusion
+  EnvironmentMap,
+};
+
+// In the order of IntegratorKind.
+inline constexpr std::array<std::string_view, 4> kIntegratorNames = {
+    "path", "direct", "ambient-occlusion", "environment-map"};
+
+// Whether it takes the probe's light from prefiltered maps (environment_map.h).
+constexpr bool usesEnvironment(IntegratorKind kind) {
+  return kind == IntegratorKind::AmbientOcclusion || kind == IntegratorKind::EnvironmentMap;
+}
+
+// Which light of the probe geometry blocks.
+struct Occlusion {
+  bool ambient = false;       // diffuse
+  bool reflection = false;    // specular and transmitted
+  float distance = INFINITY;  // of what blocks diffuse light, metres
+  bool uniformBent = false;   // bent normals are unweighted means (HDRI book, section 9.8.2)
+};
+
+}  // namespace chromeball

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrate/surface_layers.h"
+
+#include "integrate/first_surface.h"
+
+namespace chromeball {
+
+SurfaceLayers::SurfaceLayers(const Integrator& picture, const PathTracer& tracer,
+                             const RenderSettings& settings)
+    : picture_(picture),
+      tracer_(tracer),
+      occlusion_(settings.occlusion),
+      wantsOcclusion_(settings.wantsAov(Aov::AmbientOcclusion)),
+      wantsBent_(settings.wantsAov(Aov::BentNormal)),
+      wantsIrradiance_(settings.wantsAov(Aov::Irradiance)) {}
+
+Sample SurfaceLayers::sample(const CameraSample& camera, PathContext& context) const {
+  Sample found = picture_.sample(camera, context);
+  const auto defect = measure(camera, context);
+  if (!found.defect) found.defect = defect;
+  return found;
+}
+
+void SurfaceLayers::sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
+                               PathContext& context, std::span<Sample> samples) const {
+  picture_.sampleMany(cameras, firstSample, context, samples);
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    context.sampler.startSample(firstSample + uint32_t(i));
+    const auto defect = measure(cameras[i], context);
+    if (!samples[i].defect) samples[i].defect = defect;
+  }
+}
+
+std::optional<Defect> SurfaceLayers::measure(const CameraSample& camera,
+                                             PathContext& context) const {
+  context.sampler.startVertex(0);
+  PathState state = camera.path();
+  state.first = nullptr;
+  const auto found = firstSurface(tracer_, state, camera.hit, context);
+  if (!found) return {};
+  FirstHit& first = *camera.first;
+  const World& world = tracer_.world();
+  const Surface& surface = found->surface;
+  const RayMask visible = tracer_.settings().visible;
+  SkyRay ray{};
+  if (wantsOcclusion_ || (wantsBent_ && !occlusion_.uniformBent))
+    ray = cosineSkyRay(world, surface, surface.normal, occlusion_.distance, visible, context);
+  first.ambientOcclusion = luminance(ray.transmittance);
+  if (wantsBent_ && occlusion_.uniformBent)
+    ray = uniformSkyRay(world, surface, surface.normal, occlusion_.distance, visible, context);
+  first.unoccluded = luminance(ray.transmittance) * ray.direction;
+  if (!wantsIrradiance_) return {};
+  const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
+  const Bsdf bsdf(white, surface, -state.ray.direction, world.bsdfTables);
+  const Rgb irradiance = kPi * tracer_.reflected(state, surface, bsdf, context);
+  const auto defect = defectOf(irradiance, false);
+  if (!defect) first.irradiance = irradiance;
+  return defect;
+}
+
+}  // namespace chromeball

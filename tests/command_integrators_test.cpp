@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// render --integrator, compare --integrators and image relight --probe as commands.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "small_model.h"
+
+namespace chromeball {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+// A triangle under a gradient probe.
+class CommandIntegrators : public testing::Test {
+ protected:
+  CommandIntegrators() {
+    writeSmallModel(folder_ / "plate.gltf");
+    writeImage(folder_ / "probe.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.3, 0.6, 0.6}));
+  }
+  Strings with(const Strings& more, const std::string& command = "render") const {
+    Strings all{
+        command,  folder_ / "plate.gltf", "--probe", folder_ / "probe.exr", "--size", "16x16",
+        "--quiet"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  ImageFile render(const Strings& more) const {
+    Strings all = with(more);
+    all.insert(all.end(), {"-o", folder_ / "o.exr"});
+    const CommandResult result = runCommand(all);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return readImageFile(folder_ / "o.exr");
+  }
+  void refuses(const Strings& more, const std::string& reason) const {
+    Strings all = with(more);
+    all.insert(all.end(), {"-o", folder_ / "refused.exr"});
+    expectError(all, reason);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.exr"));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CommandIntegrators, Render) {
+  const Image direct = *findColor(render({"--integrator", "direct", "--samples", "4"}));
+  EXPECT_EQ(direct.texels, findColor(render({"--max-depth", "1", "--samples", "4"}))->texels);
+  for (const char* name : {"environment-map", "ambient-occlusion"}) {
+    const ImageFile file = render({"--integrator", name, "--samples", "16", "--denoise"});
+    EXPECT_EQ(std::get<std::string>(file.metadata.at("integrator")), name);
+  }
+  render({"--integrator", "environment-map", "--ao", "--reflection-occlusion", "--ao-distance",
+          "0.5", "--samples", "4", "--strategy", "suns"});
+}
+
+TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
+  refuses({"--integrator", "environment-mapp"}, "`environment-map`");
+  refuses({"--ao"}, "--ao");
+  refuses({"--reflection-occlusion"}, "--reflection-occlusion");
+  refuses({"--ao-distance", "1"}, "--ao-distance");
+  refuses({"--ao-distance", "0", "--aov", "ao"}, "--ao-distance");
+  refuses({"--integrator", "environment-map", "--regularize"}, "--regularize");
+  refuses({"--integrator", "environment-map", "--aov", "light_groups"}, "light groups");
+  refuses({"--integrator", "ambient-occlusion", "--max-diffuse-depth", "2"}, "limits of depth");
+  refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
+  refuses({"--bent", "flat"}, "--bent");
+}
+
+TEST_F(CommandIntegrators, LimitDepthByKind) {
+  const Image all = *findColor(render({"--samples", "4", "--strategy", "importance"}));
+  const Image none = *findColor(render({"--samples", "4", "--strategy", "importance",
+                                        "--max-diffuse-depth", "0", "--max-specular-depth", "0"}));
+  EXPECT_NE(all.texels, none.texels);
+  EXPECT_EQ(all.texels, findColor(render({"--samples", "4", "--strategy", "importance",
+                                          "--max-diffuse-depth", "9", "--max-specular-depth", "9"}))
+                            ->texels);
+}
+
+TEST_F(CommandIntegrators, RelightByAProbe) {
+  const std::string layers = "albedo,normal,ao,bent_normal,alpha";
+  render({"--aov", layers, "--samples", "64", "--max-depth", "1"});
+  const std::string in = folder_ / "o.exr", out = folder_ / "relit.exr";
+  const auto relight = [&](const Strings& more) {
+    Strings all{"image", "relight", in, "-o", out};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const std::string probe = folder_ / "probe.exr";
+  for (const Strings& more : {Strings{}, {"--bent"}, {"--suns"}, {"--rotation", "30"}}) {
+    Strings words{"--probe", probe};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = runCommand(relight(words));
+    ASSERT_EQ(result.status, 0) << result.error;
+  }
+  ASSERT_EQ(runCommand(relight({"--probe", probe})).status, 0);
+  const Image once = *findColor(readImageFile(out));
+  ASSERT_EQ(runCommand(relight({"--probe", probe, "--scale", "2"})).status, 0);
+  const Image twice = *findColor(readImageFile(out));
+  std::filesystem::copy_file(out, folder_ / "added.exr");
+  ASSERT_EQ(runCommand(relight({"--probe", probe, "--add", folder_ / "added.exr"})).status, 0);
+  const Image added = *findColor(readImageFile(out));
+  for (size_t i = 0; i < once.texels.size(); ++i) {
+    EXPECT_NEAR(twice.texels[i], 2 * once.texels[i], 1e-6);
+    EXPECT_NEAR(added.texels[i], 3 * once.texels[i], 1e-6);
+  }
+  std::filesystem::remove(out);
+  expectError(relight({}), "--gain, --probe");
+  expectError(relight({"--probe", probe, "--gain", "a=1"}), "--gain, --probe");
+  expectError(relight({"--probe", folder_ / "none.exr"}), "none.exr");
+  expectError(relight({"--probe", probe, "--scale", "-1"}), "--scale");
+  expectError(relight({"--probe", probe, "--add", probe}), "pixels");
+  expectError({"image", "relight", probe, "--probe", probe, "-o", out}, "albedo");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(CommandIntegrators, SlowCompare) {
+  const CommandResult result =
+      runCommand(with({"--strategies", "importance,importance+diffuse-depth:6+specular-depth:2",
+                       "--integrators", "path,ambient-occlusion,environment-map", "--samples", "4",
+                       "--repeats", "3", "-o", folder_ / "report"},
+                      "compare"));
+  EXPECT_EQ(result.status, 2);  // limits of depth do not go with approximations
+  const CommandResult rows =
+      runCommand(with({"--strategies", "importance", "--integrators",
+                       "path,direct,ambient-occlusion,environment-map", "--samples", "4",
+                       "--repeats", "3", "-o", folder_ / "report"},
+                      "compare"));
+  ASSERT_EQ(rows.status, 0) << rows.error;
+  const auto json = nlohmann::json::parse(fileContents(folder_ / "report/results.json"));
+  const std::string text = json.dump();
+  for (const char* row :
+       {"importance+direct", "importance+ambient-occlusion", "importance+environment-map"})
+    EXPECT_NE(text.find(row), std::string::npos) << row;
+  expectError(
+      with({"--strategies", "importance", "--integrators", "raster", "-o", folder_ / "none"},
+           "compare"),
+      "raster");
+}
+
+}  // namespace
+}  // namespace chromeball
