@@ -70,6 +70,33 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--bent", "flat"}, "--bent");
 }
 
+TEST_F(CommandIntegrators, CacheIrradiance) {
+  const std::string cache = folder_ / "records";
+  const Strings cached{"--samples", "4", "--irradiance-cache", "0.3", "--cache", cache};
+  const Image first = *findColor(render(cached));
+  const auto size = std::filesystem::file_size(cache);
+  EXPECT_EQ(first.texels, findColor(render(cached))->texels);
+  EXPECT_EQ(std::filesystem::file_size(cache), size);
+  Strings turned = cached;
+  turned.insert(turned.end(), {"--orbit", "20"});
+  render(turned);  // another view of the same light
+  Strings brighter = cached;
+  brighter.insert(brighter.end(), {"--probe-scale", "2"});
+  refuses(brighter, "is the cache of another scene: `probe-scale`");
+  std::filesystem::resize_file(cache, size - 1);
+  refuses(cached, "damaged");
+  refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "probe.exr"},
+          "is not an irradiance cache");
+  refuses({"--cache", cache}, "--irradiance-cache");
+  for (const char* error : {"0", "-1", "nan", "1.5", "x"})
+    refuses({"--irradiance-cache", error}, "--irradiance-cache");
+  refuses({"--irradiance-cache", "0.2", "--regularize"}, "--regularize");
+  refuses({"--irradiance-cache", "0.2", "--integrator", "direct"}, "--integrator direct");
+  refuses({"--irradiance-cache", "0.2", "--strategy", "bsdf"}, "without light samples");
+  refuses({"--irradiance-cache", "0.2", "--aov", "light_groups"}, "light groups");
+  refuses({"--irradiance-cache", "0.2", "--max-diffuse-depth", "2"}, "limits of depth");
+}
+
 TEST_F(CommandIntegrators, LimitDepthByKind) {
   const Image all = *findColor(render({"--samples", "4", "--strategy", "importance"}));
   const Image none = *findColor(render({"--samples", "4", "--strategy", "importance",

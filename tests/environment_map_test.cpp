@@ -23,7 +23,7 @@ RenderResult renderRow(const std::string& name, const Scene& scene, const Camera
   const EnvironmentLight environment(probe, scene, row.strategy == "suns");
   const std::atomic<bool> never = false;
   return render(
-      world, camera, *lighting, settings, [](double) {}, never, nullptr, &environment);
+      world, camera, *lighting, settings, [](double) {}, never, nullptr, {&environment});
 }
 
 Scene sphereOf(const Material& material) {

@@ -9,12 +9,9 @@
 #include <cassert>
 #include <mutex>
 
-#include "integrate/environment_map.h"
 #include "integrate/guide_training.h"
-#include "integrate/light_groups.h"
 #include "integrate/pixel_renderer.h"
 #include "integrate/render_state.h"
-#include "integrate/surface_layers.h"
 #include "integrate/tile_grid.h"
 
 namespace chromeball {
@@ -259,32 +256,6 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
   }
   if (control && state.canBeStored()) control->end(state);
   return std::move(state.result);
-}
-
-RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
-                    const RenderSettings& settings, const Progress& progress,
-                    const std::atomic<bool>& stop, RenderControl* control,
-                    const EnvironmentLight* environment) {
-  const auto withLayers = [&](const Integrator& picture, GuideTraining* training) {
-    if (!settings.wantsSurfaceLayers())
-      return render(picture, world, camera, settings, progress, stop, training, control);
-    const PathTracer tracer(world, lighting, settings.path());
-    return render(SurfaceLayers(picture, tracer, settings), world, camera, settings, progress, stop,
-                  training, control);
-  };
-  if (usesEnvironment(settings.integrator)) {
-    assert(environment);
-    return withLayers(EnvironmentMapIntegrator(world, lighting, *environment, settings), nullptr);
-  }
-  if (settings.wantsGroups()) {
-    const LightGroups groups(world, lighting);
-    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
-    const PathTracer tracer(world, lighting, training.guided(settings.path()));
-    return withLayers(GroupIntegrator(tracer, groups), &training);
-  }
-  GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
-  return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
-                    &training);
 }
 
 }  // namespace chromeball

@@ -17,6 +17,7 @@
 namespace chromeball {
 
 class EnvironmentLight;
+class IrradianceCache;
 class RenderControl;
 
 struct RenderResult {
@@ -49,14 +50,20 @@ struct RenderResult {
   bool interrupted = false;
 };
 
+// What approximate renders use and other renders may use again.
+struct RenderAids {
+  const EnvironmentLight* environment = nullptr;  // the integrators that use it need one
+  IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets what it lacks
+};
+
 // Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers
 // the whole image; the first takes a few samples per pixel, each later one doubles them. The result
 // does not depend on the number of threads (except under a time limit). `control`
-// (render_state.h) may be null. `environment`: for the integrators that use it.
+// (render_state.h) may be null.
 RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, RenderControl* control = nullptr,
-                    const EnvironmentLight* environment = nullptr);
+                    const RenderAids& aids = {});
 
 // The same for any integrator. `training`: of the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,

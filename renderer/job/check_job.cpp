@@ -99,6 +99,29 @@ void checkIntegrator(const SceneFile& file) {
     refuse("the limits of depth");
 }
 
+void checkCache(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (!s.has("render.irradiance_cache")) {
+    if (s.has("cache")) throwInput("{}: needs --irradiance-cache ERROR", s.location("cache"));
+    return;
+  }
+  const auto refuse = [&](std::string_view what) {
+    throwInput("{}: not with {}; leave one of the two out", s.location("render.irradiance_cache"),
+               what);
+  };
+  const std::string integrator = s.get<std::string>("render.integrator");
+  if (integrator != "path") refuse("--integrator " + integrator);
+  if (file.composite) refuse("[composite]");
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  if (std::ranges::any_of(layers, isOfLight)) refuse("light groups");
+  if (s.get<std::string>("render.guide") == "on") refuse("--guide on");
+  if (s.get<bool>("render.regularize")) refuse("--regularize");
+  if (s.has("render.max_diffuse_depth") || s.has("render.max_specular_depth"))
+    refuse("limits of depth by kind");
+  if (resolveStrategy(s.get<std::string>("lighting.strategy")) == "bsdf")
+    refuse("a strategy without light samples");
+}
+
 void checkParts(const SceneFile& file) {
   const Settings& s = file.settings;
   if (s.get<bool>("resume") && !s.has("checkpoint"))
@@ -149,6 +172,7 @@ void checkJob(const SceneFile& file) {
   checkDenoise(file);
   checkGroups(file);
   checkIntegrator(file);
+  checkCache(file);
   checkParts(file);
   checkOrbit(file);
   checkTransparent(file);

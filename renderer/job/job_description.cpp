@@ -20,6 +20,11 @@ using Json = nlohmann::ordered_json;
 // Contents of files are compared instead.
 constexpr std::array kPaths = {"scene", "probe", "camera-file", "files"};
 constexpr std::array kLimits = {"noise-limit", "time-limit"};
+constexpr std::array kOfImage = {"camera",   "cameraPosition", "cameraFov",     "lensRadius",
+                                 "focus",    "distortion",     "worldToCamera", "worldToNDC",
+                                 "size",     "crop",           "shard",         "orbit",
+                                 "seed",     "clamp",          "transparent",   "denoise",
+                                 "adaptive", "ao-distance",    "bent"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
 Json toJson(const SettingValue& value) {
@@ -154,6 +159,12 @@ std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
   identity["layers"] = job.file.settings.get<std::vector<std::string>>("output.aovs");
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
     identity["samples"] = job.settings.samplesOfAll();
+  return jsonText(identity);
+}
+
+std::string lightIdentity(const RenderJob& job, const LoadedScene& loaded) {
+  Json identity = describeContents(job, loaded);
+  for (const char* name : kOfImage) identity.erase(name);
   return jsonText(identity);
 }
 

@@ -36,6 +36,8 @@ std::string identityOf(const RenderJob& job, const LoadedScene& loaded);
 // The same for parts of one render (render_part.h): also with the settings that a comparison
 // varies, and without threads.
 std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded);
+// The same for a scene and its light, whatever the camera, the image and the sampling.
+std::string lightIdentity(const RenderJob& job, const LoadedScene& loaded);
 std::string withoutParts(const std::string& identity);  // without `shard` and `crop`
 
 // The first difference between two identities: "`mis` was off and is power".

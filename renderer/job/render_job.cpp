@@ -197,6 +197,8 @@ RenderSettings integratorSettings(const SceneFile& file) {
     r.maxSpecularDepth = int(*depth);
   if (r.path().limitsKinds()) r.guiding = Guiding::Off;  // guided bounces have no kind
   r.integrator = integratorNamed(s.get<std::string>("render.integrator"));
+  if (const auto error = s.getIfGiven<double>("render.irradiance_cache"))
+    r.cacheError = float(*error);
   r.occlusion.ambient = s.get<bool>("render.ao");
   r.occlusion.reflection = s.get<bool>("render.reflection_occlusion");
   if (const auto distance = s.getIfGiven<double>("render.ao_distance"))

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "integrate/light_groups.h"
+#include "job/cache_file.h"
 #include "job/memory_estimate.h"
 #include "job/run_composite.h"
 #include "job/scene_lighting.h"
@@ -17,10 +18,12 @@ JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
                       const PreparedScene& prepared, const Progress& progress,
                       const std::atomic<bool>& stop, RenderControl* control) {
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
-  RenderResult result = render(
-      *prepared.world, loaded.camera, *prepared.lighting, job.settings,
-      [&](double fraction) { progress(share * fraction); }, stop, control,
-      prepared.environment.get());
+  std::optional<CacheFile> records;
+  if (job.settings.cacheError) records.emplace(job, loaded);
+  RenderResult result = render(*prepared.world, loaded.camera, *prepared.lighting, job.settings,
+                               [&](double fraction) { progress(share * fraction); }, stop, control,
+                               {prepared.environment.get(), records ? &records->cache() : nullptr});
+  if (records) records->write();
   FinishedImage finished = finish(finishPlan(job, loaded, result), result, progress, stop);
   return {std::move(finished), std::move(result)};
 }

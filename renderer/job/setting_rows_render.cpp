@@ -155,6 +155,15 @@ void addRender(std::vector<Setting>& rows) {
        .help = "The layer bent_normal is the mean of the visible directions, weighted by the "
                "cosine or not.",
        .renderOnly = true});
+  add({.key = "irradiance_cache",
+       .option = "irradiance-cache",
+       .argument = "ERROR",
+       .type = Number,
+       .range = {.min = 0, .max = 1, .excludesMin = true},
+       .absent = "all light is path traced",
+       .help = "Interpolates the light that diffuse surfaces in view receive from other surfaces "
+               "(biased): 0.2 is usual, smaller is slower and more accurate.",
+       .renderOnly = true});
   add({.key = "max_depth",
        .option = "max-depth",
        .argument = "N",

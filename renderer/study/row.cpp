@@ -21,7 +21,8 @@ constexpr ModeName kModes[] = {{Mode::Adaptive, "adaptive"},
                                {Mode::Denoise, "denoise"},
                                {Mode::AmbientOcclusion, "ao"},
                                {Mode::ReflectionOcclusion, "reflection-occlusion"}};
-constexpr std::string_view kDiffuseDepth = "diffuse-depth:", kSpecularDepth = "specular-depth:";
+constexpr std::string_view kDiffuseDepth = "diffuse-depth:", kSpecularDepth = "specular-depth:",
+                           kCache = "irradiance-cache:";
 
 int depthOf(std::string_view text, const std::string& name, const std::string& location) {
   int depth = -1;
@@ -29,6 +30,14 @@ int depthOf(std::string_view text, const std::string& name, const std::string& l
   if (error != std::errc() || end != text.data() + text.size() || depth < 0)
     throwInput("{}: `{}` needs a whole number from 0", location, name);
   return depth;
+}
+
+float cacheErrorOf(std::string_view text, const std::string& name, const std::string& location) {
+  float error = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), error);
+  if (failure != std::errc() || end != text.data() + text.size() || !(error > 0 && error <= 1))
+    throwInput("{}: `{}` needs a number above 0 and at most 1", location, name);
+  return error;
 }
 
 void addMode(const std::string& name, const std::string& location, Row& row) {
@@ -39,6 +48,10 @@ void addMode(const std::string& name, const std::string& location, Row& row) {
   if (name.starts_with(kSpecularDepth)) {
     row.specularDepth =
         depthOf(std::string_view(name).substr(kSpecularDepth.size()), name, location);
+    return;
+  }
+  if (name.starts_with(kCache)) {
+    row.cacheError = cacheErrorOf(std::string_view(name).substr(kCache.size()), name, location);
     return;
   }
   const auto integrator = std::ranges::find(kIntegratorNames, name);
@@ -55,8 +68,8 @@ void addMode(const std::string& name, const std::string& location, Row& row) {
     known.push_back(modeName);
   }
   known.insert(known.end(), kIntegratorNames.begin(), kIntegratorNames.end());
-  throwInput("{}: `{}` is not a mode; modes are {}, {}N and {}N", location, name,
-             fmt::join(known, ", "), kDiffuseDepth, kSpecularDepth);
+  throwInput("{}: `{}` is not a mode; modes are {}, {}N, {}N and {}ERROR", location, name,
+             fmt::join(known, ", "), kDiffuseDepth, kSpecularDepth, kCache);
 }
 
 void check(const Row& row, const std::string& location) {
@@ -64,6 +77,12 @@ void check(const Row& row, const std::string& location) {
   if (hasOcclusion && row.integrator != IntegratorKind::EnvironmentMap)
     throwInput("{}: {}: ao and reflection-occlusion are modes of environment-map", location,
                row.name());
+  if (row.cacheError && (row.integrator != IntegratorKind::Path || row.has(Mode::Guide) ||
+                         row.has(Mode::Regularize) || row.diffuseDepth || row.specularDepth))
+    throwInput("{}: {}: {}ERROR goes with adaptive, glass-shadows and denoise only", location,
+               row.name(), kCache);
+  if (row.cacheError && row.strategy == "bsdf")
+    throwInput("{}: {}: {}ERROR needs a strategy with light samples", location, row.name(), kCache);
   if (!usesEnvironment(row.integrator)) return;
   if (row.has(Mode::Guide) || row.has(Mode::Regularize) || row.has(Mode::GlassShadows) ||
       row.diffuseDepth || row.specularDepth)
@@ -77,7 +96,7 @@ bool Row::has(Mode mode) const { return std::ranges::count(modes, mode) > 0; }
 
 bool Row::isBiased() const {
   return integrator != IntegratorKind::Path || has(Mode::Regularize) || has(Mode::GlassShadows) ||
-         has(Mode::Denoise) || diffuseDepth || specularDepth;
+         has(Mode::Denoise) || diffuseDepth || specularDepth || cacheError;
 }
 
 std::string Row::name() const {
@@ -88,6 +107,7 @@ std::string Row::name() const {
     if (has(mode)) name += std::string("+") + modeName;
   if (diffuseDepth) name += fmt::format("+{}{}", kDiffuseDepth, *diffuseDepth);
   if (specularDepth) name += fmt::format("+{}{}", kSpecularDepth, *specularDepth);
+  if (cacheError) name += fmt::format("+{}{}", kCache, *cacheError);
   return name;
 }
 
@@ -99,6 +119,7 @@ RenderSettings Row::applied(RenderSettings settings) const {
   settings.integrator = integrator;
   settings.occlusion.ambient = has(Mode::AmbientOcclusion);
   settings.occlusion.reflection = has(Mode::ReflectionOcclusion);
+  settings.cacheError = cacheError;
   settings.maxDiffuseDepth = diffuseDepth.value_or(settings.maxDiffuseDepth);
   settings.maxSpecularDepth = specularDepth.value_or(settings.maxSpecularDepth);
   return settings;

@@ -24,12 +24,13 @@ enum class Mode {
 
 // By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise" or
 // "suns+environment-map+ao". The integrators but `path` are such modes, and so are
-// "diffuse-depth:N" and "specular-depth:N".
+// "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
 struct Row {
   std::string strategy;  // complete name ("median-cut:64")
   IntegratorKind integrator = IntegratorKind::Path;
   std::vector<Mode> modes;  // without repetition, in the order of Mode
   std::optional<int> diffuseDepth, specularDepth;
+  std::optional<float> cacheError;
 
   bool has(Mode mode) const;
   bool isBiased() const;  // by more than its strategy

@@ -62,7 +62,7 @@ RenderResult StudyRun::render(const RenderKey& key, const Progress& progress,
   settings.timeLimit.reset();
   if (key.budget.timed) settings.timeLimit = key.budget.amount;
   return chromeball::render(worldOf(row), loaded_.camera, strategy(key.strategy), settings,
-                            progress, stop, nullptr, built_.at(key.strategy).environment.get());
+                            progress, stop, nullptr, {built_.at(key.strategy).environment.get()});
 }
 
 double StudyRun::estimatedSeconds(const RenderKey& key) const {

@@ -243,7 +243,7 @@ void addCompareCommand(CLI::App& app) {
                    "NAME or NAME:COUNT, separated by commas; all if not given. With +adaptive, "
                    "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise; "
                    "+environment-map with +ao, +reflection-occlusion; +diffuse-depth:N, "
-                   "+specular-depth:N")
+                   "+specular-depth:N, +irradiance-cache:ERROR")
       ->delimiter(',');
   command
       ->add_option("--integrators", a.integrators,

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which integrator renders the settings.
+#include <algorithm>
+#include <cassert>
+
+#include "base/stopwatch.h"
+#include "integrate/environment_map.h"
+#include "integrate/irradiance_cache/cached_integrator.h"
+#include "integrate/irradiance_cache/fill.h"
+#include "integrate/light_groups.h"
+#include "integrate/render.h"
+#include "integrate/surface_layers.h"
+
+namespace chromeball {
+namespace {
+
+constexpr double kFillShare = 0.3;  // of the progress
+
+PathSettings withoutDepthCut(PathSettings settings) {
+  settings.estimateDepthCut = false;
+  return settings;
+}
+
+// The settings after `seconds` of the time limit.
+RenderSettings after(double seconds, RenderSettings settings) {
+  constexpr double kLeast = 1e-3;
+  if (settings.timeLimit) settings.timeLimit = std::max(*settings.timeLimit - seconds, kLeast);
+  return settings;
+}
+
+}  // namespace
+
+RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop, RenderControl* control, const RenderAids& aids) {
+  const auto withLayers = [&](const Integrator& picture, GuideTraining* training,
+                              const RenderSettings& limits, const Progress& rest) {
+    if (!settings.wantsSurfaceLayers())
+      return render(picture, world, camera, limits, rest, stop, training, control);
+    const PathTracer tracer(world, lighting, settings.path());
+    return render(SurfaceLayers(picture, tracer, settings), world, camera, limits, rest, stop,
+                  training, control);
+  };
+  if (usesEnvironment(settings.integrator)) {
+    assert(aids.environment);
+    return withLayers(EnvironmentMapIntegrator(world, lighting, *aids.environment, settings),
+                      nullptr, settings, progress);
+  }
+  if (settings.cacheError) {
+    IrradianceCache own(*settings.cacheError);
+    IrradianceCache& cache = aids.cache ? *aids.cache : own;
+    const Stopwatch watch;
+    fillCache(
+        cache, PathTracer(world, lighting, withoutDepthCut(settings.path())), camera, settings,
+        [&](double fraction) { progress(kFillShare * fraction); }, stop);
+    const PathTracer tracer(world, lighting, settings.path());
+    return withLayers(CachedIntegrator(tracer, cache), nullptr, after(watch.seconds(), settings),
+                      [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+  }
+  if (settings.wantsGroups()) {
+    const LightGroups groups(world, lighting);
+    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
+    const PathTracer tracer(world, lighting, training.guided(settings.path()));
+    return withLayers(GroupIntegrator(tracer, groups), &training, settings, progress);
+  }
+  GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
+  return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
+                    &training, settings, progress);
+}
+
+}  // namespace chromeball

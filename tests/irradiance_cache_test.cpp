@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// The irradiance cache: exact where the light is even, gradients against differences, its bias
+// against path tracing, and its records.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "base/memory_archive.h"
+#include "integrate/irradiance_cache/fill.h"
+#include "integrate/irradiance_cache/gather.h"
+#include "probe/synth.h"
+#include "small_scenes.h"
+#include "study/row.h"
+
+namespace chromeball {
+namespace {
+
+const std::atomic<bool> kNever = false;
+
+// A scene with what is needed to trace it.
+struct Traced {
+  World world;
+  Probe probe;
+  std::unique_ptr<LightSource> lighting;
+  PathTracer tracer;
+
+  Traced(const Scene& scene, const Image& light, const char* strategy = "importance")
+      : world(scene, {}, allTables()),
+        probe(light),
+        lighting(makeStrategy(strategy, probe, Mis::Balance, "test")),
+        tracer(world, *lighting, PathSettings{.estimateDepthCut = false}) {}
+
+  IrradianceCache fill(float error, const Camera& camera, const RenderSettings& settings) const {
+    IrradianceCache cache(error);
+    fillCache(
+        cache, tracer, camera, settings, [](double) {}, kNever);
+    return cache;
+  }
+};
+
+RenderResult renderRow(const std::string& name, const Scene& scene, const Camera& camera,
+                       const Image& light, const RenderSettings& settings) {
+  const Row row = rowNamed(name, "test");
+  const World world(scene, {}, allTables());
+  const Probe probe(light);
+  const auto lighting = makeStrategy(row.strategy, probe, Mis::Balance, "test");
+  return render(
+      world, camera, *lighting, row.applied(settings), [](double) {}, kNever);
+}
+
+// A floor with a wall at x = 1.
+Scene corner() {
+  Scene scene;
+  const int grey = addMaterial(scene, lambert(Rgb(0.6f)));
+  addQuad(scene, grey, {-4, 0, 4}, {5, 0, 0}, {0, 0, -8});
+  addQuad(scene, grey, {1, 0, 4}, {0, 3, 0}, {0, 0, -8});
+  return scene;
+}
+
+// A room of 4 x 3 x 4 m with a window in one wall, a red and a green wall and a block.
+Scene room() {
+  Scene s;
+  const int white = addMaterial(s, lambert(Rgb(0.7f)));
+  const int red = addMaterial(s, lambert({0.7f, 0.1f, 0.1f}));
+  const int green = addMaterial(s, lambert({0.1f, 0.6f, 0.1f}));
+  addQuad(s, white, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  addQuad(s, white, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4});
+  addQuad(s, white, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0});
+  addQuad(s, red, {-2, 0, 2}, {0, 0, -4}, {0, 3, 0});
+  addQuad(s, green, {2, 0, -2}, {0, 0, 4}, {0, 1, 0});  // below the window
+  addQuad(s, green, {2, 2.2f, -2}, {0, 0, 4}, {0, 0.8f, 0});
+  addQuad(s, white, {-2, 0, 2}, {0, 3, 0}, {4, 0, 0});
+  addQuad(s, white, {-0.5f, 0.8f, 0}, {1, 0, 0}, {0, 0, -1});
+  addQuad(s, white, {-0.5f, 0, 0}, {1, 0, 0}, {0, 0.8f, 0});
+  return s;
+}
+
+Camera inRoom() { return Camera::lookAt({0.3f, 1.6f, 1.8f}, {-0.2f, 1, -1}, {0, 1, 0}, 1.1f); }
+
+// One record of the floor of corner(), `height` and the normal given.
+IrradianceRecord recordAt(const Traced& traced, const vec3& above, const vec3& normal,
+                          float samples) {
+  Hit hit;
+  const Ray down{above, {0, -1, 0}};
+  EXPECT_TRUE(traced.world.accel.intersect(down, 0, hit));
+  const Scene& scene = traced.world.scene;
+  const Surface surface =
+      surfaceAt(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric, {0, 1, 0});
+  const Strata strata = strataOf(samples);
+  const SobolTable table(std::bit_ceil(uint32_t(strata.count())), 60, 1);
+  PathContexts contexts(
+      [&] { return PathContext{.sampler = PixelSampler(table, 1), .clamp = Clamp(std::nullopt)}; });
+  const auto record = gatherIrradiance(traced.tracer, surface, normal, strata, {3, 4}, 1, contexts);
+  EXPECT_TRUE(record);
+  return record.value_or(IrradianceRecord());
+}
+
+// In a closed sphere that emits 1, what its surface reflects is sum rho^n.
+TEST(IrradianceCache, IsExactWhereTheLightIsEven) {
+  constexpr double kAlbedo = 0.5;
+  Scene scene;
+  Material material = lambert(Rgb(float(kAlbedo)));
+  material.emission = Rgb(1);
+  addSphere(scene, addMaterial(scene, material), {0, 0, 0}, -1, 24);
+  const Camera camera = Camera::lookAt({0, 0, 0}, {1, 0.2f, 0.3f}, {0, 1, 0}, 0.6f);
+  const Image black = constantProbe({16, 8}, Rgb(0));
+  RenderSettings settings = smallRender(32, 32, 64, 3);
+  const double expected = 1 + kAlbedo + kAlbedo * kAlbedo + kAlbedo * kAlbedo * kAlbedo;
+  const auto mean = luminance(meanColor(
+      renderRow("importance+irradiance-cache:0.2", scene, camera, black, settings).film.mean()));
+  EXPECT_NEAR(mean, expected, 0.01 * expected);
+}
+
+TEST(IrradianceCache, AnOpenFloorIsOneRecord) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
+  const Traced traced(scene, constantProbe({16, 8}, Rgb(1)));
+  const Camera camera = Camera::lookAt({0, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.8f);
+  const IrradianceCache cache = traced.fill(0.2f, camera, smallRender(320, 240, 1, 8));
+  EXPECT_EQ(cache.size(), 1u);
+  EXPECT_EQ(luminance(cache.records()[0].irradiance), 0);
+  EXPECT_TRUE(std::isinf(cache.records()[0].radius));
+}
+
+// The wall of corner() is one that a single far record would miss.
+TEST(IrradianceCache, FindsAWallBehindARecordThatSeesNothing) {
+  Scene scene = corner();
+  addQuad(scene, 0, {-400, 0, 4}, {390, 0, 0}, {0, 0, -8});
+  const Traced traced(scene, constantProbe({16, 8}, Rgb(1)));
+  const Camera camera = Camera::lookAt({-30, 20, 0}, {-15, 0, 0}, {0, 1, 0}, 1.2f);
+  const IrradianceCache cache = traced.fill(0.2f, camera, smallRender(320, 240, 1, 8));
+  const auto near = cache.find({0.9f, 0, 0}, {0, 1, 0});
+  if (near) {
+    EXPECT_GT(luminance(*near), 0.1f);
+  }
+  EXPECT_GT(cache.size(), 3u);
+}
+
+TEST(IrradianceCache, GradientsAreDifferences) {
+  const Scene scene = corner();
+  const Traced traced(scene, constantProbe({16, 8}, Rgb(1)));
+  const vec3 up(0, 1, 0);
+  constexpr float kSamples = 60'000, kStep = 0.1f;
+  const IrradianceRecord here = recordAt(traced, {0, 1, 0}, up, kSamples);
+  const auto at = [&](float x, float z) {
+    return luminance(recordAt(traced, {x, 1, z}, up, kSamples).irradiance);
+  };
+  const auto gradient = [](const std::array<vec3, 3>& g) {
+    return 0.2126f * g[0] + 0.7152f * g[1] + 0.0722f * g[2];
+  };
+  const float perMetre = (at(kStep, 0) - at(-kStep, 0)) / (2 * kStep);
+  EXPECT_GT(perMetre, 0.05f);  // towards the wall
+  EXPECT_NEAR(gradient(here.translation).x, perMetre, 0.1f * perMetre);
+  EXPECT_NEAR(gradient(here.translation).z, 0, 0.1f * perMetre);
+  EXPECT_NEAR(gradient(here.translation).y, 0, 1e-6f);
+  // Of the normal, towards the wall and along it.
+  const auto turned = [&](const vec3& towards) {
+    const vec3 normal = glm::normalize(up + 0.1f * towards);
+    const float actual = luminance(recordAt(traced, {0, 1, 0}, normal, kSamples).irradiance);
+    const float told = luminance(here.irradianceAt(here.position, normal));
+    return std::pair(actual - luminance(here.irradiance), told - luminance(here.irradiance));
+  };
+  const auto [actual, told] = turned({1, 0, 0});
+  EXPECT_GT(actual, 0.01f);
+  EXPECT_NEAR(told, actual, 0.1f * actual);
+  EXPECT_NEAR(turned({0, 0, 1}).second, 0, 0.1f * actual);
+}
+
+TEST(IrradianceCache, RadiiAreThoseOfNeighbours) {
+  const Traced traced(room(), constantProbe({16, 8}, Rgb(1)));
+  const IrradianceCache cache = traced.fill(0.4f, inRoom(), smallRender(96, 72, 1, 4));
+  ASSERT_GT(cache.size(), 20u);
+  for (const auto& a : cache.records())
+    for (const auto& b : cache.records()) {
+      const float distance = glm::length(a.position - b.position);
+      if (distance >= cache.error() * (a.radius + b.radius) ||
+          glm::dot(a.normal, b.normal) <= -0.5f)
+        continue;
+      EXPECT_LE(a.radius, std::max(b.radius + distance, a.leastRadius) * 1.0001f);
+    }
+}
+
+TEST(IrradianceCache, WeightsFallToNothing) {
+  IrradianceCache cache(0.5f);
+  const auto add = [&](float x, float irradiance) {
+    IrradianceRecord record;
+    record.position = {x, 0, 0}, record.normal = {0, 1, 0};
+    record.irradiance = Rgb(irradiance);
+    record.radius = 1;
+    cache.add(record);
+  };
+  add(0, 1), add(0.8f, 3);
+  const vec3 up(0, 1, 0);
+  EXPECT_FALSE(cache.find({-0.51f, 0, 0}, up));
+  EXPECT_EQ(cache.find({0.1f, 0, 0}, up)->x, 1);
+  EXPECT_NEAR(cache.find({0.3001f, 0, 0}, up)->x, 1, 0.01f);  // the second one begins
+  EXPECT_NEAR(cache.find({0.4f, 0, 0}, up)->x, 2, 1e-5f);
+  EXPECT_FALSE(cache.find({0.1f, 0, 0}, {1, 0, 0}));
+  EXPECT_FALSE(cache.find({0.1f, -0.2f, 0}, up));  // behind what the record sees
+  EXPECT_TRUE(cache.find({0.1f, 0.2f, 0}, up));
+}
+
+TEST(IrradianceCache, ArchivesItsRecords) {
+  const Traced traced(corner(), constantProbe({16, 8}, Rgb(1)));
+  IrradianceCache cache = traced.fill(0.5f, topCamera(6, 40), smallRender(40, 40, 1, 3));
+  ASSERT_GT(cache.size(), 2u);
+  MemoryWriter writer;
+  cache.archive(writer);
+  IrradianceCache read(0.5f);
+  MemoryReader reader(writer.contents);
+  read.archive(reader);
+  ASSERT_EQ(read.size(), cache.size());
+  EXPECT_EQ(*read.find({0, 0, 0}, {0, 1, 0}), *cache.find({0, 0, 0}, {0, 1, 0}));
+  std::vector<char> cut(writer.contents.begin(), writer.contents.end() - 9);
+  MemoryReader damaged(cut);
+  EXPECT_THROW(read.archive(damaged), InputError);
+}
+
+TEST(IrradianceCache, DoesNotDependOnThreads) {
+  const Image sky = overcastProbe({32, 16}, Rgb(1), 0.3);
+  const auto withThreads = [&](size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return renderRow("importance+irradiance-cache:0.5", room(), inRoom(), sky,
+                     smallRender(40, 30, 2, 4))
+        .film.mean();
+  };
+  EXPECT_EQ(withThreads(1).texels, withThreads(3).texels);
+}
+
+// All kinds of materials and lights: emission, mirrors, veils, plastics.
+TEST(SlowIrradianceCache, HasLittleBias) {
+  const Camera camera = Camera::lookAt({0, 1.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);
+  for (const NamedScene& named : threeScenes()) {
+    const RenderSettings settings = smallRender(64, 48, 256, 6);
+    const Image traced =
+        renderRow("importance", named.scene, camera, named.probe, settings).film.mean();
+    for (const char* error : {"0.2", "0.1"}) {
+      const Image cached = renderRow(std::string("importance+irradiance-cache:") + error,
+                                     named.scene, camera, named.probe, settings)
+                               .film.mean();
+      const double ratio = luminance(meanColor(cached)) / luminance(meanColor(traced));
+      EXPECT_NEAR(ratio, 1, 0.25 * std::stod(error)) << named.name;
+    }
+  }
+}
+
+// In a room, in which nearly all light is reflected.
+TEST(SlowIrradianceCache, LightsARoom) {
+  const Image sky = overcastProbe({32, 16}, Rgb(1), 0.3);
+  RenderSettings settings = smallRender(64, 48, 1024, 6);
+  const Image traced = renderRow("importance", room(), inRoom(), sky, settings).film.mean();
+  settings.samples = 64, settings.seed = 3;
+  const Image few = renderRow("importance", room(), inRoom(), sky, settings).film.mean();
+  const auto relMse = [&](const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const double truth = luminance(traced.rgb(x, y));
+        sum += std::pow((luminance(image.rgb(x, y)) - truth) / (truth + 0.01), 2);
+      }
+    return sum / (image.width * image.height);
+  };
+  for (const char* error : {"0.3", "0.15"}) {
+    const Image cached = renderRow(std::string("importance+irradiance-cache:") + error, room(),
+                                   inRoom(), sky, settings)
+                             .film.mean();
+    const double ratio = luminance(meanColor(cached)) / luminance(meanColor(traced));
+    EXPECT_NEAR(ratio, 1, 0.25 * std::stod(error)) << error;
+    EXPECT_LT(relMse(cached), 0.5 * relMse(few)) << error;
+  }
+}
+
+}  // namespace
+}  // namespace chromeball
