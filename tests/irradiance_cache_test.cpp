@@ -5,8 +5,8 @@
 #include <tbb/global_control.h>
 
 #include "base/memory_archive.h"
-#include "integrate/irradiance_cache/fill.h"
-#include "integrate/irradiance_cache/gather.h"
+#include "integrate/fill_cache.h"
+#include "integrate/gather_irradiance.h"
 #include "probe/synth.h"
 #include "small_scenes.h"
 #include "study/row.h"

@@ -4,9 +4,9 @@
 #include <cassert>
 
 #include "base/stopwatch.h"
+#include "integrate/cached_integrator.h"
 #include "integrate/environment_map.h"
-#include "integrate/irradiance_cache/cached_integrator.h"
-#include "integrate/irradiance_cache/fill.h"
+#include "integrate/fill_cache.h"
 #include "integrate/light_groups.h"
 #include "integrate/render.h"
 #include "integrate/surface_layers.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/irradiance_cache/gather.h"
+#include "integrate/gather_irradiance.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/irradiance_cache/fill.h"
+#include "integrate/fill_cache.h"
 
 #include <tbb/parallel_for.h>
 
@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "integrate/first_surface.h"
-#include "integrate/irradiance_cache/gather.h"
+#include "integrate/gather_irradiance.h"
 #include "scene/camera.h"
 
 namespace chromeball {

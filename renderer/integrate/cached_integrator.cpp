@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrate/irradiance_cache/cached_integrator.h"
+#include "integrate/cached_integrator.h"
 
 #include "integrate/first_surface.h"
 
