@@ -5,6 +5,7 @@ import pathlib
 import tempfile
 import time
 
+import approximations
 import capture
 import formulas
 import lights
@@ -18,7 +19,8 @@ from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
-            ("Suns", [suns.rows]), ("Composites and rooms", [scenes.rows, formulas.rows])]
+            ("Suns", [suns.rows]), ("Cheaper answers", [approximations.rows]),
+            ("Composites and rooms", [scenes.rows, formulas.rows])]
 
 
 def main():
