@@ -18,13 +18,15 @@ const std::atomic<bool> kNever = false;
 
 // A scene with what is needed to trace it.
 struct Traced {
+  Scene scene;
   World world;
   Probe probe;
   std::unique_ptr<LightSource> lighting;
   PathTracer tracer;
 
-  Traced(const Scene& scene, const Image& light, const char* strategy = "importance")
-      : world(scene, {}, allTables()),
+  Traced(const Scene& given, const Image& light, const char* strategy = "importance")
+      : scene(given),
+        world(scene, {}, allTables()),
         probe(light),
         lighting(makeStrategy(strategy, probe, Mis::Balance, "test")),
         tracer(world, *lighting, PathSettings{.estimateDepthCut = false}) {}

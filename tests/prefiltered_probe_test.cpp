@@ -22,7 +22,7 @@ std::vector<vec3> randomDirections(int count) {
   return directions;
 }
 
-TEST(PrefilteredProbe, AConstantStaysConstant) {
+TEST(SlowPrefilteredProbe, AConstantStaysConstant) {
   Image map(64, 32, 3);
   for (float& texel : map.texels) texel = 0.7f;
   const Probe probe(map);
@@ -34,7 +34,7 @@ TEST(PrefilteredProbe, AConstantStaysConstant) {
   }
 }
 
-TEST(PrefilteredProbe, TablesAgreeWithConvolutions) {
+TEST(SlowPrefilteredProbe, TablesAgreeWithConvolutions) {
   const Image map = studioProbe({128, 64});
   const Rotation rotation = Rotation::ofAngles({40, 20, -10});
   const Probe probe(map, rotation);
@@ -60,13 +60,13 @@ TEST(PrefilteredProbe, TablesAgreeWithConvolutions) {
 TEST(PrefilteredProbe, BearsRadianceFromTinyToHuge) {
   const Image map = spot(64, 32, 40, 6, 500, 0.2f);
   const Probe one(map);
-  const PrefilteredProbe expected(one, {0.3f});
+  const PrefilteredProbe expected(one, {0.5f});
   for (const float scale : {1e-8f, 1e10f}) {
     const Probe probe(map, {}, Rgb(scale));
-    const PrefilteredProbe filtered(probe, {0.3f});
+    const PrefilteredProbe filtered(probe, {0.5f});
     for (const vec3& d : randomDirections(50)) {
       EXPECT_NEAR(filtered.irradiance(d).y / scale / expected.irradiance(d).y, 1, 1e-4);
-      EXPECT_NEAR(filtered.radiance(d, 0.3f).y / scale / expected.radiance(d, 0.3f).y, 1, 1e-4);
+      EXPECT_NEAR(filtered.radiance(d, 0.5f).y / scale / expected.radiance(d, 0.5f).y, 1, 1e-4);
     }
   }
 }

@@ -115,7 +115,7 @@ TEST(SurfaceLayers, IrradianceOnOpenGround) {
 TEST(SurfaceLayers, IrradianceIncludesInterreflection) {
   const auto onFloor = [](float wallAlbedo) {
     Scene scene;
-    addQuad(scene, addMaterial(scene, lambert(Rgb(0))), {0, 0, 1}, {1, 0, 0}, {0, 0, -2});
+    addQuad(scene, addMaterial(scene, lambert(Rgb(0))), {0, 0, 100}, {100, 0, 0}, {0, 0, -200});
     addQuad(scene, addMaterial(scene, lambert(Rgb(wallAlbedo))), {0, 0, 100}, {0, 0, -200},
             {0, 100, 0});
     const Camera camera = Camera::lookAt({1e-2f, 0.1f, 0}, {1e-2f, 0, 0}, {0, 0, -1}, 0.02f);

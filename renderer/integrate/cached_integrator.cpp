@@ -8,7 +8,6 @@ namespace {
 
 PathSettings directOnly(PathSettings settings) {
   settings.maxDepth = std::min(settings.maxDepth, 1);
-  settings.estimateDepthCut = false;  // the cache has what is beyond
   return settings;
 }
 

@@ -12,7 +12,8 @@ namespace chromeball {
 // specular lobes is path traced, as is everything where the cache has no record.
 class CachedIntegrator : public Integrator {
  public:
-  // All arguments must outlive this. The cache must not change meanwhile.
+  // All arguments must outlive this. The cache must not change meanwhile. The tracer does not
+  // estimate the light beyond the limits of depth.
   CachedIntegrator(const PathTracer& tracer, const IrradianceCache& cache);
 
   Sample sample(const CameraSample& camera, PathContext& context) const override;

@@ -11,12 +11,13 @@ namespace chromeball {
 namespace {
 
 // alpha = roughness^2 doubles from each to the next.
-constexpr std::array kLadder = {0.1f, 0.14f, 0.2f, 0.28f, 0.4f, 0.57f, 0.8f};
-constexpr float kLeast = 0.03f, kGreatest = 0.98f;  // beyond, the neighbours' maps are as good
+constexpr std::array kLadder = {PrefilteredProbe::kLeastRoughness, 0.28f, 0.4f, 0.57f, 0.8f};
+constexpr float kGreatest = 0.98f;  // beyond, the diffuse map is as good
 
 // The roughness of the material itself; if a texture varies it, also the steps below.
 void addRoughness(float roughness, bool isTextured, std::set<float>& all) {
-  if (roughness > kLeast && roughness < kGreatest) all.insert(roughness);
+  if (roughness >= PrefilteredProbe::kLeastRoughness && roughness < kGreatest)
+    all.insert(roughness);
   if (!isTextured) return;
   for (const float step : kLadder)
     if (step < roughness) all.insert(step);

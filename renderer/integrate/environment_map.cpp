@@ -78,37 +78,41 @@ Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context
   return sum;
 }
 
-// What geometry lets pass of the light of a lobe.
-Rgb EnvironmentMapIntegrator::passed(const Point& point, const MapLobe& lobe,
-                                     PathContext& context) const {
-  const World& world = tracer_.world();
+Rgb EnvironmentMapIntegrator::diffuse(const Point& point, const MapLobe& lobe,
+                                      PathContext& context) const {
+  const Rgb radiance = environment_.maps().irradiance(lobe.direction) * kInvPi;
+  if (!occlusion_.ambient) return radiance;
+  return radiance * cosineSkyRay(tracer_.world(), point.first.surface, lobe.direction,
+                                 occlusion_.distance, tracer_.settings().visible, context)
+                        .transmittance;
+}
+
+Rgb EnvironmentMapIntegrator::specular(const Point& point, const MapLobe& lobe,
+                                       PathContext& context) const {
   const Surface& surface = point.first.surface;
-  const RayMask visible = tracer_.settings().visible;
-  if (lobe.isDiffuse) {
-    if (!occlusion_.ambient) return Rgb(1);
-    return cosineSkyRay(world, surface, lobe.direction, occlusion_.distance, visible, context)
-        .transmittance;
-  }
+  const PrefilteredProbe& maps = environment_.maps();
+  Rgb radiance = maps.radiance(lobe.direction, lobe.roughness);
+  // Light samples find the suns, except in smooth lobes.
+  if (environment_.suns() && lobe.roughness == 0)
+    radiance += environment_.suns()->background({}, lobe.direction);
   const bool isTransmitted = glm::dot(surface.geometricNormal, lobe.direction) <= 0;
-  if (!occlusion_.reflection || isTransmitted) return Rgb(1);
+  const bool isNarrow = lobe.roughness > 0 && lobe.roughness < PrefilteredProbe::kLeastRoughness;
+  if (isTransmitted || !(isNarrow || occlusion_.reflection)) return radiance;
   const vec3 wi =
       reflectedBy(lobe, -point.state.ray.direction, context.sampler.get2(dimension::kBsdf));
+  if (isNarrow) radiance = maps.radiance(wi, 0);
+  if (!occlusion_.reflection) return radiance;
   if (glm::dot(surface.geometricNormal, wi) <= 0) return Rgb(0);
   ++context.counts.shadow;
-  return world.accel.transmittance({surface.rayOrigin(wi), wi}, visible);
+  return radiance * tracer_.world().accel.transmittance({surface.rayOrigin(wi), wi},
+                                                        tracer_.settings().visible);
 }
 
 Rgb EnvironmentMapIntegrator::ofProbe(const Point& point, PathContext& context) const {
-  const PrefilteredProbe& maps = environment_.maps();
   Rgb sum(0);
-  for (const MapLobe& lobe : point.bsdf.mapLobes()) {
-    const Rgb radiance = lobe.isDiffuse ? maps.irradiance(lobe.direction) * kInvPi
-                                        : maps.radiance(lobe.direction, lobe.roughness);
-    sum += lobe.albedo * radiance * passed(point, lobe, context);
-    // Light samples find the suns, except in smooth lobes.
-    if (environment_.suns() && !lobe.isDiffuse && lobe.roughness == 0)
-      sum += lobe.albedo * environment_.suns()->background({}, lobe.direction);
-  }
+  for (const MapLobe& lobe : point.bsdf.mapLobes())
+    sum += lobe.albedo *
+           (lobe.isDiffuse ? diffuse(point, lobe, context) : specular(point, lobe, context));
   return sum;
 }
 

@@ -13,8 +13,9 @@ namespace chromeball {
 // At the first surface: emission; the light of lamps, emitting surfaces and suns, by light samples
 // with shadows; and of the probe, lobe by lobe (shading/map_lobes.h),
 //   diffuse   albedo / pi E(n)
-//   specular  albedo L'(R, roughness), R the mirror direction; of glass and sheets also what they
-//             transmit, looked up straight behind the first boundary.
+//   specular  albedo L'(R, roughness), R the mirror direction, or L in a direction that GGX
+//             microfacets reflect if the lobe is narrow (PrefilteredProbe::kLeastRoughness); of
+//             glass and sheets also what they transmit, looked up straight behind the boundary.
 // Light that other surfaces reflect is missing. Without occlusion geometry blocks nothing, so that
 // only convex objects are right; then a ray is traced from the camera alone, unless there are
 // lamps. With ambient occlusion, a cosine-distributed ray decides on the diffuse light; with
@@ -32,7 +33,8 @@ class EnvironmentMapIntegrator : public Integrator {
   struct Point;
   Rgb ofSources(const Point& point, PathContext& context) const;
   Rgb ofProbe(const Point& point, PathContext& context) const;
-  Rgb passed(const Point& point, const MapLobe& lobe, PathContext& context) const;
+  Rgb diffuse(const Point& point, const MapLobe& lobe, PathContext& context) const;
+  Rgb specular(const Point& point, const MapLobe& lobe, PathContext& context) const;
 
   const EnvironmentLight& environment_;
   Occlusion occlusion_;

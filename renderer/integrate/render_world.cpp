@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kFillShare = 0.3;  // of the progress
 
+// An estimate of the light beyond the limits of depth would lack that of the records.
 PathSettings withoutDepthCut(PathSettings settings) {
   settings.estimateDepthCut = false;
   return settings;
@@ -49,11 +50,11 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
   if (settings.cacheError) {
     IrradianceCache own(*settings.cacheError);
     IrradianceCache& cache = aids.cache ? *aids.cache : own;
+    const PathTracer tracer(world, lighting, withoutDepthCut(settings.path()));
     const Stopwatch watch;
     fillCache(
-        cache, PathTracer(world, lighting, withoutDepthCut(settings.path())), camera, settings,
-        [&](double fraction) { progress(kFillShare * fraction); }, stop);
-    const PathTracer tracer(world, lighting, settings.path());
+        cache, tracer, camera, settings, [&](double fraction) { progress(kFillShare * fraction); },
+        stop);
     return withLayers(CachedIntegrator(tracer, cache), nullptr, after(watch.seconds(), settings),
                       [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
   }

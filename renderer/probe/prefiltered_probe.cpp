@@ -10,9 +10,9 @@
 namespace chromeball {
 namespace {
 
-constexpr double kError = 1e-2;  // of the convolution
+constexpr double kError = 2e-2;  // of the convolution
 constexpr ImageSize kDiffuseSize{128, 64};
-constexpr int kMaxWidth = 512;
+constexpr int kMaxWidth = 256;
 
 // Texels of a quarter of the lobe's width: 2 alpha, as seen by the mirror direction.
 ImageSize sizeFor(float roughness) {

@@ -13,8 +13,12 @@ namespace chromeball {
 // about 1e-3 of the irradiance and 1e-2 of the radiance (tests/prefiltered_probe_test.cpp).
 class PrefilteredProbe {
  public:
-  // `roughnesses`: in (0, 1), of the tables to make; others are interpolated. A table takes a
-  // second of a core at most. The probe must outlive this.
+  // A table for a narrower lobe would need many texels, each of which takes long; a sample of the
+  // lobe has little noise.
+  static constexpr float kLeastRoughness = 0.2f;
+
+  // `roughnesses`: from kLeastRoughness to 1, of the tables to make; others are interpolated. A
+  // table takes about two seconds of a core at most. The probe must outlive this.
   PrefilteredProbe(const Probe& probe, std::vector<float> roughnesses);
 
   // W/m^2 on a surface with this unit normal.

@@ -73,22 +73,34 @@ void IrradianceCache::add(IrradianceRecord record) {
   index(uint32_t(records_.size() - 1));
 }
 
-// All pairs: that takes little time beside the rays of the records.
-void IrradianceCache::limitRadii(IrradianceRecord& record) {
+// Over all records: that takes little time beside their rays.
+template <class Use>
+void IrradianceCache::forNear(const IrradianceRecord& record, Use use) {
   constexpr float kOpposite = -0.5f;  // the other side of a wall has other neighbours
+  for (IrradianceRecord& other : records_) {
+    const float distance = glm::length(other.position - record.position);
+    if (distance < error_ * (record.radius + other.radius) &&
+        glm::dot(other.normal, record.normal) > kOpposite)
+      use(other, distance);
+  }
+}
+
+// A record whose radius falls may in turn limit others.
+void IrradianceCache::limitRadii(IrradianceRecord& record) {
   const auto limit = [](IrradianceRecord& r, float largest) {
-    r.radius = std::min(r.radius, std::max(largest, r.leastRadius));
+    largest = std::max(largest, r.leastRadius);
+    return largest < r.radius ? r.radius = largest, true : false;
   };
-  const auto forNear = [&](auto use) {
-    for (IrradianceRecord& other : records_) {
-      const float distance = glm::length(other.position - record.position);
-      if (distance < error_ * (record.radius + other.radius) &&
-          glm::dot(other.normal, record.normal) > kOpposite)
-        use(other, distance);
-    }
-  };
-  forNear([&](IrradianceRecord& other, float distance) { limit(record, other.radius + distance); });
-  forNear([&](IrradianceRecord& other, float distance) { limit(other, record.radius + distance); });
+  forNear(record,
+          [&](IrradianceRecord& other, float distance) { limit(record, other.radius + distance); });
+  std::vector<IrradianceRecord*> reduced{&record};
+  while (!reduced.empty()) {
+    const IrradianceRecord from = *reduced.back();
+    reduced.pop_back();
+    forNear(from, [&](IrradianceRecord& other, float distance) {
+      if (limit(other, from.radius + distance)) reduced.push_back(&other);
+    });
+  }
 }
 
 void IrradianceCache::index(uint32_t i) {

@@ -55,6 +55,8 @@ class IrradianceCache {
   // Calls use(record, expected error) for all records that may be used at the point.
   template <class Use>
   void forUsable(const vec3& position, const vec3& normal, Use use) const;
+  template <class Use>
+  void forNear(const IrradianceRecord& record, Use use);
   void limitRadii(IrradianceRecord& record);
   void index(uint32_t record);
 
