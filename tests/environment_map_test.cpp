@@ -210,7 +210,7 @@ TEST(Row, NamesOfIntegratorsAndDepthsRoundTrip) {
   for (const char* name :
        {"importance", "suns+ambient-occlusion", "median-cut:64+environment-map+denoise+ao",
         "importance+direct", "importance+diffuse-depth:6+specular-depth:2",
-        "suns+denoise+irradiance-cache:0.25"})
+        "importance+guide+denoise+irradiance-cache:0.25"})
     EXPECT_EQ(rowNamed(name, "test").name(), name);
   EXPECT_EQ(rowNamed("importance+path", "test").name(), "importance");
   for (const char* name : {"importance+ao", "importance+environment-map+guide",

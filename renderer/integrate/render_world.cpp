@@ -50,12 +50,14 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
   if (settings.cacheError) {
     IrradianceCache own(*settings.cacheError);
     IrradianceCache& cache = aids.cache ? *aids.cache : own;
-    const PathTracer tracer(world, lighting, withoutDepthCut(settings.path()));
+    const PathSettings paths = withoutDepthCut(settings.path());
     const Stopwatch watch;
     fillCache(
-        cache, tracer, camera, settings, [&](double fraction) { progress(kFillShare * fraction); },
-        stop);
-    return withLayers(CachedIntegrator(tracer, cache), nullptr, after(watch.seconds(), settings),
+        cache, PathTracer(world, lighting, paths), camera, settings,
+        [&](double fraction) { progress(kFillShare * fraction); }, stop);
+    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
+    const PathTracer tracer(world, lighting, training.guided(paths));
+    return withLayers(CachedIntegrator(tracer, cache), &training, after(watch.seconds(), settings),
                       [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
   }
   if (settings.wantsGroups()) {

@@ -114,7 +114,6 @@ void checkCache(const SceneFile& file) {
   if (file.composite) refuse("[composite]");
   const auto layers = s.get<std::vector<std::string>>("output.aovs");
   if (std::ranges::any_of(layers, isOfLight)) refuse("light groups");
-  if (s.get<std::string>("render.guide") == "on") refuse("--guide on");
   if (s.get<bool>("render.regularize")) refuse("--regularize");
   if (s.has("render.max_diffuse_depth") || s.has("render.max_specular_depth"))
     refuse("limits of depth by kind");

@@ -77,10 +77,10 @@ void check(const Row& row, const std::string& location) {
   if (hasOcclusion && row.integrator != IntegratorKind::EnvironmentMap)
     throwInput("{}: {}: ao and reflection-occlusion are modes of environment-map", location,
                row.name());
-  if (row.cacheError && (row.integrator != IntegratorKind::Path || row.has(Mode::Guide) ||
-                         row.has(Mode::Regularize) || row.diffuseDepth || row.specularDepth))
-    throwInput("{}: {}: {}ERROR goes with adaptive, glass-shadows and denoise only", location,
-               row.name(), kCache);
+  if (row.cacheError && (row.integrator != IntegratorKind::Path || row.has(Mode::Regularize) ||
+                         row.diffuseDepth || row.specularDepth))
+    throwInput("{}: {}: {}ERROR goes with adaptive, guide, glass-shadows and denoise only",
+               location, row.name(), kCache);
   if (row.cacheError && row.strategy == "bsdf")
     throwInput("{}: {}: {}ERROR needs a strategy with light samples", location, row.name(), kCache);
   if (!usesEnvironment(row.integrator)) return;

@@ -12,11 +12,11 @@ _chromeball() {
       words='render merge compare probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --max-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
-      options='--help --strategies --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+      options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
       words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;
@@ -64,7 +64,7 @@ _chromeball() {
     'image flat-field')
       options='--help --output --at --radius --centre --json' ;;
     'image relight')
-      options='--help --gain --output --exposure --tonemap' ;;
+      options='--help --gain --probe --bent --suns --add --rotation --scale --mapping --output --exposure --tonemap' ;;
     'image view')
       options='--help --exposure --tonemap --layer' ;;
     'camera')
