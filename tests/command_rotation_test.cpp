@@ -159,7 +159,7 @@ TEST_F(Turned, WrongRotationsAndScalesAreExplained) {
   expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--scale", "3e38"},
               "a texel times the scale exceeds the range of a float");
   expectError({"lights", sky_, "--suggest", "1", "--rotation", "5", "-o", path("l.json")},
-              "--rotation: turns the lights of a --method, not polygons");
+              "--rotation: polygons are places in the probe's image; it turns lights");
 }
 
 TEST_F(Turned, AlignPrintsTheRotationAndWritesTheTurnedProbe) {

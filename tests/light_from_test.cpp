@@ -213,7 +213,8 @@ TEST(LightList, RefusesOthers) {
     }
   };
   const auto light = [](const std::string& members) { return "{\"lights\": [{" + members + "}]}"; };
-  refused("", "not valid JSON");
+  refused("", "l.json:1: is not valid JSON here");
+  refused("{\n\"lights\": [\n{]}", "l.json:3: is not valid JSON here");
   refused("[1, 2]", "object");
   refused("{}", "`lights`");
   refused(R"({"lights": [3]})", "lights[0]");

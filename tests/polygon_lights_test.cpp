@@ -105,6 +105,45 @@ TEST(PolygonSource, SuggestionsFindTheWindow) {
   EXPECT_LE(found.front().solidAngle(), exact * 1.1);  // the hull of curved edges
 }
 
+// A window in which the light is at the bottom.
+Image unevenRoom() {
+  Image map = roomWithWindow();
+  for (int y = 30; y < 60; ++y)
+    for (int x = 140; x < 170; ++x) map.setRgb(x, y, Rgb(10, 8, 6) * (y < 52 ? 1.0f : 30.0f));
+  return map;
+}
+
+// What surfaces get that see all of what was taken is kept by a directional light, not by constant
+// radiance.
+TEST(PolygonSource, UnevenLightHasItsOwnDirection) {
+  const Image map = unevenRoom();
+  const PolygonExtraction extraction = extractPolygons(map, {window()});
+  const PolygonSource& source = extraction.sources.front();
+  EXPECT_GT(source.unevenness(), 0.1);
+  const std::vector<vec3> up{{0, 1, 0}};
+  const auto whole = exactIrradiance(map, up), rest = exactIrradiance(extraction.remainder, up);
+  const double exact = whole[0].y - rest[0].y;
+  const double asLight = source.direction().y * source.irradiance().y;
+  const double asPolygon = source.polygon.vectorIrradiance().y * source.radiance.y;
+  EXPECT_NEAR(asLight / exact, 1, 1e-3);
+  EXPECT_GT(asPolygon / exact, 1.1);
+  EXPECT_LT(extractPolygons(roomWithWindow(), {window()}).sources.front().unevenness(), 0.03);
+}
+
+TEST(PolygonSource, SuggestionsDivideUnevenRegions) {
+  const Image map = unevenRoom();
+  const auto largest = [&](int count) {
+    const std::vector<SphericalPolygon> found = suggestPolygons(map, count);
+    EXPECT_EQ(found.size(), size_t(count));
+    double most = 0;
+    for (const PolygonSource& source : extractPolygons(map, found).sources)
+      most = std::max(most, source.unevenness());
+    return most;
+  };
+  EXPECT_GT(largest(1), 0.1);
+  EXPECT_LT(largest(4), 0.1);
+}
+
 std::unique_ptr<CombinedLight> withWindow(const PolygonExtraction& extraction,
                                           const Probe& remainder, const Image& map, bool isIllum) {
   Image hidden(kWidth, kHeight, 3);
@@ -273,6 +312,11 @@ TEST(PolygonLights, SuggestedOnesAreReadAgain) {
   const CommandResult lights = runCommand(
       {"lights", room / "room.exr", "--polygons", room / "p.json", "-o", room / "l.json"});
   ASSERT_EQ(lights.status, 0) << lights.error;
+  writeImage(room / "room.exr", unevenRoom());
+  const CommandResult warned = runCommand({"render", room.scene("[[source]]\nfile = 'p.json'\n"),
+                                           "--size", "4x4", "-o", room / "o.exr"});
+  EXPECT_NE(warned.error.find("[[source]] source_0: the probe is uneven there"), std::string::npos)
+      << warned.error;
 }
 
 TEST(PolygonLights, RefuseOthers) {

@@ -47,6 +47,22 @@ TEST(SceneSuns, AreReadFromTheSceneFile) {
   EXPECT_FALSE(second.isVisible);
 }
 
+TEST(SceneSuns, ListsTurnLikeProbes) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "l.json")
+      << R"({"lights": [{"direction": [0, 0.6, 0.8], "irradiance": [3, 2, 1], "angle": 1},
+                        {"direction": [1, 0, 0], "irradiance": [1, 1, 1]}]})";
+  const SceneFile file = read(folder, "[[light]]\nfile = 'l.json'\nrotation = [70, 20, 10]\n");
+  const Rotation rotation = Rotation::ofAngles({70, 20, 10});
+  ASSERT_EQ(file.lamps.size(), 2u);
+  EXPECT_LT(glm::distance(file.lamps[0].sun->sun.direction, rotation(dvec3(0, 0.6, 0.8))), 1e-6);
+  EXPECT_LT(glm::distance(dvec3(file.lamps[1].punctual->direction), rotation(dvec3(-1, 0, 0))),
+            1e-6);
+  EXPECT_THROW(read(folder, "[[light]]\nfile = 'l.json'\nrotation = [1, 2]\n"), InputError);
+  EXPECT_THROW(read(folder, "[[light]]\ndirection = [0, 1, 0]\nradiance = 1\nrotation = 5\n"),
+               InputError);
+}
+
 TEST(SceneSuns, RefusesWhatIsNoSun) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& keys, const std::string& reason) {

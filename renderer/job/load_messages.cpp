@@ -32,13 +32,31 @@ void addMemory(const RenderJob& job, const LoadedScene& loaded, Collector& messa
                               1e-9 * estimate.peak, inWords(estimate)));
 }
 
+// Lamps of the scene file that are among the scene's lights.
+size_t ofSceneFile(const RenderJob& job) {
+  return size_t(std::ranges::count_if(job.file.lamps,
+                                      [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
+}
+
 void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
   const std::string& model = job.file.models.front().file;
   if (scene.environment)
     messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
-  else if (const size_t count = scene.lights.size())
+  else if (const size_t count = scene.lights.size() - ofSceneFile(job))
     messages.note(fmt::format("{}: no probe; lit by the model's {} light{}", model, count,
                               count == 1 ? "" : "s"));
+}
+
+void addSources(const LoadedScene& loaded, Collector& messages) {
+  constexpr double kMaxUnevenness = 0.05;
+  if (!loaded.sources) return;
+  for (const PolygonLight& light : loaded.sources->lights)
+    if (const double change = light.source.unevenness(); change > kMaxUnevenness)
+      messages.warn(fmt::format(
+          "[[source]] {}: the probe is uneven there; as one constant radiance its irradiance "
+          "changes by up to {:.2g}%; smaller polygons (`lights --suggest` with a larger number) "
+          "change it less",
+          light.name, 100 * change));
 }
 
 void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
@@ -88,6 +106,7 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
     addProbe(*probe, loaded.loadedProbe, messages);
   else
     addLights(job, scene, messages);
+  addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
     messages.note(plateScaleText(*job.file.composite, *scale));
   if (const auto plate = settings.getIfGiven<std::string>("composite.plate"))

@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
-#include "base/file.h"
+#include "base/json_file.h"
 #include "job/json_text.h"
 #include "job/output_file.h"
 
@@ -16,7 +14,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr size_t kMaxPolygons = 1000, kMaxBytes = 10 << 20;
+constexpr size_t kMaxPolygons = 1000, kMaxMegabytes = 10;
 
 PolygonCorners cornersOf(const json& polygon, const std::string& where) {
   const auto points = polygon.is_object() ? polygon.find("probe_polygon") : polygon.end();
@@ -43,14 +41,7 @@ glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
 }  // namespace
 
 std::vector<PolygonCorners> readPolygons(const std::filesystem::path& path) {
-  std::error_code unreadable;
-  if (const auto size = std::filesystem::file_size(path, unreadable);
-      !unreadable && size > kMaxBytes)
-    throwInput("{}: has {} MB; lists of polygons have at most {}", path.string(), size >> 20,
-               kMaxBytes >> 20);
-  const std::vector<uint8_t> bytes = readFile(path);
-  const json root = json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (root.is_discarded()) throwInput("{}: is not valid JSON", path.string());
+  const json root = readJsonFile(path, kMaxMegabytes, "lists of polygons");
   const auto polygons = root.is_object() ? root.find("polygons") : root.end();
   if (!root.is_object() || polygons == root.end() || !polygons->is_array())
     throwInput("{}: has no array `polygons`; `chromeball lights --suggest` writes such lists",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_light.h"
 
+#include "job/arguments.h"
 #include "lighting/light_list.h"
 #include "probe/sky.h"
 
@@ -18,7 +19,7 @@ const std::vector<LampType> kTypes = {
      {"type", "name", "position", "direction", "intensity", "power", "range", "inner_angle",
       "outer_angle"}},
     {"disc", {"type", "name", "position", "direction", "radiance", "power", "radius"}},
-    {"list", {"type", "name", "file", "visible"}},
+    {"list", {"type", "name", "file", "rotation", "visible"}},
 };
 
 const LampType& typeOf(const Section& light) {
@@ -94,6 +95,13 @@ SunLamp readSun(const Section& light) {
   return lamp;
 }
 
+Rotation readRotation(const Entry& entry) {
+  if (!entry) return {};
+  Entry rotation = entry;
+  rotation.setting = findSetting("probe", "rotation");
+  return parseRotation(rotation.numbers(), entry.location());
+}
+
 // Lights with an angle become suns; those without, directional lamps.
 std::vector<Lamp> readList(const Section& light, const std::string& name,
                            std::vector<std::string>& files) {
@@ -103,7 +111,7 @@ std::vector<Lamp> readList(const Section& light, const std::string& name,
   const LightList list = readLights(path);
   files.push_back(path);
   std::vector<Lamp> lamps;
-  for (const DirectionalLight& from : list.lights) {
+  for (const DirectionalLight& from : turned(list.lights, readRotation(light["rotation"]))) {
     Lamp& lamp = lamps.emplace_back();
     lamp.name = fmt::format("{}_{}", name, lamps.size() - 1);
     if (from.angle > 0)

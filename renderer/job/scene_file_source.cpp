@@ -41,6 +41,7 @@ std::vector<SourceEntry> readSources(const Entry& entry, std::vector<std::string
     SourceEntry& added = sources.emplace_back(common);
     added.name += fmt::format("_{}", sources.size() - 1);
     added.corners = corners;
+    added.location = fmt::format("{}: polygons[{}]", files.back(), sources.size() - 1);
   }
   return sources;
 }

@@ -26,11 +26,19 @@ std::vector<Setting> lightRows() {
        .absent = "required for a list",
        .help = "The .json of a list. Lights with an angle are suns, those without are directional "
                "lamps; ambient light comes from all directions."});
+  add({.key = "rotation",
+       .type = Compound,
+       .form = "one angle, three (yaw, pitch, roll), or a quaternion (x, y, z, w)",
+       .unit = "degrees",
+       .absent = "none",
+       .help = "Turns the lights of a list as [probe] `rotation` turns the environment, which does "
+               "not turn them: give both for a probe and its own suns."});
   add({.key = "name",
        .type = Name,
        .absent = "sun, or light",
-       .help = "Name of the lamp, for `local_scene` and light groups; those of a list get numbers: "
-               "NAME_0."});
+       .help =
+           "Name of the lamp, for `local_scene` and light groups (there with _ for dots, commas, = "
+           "and spaces); those of a list get numbers: NAME_0."});
   add({.key = "position",
        .type = Compound,
        .form = "three numbers",
@@ -105,7 +113,7 @@ std::vector<Setting> lightRows() {
   add({.key = "radius",
        .type = Compound,
        .form = "a number",
-       .range = kPositive,
+       .range = {.min = 0, .max = 1e12, .excludesMin = true},
        .unit = "metres",
        .absent = "required for a disc",
        .help = "Radius of a disc."});

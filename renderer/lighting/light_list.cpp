@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
-#include "base/file.h"
+#include "base/json_file.h"
 #include "lighting/light_file.h"
 
 namespace chromeball {
@@ -15,7 +13,7 @@ namespace {
 using glm::dvec3;
 using nlohmann::json;
 
-constexpr size_t kMaxLights = 100000, kMaxBytes = 100 << 20;
+constexpr size_t kMaxLights = 100000, kMaxMegabytes = 100;
 
 // One light, or the list itself, for errors that name it.
 class Reader {
@@ -40,7 +38,7 @@ class Reader {
     if (member == object_.end()) return {};
     const bool isVector = member->is_array() && member->size() == 3 &&
                           std::all_of(member->begin(), member->end(), isFiniteFloat);
-    if (!isVector) fail("`{}` should be three numbers", key);
+    if (!isVector) fail("`{}` should be three numbers, in the range of a float", key);
     return dvec3((*member)[0].get<double>(), (*member)[1].get<double>(),
                  (*member)[2].get<double>());
   }
@@ -96,14 +94,7 @@ DirectionalLight readLight(const Reader& light) {
 }  // namespace
 
 LightList readLights(const std::filesystem::path& path) {
-  std::error_code unreadable;
-  const auto size = std::filesystem::file_size(path, unreadable);
-  if (!unreadable && size > kMaxBytes)
-    throwInput("{}: has {} MB; lists of lights have at most {}", path.string(), size >> 20,
-               kMaxBytes >> 20);
-  const std::vector<uint8_t> bytes = readFile(path);
-  const json root = json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (root.is_discarded()) throwInput("{}: is not valid JSON", path.string());
+  const json root = readJsonFile(path, kMaxMegabytes, "lists of lights");
   const Reader list(root, path.string());
   const auto lights = root.find("lights");
   if (lights == root.end() || !lights->is_array())

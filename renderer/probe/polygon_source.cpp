@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -91,15 +92,36 @@ dvec3 meanOfRim(const Image& map, const std::vector<CoveredTexel>& coverage) {
   return weight > 0 ? sum / weight : dvec3(0);
 }
 
-dvec3 removeCovered(Image& map, const std::vector<CoveredTexel>& coverage, const dvec3& fill) {
-  dvec3 taken(0);  // radiance x solid angle
-  for (const auto& [texel, part] : coverage) {
-    const dvec3 before(map.rgb(texel.x, texel.y));
-    const Rgb after(before - double(part) * glm::max(before - fill, dvec3(0)));
-    taken += (before - dvec3(after)) * texelSolidAngle(texel.y, map.width, map.height);
-    map.setRgb(texel.x, texel.y, after);
+// The texel's radiance without what the polygon takes.
+Rgb remaining(const Image& map, const CoveredTexel& covered, const dvec3& fill) {
+  const dvec3 before(map.rgb(covered.texel.x, covered.texel.y));
+  return Rgb(before - double(covered.part) * glm::max(before - fill, dvec3(0)));
+}
+
+PolygonSource sourceOf(const Image& map, const SphericalPolygon& polygon,
+                       const std::vector<CoveredTexel>& coverage, const dvec3& fill) {
+  PolygonSource source{polygon, dvec3(0)};
+  dvec3 flux(0);  // radiance x solid angle
+  for (const CoveredTexel& covered : coverage) {
+    const auto [x, y] = covered.texel;
+    const dvec3 own = (dvec3(map.rgb(x, y)) - dvec3(remaining(map, covered, fill))) *
+                      texelSolidAngle(y, map.width, map.height);
+    flux += own;
+    source.coveredTexels += covered.part;
+    const dvec3 direction = texelDirection({map.width, map.height}, x, y);
+    for (int c = 0; c < 3; ++c) source.taken[size_t(c)] += own[c] * direction;
   }
-  return taken;
+  source.radiance = flux / polygon.solidAngle();
+  return source;
+}
+
+PolygonSource sourceOf(const Image& map, const SphericalPolygon& polygon) {
+  const std::vector<CoveredTexel> coverage = coverageOf(polygon, {map.width, map.height});
+  return sourceOf(map, polygon, coverage, meanOfRim(map, coverage));
+}
+
+dvec3 luminanceOf(const std::array<dvec3, 3>& channels) {
+  return 0.2126 * channels[0] + 0.7152 * channels[1] + 0.0722 * channels[2];
 }
 
 dvec3 centreOf(const Image& map, const std::vector<Texel>& region, double& flux) {
@@ -147,25 +169,100 @@ std::optional<SphericalPolygon> hullOf(const Image& map, const std::vector<Texel
   return SphericalPolygon(corners, "region");
 }
 
+// A bright region and the polygon around it.
+struct Candidate {
+  std::vector<Texel> region;
+  SphericalPolygon polygon;
+  double flux;        // of luminance
+  double unevenness;  // PolygonSource
+};
+
+std::optional<Candidate> candidateOf(const Image& map, std::vector<Texel> region) {
+  double flux;
+  const dvec3 centre = centreOf(map, region, flux);
+  auto polygon = hullOf(map, region, centre);
+  if (!polygon) return {};
+  const double unevenness = sourceOf(map, *polygon).unevenness();
+  return Candidate{std::move(region), *std::move(polygon), flux, unevenness};
+}
+
+// By the plane through the centre of the flux, across the direction in which the flux is spread
+// most. The hulls of the parts do not overlap.
+std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>& region) {
+  double flux;
+  const ImageSize size{map.width, map.height};
+  const dvec3 centre = centreOf(map, region, flux);
+  glm::dmat3 spread(0);
+  for (const Texel t : region) {
+    const dvec3 offset = texelDirection(size, t.x, t.y) - centre;
+    const double weight =
+        luminance(map.rgb(t.x, t.y)) * texelSolidAngle(t.y, map.width, map.height) / flux;
+    spread += weight * glm::outerProduct(offset, offset);
+  }
+  constexpr int kIterations = 64;  // of the power method
+  dvec3 axis(0.6, 0.5, 0.4);
+  for (int i = 0; i < kIterations; ++i) {
+    const dvec3 next = spread * (axis - glm::dot(axis, centre) * centre);
+    if (!(glm::length(next) > 0)) break;
+    axis = glm::normalize(next);
+  }
+  const dvec3 normal = axis - glm::dot(axis, centre) * centre;
+  std::array<std::vector<Texel>, 2> parts;
+  for (const Texel t : region)
+    parts[glm::dot(texelDirection(size, t.x, t.y), normal) > 0].push_back(t);
+  return parts;
+}
+
+// Cuts uneven candidates while there are fewer than `count`.
+void refine(const Image& map, std::vector<Candidate>& candidates, size_t count) {
+  constexpr double kMaxUnevenness = 0.05;
+  const auto worth = [](const Candidate& c) {
+    return c.unevenness > kMaxUnevenness ? c.flux * c.unevenness : 0;
+  };
+  while (candidates.size() < count) {
+    const auto worst = std::ranges::max_element(candidates, {}, worth);
+    if (worst == candidates.end() || worth(*worst) == 0) return;
+    auto parts = cut(map, worst->region);
+    if (parts[0].empty() || parts[1].empty()) {
+      worst->unevenness = 0;  // of one texel
+      continue;
+    }
+    candidates.erase(worst);
+    for (std::vector<Texel>& part : parts)
+      if (auto candidate = candidateOf(map, std::move(part)))
+        candidates.push_back(*std::move(candidate));
+  }
+}
+
 }  // namespace
 
+dvec3 PolygonSource::direction() const {
+  const dvec3 sum = luminanceOf(taken);
+  return glm::length(sum) > 0 ? glm::normalize(sum) : glm::normalize(polygon.vectorIrradiance());
+}
+
 dvec3 PolygonSource::irradiance() const {
-  return radiance * glm::length(polygon.vectorIrradiance());
+  return {glm::length(taken[0]), glm::length(taken[1]), glm::length(taken[2])};
+}
+
+double PolygonSource::unevenness() const {
+  const dvec3 sum = luminanceOf(taken), even = polygon.vectorIrradiance();
+  const dvec3 constant = luminanceOf({radiance.x * even, radiance.y * even, radiance.z * even});
+  return glm::length(sum) > 0 ? glm::length(constant - sum) / glm::length(sum) : 0;
 }
 
 PolygonExtraction extractPolygons(const Image& latLong,
                                   const std::vector<SphericalPolygon>& polygons) {
   PolygonExtraction result;
-  result.remainder = Image(latLong.width, latLong.height, 3);
+  Image& rest = result.remainder = Image(latLong.width, latLong.height, 3);
   for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) result.remainder.setRgb(x, y, latLong.rgb(x, y));
+    for (int x = 0; x < latLong.width; ++x) rest.setRgb(x, y, latLong.rgb(x, y));
   for (const SphericalPolygon& polygon : polygons) {
-    const std::vector<CoveredTexel> coverage = coverageOf(polygon, {latLong.width, latLong.height});
-    const dvec3 fill = meanOfRim(result.remainder, coverage);
-    const dvec3 taken = removeCovered(result.remainder, coverage, fill);
-    double texels = 0;
-    for (const CoveredTexel& covered : coverage) texels += covered.part;
-    result.sources.push_back({polygon, taken / polygon.solidAngle(), texels});
+    const std::vector<CoveredTexel> coverage = coverageOf(polygon, {rest.width, rest.height});
+    const dvec3 fill = meanOfRim(rest, coverage);
+    result.sources.push_back(sourceOf(rest, polygon, coverage, fill));
+    for (const CoveredTexel& covered : coverage)
+      rest.setRgb(covered.texel.x, covered.texel.y, remaining(rest, covered, fill));
   }
   return result;
 }
@@ -177,26 +274,27 @@ std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
     for (int x = 0; x < latLong.width; ++x)
       mean += luminance(latLong.rgb(x, y)) * texelSolidAngle(y, latLong.width, latLong.height) /
               (4 * kPiD);
-  struct Candidate {
-    SphericalPolygon polygon;
-    double flux;
-  };
-  std::vector<Candidate> candidates;
+  std::vector<std::vector<Texel>> regions;
   std::vector<bool> visited(size_t(latLong.width) * size_t(latLong.height));
   for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) {
-      const std::vector<Texel> region = gatherRegion(latLong, {x, y}, kContrast * mean, visited);
-      if (region.empty()) continue;
-      double flux;
-      const dvec3 centre = centreOf(latLong, region, flux);
-      if (auto polygon = hullOf(latLong, region, centre))
-        candidates.push_back({*std::move(polygon), flux});
-    }
-  std::ranges::sort(candidates,
-                    [](const Candidate& a, const Candidate& b) { return a.flux > b.flux; });
+    for (int x = 0; x < latLong.width; ++x)
+      if (auto region = gatherRegion(latLong, {x, y}, kContrast * mean, visited); !region.empty())
+        regions.push_back(std::move(region));
+  const auto fluxOf = [&](const std::vector<Texel>& region) {
+    double flux;
+    centreOf(latLong, region, flux);
+    return flux;
+  };
+  std::ranges::stable_sort(regions, std::greater(), fluxOf);
+  std::vector<Candidate> candidates;
+  for (auto region = regions.begin(); region != regions.end() && candidates.size() < size_t(count);
+       ++region)
+    if (auto candidate = candidateOf(latLong, std::move(*region)))
+      candidates.push_back(*std::move(candidate));
+  refine(latLong, candidates, size_t(count));
+  std::ranges::stable_sort(candidates, std::greater(), &Candidate::flux);
   std::vector<SphericalPolygon> best;
-  for (size_t i = 0; i < std::min(candidates.size(), size_t(count)); ++i)
-    best.push_back(candidates[i].polygon);
+  for (Candidate& candidate : candidates) best.push_back(std::move(candidate.polygon));
   return best;
 }
 

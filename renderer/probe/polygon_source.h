@@ -3,6 +3,7 @@
 // 9.29 and 9.30).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "image/image.h"
@@ -13,9 +14,17 @@ namespace chromeball {
 struct PolygonSource {
   SphericalPolygon polygon;
   dvec3 radiance;
-  double coveredTexels = 0;  // of the map; 0: smaller than a texel, or between points of them
+  double coveredTexels = 0;      // of the map; 0: smaller than a texel, or between points of them
+  std::array<dvec3, 3> taken{};  // vector irradiance of each channel of what the map had there
 
-  dvec3 irradiance() const;  // on a surface that faces its vector irradiance
+  // One directional light in its place: unit, that of the luminance taken; W/m^2 on a surface
+  // facing it.
+  dvec3 direction() const;
+  dvec3 irradiance() const;
+
+  // By how much constant radiance changes the irradiance of surfaces that see all of it, at most:
+  // |vector irradiance - taken| / |taken| in luminance. 0 of even radiance.
+  double unevenness() const;
 };
 
 // The sources, and the map without them. From each texel the part that a polygon covers gives up
@@ -31,7 +40,8 @@ PolygonExtraction extractPolygons(const Image& latLong,
 
 // Proposals: convex polygons around the connected regions whose luminance is above 4 times the mean
 // of the sphere, at most `count`, in order of decreasing flux; without regions that reach more than
-// 60 degrees from their middle.
+// 60 degrees from their middle. While there are fewer, regions of uneven radiance are cut in two,
+// through the middle of their flux and across their longer side, those of most flux first.
 std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count);
 
 }  // namespace chromeball

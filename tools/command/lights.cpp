@@ -127,17 +127,10 @@ LightUnits unitsOf(const Arguments& arguments) {
                                  : parseLightUnits({arguments.units, "--light-units"});
 }
 
-Constellation turned(Constellation lights, const Rotation& rotation) {
-  for (DirectionalLight& light : lights) light.direction = rotation(light.direction);
-  return lights;
-}
-
 // Polygons in place of a method.
 void runPolygonsOf(const Arguments& arguments) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");
-  if (!(arguments.rotation == Rotation()))
-    throwInput("--rotation: turns the lights of a --method, not polygons");
   const LightRequest& request = arguments.request;
   const std::pair<const char*, bool> others[] = {
       {"--count", request.count.has_value()},       {"--recursion", request.levels.has_value()},
@@ -158,7 +151,8 @@ void runPolygonsOf(const Arguments& arguments) {
                .suggest = arguments.suggest,
                .polygons = arguments.polygons,
                .format = format,
-               .units = unitsOf(arguments)});
+               .units = unitsOf(arguments),
+               .rotation = arguments.rotation});
 }
 
 void run(Arguments arguments) {

@@ -17,8 +17,7 @@ namespace {
 Constellation lightsOf(const std::vector<PolygonSource>& sources) {
   Constellation lights;
   for (const PolygonSource& source : sources)
-    lights.push_back(
-        {vec3(glm::normalize(source.polygon.vectorIrradiance())), Rgb(source.irradiance()), 0});
+    lights.push_back({vec3(source.direction()), Rgb(source.irradiance()), 0});
   return lights;
 }
 
@@ -50,6 +49,8 @@ std::vector<SphericalPolygon> polygonsOf(const PolygonRequest& request, const Lo
 
 void runPolygons(const PolygonRequest& request) {
   constexpr int kMaxSuggested = 1000;
+  if (request.suggest && !(request.rotation == Rotation()))
+    throwInput("--rotation: polygons are places in the probe's image; it turns lights");
   if (request.suggest && !(*request.suggest >= 1 && *request.suggest <= kMaxSuggested))
     throwInput("--suggest: should be a number of polygons from 1 to {}", kMaxSuggested);
   if (request.suggest && !request.polygons.empty())
@@ -72,7 +73,7 @@ void runPolygons(const PolygonRequest& request) {
                 {.probe = request.probe.file,
                  .method = "polygons",
                  .ambient = {},
-                 .lights = lights,
+                 .lights = turned(lights, request.rotation),
                  .units = request.units},
                 request.format);
   }
@@ -84,9 +85,9 @@ void runPolygons(const PolygonRequest& request) {
     const Rgb& e = lights[i].irradiance;
     fmt::print(
         "polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
-        "{:.4g} {:.4g}\n",
+        "{:.4g} {:.4g}, unevenness {:.2g}%\n",
         sources[i].polygon.corners().size(), sources[i].polygon.solidAngle(), sources[i].radiance.x,
-        sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z);
+        sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z, 100 * sources[i].unevenness());
   }
 }
 

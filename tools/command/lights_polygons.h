@@ -17,6 +17,7 @@ struct PolygonRequest {
   std::string polygons;
   LightFormat format = LightFormat::Json;  // of their lights
   LightUnits units = LightUnits::Photometric;
+  Rotation rotation;  // of these lights
 };
 
 // Writes the suggested polygons, which [[source]] reads; or a directional light for each polygon of

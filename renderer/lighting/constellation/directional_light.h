@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "math/vec.h"
+#include "math/rotation.h"
 
 namespace chromeball {
 
@@ -15,5 +15,11 @@ struct DirectionalLight {
 };
 
 using Constellation = std::vector<DirectionalLight>;
+
+// Those of a probe that is turned.
+inline Constellation turned(Constellation lights, const Rotation& rotation) {
+  for (DirectionalLight& light : lights) light.direction = rotation(light.direction);
+  return lights;
+}
 
 }  // namespace chromeball
