@@ -163,6 +163,8 @@ TEST_F(SlowCommandFlatField, BadInputIsRejected) {
   expectError({"image", "flat-field", one, "-o", flat, "--at", "1,80"}, "is not inside");
   expectError({"image", "flat-field", one, "-o", flat, "--radius", "-1"}, "--radius");
   expectError({"image", "flat-field", one, "-o", flat, "--centre", "1"}, "--centre");
+  expectError({"image", "flat-field", one, "-o", flat, "--centre", "1e9,5"},
+              "--centre: (1e+09, 5)");
   expectError({"image", "flat-field", one, write("small.exr", Image(4, 4, 3)), "-o", flat},
               "have one size");
   Image white(kWidth, kHeight, 3);

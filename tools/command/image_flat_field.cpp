@@ -98,6 +98,11 @@ void run(const Arguments& arguments) {
   const auto [width, height] = series.size;
   const dvec2 centre = arguments.centre.empty() ? dvec2(width, height) / 2.0
                                                 : parsePoint(arguments.centre, "--centre");
+  if (!(centre.x >= -width && centre.x <= 2 * width && centre.y >= -height &&
+        centre.y <= 2 * height))
+    throwInput(
+        "--centre: ({:g}, {:g}) is more than a picture's size outside of the picture, {} x {}",
+        centre.x, centre.y, width, height);
   const FlatField field = fitFlatField(series.samples, width, height, centre);
   if (field.largest < kReaches)
     warn(
