@@ -37,4 +37,12 @@ for model in lambertian room conductors; do
       --repeats 3 --reference "$folder/$name-reference.exr" --output "$folder/$name" "$@"
   done
 done
+
+# The cache, guides and denoising in equal time.
+name=room-overcast
+for seconds in 4 16; do
+  build/chromeball compare "$folder/room.glb" --probe "$folder/overcast.exr" --size 160x120 --times $seconds --repeats 3 \
+    --strategies importance,importance+guide,importance+guide+denoise,importance+irradiance-cache:0.3+guide,importance+irradiance-cache:0.3+guide+denoise \
+    --baseline importance --reference "$folder/$name-reference.exr" --output "$folder/equal-time-$seconds" "$@"
+done
 python3 tools/scripts/approximations_table.py "$folder"
