@@ -176,6 +176,8 @@ class SettingsInAFile : public testing::Test {
     const bool sun = s.key == "irradiance" || s.key == "angle" || s.key == "visible";
     if (s.section == "light" && sun) {
       add("direction", "[0, 1, 0]"), add("irradiance", "1");
+    } else if (s.section == "light" && s.key == "rotation") {
+      add("file", "'lights.json'");
     } else if (s.section == "light" && s.key != "file") {
       const bool spot = s.key.ends_with("_angle"), disc = s.key == "radius" || s.key == "radiance";
       add("type", spot ? "'spot'" : disc || s.key == "direction" ? "'disc'" : "'point'");

@@ -48,15 +48,16 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
 }
 
 void addSources(const LoadedScene& loaded, Collector& messages) {
-  constexpr double kMaxUnevenness = 0.05;
+  constexpr double kMaxUnevenness = 0.02;
   if (!loaded.sources) return;
-  for (const PolygonLight& light : loaded.sources->lights)
-    if (const double change = light.source.unevenness(); change > kMaxUnevenness)
-      messages.warn(fmt::format(
-          "[[source]] {}: the probe is uneven there; as one constant radiance its irradiance "
-          "changes by up to {:.2g}%; smaller polygons (`lights --suggest` with a larger number) "
-          "change it less",
-          light.name, 100 * change));
+  std::vector<PolygonSource> sources;
+  for (const PolygonLight& light : loaded.sources->lights) sources.push_back(light.source);
+  if (const double change = unevenness(sources); change > kMaxUnevenness)
+    messages.warn(fmt::format(
+        "[[source]]: the probe is uneven in the polygons; one constant radiance for each changes "
+        "irradiance by up to {:.2g}% of that on surfaces facing them; smaller polygons (`lights "
+        "--suggest` with a larger number) change it less",
+        100 * change));
 }
 
 void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {

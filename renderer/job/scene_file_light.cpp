@@ -105,13 +105,14 @@ Rotation readRotation(const Entry& entry) {
 // Lights with an angle become suns; those without, directional lamps.
 std::vector<Lamp> readList(const Section& light, const std::string& name,
                            std::vector<std::string>& files) {
+  const Rotation rotation = readRotation(light["rotation"]);
   const std::string path = existingFile(light.required("file"));
   const Entry visible = light["visible"];
   const bool isVisible = !visible || visible.flag();
   const LightList list = readLights(path);
   files.push_back(path);
   std::vector<Lamp> lamps;
-  for (const DirectionalLight& from : turned(list.lights, readRotation(light["rotation"]))) {
+  for (const DirectionalLight& from : turned(list.lights, rotation)) {
     Lamp& lamp = lamps.emplace_back();
     lamp.name = fmt::format("{}_{}", name, lamps.size() - 1);
     if (from.angle > 0)

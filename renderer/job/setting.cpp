@@ -28,6 +28,8 @@ std::string describeRange(const Range& range, bool whole) {
   if (!hasMax)
     return kind + (range.excludesMin ? " above " + number(range.min)
                                      : ", " + number(range.min) + " or more");
+  if (range.excludesMin && !range.excludesMax)
+    return fmt::format("{} above {}, at most {}", kind, number(range.min), number(range.max));
   return fmt::format("{} {} {} {} {}", kind, range.excludesMin ? "between" : "from",
                      number(range.min), range.excludesMin ? "and" : "to", number(range.max));
 }

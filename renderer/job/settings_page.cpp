@@ -80,7 +80,8 @@ std::string rangeText(const Setting& s) {
   const Range& r = s.range;
   const bool hasMin = std::isfinite(r.min), hasMax = std::isfinite(r.max);
   if (hasMin && hasMax)
-    return fmt::format("{:.10g} {} {:.10g}", r.min, r.excludesMin ? "< x <" : "to", r.max);
+    return fmt::format("{:.10g} {} {:.10g}", r.min,
+                       r.excludesMin ? (r.excludesMax ? "< x <" : "< x <=") : "to", r.max);
   if (hasMin) return fmt::format("{} {:.10g}", r.excludesMin ? ">" : ">=", r.min);
   return "";
 }

@@ -173,8 +173,13 @@ std::optional<SphericalPolygon> hullOf(const Image& map, const std::vector<Texel
 struct Candidate {
   std::vector<Texel> region;
   SphericalPolygon polygon;
-  double flux;        // of luminance
-  double unevenness;  // PolygonSource
+  double flux;    // of luminance
+  double uneven;  // unevenness()
+
+  double unevenFlux() const {
+    constexpr double kEven = 0.01;
+    return uneven > kEven ? flux * uneven : 0;
+  }
 };
 
 std::optional<Candidate> candidateOf(const Image& map, std::vector<Texel> region) {
@@ -182,8 +187,8 @@ std::optional<Candidate> candidateOf(const Image& map, std::vector<Texel> region
   const dvec3 centre = centreOf(map, region, flux);
   auto polygon = hullOf(map, region, centre);
   if (!polygon) return {};
-  const double unevenness = sourceOf(map, *polygon).unevenness();
-  return Candidate{std::move(region), *std::move(polygon), flux, unevenness};
+  const PolygonSource source = sourceOf(map, *polygon);
+  return Candidate{std::move(region), *std::move(polygon), flux, unevenness({&source, 1})};
 }
 
 // By the plane through the centre of the flux, across the direction in which the flux is spread
@@ -213,25 +218,23 @@ std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>
   return parts;
 }
 
-// Cuts uneven candidates while there are fewer than `count`.
-void refine(const Image& map, std::vector<Candidate>& candidates, size_t count) {
-  constexpr double kMaxUnevenness = 0.05;
-  const auto worth = [](const Candidate& c) {
-    return c.unevenness > kMaxUnevenness ? c.flux * c.unevenness : 0;
-  };
-  while (candidates.size() < count) {
-    const auto worst = std::ranges::max_element(candidates, {}, worth);
-    if (worst == candidates.end() || worth(*worst) == 0) return;
-    auto parts = cut(map, worst->region);
-    if (parts[0].empty() || parts[1].empty()) {
-      worst->unevenness = 0;  // of one texel
-      continue;
-    }
-    candidates.erase(worst);
-    for (std::vector<Texel>& part : parts)
-      if (auto candidate = candidateOf(map, std::move(part)))
-        candidates.push_back(*std::move(candidate));
+// Where a cut of a candidate changes most light.
+std::vector<Candidate>::iterator worstOf(std::vector<Candidate>& candidates) {
+  return std::ranges::max_element(candidates, {}, &Candidate::unevenFlux);
+}
+
+// Replaces a candidate by its two parts, or notes that it has none.
+void divide(const Image& map, std::vector<Candidate>& candidates,
+            std::vector<Candidate>::iterator worst) {
+  auto parts = cut(map, worst->region);
+  if (parts[0].empty() || parts[1].empty()) {
+    worst->uneven = 0;
+    return;
   }
+  candidates.erase(worst);
+  for (std::vector<Texel>& part : parts)
+    if (auto candidate = candidateOf(map, std::move(part)))
+      candidates.push_back(*std::move(candidate));
 }
 
 }  // namespace
@@ -245,10 +248,19 @@ dvec3 PolygonSource::irradiance() const {
   return {glm::length(taken[0]), glm::length(taken[1]), glm::length(taken[2])};
 }
 
-double PolygonSource::unevenness() const {
-  const dvec3 sum = luminanceOf(taken), even = polygon.vectorIrradiance();
-  const dvec3 constant = luminanceOf({radiance.x * even, radiance.y * even, radiance.z * even});
-  return glm::length(sum) > 0 ? glm::length(constant - sum) / glm::length(sum) : 0;
+double unevenness(std::span<const PolygonSource> sources) {
+  double most = 0;
+  for (int c = 0; c < 3; ++c) {
+    dvec3 change(0);
+    double all = 0;
+    for (const PolygonSource& source : sources) {
+      const dvec3& taken = source.taken[size_t(c)];
+      change += source.radiance[c] * source.polygon.vectorIrradiance() - taken;
+      all += glm::length(taken);
+    }
+    if (all > 0) most = std::max(most, glm::length(change) / all);
+  }
+  return most;
 }
 
 PolygonExtraction extractPolygons(const Image& latLong,
@@ -274,24 +286,34 @@ std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
     for (int x = 0; x < latLong.width; ++x)
       mean += luminance(latLong.rgb(x, y)) * texelSolidAngle(y, latLong.width, latLong.height) /
               (4 * kPiD);
-  std::vector<std::vector<Texel>> regions;
+  struct Region {
+    std::vector<Texel> texels;
+    double flux;
+  };
+  std::vector<Region> regions;
   std::vector<bool> visited(size_t(latLong.width) * size_t(latLong.height));
   for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      if (auto region = gatherRegion(latLong, {x, y}, kContrast * mean, visited); !region.empty())
-        regions.push_back(std::move(region));
-  const auto fluxOf = [&](const std::vector<Texel>& region) {
-    double flux;
-    centreOf(latLong, region, flux);
-    return flux;
-  };
-  std::ranges::stable_sort(regions, std::greater(), fluxOf);
+    for (int x = 0; x < latLong.width; ++x) {
+      Region region{gatherRegion(latLong, {x, y}, kContrast * mean, visited), 0};
+      if (region.texels.empty()) continue;
+      centreOf(latLong, region.texels, region.flux);
+      regions.push_back(std::move(region));
+    }
+  std::ranges::stable_sort(regions, std::greater(), &Region::flux);
   std::vector<Candidate> candidates;
-  for (auto region = regions.begin(); region != regions.end() && candidates.size() < size_t(count);
-       ++region)
-    if (auto candidate = candidateOf(latLong, std::move(*region)))
-      candidates.push_back(*std::move(candidate));
-  refine(latLong, candidates, size_t(count));
+  auto region = regions.begin();
+  while (candidates.size() < size_t(count)) {
+    const auto worst = worstOf(candidates);
+    const double uneven = worst == candidates.end() ? 0 : worst->unevenFlux();
+    if (region != regions.end() && region->flux > uneven) {
+      if (auto candidate = candidateOf(latLong, std::move((region++)->texels)))
+        candidates.push_back(*std::move(candidate));
+    } else if (uneven > 0) {
+      divide(latLong, candidates, worst);
+    } else {
+      break;
+    }
+  }
   std::ranges::stable_sort(candidates, std::greater(), &Candidate::flux);
   std::vector<SphericalPolygon> best;
   for (Candidate& candidate : candidates) best.push_back(std::move(candidate.polygon));

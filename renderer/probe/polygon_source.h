@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "image/image.h"
@@ -21,11 +22,12 @@ struct PolygonSource {
   // facing it.
   dvec3 direction() const;
   dvec3 irradiance() const;
-
-  // By how much constant radiance changes the irradiance of surfaces that see all of it, at most:
-  // |vector irradiance - taken| / |taken| in luminance. 0 of even radiance.
-  double unevenness() const;
 };
+
+// How far the sources' constant radiances are from what was taken: |sum of (vector irradiance -
+// taken)| / sum of |taken| of the channel where that is most; 0 of even radiance. A surface that
+// sees all of them gets so much more or less of the irradiance of surfaces that face them.
+double unevenness(std::span<const PolygonSource> sources);
 
 // The sources, and the map without them. From each texel the part that a polygon covers gives up
 // its radiance above `fill`, the mean of the texels around the polygon, channel by channel. The
@@ -40,8 +42,9 @@ PolygonExtraction extractPolygons(const Image& latLong,
 
 // Proposals: convex polygons around the connected regions whose luminance is above 4 times the mean
 // of the sphere, at most `count`, in order of decreasing flux; without regions that reach more than
-// 60 degrees from their middle. While there are fewer, regions of uneven radiance are cut in two,
-// through the middle of their flux and across their longer side, those of most flux first.
+// 60 degrees from their middle. Where the uneven part of a region's flux is more than the flux of
+// the next region, the former is cut in two instead, through the middle of its flux and across the
+// direction in which that is spread most.
 std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count);
 
 }  // namespace chromeball

@@ -87,7 +87,8 @@ void runPolygons(const PolygonRequest& request) {
         "polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
         "{:.4g} {:.4g}, unevenness {:.2g}%\n",
         sources[i].polygon.corners().size(), sources[i].polygon.solidAngle(), sources[i].radiance.x,
-        sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z, 100 * sources[i].unevenness());
+        sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z,
+        100 * unevenness({&sources[i], 1}));
   }
 }
 
