@@ -162,6 +162,13 @@ TEST_F(CommandIntegrators, SlowCompare) {
   for (const char* row :
        {"importance+direct", "importance+ambient-occlusion", "importance+environment-map"})
     EXPECT_NE(text.find(row), std::string::npos) << row;
+  const CommandResult named =
+      runCommand(with({"--strategies", "importance,importance+environment-map+ao", "--samples", "4",
+                       "--repeats", "3", "-o", folder_ / "named"},
+                      "compare"));
+  ASSERT_EQ(named.status, 0) << named.error;
+  EXPECT_NE(fileContents(folder_ / "named/results.json").find("importance+environment-map+ao"),
+            std::string::npos);
   expectError(
       with({"--strategies", "importance", "--integrators", "raster", "-o", folder_ / "none"},
            "compare"),

@@ -34,7 +34,7 @@ std::atomic<bool> interrupted = false;
 
 struct Arguments {
   SceneOptions scene;
-  std::vector<std::string> strategies{"all"}, integrators{"path"};
+  std::vector<std::string> strategies{"all"}, integrators;
   std::vector<int> samples;
   std::vector<double> times;
   int repeats = 4;
@@ -42,15 +42,21 @@ struct Arguments {
   std::optional<int> referenceSamples;
 };
 
-// Each strategy with each integrator.
+// Each strategy with each integrator, but those that name one.
 std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
                                      const std::vector<std::string>& integrators) {
   std::vector<std::string> names;
-  for (const std::string& strategy : strategies)
-    for (const std::string& integrator : integrators) {
-      const std::string name = rowNamed(strategy + "+" + integrator, "--integrators").name();
-      if (std::ranges::count(names, name) == 0) names.push_back(name);
-    }
+  const auto add = [&](const Row& row) {
+    if (std::ranges::count(names, row.name()) == 0) names.push_back(row.name());
+  };
+  for (const std::string& strategy : strategies) {
+    const Row row = rowNamed(strategy, "--strategies");
+    if (integrators.empty() || row.integrator != IntegratorKind::Path)
+      add(row);
+    else
+      for (const std::string& integrator : integrators)
+        add(rowNamed(strategy + "+" + integrator, "--integrators"));
+  }
   return names;
 }
 
@@ -249,8 +255,7 @@ void addCompareCommand(CLI::App& app) {
       ->add_option("--integrators", a.integrators,
                    "Renders each strategy with each of these, separated by commas: path, direct, "
                    "ambient-occlusion, environment-map (as modes: NAME+ambient-occlusion)")
-      ->delimiter(',')
-      ->capture_default_str();
+      ->delimiter(',');
   command
       ->add_option("--samples", a.samples,
                    "Samples per pixel; 1,4,16,64 if neither these nor --times are given")

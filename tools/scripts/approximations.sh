@@ -31,7 +31,7 @@ for model in lambertian room conductors; do
     echo "$name"
     [[ -e $folder/$name-reference.exr ]] ||
       build/chromeball render "$folder/$model.glb" --probe "$probe" --strategy "$strategy" --size 160x120 \
-        --samples 8192 --seed 1 --guide off --aov variance -o "$folder/$name-reference.exr"
+        --samples 4096 --seed 1 --guide off --aov variance -o "$folder/$name-reference.exr"
     build/chromeball compare "$folder/$model.glb" --probe "$probe" --size 160x120 \
       --strategies "$(IFS=,; echo "${modes[*]/#/$strategy}")" --baseline "$strategy" --samples 64 \
       --repeats 3 --reference "$folder/$name-reference.exr" --output "$folder/$name" "$@"
