@@ -42,9 +42,8 @@ std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int p
   }
   std::vector<size_t> order(charts.size());
   std::iota(order.begin(), order.end(), size_t(0));
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) {
-    return atlas.places[a].height > atlas.places[b].height;
-  });
+  std::ranges::stable_sort(
+      order, [&](size_t a, size_t b) { return atlas.places[a].height > atlas.places[b].height; });
   int x = 0, y = 0, row = 0;  // row: its height, that of its first chart
   for (const size_t i : order) {
     AtlasPlace& place = atlas.places[i];
@@ -65,8 +64,9 @@ Atlas fitAtlas(const std::vector<Chart>& charts, int size, int padding,
     const std::optional<int> needed = leastPage(charts, padding);
     throwInput("{}: {} x {} texels are too few for {} charts with {} texels of padding; {}",
                location, size, size, charts.size(), padding,
-               needed ? fmt::format("{} would do", *needed)
-                      : fmt::format("so are {}; bake the model in parts, or to vertices", kMaxPage));
+               needed
+                   ? fmt::format("{} would do", *needed)
+                   : fmt::format("so are {}; bake the model in parts, or to vertices", kMaxPage));
   }
   while (high > 1.001 * low) {
     const double middle = std::sqrt(low * high);

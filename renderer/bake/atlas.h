@@ -43,8 +43,8 @@ std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int p
 Atlas fitAtlas(const std::vector<Chart>& charts, int size, int padding,
                const std::string& location);
 
-// The smallest page, whose size is a power of two, for texels of this many metres. Throws InputError,
-// begun by `location`, if it would have more than kMaxPage texels.
+// The smallest page, whose size is a power of two, for texels of this many metres. Throws
+// InputError, begun by `location`, if it would have more than kMaxPage texels.
 Atlas atlasOfTexels(const std::vector<Chart>& charts, double metres, int padding,
                     const std::string& location);
 

@@ -77,8 +77,7 @@ std::vector<BakePoint> texelPoints(const std::vector<PlacedMesh>& meshes,
     const ChartTexels texels(meshes[size_t(chart.instance)], chart, atlas, i);
     texels.forCovered([&](int x, int y, const Nearest& nearest) {
       byChart[i].push_back({uint32_t(x), uint32_t(y), int(i), chart.instance, nearest.triangle,
-                            offTheEdges(nearest.barycentric, kOffEdge),
-                            float(1 / atlas.density)});
+                            offTheEdges(nearest.barycentric, kOffEdge), float(1 / atlas.density)});
     });
   });
   std::vector<BakePoint> points;

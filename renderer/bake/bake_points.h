@@ -7,8 +7,8 @@
 namespace chromeball {
 
 struct BakePoint {
-  uint32_t x, y;   // the texel; or the vertex and the instance
-  int chart;       // index, or that of the instance
+  uint32_t x, y;  // the texel; or the vertex and the instance
+  int chart;      // index, or that of the instance
   int instance;
   uint32_t triangle;
   vec2 barycentric;  // weights of the second and third vertex

@@ -76,8 +76,7 @@ class ChartMaker {
         const uint32_t next = placed_.neighbours[triangle][size_t(side)];
         if (next == PlacedMesh::kNone || isTaken_[next] ||
             glm::dot(placed_.normals[next], normal) < kChartCosine ||
-            isCrease(placed_, triangle, side, next) ||
-            taken.overlaps(chart.project(placed_, next)))
+            isCrease(placed_, triangle, side, next) || taken.overlaps(chart.project(placed_, next)))
           continue;
         take(next);
       }

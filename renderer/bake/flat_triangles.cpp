@@ -92,8 +92,8 @@ bool FlatTriangleSet::overlaps(const FlatTriangle& t) const {
   if (overlapsOneOf(t, large_)) return true;
   const Range range = cellsOf(t);
   if (range.isLarge())
-    return std::ranges::any_of(
-        cells_, [&](const auto& cell) { return overlapsOneOf(t, cell.second); });
+    return std::ranges::any_of(cells_,
+                               [&](const auto& cell) { return overlapsOneOf(t, cell.second); });
   for (int64_t y = range.y0; y <= range.y1; ++y)
     for (int64_t x = range.x0; x <= range.x1; ++x) {
       const auto cell = cells_.find(cellKey(x, y));

@@ -16,12 +16,11 @@ std::vector<uint32_t> welded(const std::vector<glm::dvec3>& positions) {
     const glm::dvec3& p = positions[i];
     return std::tuple(p.x, p.y, p.z);
   };
-  std::ranges::sort(order, [&](uint32_t a, uint32_t b) {
-    return std::tuple(key(a), a) < std::tuple(key(b), b);
-  });
+  std::ranges::sort(
+      order, [&](uint32_t a, uint32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
   for (size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? first[order[i - 1]]
-                                                                              : order[i];
+    first[order[i]] =
+        i > 0 && positions[order[i]] == positions[order[i - 1]] ? first[order[i - 1]] : order[i];
   return first;
 }
 

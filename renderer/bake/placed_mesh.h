@@ -35,8 +35,7 @@ struct PlacedMesh {
   bool hasArea(uint32_t i) const { return areas[i] > 0; }
   // At a corner of a triangle, 0 to 2.
   glm::dvec3 shadingNormal(uint32_t i, int corner) const {
-    return shadingNormals.empty() ? normals[i]
-                                  : glm::dvec3(shadingNormals[triangle(i)[corner]]);
+    return shadingNormals.empty() ? normals[i] : glm::dvec3(shadingNormals[triangle(i)[corner]]);
   }
 };
 

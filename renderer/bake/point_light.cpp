@@ -15,19 +15,16 @@ bool hidesItsInside(const Material& material) {
 }
 
 // A ray that ends at the surface, as if a camera above it looked down along the normal.
-Ray rayTo(const Surface& surface) {
-  return {surface.position + surface.normal, -surface.normal};
-}
+Ray rayTo(const Surface& surface) { return {surface.position + surface.normal, -surface.normal}; }
 
 }  // namespace
 
 Surface PointLight::surfaceAt(const BakePoint& point) const {
-  const Scene& scene = tracer_.world().scene;
-  const Instance& instance = scene.instances[size_t(point.instance)];
+  const Instance& instance = scene().instances[size_t(point.instance)];
   Surface surface =
-      chromeball::surfaceAt(scene, instance, point.triangle, point.barycentric, vec3(0, 0, 1));
+      chromeball::surfaceAt(scene(), instance, point.triangle, point.barycentric, vec3(0, 0, 1));
   if (!surface.frontFace)
-    surface = chromeball::surfaceAt(scene, instance, point.triangle, point.barycentric,
+    surface = chromeball::surfaceAt(scene(), instance, point.triangle, point.barycentric,
                                     -surface.geometricNormal);
   if (what_ == BakedLight::Radiance || !surface.material->normalTexture) return surface;
   if (const auto frame = tangentFrameAt(surface, instance);

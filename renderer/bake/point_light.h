@@ -20,6 +20,9 @@ class PointLight {
   PointLight(const PathTracer& tracer, BakedLight what, float distance)
       : tracer_(tracer), what_(what), distance_(distance) {}
 
+  BakedLight what() const { return what_; }
+  const Scene& scene() const { return tracer_.world().scene; }
+
   // The front of the surface; with the interpolated normal, for radiance with that of the material.
   Surface surfaceAt(const BakePoint& point) const;
 
