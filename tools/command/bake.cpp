@@ -28,8 +28,7 @@ struct Arguments : SceneOptions {
   std::string what = "irradiance", to = "lightmap", output;
   std::optional<int64_t> size, padding;
   std::optional<double> texel, scale;
-  std::optional<bool> denoises;
-  bool keepsMaterials = false;
+  bool denoises = false, keepsNoise = false, keepsMaterials = false;
 
   bool toVertices() const { return to == "vertices"; }
   std::filesystem::path lightmapPath() const {
@@ -66,7 +65,7 @@ void checkArguments(const Arguments& a) {
     for (const auto& [given, option] :
          {std::pair(a.size.has_value(), "--size"), std::pair(a.padding.has_value(), "--padding"),
           std::pair(a.texel.has_value(), "--texel"),
-          std::pair(a.denoises.has_value(), "--denoise")})
+          std::pair(a.denoises || a.keepsNoise, "--denoise")})
       if (given) throwInput("{}: is for lightmaps; leave it out with --to vertices", option);
   if (a.settings.get<uint64_t>("render.samples") < 2) throwInput("--samples: should be 2 or more");
   checkOutputFile(a.output, {".glb", ".gltf"});
@@ -106,7 +105,6 @@ class Bake {
         meshes_(placedMeshes(loaded_.scene)) {
     checkDistinct({arguments.output, arguments.toVertices() ? "" : arguments.lightmapPath()},
                   loaded_.files);
-    print(loaded_.messages, arguments.quiet());
   }
 
   void run() {
@@ -128,7 +126,7 @@ class Bake {
     const std::vector<BakePoint> points = texelPoints(meshes_, charts, atlas);
     const BakeResult baked = bakePoints(points);
     std::vector<Rgb> light(points.size());
-    if (arguments_.denoises.value_or(true))
+    if (!arguments_.keepsNoise)
       light = filteredLight(points, baked, atlas.size);
     else
       for (size_t i = 0; i < points.size(); ++i) light[i] = baked.points[i].mean();
@@ -170,6 +168,7 @@ class Bake {
     prepared_ = prepareScene(job_, loaded_);
     tracer_.emplace(*prepared_.world, *prepared_.lighting, PathSettings{});
     light_.emplace(*tracer_, settings_.what, settings_.distance);
+    print(loaded_.messages, arguments_.quiet());  // after the last error that input can cause
     ProgressBar bar(arguments_.showsProgress(), "baking");
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
@@ -288,8 +287,9 @@ void addBakeCommand(CLI::App& app) {
   command->add_option("--scale", arguments->scale,
                       "the light that the file's white stands for; by default a power of two, so "
                       "that nothing is clipped");
-  command->add_flag("--denoise,!--no-denoise", arguments->denoises,
-                    "remove noise from lightmaps (default), or not");
+  CLI::Option* denoises = command->add_flag("--denoise", arguments->denoises,
+                                            "remove noise from lightmaps: the default");
+  command->add_flag("--no-denoise", arguments->keepsNoise, "do not")->excludes(denoises);
   command->add_flag("--keep-materials", arguments->keepsMaterials,
                     "write the model's own materials; engines take the light from the .exr or from "
                     "_IRRADIANCE of the vertices");
