@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Charts, their atlas, and baked light against closed forms.
+// Baked light against closed forms.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -7,55 +7,12 @@
 #include "bake/lightmap.h"
 #include "bake/texel_filter.h"
 #include "bake/vertex_light.h"
+#include "bake_scenes.h"
 #include "probe/synth.h"
 #include "small_scenes.h"
 
 namespace chromeball {
 namespace {
-
-std::vector<Chart> chartsOf(const std::vector<PlacedMesh>& meshes) {
-  std::vector<Chart> charts;
-  for (const PlacedMesh& placed : meshes)
-    for (Chart& chart : makeCharts(placed)) charts.push_back(std::move(chart));
-  return charts;
-}
-
-// A closed box, whose faces look outwards.
-void addBox(Scene& scene, int material, vec3 low, vec3 high) {
-  Mesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.positions.push_back(
-        {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-  addMesh(scene, material, std::move(mesh));
-}
-
-// A ramp that winds twice around an axis: above itself, and nearly flat.
-Mesh spiral() {
-  Mesh mesh;
-  constexpr int kSteps = 64;
-  for (int i = 0; i <= kSteps; ++i) {
-    const float phi = 4 * kPi * float(i) / kSteps, height = 0.01f * float(i);
-    for (const float radius : {2.0f, 1.0f})
-      mesh.positions.push_back({radius * std::cos(phi), height, -radius * std::sin(phi)});
-  }
-  for (uint32_t i = 0; i < 2 * kSteps; i += 2) {
-    mesh.triangles.push_back({i, i + 2, i + 1});
-    mesh.triangles.push_back({i + 1, i + 2, i + 3});
-  }
-  return mesh;
-}
-
-Scene varied() {
-  Scene scene = threeScenes()[0].scene;
-  addBox(scene, 0, {1, 0, 1}, {2, 1, 2});
-  addMesh(scene, 0, spiral());
-  Instance mirrored{int(scene.meshes.size()) - 1, 0, 0, {}};
-  mirrored.toWorld = Transform{glm::mat3(-1, 0, 0, 0, 2, 0, 0, 0, 1), vec3(9, 0, 0)};
-  scene.instances.push_back(mirrored);
-  return scene;
-}
 
 struct Baked {
   std::vector<PlacedMesh> meshes;
@@ -78,88 +35,6 @@ struct Baked {
 };
 
 Image white() { return constantProbe({16, 8}, Rgb(1)); }
-
-TEST(Bake, ChartsHoldEveryTriangleOnceAndDoNotOverlap) {
-  const Scene scene = varied();
-  for (const PlacedMesh& placed : placedMeshes(scene)) {
-    std::vector<int> uses(placed.triangleCount());
-    for (const Chart& chart : makeCharts(placed)) {
-      EXPECT_GE(chart.size.x, chart.size.y);
-      std::vector<FlatTriangle> flat;
-      for (const uint32_t triangle : chart.triangles) {
-        ++uses[triangle];
-        flat.push_back(chart.project(placed, triangle));
-        for (const glm::dvec2& p : flat.back()) {
-          EXPECT_GE(std::min(p.x, p.y), -1e-9);
-          EXPECT_LE(p.x, chart.size.x + 1e-9);
-          EXPECT_LE(p.y, chart.size.y + 1e-9);
-        }
-      }
-      for (size_t i = 0; i < flat.size(); ++i)
-        for (size_t j = 0; j < i; ++j) EXPECT_FALSE(overlap(flat[i], flat[j], 1e-4));
-    }
-    for (size_t i = 0; i < uses.size(); ++i) EXPECT_EQ(uses[i], placed.hasArea(uint32_t(i)));
-  }
-}
-
-TEST(Bake, ChartsEndAtCreases) {
-  Scene scene;
-  const int matte = addMaterial(scene, lambert(Rgb(0.5f)));
-  addBox(scene, matte, {0, 0, 0}, {1, 2, 3});
-  EXPECT_EQ(makeCharts(PlacedMesh(scene, 0)).size(), 6u);
-  addMesh(scene, matte, spiral());  // winds twice; charts grow in both directions
-  const size_t turns = makeCharts(PlacedMesh(scene, 1)).size();
-  EXPECT_GE(turns, 2u);
-  EXPECT_LE(turns, 3u);
-  const PlacedMesh box(scene, 0), ramp(scene, 1);
-  EXPECT_EQ(std::ranges::count(box.isClosed, 1), 12);
-  EXPECT_EQ(std::ranges::count(ramp.isClosed, 1), 0);
-}
-
-TEST(Bake, PlacesOfTheAtlasDoNotOverlapAndHavePadding) {
-  const Scene scene = varied();
-  const std::vector<PlacedMesh> meshes = placedMeshes(scene);
-  const std::vector<Chart> charts = chartsOf(meshes);
-  for (const int padding : {0, 3}) {
-    const Atlas atlas = fitAtlas(charts, 256, padding, "test");
-    std::vector<int> owner(256 * 256, -1);
-    for (size_t i = 0; i < atlas.places.size(); ++i) {
-      const AtlasPlace& place = atlas.places[i];
-      for (int y = place.y; y < place.y + place.height; ++y)
-        for (int x = place.x; x < place.x + place.width; ++x) {
-          ASSERT_TRUE(x >= 0 && y >= 0 && x < 256 && y < 256);
-          ASSERT_EQ(owner[size_t(y) * 256 + size_t(x)], -1);
-          owner[size_t(y) * 256 + size_t(x)] = int(i);
-        }
-    }
-    for (const BakePoint& p : texelPoints(meshes, charts, atlas)) {
-      EXPECT_EQ(owner[p.y * 256 + p.x], p.chart);
-      // The padding is free; with the reach of half a diagonal beyond a chart's edge.
-      const AtlasPlace& place = atlas.places[size_t(p.chart)];
-      EXPECT_GE(int(p.x), place.x + std::max(padding - 1, 0));
-      EXPECT_LT(int(p.x), place.x + place.width - std::max(padding - 1, 0));
-    }
-  }
-}
-
-// Bilinear filtering at any point of a chart reads texels that were baked.
-TEST(Bake, EveryTexelThatAChartTouchesHasAPoint) {
-  const Scene scene = varied();
-  const std::vector<PlacedMesh> meshes = placedMeshes(scene);
-  const std::vector<Chart> charts = chartsOf(meshes);
-  const Atlas atlas = fitAtlas(charts, 256, 2, "test");
-  std::vector<uint8_t> isBaked(256 * 256);
-  for (const BakePoint& p : texelPoints(meshes, charts, atlas)) isBaked[p.y * 256 + p.x] = 1;
-  for (size_t i = 0; i < charts.size(); ++i)
-    for (const uint32_t triangle : charts[i].triangles) {
-      const FlatTriangle flat = charts[i].project(meshes[size_t(charts[i].instance)], triangle);
-      for (int k = 0; k < 36; ++k) {
-        const double b = (k % 6) / 5.0, c = (1 - b) * (k / 6) / 5.0;
-        const glm::dvec2 at = atlas.toPage(i, (1 - b - c) * flat[0] + b * flat[1] + c * flat[2]);
-        EXPECT_TRUE(isBaked[size_t(at.y) * 256 + size_t(at.x)]);
-      }
-    }
-}
 
 // Every sample of an open plane under a constant probe is pi, with directions by the BSDF.
 TEST(Bake, FurnaceOfAnOpenPlane) {

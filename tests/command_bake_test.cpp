@@ -2,11 +2,12 @@
 // chromeball bake as a command; the baked model, rendered without light, looks like the original.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "browser.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "measure/image_error.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
@@ -149,6 +150,19 @@ TEST(SlowBake, BakedPillarsLookLikeTheRender) {
   const std::string probe = std::string(kSourceDir) + "/probes/noon.exr";
   EXPECT_LT(differenceOfBaked(folder, {"--size", "512"}, model, probe), 0.04);
   EXPECT_LT(differenceOfBaked(folder, {"--size", "512", "--what", "radiance"}, model, probe), 0.06);
+}
+
+// Needs Chromium, and in $CHROMEBALL_THREE a folder where `npm install three` was called.
+TEST(SlowBake, ThreeJsShowsTheRender) {
+  const char* three = std::getenv("CHROMEBALL_THREE");
+  if (!three || findChromium().empty()) GTEST_SKIP() << "without Chromium or $CHROMEBALL_THREE";
+  const TemporaryFolder folder;
+  std::filesystem::create_directory_symlink(std::filesystem::path(three) / "node_modules",
+                                            folder / "node_modules");
+  const std::string command = "cd '" + std::string(kSourceDir) + "' && SAMPLES=32 CHROMEBALL='" +
+                              kCommand + "' tools/scripts/bake_viewer.sh '" + folder / "" +
+                              "' > '" + folder / "found" + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "found");
 }
 
 TEST(SlowBake, RealModels) {

@@ -102,18 +102,20 @@ class Writer {
 
   // Sets that the mesh lacks, but that glTF wants before others, are those of the lightmap or 0.
   void addUvs(const BakedGeometry& geometry, Json& attributes) {
-    std::vector<std::vector<vec2>> sets;
+    std::vector<int> sets;
+    const auto zeros = [&] {
+      return document_.accessor(std::vector<vec2>(geometry.vertices.size(), vec2(0)));
+    };
     if (!isShownWhole(geometry))
       for (const std::vector<vec2>& set : geometry.placed->mesh->uvs)
-        sets.push_back(set.empty() ? set : gathered(set, geometry.vertices));
-    if (const std::vector<vec2>& map = geometry.lightmapUv; !map.empty()) {
+        sets.push_back(set.empty() ? zeros()
+                                   : document_.accessor(gathered(set, geometry.vertices)));
+    if (!geometry.lightmapUv.empty()) {
+      const int map = document_.accessor(geometry.lightmapUv);
       if (sets.empty()) sets.push_back(map);
       sets.insert(sets.begin() + kLightmapSet, map);
     }
-    for (size_t i = 0; i < sets.size(); ++i) {
-      if (sets[i].empty()) sets[i].resize(geometry.vertices.size(), vec2(0));
-      attributes[fmt::format("TEXCOORD_{}", i)] = document_.accessor(sets[i]);
-    }
+    for (size_t i = 0; i < sets.size(); ++i) attributes[fmt::format("TEXCOORD_{}", i)] = sets[i];
   }
 
   // By the lightmap or the colours of vertices alone, without textures of the model.

@@ -24,6 +24,10 @@ Lightmap makeLightmap(const PointLight& what, const std::vector<BakePoint>& poin
       for (int c = 0; c < 4; ++c) map.shown.at(x, y)[c] = shown[c];
     }
   });
+  for (const BakePoint& point : points)
+    if (countsForScale(what.scene(), point.instance))
+      map.brightest =
+          std::max(map.brightest, maxComponent(map.shown.rgb(int(point.x), int(point.y))));
   fillPage(map.light, isBaked, atlas);
   fillPage(map.shown, std::move(isBaked), atlas);
   return map;

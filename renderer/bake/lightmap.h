@@ -9,8 +9,9 @@
 namespace chromeball {
 
 struct Lightmap {
-  Image light;  // RGB, linear: W/m^2, a fraction of the sky, or radiance
-  Image shown;  // RGBA, linear: shownColor()
+  Image light;          // RGB, linear: W/m^2, a fraction of the sky, or radiance
+  Image shown;          // RGBA, linear: shownColor()
+  float brightest = 0;  // channel of the colours that count for the scale
 };
 
 // `light`: of each point, filtered or not; buried ones take that of their neighbours.

@@ -18,6 +18,10 @@ vec4 shownColor(const PointLight& light, const BakePoint& point, const Rgb& bake
   return vec4(materialAt(scene, surface).baseColor * baked * kInvPi + emitted, alpha);
 }
 
+bool countsForScale(const Scene& scene, int instance) {
+  return !scene.materials[size_t(scene.instances[size_t(instance)].material)].emits();
+}
+
 float scaleOf(float maximum) {
   float scale = 1;
   while (scale < maximum && scale < 1e30f) scale *= 2;

@@ -47,6 +47,15 @@ bool showsWhole(BakedLight what, const Material& material) {
   return what == BakedLight::Radiance || (what == BakedLight::Irradiance && material.emits());
 }
 
+float brightestOf(const PointLight& what, const std::vector<BakedGeometry>& geometry) {
+  float brightest = 0;
+  for (const BakedGeometry& part : geometry)
+    for (const vec4& color : part.colors)
+      if (countsForScale(what.scene(), part.placed->instance))
+        brightest = std::max(brightest, maxComponent(Rgb(color)));
+  return brightest;
+}
+
 std::vector<BakedGeometry> colouredGeometry(const PointLight& what,
                                             const std::vector<PlacedMesh>& meshes,
                                             const std::vector<BakePoint>& points,

@@ -17,6 +17,9 @@ std::vector<BakedGeometry> colouredGeometry(const PointLight& what,
                                             const std::vector<BakePoint>& points,
                                             const BakeResult& baked);
 
+// The largest channel of the colours that count for the scale (shown_color.h).
+float brightestOf(const PointLight& what, const std::vector<BakedGeometry>& geometry);
+
 // Whether a surface's colours are all that it shows: its texture does not come on top.
 bool showsWhole(BakedLight what, const Material& material);
 

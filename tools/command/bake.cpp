@@ -6,74 +6,23 @@
 #include "bake/shown_color.h"
 #include "bake/texel_filter.h"
 #include "bake/vertex_light.h"
+#include "bake_options.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
 #include "job/job.h"
 #include "job/memory_estimate.h"
 #include "job/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
-#include "scene_options.h"
 #include "thread_limit.h"
 
 namespace chromeball {
 namespace {
 
-constexpr int kMinPage = 16, kMaxPadding = 256;
-
-struct Arguments : SceneOptions {
-  std::string what = "irradiance", to = "lightmap", output;
-  std::optional<int64_t> size, padding;
-  std::optional<double> texel, scale;
-  bool denoises = false, keepsNoise = false, keepsMaterials = false;
-
-  bool toVertices() const { return to == "vertices"; }
-  std::filesystem::path lightmapPath() const {
-    return std::filesystem::path(output).replace_extension(".exr");
-  }
-};
-
-template <size_t N>
-size_t indexOf(const std::string& name, const char* const (&names)[N], const char* option) {
-  const auto found = std::ranges::find(names, name);
-  if (found == std::end(names))
-    throwInput("{}: `{}` is not one of {}", option, name, fmt::join(names, ", "));
-  return size_t(found - std::begin(names));
-}
-
-void checkRange(const char* option, const std::optional<int64_t>& number, int least, int most) {
-  if (number && (*number < least || *number > most))
-    throwInput("{}: should be a whole number from {} to {} (texels)", option, least, most);
-}
-
-void checkArguments(const Arguments& a) {
-  constexpr const char* kTargets[] = {"lightmap", "vertices"};
-  indexOf(a.what, kBakedLightNames, "--what");
-  indexOf(a.to, kTargets, "--to");
-  checkRange("--size", a.size, kMinPage, kMaxPage);
-  checkRange("--padding", a.padding, 0, kMaxPadding);
-  if (a.size && a.texel) throwInput("--texel: excludes --size; give one");
-  if (a.texel && !(*a.texel > 0 && std::isfinite(*a.texel)))
-    throwInput("--texel: should be a length above 0 (metres)");
-  if (a.scale && !isPositiveFloat(*a.scale)) throwInput("--scale: should be {}", kPositiveFloats);
-  if (a.scale && (a.what == "ambient-occlusion" || a.keepsMaterials))
-    throwInput("--scale: is of colours that the file shows without light; leave it out");
-  if (a.toVertices())
-    for (const auto& [given, option] :
-         {std::pair(a.size.has_value(), "--size"), std::pair(a.padding.has_value(), "--padding"),
-          std::pair(a.texel.has_value(), "--texel"),
-          std::pair(a.denoises || a.keepsNoise, "--denoise")})
-      if (given) throwInput("{}: is for lightmaps; leave it out with --to vertices", option);
-  if (a.settings.get<uint64_t>("render.samples") < 2) throwInput("--samples: should be 2 or more");
-  checkOutputFile(a.output, {".glb", ".gltf"});
-  if (!a.toVertices()) checkWritable(a.lightmapPath());
-}
-
 // The options of the ambient occlusion that is baked are not those of a render.
-RenderJob plannedJob(const Arguments& a) {
+RenderJob plannedJob(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
     throwInput("{}: a composite cannot be baked; bake its model", scene.composite->location);
@@ -84,9 +33,9 @@ RenderJob plannedJob(const Arguments& a) {
   return planJob(std::move(scene), settings);
 }
 
-BakeSettings bakeSettings(const Arguments& a, const RenderJob& job) {
+BakeSettings bakeSettings(const BakeOptions& a, const RenderJob& job) {
   BakeSettings settings;
-  settings.what = BakedLight(indexOf(a.what, kBakedLightNames, "--what"));
+  settings.what = a.light();
   settings.samples = job.settings.samples;
   settings.seed = job.settings.seed;
   settings.maxDepth = job.settings.maxDepth;
@@ -97,18 +46,18 @@ BakeSettings bakeSettings(const Arguments& a, const RenderJob& job) {
 
 class Bake {
  public:
-  explicit Bake(const Arguments& arguments)
-      : arguments_(arguments),
-        job_(plannedJob(arguments)),
+  explicit Bake(const BakeOptions& options)
+      : options_(options),
+        job_(plannedJob(options)),
         loaded_(loadScene(job_)),
-        settings_(bakeSettings(arguments, job_)),
+        settings_(bakeSettings(options, job_)),
         meshes_(placedMeshes(loaded_.scene)) {
-    checkDistinct({arguments.output, arguments.toVertices() ? "" : arguments.lightmapPath()},
+    checkDistinct({options.output, options.toVertices() ? "" : options.lightmapPath()},
                   loaded_.files);
   }
 
   void run() {
-    arguments_.toVertices() ? bakeVertices() : bakeLightmap();
+    options_.toVertices() ? bakeVertices() : bakeLightmap();
     report();
   }
 
@@ -118,32 +67,32 @@ class Bake {
     for (const PlacedMesh& placed : meshes_)
       for (Chart& chart : makeCharts(placed)) charts.push_back(std::move(chart));
     if (charts.empty()) refuseEmpty();
-    const int padding = int(arguments_.padding.value_or(4));
+    const int padding = int(options_.padding.value_or(4));
     const Atlas atlas =
-        arguments_.texel ? atlasOfTexels(charts, *arguments_.texel, padding, "--texel")
-                         : fitAtlas(charts, int(arguments_.size.value_or(1024)), padding, "--size");
+        options_.texel ? atlasOfTexels(charts, *options_.texel, padding, "--texel")
+                       : fitAtlas(charts, int(options_.size.value_or(1024)), padding, "--size");
     checkPageMemory(atlas.size);
     const std::vector<BakePoint> points = texelPoints(meshes_, charts, atlas);
     const BakeResult baked = bakePoints(points);
     std::vector<Rgb> light(points.size());
-    if (!arguments_.keepsNoise)
+    if (!options_.keepsNoise)
       light = filteredLight(points, baked, atlas.size);
     else
       for (size_t i = 0; i < points.size(); ++i) light[i] = baked.points[i].mean();
     const Lightmap map = makeLightmap(*light_, points, baked, light, atlas);
 
     BakedFile file = bakedFile();
-    if (!arguments_.scale) file.scale = scaleOf(largestOf(map.shown.texels));
-    const std::filesystem::path path = arguments_.lightmapPath();
+    if (!options_.scale) file.scale = scaleOf(map.brightest);
+    const std::filesystem::path path = options_.lightmapPath();
     describe(file, baked);
     file.extras["chromeball"]["lightmap"] = path.filename().string();
     file.extras["chromeball"]["texelsPerMetre"] = atlas.density;
-    writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", arguments_.what}}, {}, {}});
-    writeBaked(arguments_.output, loaded_.scene, lightmappedGeometry(meshes_, charts, atlas),
+    writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}});
+    writeBaked(options_.output, loaded_.scene, lightmappedGeometry(meshes_, charts, atlas),
                pageOf(map, file), file);
     summary_ =
         fmt::format("{} charts, {} texels of {:.3g} m, scale {:g}: {}, {}", charts.size(),
-                    points.size(), 1 / atlas.density, file.scale, arguments_.output, path.string());
+                    points.size(), 1 / atlas.density, file.scale, options_.output, path.string());
   }
 
   void bakeVertices() {
@@ -152,40 +101,37 @@ class Bake {
     const BakeResult baked = bakePoints(points);
     std::vector<BakedGeometry> geometry = colouredGeometry(*light_, meshes_, points, baked);
     BakedFile file = bakedFile();
-    float largest = 0;
-    for (const BakedGeometry& part : geometry)
-      for (const vec4& color : part.colors) largest = std::max(largest, maxComponent(Rgb(color)));
-    if (!arguments_.scale) file.scale = scaleOf(largest);
-    if (arguments_.keepsMaterials)
+    if (!options_.scale) file.scale = scaleOf(brightestOf(*light_, geometry));
+    if (options_.keepsMaterials)
       for (BakedGeometry& part : geometry) part.colors.clear();
     describe(file, baked);
-    writeBaked(arguments_.output, loaded_.scene, geometry, {}, file);
+    writeBaked(options_.output, loaded_.scene, geometry, {}, file);
     summary_ =
-        fmt::format("{} vertices, scale {:g}: {}", points.size(), file.scale, arguments_.output);
+        fmt::format("{} vertices, scale {:g}: {}", points.size(), file.scale, options_.output);
   }
 
   BakeResult bakePoints(const std::vector<BakePoint>& points) {
     prepared_ = prepareScene(job_, loaded_);
     tracer_.emplace(*prepared_.world, *prepared_.lighting, PathSettings{});
     light_.emplace(*tracer_, settings_.what, settings_.distance);
-    print(loaded_.messages, arguments_.quiet());  // after the last error that input can cause
-    ProgressBar bar(arguments_.showsProgress(), "baking");
+    print(loaded_.messages, options_.quiet());  // after the last error that input can cause
+    ProgressBar bar(options_.showsProgress(), "baking");
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
     if (baked.invalid.total() > 0)
       warn(fmt::format("{} invalid samples were left out; the first is of {} {}, {}",
-                       baked.invalid.total(), arguments_.toVertices() ? "vertex" : "texel",
+                       baked.invalid.total(), options_.toVertices() ? "vertex" : "texel",
                        baked.invalid.x, baked.invalid.y));
     return baked;
   }
 
   BakedFile bakedFile() const {
     BakedFile file;
-    file.look = arguments_.keepsMaterials                        ? BakedLook::Lit
+    file.look = options_.keepsMaterials                          ? BakedLook::Lit
                 : settings_.what == BakedLight::AmbientOcclusion ? BakedLook::Occluded
                                                                  : BakedLook::Unlit;
     file.what = settings_.what;
-    file.scale = float(arguments_.scale.value_or(1));
+    file.scale = float(options_.scale.value_or(1));
     file.origin = loaded_.origin;
     file.camera = loaded_.camera;
     file.aspect = float(job_.settings.width) / float(job_.settings.height);
@@ -194,8 +140,8 @@ class Bake {
 
   void describe(BakedFile& file, const BakeResult& baked) const {
     GltfDocument::Json& extras = file.extras["chromeball"];
-    extras = {{"baked", arguments_.what},
-              {"to", arguments_.to},
+    extras = {{"baked", options_.what},
+              {"to", options_.to},
               {"scale", file.scale},
               {"samples", settings_.samples},
               {"maxDepth", settings_.maxDepth},
@@ -205,15 +151,8 @@ class Bake {
       extras["probe"] = std::filesystem::path(*probe).filename().string();
   }
 
-  static float largestOf(const std::vector<float>& rgba) {
-    float largest = 0;
-    for (size_t i = 0; i < rgba.size(); ++i)
-      if (i % 4 != 3) largest = std::max(largest, rgba[i]);
-    return largest;
-  }
-
   [[noreturn]] void refuseEmpty() const {
-    throwInput("{}: has no triangle with an area; there is nothing to bake", arguments_.scene);
+    throwInput("{}: has no triangle with an area; there is nothing to bake", options_.scene);
   }
 
   // Pages as floats and bytes, and what is kept of each texel's point.
@@ -225,7 +164,7 @@ class Bake {
       throw InputError(
           fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with all "
                       "else; the limit is {:.3g} GB",
-                      arguments_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
+                      options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
                       1e-9 * memoryLimit(job_)),
           Remedy{"memory", {}});
   }
@@ -235,15 +174,15 @@ class Bake {
       if (const Material& m = loaded_.scene.materials[size_t(instance.material)];
           m.extended && bakedFile().look != BakedLook::Unlit) {
         warn(fmt::format("{}: material `{}` has extensions that the baked model lacks",
-                         arguments_.output, m.name));
+                         options_.output, m.name));
         break;
       }
-    if (!arguments_.quiet())
-      fmt::print("baked {} in {:.2f} s, {} samples: {}\n", arguments_.what, watch_.seconds(),
+    if (!options_.quiet())
+      fmt::print("baked {} in {:.2f} s, {} samples: {}\n", options_.what, watch_.seconds(),
                  settings_.samples, summary_);
   }
 
-  const Arguments& arguments_;
+  const BakeOptions& options_;
   Stopwatch watch_;
   RenderJob job_;
   LoadedScene loaded_;
@@ -255,45 +194,20 @@ class Bake {
   std::string summary_;
 };
 
-void run(const Arguments& arguments) {
-  checkArguments(arguments);
-  const ThreadLimit threads(arguments.settings);
-  Bake(arguments).run();
+void run(const BakeOptions& options) {
+  checkBakeOptions(options);
+  const ThreadLimit threads(options.settings);
+  Bake(options).run();
 }
 
 }  // namespace
 
 void addBakeCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto options = std::make_shared<BakeOptions>();
   CLI::App* command = app.add_subcommand(
       "bake", "Bake light into a lightmap or vertex colours, for real-time viewers");
-  addSceneOptions(*command, *arguments, SceneCommand::Bake);
-  command
-      ->add_option(
-          "-o,--output", arguments->output,
-          "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it")
-      ->required();
-  command
-      ->add_option("--what", arguments->what,
-                   "irradiance, ambient-occlusion, or radiance along the normal")
-      ->capture_default_str();
-  command->add_option("--to", arguments->to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)")
-      ->capture_default_str();
-  command->add_option("--size", arguments->size,
-                      "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
-  command->add_option("--texel", arguments->texel,
-                      "in place of --size: metres along the edge of a texel");
-  command->add_option("--padding", arguments->padding, "texels around each chart; 4 by default");
-  command->add_option("--scale", arguments->scale,
-                      "the light that the file's white stands for; by default a power of two, so "
-                      "that nothing is clipped");
-  CLI::Option* denoises = command->add_flag("--denoise", arguments->denoises,
-                                            "remove noise from lightmaps: the default");
-  command->add_flag("--no-denoise", arguments->keepsNoise, "do not")->excludes(denoises);
-  command->add_flag("--keep-materials", arguments->keepsMaterials,
-                    "write the model's own materials; engines take the light from the .exr or from "
-                    "_IRRADIANCE of the vertices");
-  command->callback([arguments] { run(*arguments); });
+  addBakeOptions(*command, *options);
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace chromeball

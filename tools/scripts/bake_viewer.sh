@@ -7,14 +7,15 @@
 #   tools/scripts/bake_viewer.sh [FOLDER]     FOLDER keeps the files, and screenshots
 #
 # Needs chromium, npm and python3; installs three (npm) in the folder, unless it is there.
-# CHROMEBALL is the command (default build/chromeball); MODEL, CAMERA and PROBE another scene.
+# CHROMEBALL is the command (default build/chromeball); MODEL, CAMERA and PROBE another scene;
+# SAMPLES those of each texel, vertex and pixel (256).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 chromeball=${CHROMEBALL:-build/chromeball}
 model=${MODEL:-scenes/models/pillars.gltf} probe=${PROBE:-probes/noon.exr}
 camera=${CAMERA-Front}
-width=480 height=320
+samples=${SAMPLES:-256} width=480 height=320
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) ||
   { echo "bake_viewer.sh: needs chromium" >&2; exit 2; }
 keeps=$#
@@ -33,7 +34,7 @@ cp tools/scripts/bake_viewer.html "$folder"
 light=(--probe "$probe" --quiet)
 view=()
 [ -z "$camera" ] || view=(--camera "$camera")
-bake() { "$chromeball" bake "$model" "${light[@]}" "${view[@]}" --samples 256 "${@:2}" -o "$folder/$1"; }
+bake() { "$chromeball" bake "$model" "${light[@]}" "${view[@]}" --samples "$samples" "${@:2}" -o "$folder/$1"; }
 bake lightmap.glb --size 1024
 bake vertices.glb --to vertices
 bake kept.glb --size 1024 --keep-materials
@@ -47,7 +48,7 @@ PY
 }
 # render SCALE: what white stands for.
 render() {
-  "$chromeball" render "$model" "${light[@]}" "${view[@]}" --size ${width}x$height --samples 256 \
+  "$chromeball" render "$model" "${light[@]}" "${view[@]}" --size ${width}x$height --samples "$samples" \
     --denoise --transparent --exposure "$(python3 -c "import math; print(-math.log2($1))")" \
     -o "$folder/render-$1.png"
 }
