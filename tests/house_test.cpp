@@ -50,6 +50,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "shading", "lighting", "film",
       "integrate", "denoise"}},
     {"relight", {"base", "math", "image", "probe"}},
+    {"bake", {"base", "math", "image", "image/io", "scene", "film", "integrate"}},
     {"measure", {"base", "math", "image"}},
     {"job",
      {"base", "math", "image", "image/io", "probe", "scene", "scene/gltf", "scene/solve", "trace",

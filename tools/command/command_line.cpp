@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   addRenderCommand(app);
   addMergeCommand(app);
   addCompareCommand(app);
+  addBakeCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
   addCameraCommand(app);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_options.h"
 
+#include <algorithm>
+
 #include "job/settings_page.h"
 #include "progress_bar.h"
 
@@ -48,6 +50,18 @@ std::string titleOf(const Setting& setting) {
   throw std::logic_error("a setting has no section");
 }
 
+// Those that decide the light on surfaces, and none that need an image.
+constexpr std::string_view kOfBake[] = {
+    "probe",          "probe-mapping",  "probe-rotation", "probe-scale", "samples",   "seed",
+    "max-depth",      "ao-distance",    "strategy",       "light-from",  "sun-angle", "light-units",
+    "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
+    "texture-memory", "allow-external", "progress",       "quiet"};
+
+bool isOf(SceneCommand command, const Setting& setting) {
+  if (command == SceneCommand::Bake) return std::ranges::count(kOfBake, setting.option) > 0;
+  return command == SceneCommand::Render || !setting.renderOnly;
+}
+
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
 }
@@ -91,7 +105,7 @@ void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command)
       ->type_name("SCENE")
       ->required();
   for (const Setting& setting : settingTable())
-    if (!setting.option.empty() && (command == SceneCommand::Render || !setting.renderOnly))
+    if (!setting.option.empty() && isOf(command, setting))
       addOption(app, setting, options.settings);
   app.get_formatter()->column_width(32);
 }

@@ -18,8 +18,8 @@ struct SceneOptions {
 };
 
 // The command that the options are for: compare varies some settings itself, and does not need
-// others.
-enum class SceneCommand { Render, Compare };
+// others; bake needs few.
+enum class SceneCommand { Render, Compare, Bake };
 
 // `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command);

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/charts.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "math/frame.h"
+
+namespace chromeball {
+namespace {
+
+// Of a triangle's normal to that of the first one: the projection shrinks no direction to less than
+// 0.77. Of shading normals on both sides of an edge: more is a crease, which light does not cross
+// smoothly.
+constexpr double kChartAngle = 40, kCreaseAngle = 20;  // degrees
+const double kChartCosine = std::cos(kChartAngle * kPiD / 180);
+const double kCreaseCosine = std::cos(kCreaseAngle * kPiD / 180);
+
+int cornerAt(const PlacedMesh& placed, uint32_t triangle, const glm::dvec3& position) {
+  for (int corner = 0; corner < 3; ++corner)
+    if (placed.positions[placed.triangle(triangle)[corner]] == position) return corner;
+  return 0;
+}
+
+bool isCrease(const PlacedMesh& placed, uint32_t a, int side, uint32_t b) {
+  for (const int corner : {side, (side + 1) % 3}) {
+    const glm::dvec3 position = placed.positions[placed.triangle(a)[corner]];
+    const glm::dvec3 other = placed.shadingNormal(b, cornerAt(placed, b, position));
+    if (!(glm::dot(placed.shadingNormal(a, corner), other) >= kCreaseCosine)) return true;
+  }
+  return false;
+}
+
+class ChartMaker {
+ public:
+  explicit ChartMaker(const PlacedMesh& placed)
+      : placed_(placed), isTaken_(placed.triangleCount()) {
+    double sum = 0;
+    size_t count = 0;
+    for (const double area : placed.areas) sum += std::sqrt(area), count += area > 0;
+    cell_ = count > 0 ? 2 * sum / double(count) : 1;
+  }
+
+  std::vector<Chart> make() {
+    std::vector<uint32_t> seeds(placed_.triangleCount());
+    std::iota(seeds.begin(), seeds.end(), 0u);
+    std::ranges::stable_sort(
+        seeds, [&](uint32_t a, uint32_t b) { return placed_.areas[a] > placed_.areas[b]; });
+    std::vector<Chart> charts;
+    for (const uint32_t seed : seeds)
+      if (!isTaken_[seed] && placed_.hasArea(seed)) charts.push_back(grow(seed));
+    return charts;
+  }
+
+ private:
+  Chart grow(uint32_t seed) {
+    Chart chart;
+    chart.instance = placed_.instance;
+    chart.origin = placed_.positions[placed_.triangle(seed).x];
+    const glm::dvec3 normal = placed_.normals[seed];
+    const Frame frame{vec3(normal)};
+    chart.axisU = glm::normalize(glm::cross(glm::dvec3(frame.y), normal));
+    chart.axisV = glm::cross(normal, chart.axisU);
+
+    FlatTriangleSet taken(cell_);
+    const auto take = [&](uint32_t triangle) {
+      chart.triangles.push_back(triangle);
+      taken.add(chart.project(placed_, triangle));
+      isTaken_[triangle] = 1;
+    };
+    take(seed);
+    for (size_t i = 0; i < chart.triangles.size(); ++i) {
+      const uint32_t triangle = chart.triangles[i];
+      for (int side = 0; side < 3; ++side) {
+        const uint32_t next = placed_.neighbours[triangle][size_t(side)];
+        if (next == PlacedMesh::kNone || isTaken_[next] ||
+            glm::dot(placed_.normals[next], normal) < kChartCosine ||
+            isCrease(placed_, triangle, side, next) || taken.overlaps(chart.project(placed_, next)))
+          continue;
+        take(next);
+      }
+    }
+    turn(chart);
+    return chart;
+  }
+
+  // Turns the axes to the smallest rectangle of some: along the edges of the first triangle, and
+  // directions 90/16 degrees apart.
+  void turn(Chart& chart) const {
+    std::vector<glm::dvec2> points;
+    for (const uint32_t triangle : chart.triangles)
+      for (const glm::dvec2& p : chart.project(placed_, triangle)) points.push_back(p);
+    constexpr int kTurns = 16;
+    std::vector<glm::dvec2> directions;
+    for (int side = 0; side < 3; ++side) {
+      const glm::dvec2 edge = points[size_t(side + 1) % 3] - points[size_t(side)];
+      if (const double length = glm::length(edge); length > 0) directions.push_back(edge / length);
+    }
+    for (int i = 0; i < kTurns; ++i) {
+      const double angle = i * kPiD / (2 * kTurns);
+      directions.emplace_back(std::cos(angle), std::sin(angle));
+    }
+    Rectangle best = around(points, directions.front());
+    for (const glm::dvec2& direction : directions) {
+      const Rectangle other = around(points, direction);
+      if (other.area() < 0.999 * best.area()) best = other;
+    }
+    if (best.size().y > best.size().x) best = around(points, {-best.along.y, best.along.x});
+    const glm::dvec3 u = chart.axisU, v = chart.axisV;
+    chart.axisU = best.along.x * u + best.along.y * v;
+    chart.axisV = -best.along.y * u + best.along.x * v;
+    chart.origin += best.min.x * chart.axisU + best.min.y * chart.axisV;
+    chart.size = best.size();
+  }
+
+  struct Rectangle {
+    glm::dvec2 along, min, max;
+
+    glm::dvec2 size() const { return max - min; }
+    double area() const { return size().x * size().y; }
+  };
+  static Rectangle around(const std::vector<glm::dvec2>& points, const glm::dvec2& along) {
+    Rectangle box{along, glm::dvec2(INFINITY), glm::dvec2(-INFINITY)};
+    for (const glm::dvec2& p : points) {
+      const glm::dvec2 turned(glm::dot(p, along), along.x * p.y - along.y * p.x);
+      box.min = glm::min(box.min, turned), box.max = glm::max(box.max, turned);
+    }
+    return box;
+  }
+
+  const PlacedMesh& placed_;
+  std::vector<uint8_t> isTaken_;
+  double cell_;
+};
+
+}  // namespace
+
+std::vector<Chart> makeCharts(const PlacedMesh& placed) { return ChartMaker(placed).make(); }
+
+}  // namespace chromeball

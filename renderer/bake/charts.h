@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Divides surfaces into charts: connected parts that are nearly flat, each projected to a plane.
+#pragma once
+
+#include "bake/flat_triangles.h"
+#include "bake/placed_mesh.h"
+
+namespace chromeball {
+
+// The orthogonal projection to a plane, in metres, from (0, 0) to `size`; no two triangles overlap.
+struct Chart {
+  int instance = 0;
+  std::vector<uint32_t> triangles;  // of the instance's mesh
+  glm::dvec3 origin{0}, axisU{1, 0, 0}, axisV{0, 1, 0};
+  glm::dvec2 size{0};
+
+  glm::dvec2 project(const glm::dvec3& p) const {
+    return {glm::dot(p - origin, axisU), glm::dot(p - origin, axisV)};
+  }
+  FlatTriangle project(const PlacedMesh& placed, uint32_t triangle) const {
+    const Triangle& t = placed.triangle(triangle);
+    return {project(placed.positions[t.x]), project(placed.positions[t.y]),
+            project(placed.positions[t.z])};
+  }
+};
+
+// Charts grow from the largest triangles over edges that are not creases, as long as the triangles'
+// normals stay near the first one's. Every triangle that has an area is in exactly one. The
+// directions of the axes make the rectangles small, and at least as wide as high.
+std::vector<Chart> makeCharts(const PlacedMesh& placed);
+
+}  // namespace chromeball

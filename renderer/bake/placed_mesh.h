@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles of an instance at their places in the scene, and which of them share edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace chromeball {
+
+struct PlacedMesh {
+  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+  int instance = 0;
+  const Mesh* mesh = nullptr;
+  bool mirrored = false;  // the instance turns triangles around: clockwise from the front
+  std::vector<glm::dvec3> positions;
+  std::vector<vec3> shadingNormals;  // by vertex, unit; empty: flat
+  std::vector<glm::dvec3> normals;   // by triangle, unit, on the front; 0 for one without an area
+  std::vector<double> areas;         // by triangle, m^2
+  // By triangle: those beyond the edges 0-1, 1-2 and 2-0. Vertices at the same position count as
+  // one; an edge of three triangles or more joins none.
+  std::vector<std::array<uint32_t, 3>> neighbours;
+  // By triangle: whether it is part of a closed surface, whose back only the inside sees.
+  std::vector<uint8_t> isClosed;
+
+  // `scene` must outlive this.
+  PlacedMesh(const Scene& scene, int index);
+
+  const Triangle& triangle(uint32_t i) const { return mesh->triangles[i]; }
+  size_t triangleCount() const { return mesh->triangles.size(); }
+  bool hasArea(uint32_t i) const { return areas[i] > 0; }
+  // At a corner of a triangle, 0 to 2.
+  glm::dvec3 shadingNormal(uint32_t i, int corner) const {
+    return shadingNormals.empty() ? normals[i] : glm::dvec3(shadingNormals[triangle(i)[corner]]);
+  }
+};
+
+std::vector<PlacedMesh> placedMeshes(const Scene& scene);
+
+}  // namespace chromeball

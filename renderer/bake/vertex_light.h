@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Baked light as colours of vertices.
+#pragma once
+
+#include "bake/bake.h"
+#include "bake/baked_geometry.h"
+
+namespace chromeball {
+
+// By instance, in the order of vertexPoints(). BakedGeometry::colors are linear, not scaled:
+//   irradiance         the mesh's colours x E / pi; shownColor() if showsWhole()
+//   ambient occlusion  the mesh's colours x the fraction of the sky
+//   radiance           shownColor()
+// Vertices inside of bodies take the mean of their neighbours.
+std::vector<BakedGeometry> colouredGeometry(const PointLight& what,
+                                            const std::vector<PlacedMesh>& meshes,
+                                            const std::vector<BakePoint>& points,
+                                            const BakeResult& baked);
+
+// The largest channel of the colours that count for the scale (shown_color.h).
+float brightestOf(const PointLight& what, const std::vector<BakedGeometry>& geometry);
+
+// Whether a surface's colours are all that it shows: its texture does not come on top.
+bool showsWhole(BakedLight what, const Material& material);
+
+}  // namespace chromeball

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball bake as a command; the baked model, rendered without light, looks like the original.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "browser.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "probe/synth.h"
+#include "run_command.h"
+#include "scene/gltf/load_gltf.h"
+#include "shared_data.h"
+#include "small_model.h"
+
+namespace chromeball {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+class CommandBake : public testing::Test {
+ protected:
+  CommandBake() {
+    writeSmallModel(folder_ / "plate.gltf");
+    writeImage(folder_ / "probe.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.3, 0.6, 0.6}));
+  }
+
+  Strings with(const std::string& output, const Strings& more) const {
+    Strings all{"bake", folder_ / "plate.gltf", "--probe", folder_ / "probe.exr",
+                "-o",   folder_ / output};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  CommandResult bake(const std::string& output, Strings more) const {
+    more.insert(more.end(), {"--samples", "4"});
+    if (std::ranges::count(more, "vertices") == 0 && std::ranges::count(more, "--texel") == 0)
+      more.insert(more.end(), {"--size", "32"});
+    CommandResult result = runCommand(with(output, more));
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result;
+  }
+  void refuses(const Strings& more, const std::string& reason,
+               const std::string& output = "refused.glb") const {
+    expectError(with(output, more), reason);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.glb"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.exr"));
+  }
+  static Scene load(const std::string& path) {
+    return loadGltf(path, {}, [](const std::string& warning) { ADD_FAILURE() << warning; });
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CommandBake, IrradianceLightmapIsShownWithoutLight) {
+  EXPECT_NE(bake("a.glb", {}).out.find("1 charts"), std::string::npos);
+  const Scene scene = load(folder_ / "a.glb");
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_TRUE(scene.materials[0].unlit);
+  EXPECT_EQ(scene.materials[0].baseColorTexture.uvSet, 1);
+  EXPECT_EQ(scene.textures[0].grid->width, 32);
+  EXPECT_EQ(scene.textures[0].wrapS, Wrap::ClampToEdge);
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  const Image light = readImage(folder_ / "a.exr");
+  EXPECT_EQ(light.width, 32);
+  EXPECT_GT(light.rgb(16, 16).y, 0.5f);
+}
+
+TEST_F(CommandBake, OtherOutputs) {
+  bake("ao.gltf", {"--what", "ambient-occlusion"});
+  EXPECT_FALSE(load(folder_ / "ao.gltf").materials[0].unlit);
+  const auto ao = nlohmann::json::parse(fileContents(folder_ / "ao.gltf"));
+  EXPECT_EQ(ao["materials"][0]["occlusionTexture"]["texCoord"], 1);
+  EXPECT_EQ(ao["extras"]["chromeball"]["lightmap"], "ao.exr");
+  EXPECT_TRUE(ao["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_0"));
+
+  bake("v.gltf", {"--to", "vertices"});
+  const auto v = nlohmann::json::parse(fileContents(folder_ / "v.gltf"));
+  EXPECT_TRUE(v["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+  EXPECT_TRUE(v["meshes"][0]["primitives"][0]["attributes"].contains("_IRRADIANCE"));
+  EXPECT_TRUE(load(folder_ / "v.gltf").materials[0].unlit);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "v.exr"));
+
+  bake("k.gltf", {"--keep-materials", "--texel", "0.1", "--no-denoise"});
+  const auto k = nlohmann::json::parse(fileContents(folder_ / "k.gltf"));
+  EXPECT_FALSE(k.contains("images"));
+  EXPECT_TRUE(k["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
+  bake("r.glb", {"--what", "radiance", "--scale", "4"});
+}
+
+TEST_F(CommandBake, NeedsNoProbeForOcclusion) {
+  EXPECT_EQ(runCommand({"bake", folder_ / "plate.gltf", "--what", "ambient-occlusion", "--size",
+                        "32", "--samples", "2", "-o", folder_ / "ao.glb"})
+                .status,
+            0);
+  expectError({"bake", folder_ / "plate.gltf", "-o", folder_ / "e.glb"}, "needs a probe");
+}
+
+TEST_F(CommandBake, RefusesBadInput) {
+  refuses({}, "must end in .glb or .gltf", "refused.obj");
+  refuses({"--size", "1000000000"}, "--size: should be a whole number from 16 to 16384");
+  refuses({"--size", "-3"}, "--size");
+  refuses({"--size", "many"}, "--size");
+  refuses({"--size", "16", "--padding", "8"}, "texels are too few");
+  refuses({"--padding", "1e9"}, "--padding");
+  refuses({"--texel", "1e-9"}, "need a page of more than 16384 x 16384");
+  refuses({"--texel", "0"}, "--texel: should be a length above 0");
+  refuses({"--texel", "nan"}, "--texel");
+  refuses({"--texel", "1", "--size", "32"}, "excludes --size");
+  refuses({"--what", "shadows"}, "irradiance, ambient-occlusion, radiance");
+  refuses({"--to", "paint"}, "lightmap, vertices");
+  refuses({"--to", "vertices", "--size", "32"}, "is for lightmaps");
+  refuses({"--scale", "-1"}, "--scale");
+  refuses({"--samples", "1"}, "--samples");
+  refuses({"--size", "16384", "--memory", "1"}, "limit");
+  expectError({"bake", folder_ / "none.glb", "-o", folder_ / "refused.glb"}, "none.glb");
+  expectError(with("plate.gltf", {}), "would overwrite the input");
+}
+
+// The mean difference of a baked model from its render, relative to the mean of the render.
+double differenceOfBaked(const TemporaryFolder& folder, const Strings& bakeOptions,
+                         const std::string& model, const std::string& probe) {
+  const auto run = [](const Strings& words) {
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+  };
+  Strings words{"bake", model, "--probe", probe, "-o", folder / "baked.gltf", "--samples", "64"};
+  words.insert(words.end(), bakeOptions.begin(), bakeOptions.end());
+  run(words);
+  run({"render", model, "--probe", probe, "--size", "120x80", "--samples", "64", "-o",
+       folder / "render.exr", "--transparent", "--quiet"});
+  run({"render", folder / "baked.gltf", "--size", "120x80", "--samples", "64", "-o",
+       folder / "shown.exr", "--transparent", "--max-depth", "0", "--quiet"});
+  const float scale =
+      nlohmann::json::parse(fileContents(folder / "baked.gltf"))["extras"]["chromeball"]["scale"];
+  const Image a = readImage(folder / "render.exr"), b = readImage(folder / "shown.exr");
+  double difference = 0, sum = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      difference += std::fabs(double(luminance(a.rgb(x, y)) - scale * luminance(b.rgb(x, y))));
+      sum += double(luminance(a.rgb(x, y)));
+    }
+  return difference / sum;
+}
+
+TEST(SlowBake, BakedPillarsLookLikeTheRender) {
+  const TemporaryFolder folder;
+  const std::string model = std::string(kSourceDir) + "/scenes/models/pillars.gltf";
+  const std::string probe = std::string(kSourceDir) + "/probes/noon.exr";
+  EXPECT_LT(differenceOfBaked(folder, {"--size", "512"}, model, probe), 0.04);
+  EXPECT_LT(differenceOfBaked(folder, {"--size", "512", "--what", "radiance"}, model, probe), 0.06);
+}
+
+// Needs Chromium, and in $CHROMEBALL_THREE a folder where `npm install three` was called.
+TEST(SlowBake, ThreeJsShowsTheRender) {
+  const char* three = std::getenv("CHROMEBALL_THREE");
+  if (!three || findChromium().empty()) GTEST_SKIP() << "without Chromium or $CHROMEBALL_THREE";
+  const TemporaryFolder folder;
+  std::filesystem::create_directory_symlink(std::filesystem::path(three) / "node_modules",
+                                            folder / "node_modules");
+  const std::string command = "cd '" + std::string(kSourceDir) + "' && SAMPLES=32 CHROMEBALL='" +
+                              kCommand + "' tools/scripts/bake_viewer.sh '" + folder / "" +
+                              "' > '" + folder / "found" + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "found");
+}
+
+TEST(SlowBake, RealModels) {
+  const auto probe = sharedData("probes/polyhaven/studio_small_05_1k.hdr");
+  if (!probe) GTEST_SKIP() << "without the shared data";
+  const TemporaryFolder out;
+  for (const char* name : {"Duck/glTF-Binary/Duck.glb", "BoxTextured/glTF-Binary/BoxTextured.glb"})
+    for (const char* to : {"lightmap", "vertices"}) {
+      const auto model = sharedData(std::string("gltf/") + name);
+      if (!model) continue;
+      const CommandResult result = runCommand({"bake", *model, "--probe", *probe, "--samples", "4",
+                                               "--to", to, "-o", out / "baked.glb"});
+      EXPECT_EQ(result.status, 0) << name << result.error;
+      EXPECT_EQ(result.error.find("invalid"), std::string::npos) << result.error;
+    }
+}
+
+}  // namespace
+}  // namespace chromeball
