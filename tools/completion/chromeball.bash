@@ -9,7 +9,7 @@ _chromeball() {
   esac
   case $command in
     '')
-      words='render merge compare probe image camera lights lights-error'
+      words='render merge compare bake probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
       options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
@@ -17,6 +17,8 @@ _chromeball() {
       options='--help --output --quiet' ;;
     'compare')
       options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+    'bake')
+      options='--help --output --what --to --size --texel --padding --scale --denoise --no-denoise --keep-materials --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --sun-angle --light-from --light-units --samples --ao-distance --max-depth --seed --allow-external --memory --texture-memory --threads --progress --quiet' ;;
     'probe')
       words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;
