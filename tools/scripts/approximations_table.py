@@ -28,25 +28,39 @@ def rows(folder, name, reference):
                     folder / f'{reference}-reference.exr'))
 
 
-def print_table(head, lines):
-    print(f'| {head} | mode | seconds | relMSE | bias, % | FLIP |')
-    print('| --- |' * (2 + head.count('|')) + ' ---: |' * 4)
-    for first, (mode, seconds, relmse, bias, difference) in lines:
-        mode = re.sub('^[a-z]+', '', mode).lstrip('+') or 'path'
-        print(f'| {first} | {mode.replace("+", ", ")} | {seconds:.2f} | {relmse:.1e} | {bias} | {difference:.3f} |')
-    print()
+def mode_of(row):
+    return re.sub('^[a-z]+', '', row).lstrip('+').replace('+', ', ') or 'path'
+
+
+def cell_text(seconds, relmse, bias, difference):
+    return f'{seconds:.2f} / {relmse:.1e} / {bias or "-"} / {difference:.3f}'
+
+
+def scene_table(folder, model, scene):
+    studies = sorted(path.parent.name for path in folder.glob(f'{model}-*/results.json'))
+    columns = [{mode_of(row): cell_text(*rest) for row, *rest in rows(folder, name, name)} for name in studies]
+    print(f'\n| {scene} | ' + ' | '.join(name.partition('-')[2] for name in studies) + ' |')
+    print('| --- |' + ' ---: |' * len(studies))
+    for mode in columns[0]:
+        print(f'| {mode} | ' + ' | '.join(column[mode] for column in columns) + ' |')
+
+
+def time_table(folder):
+    studies = sorted((path.parent.name for path in folder.glob('equal-time-*/results.json')),
+                     key=lambda name: int(name.rpartition('-')[2]))
+    columns = [{mode_of(row): cell_text(*rest) for row, *rest in rows(folder, name, 'room-overcast')}
+               for name in studies]
+    print('\n| interior, overcast | ' + ' | '.join(name.rpartition('-')[2] + ' s' for name in studies) + ' |')
+    print('| --- |' + ' ---: |' * len(studies))
+    for mode in columns[0]:
+        print(f'| {mode} | ' + ' | '.join(column[mode] for column in columns) + ' |')
 
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    studies = [path.parent.name for path in folder.glob('*/results.json')]
-    scenes = sorted((name for name in studies if name.split('-')[0] in SCENES),
-                    key=lambda name: (list(SCENES).index(name.split('-')[0]), name))
-    print_table('scene | probe', [(f'{SCENES[name.split("-")[0]]} | {name.split("-")[1]}', row)
-                                  for name in scenes for row in rows(folder, name, name)])
-    times = sorted(name for name in studies if name.startswith('equal-time'))
-    print_table('time', [(name.rpartition('-')[2] + ' s', row)
-                         for name in times for row in rows(folder, name, 'room-overcast')])
+    for model, scene in SCENES.items():
+        scene_table(folder, model, scene)
+    time_table(folder)
 
 
 if __name__ == '__main__':
