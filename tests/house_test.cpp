@@ -26,6 +26,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"math", {"base"}},
     {"image", {"base", "math", "image/io"}},
     {"image/io", {"base", "math", "image"}},
+    {"image/develop", {"base", "math", "image"}},
     {"probe", {"base", "math", "image", "image/io"}},
     {"probe/capture", {"base", "math", "image", "image/io", "probe"}},
     {"scene", {"base", "math", "image", "image/io", "probe"}},
