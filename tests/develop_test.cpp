@@ -243,7 +243,7 @@ TEST(Develop, DepthBlurOfADot) {
   Image dot(81, 81, 3);
   dot.setRgb(40, 40, Rgb(1000));
   const ViewFrame frame{0, 0, 81, 81, 60};
-  const Lens lens{2, 0.5};
+  const ThinLens lens{2, 0.5};
   const double radius = confusionRadius(lens, 4, frame);
   const Image disc = blurByDepth(dot, depthOf(81, 81, 4, 4), lens, frame);
   EXPECT_NEAR(sum(disc), 3000, 30);
@@ -292,7 +292,7 @@ TEST(Develop, InvalidPixelsAreCountedAndDoNotSpread) {
   image.at(30, 20)[0] = std::numeric_limits<float>::infinity();
   image.at(30, 20)[2] = -std::numeric_limits<float>::infinity();
   const Image depth = depthOf(40, 30, 1, 9);
-  const DevelopSettings settings{.lens = Lens{2, 0.1},
+  const DevelopSettings settings{.lens = ThinLens{2, 0.1},
                                  .motion = Motion{5, 20},
                                  .bloom = {{0.8, 1}, {0.2, 20}},
                                  .glare = true,
@@ -316,7 +316,7 @@ TEST(Develop, SameBitsForAnyNumberOfThreads) {
   for (size_t i = 0; i < image.texels.size(); ++i)
     image.texels[i] = 1.0f / float(1 + (i * 7919) % 1009);
   const Image depth = depthOf(257, 129, 1, 9);
-  const DevelopSettings settings{.lens = Lens{2, 0.05},
+  const DevelopSettings settings{.lens = ThinLens{2, 0.05},
                                  .motion = Motion{12, 30},
                                  .bloom = {{0.8, 1}, {0.2, 20}},
                                  .glare = true,

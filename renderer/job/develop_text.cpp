@@ -62,7 +62,7 @@ Motion parseMotion(std::string_view text, std::string_view location) {
           numberIn(angle, -360, 360, "angle (degrees)", location)};
 }
 
-Lens parseLens(std::string_view text, std::string_view location) {
+ThinLens parseLens(std::string_view text, std::string_view location) {
   constexpr double kSmallest = 1e-6, kLargest = 1e6, kLargestAperture = 1e3;
   const auto [focus, aperture] = split(text, ':', "FOCUS:APERTURE, as in 2.5:0.05", location);
   return {numberIn(focus, kSmallest, kLargest, "focus (metres)", location),

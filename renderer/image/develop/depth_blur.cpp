@@ -23,7 +23,7 @@ float areaOf(float radius) {
   return radius <= kSharp ? 1 : float(kPiD) * (radius * radius + 1.0f / 12);
 }
 
-std::vector<Disc> discsOf(const Image& depth, const Lens& lens, const ViewFrame& frame) {
+std::vector<Disc> discsOf(const Image& depth, const ThinLens& lens, const ViewFrame& frame) {
   std::vector<Disc> discs(depth.texels.size());
   forRanges(discs.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -100,13 +100,13 @@ void gather(const Image& image, const std::vector<Disc>& discs, int x, int y, in
 
 }  // namespace
 
-double confusionRadius(const Lens& lens, double depth, const ViewFrame& frame) {
+double confusionRadius(const ThinLens& lens, double depth, const ViewFrame& frame) {
   if (!(depth > 0)) return 0;
   const double atFocus = lens.aperture / 2 * std::fabs(1 - lens.focus / depth);
   return std::min(kMaxConfusionRadius, atFocus / (lens.focus * frame.pixelSize()));
 }
 
-Image blurByDepth(const Image& image, const Image& depth, const Lens& lens,
+Image blurByDepth(const Image& image, const Image& depth, const ThinLens& lens,
                   const ViewFrame& frame) {
   const std::vector<Disc> discs = discsOf(depth, lens, frame);
   const Reach reach(discs, image.width, image.height);

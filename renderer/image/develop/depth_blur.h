@@ -10,14 +10,14 @@ namespace chromeball {
 inline constexpr double kMaxConfusionRadius = 100;  // pixels
 
 // The thin lens of the scene file's [camera].
-struct Lens {
+struct ThinLens {
   double focus;     // metres along the axis
   double aperture;  // diameter, metres
 };
 
 // Of a point at planar depth z, in pixels: (aperture / 2) |z - focus| / z / (focus x pixel size),
 // at most kMaxConfusionRadius. 0 if the depth is not above 0.
-double confusionRadius(const Lens& lens, double depth, const ViewFrame& frame);
+double confusionRadius(const ThinLens& lens, double depth, const ViewFrame& frame);
 
 // Each pixel becomes the weighted mean of those whose disc of confusion covers it: weight = share
 // of the pixel that the disc covers / area of the disc. A pixel further away spreads no further
@@ -27,6 +27,7 @@ double confusionRadius(const Lens& lens, double depth, const ViewFrame& frame);
 // of planar depth in metres, 1e10 where nothing was hit. One depth stands for each pixel: what is
 // hidden behind blurred edges is not seen, and mirrors and glass are blurred as their surfaces.
 // Takes time proportional to the square of the radius. Infinity and NaN spread.
-Image blurByDepth(const Image& image, const Image& depth, const Lens& lens, const ViewFrame& frame);
+Image blurByDepth(const Image& image, const Image& depth, const ThinLens& lens,
+                  const ViewFrame& frame);
 
 }  // namespace chromeball

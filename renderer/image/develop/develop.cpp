@@ -23,7 +23,7 @@ size_t clearInvalid(Image& image) {
   return count;
 }
 
-void clip(Image& image, float maximum) {
+void clipColor(Image& image, float maximum) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       float* pixel = image.at(x, y);
@@ -31,7 +31,7 @@ void clip(Image& image, float maximum) {
     }
 }
 
-size_t countLimited(const Image& depth, const Lens& lens, const ViewFrame& frame) {
+size_t countLimited(const Image& depth, const ThinLens& lens, const ViewFrame& frame) {
   return size_t(std::ranges::count_if(depth.texels, [&](float z) {
     return confusionRadius(lens, double(z), frame) >= kMaxConfusionRadius;
   }));
@@ -43,7 +43,7 @@ DevelopReport develop(Image& image, const DevelopSettings& settings, const Image
                       const ViewFrame& frame) {
   DevelopReport report;
   report.invalid = clearInvalid(image);
-  if (settings.clip) clip(image, *settings.clip);
+  if (settings.clip) clipColor(image, *settings.clip);
   if (settings.lens) {
     report.limited = countLimited(*depth, *settings.lens, frame);
     image = blurByDepth(image, *depth, *settings.lens, frame);

@@ -13,7 +13,7 @@ namespace chromeball {
 // In the order in which they are applied.
 struct DevelopSettings {
   std::optional<float> clip;  // R, G and B at most this: an image of low dynamic range, to compare
-  std::optional<Lens> lens;
+  std::optional<ThinLens> lens;
   std::optional<Motion> motion;
   std::vector<WeightedGaussian> bloom;  // of weights that sum to 1
   bool glare = false;                   // spencerGlare()
