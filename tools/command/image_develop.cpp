@@ -89,26 +89,35 @@ Image colorOf(const ImageFile& file, const std::string& path) {
   throwInput("{}: has no color", path);
 }
 
+// What is needed of a file, whose other layers are not kept in memory.
+struct Input {
+  OutputImage image;  // the color alone
+  Image depth;        // empty unless needed
+  ViewFrame frame;
+};
+
+Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
+  const ImageFile file = readImageFile(arguments.in);
+  Image color = colorOf(file, arguments.in);
+  Input input;
+  input.frame = frameOf(arguments, file, color, settings);
+  if (settings.lens) input.depth = depthOf(file, arguments.in);
+  input.image.metadata = file.metadata;
+  input.image.placement = file.placement;
+  input.image.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
+  return input;
+}
+
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.vignette});
   checkDisplay(arguments);
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   const DevelopSettings settings = settingsOf(arguments);
-  OutputImage output;
-  Messages messages;
-  {
-    const ImageFile file = readImageFile(arguments.in);
-    Image color = colorOf(file, arguments.in);
-    const ViewFrame frame = frameOf(arguments, file, color, settings);
-    const Image depth = settings.lens ? depthOf(file, arguments.in) : Image();
-    output.metadata = file.metadata;
-    output.placement = file.placement;
-    messages = inWords(develop(color, settings, settings.lens ? &depth : nullptr, frame));
-    output.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
-  }
-  print(messages, false);
-  writeImage(arguments.out, output, transform);
+  Input input = readInput(arguments, settings);
+  Image& color = input.image.layers.front().image;
+  print(inWords(develop(color, settings, &input.depth, input.frame)), false);
+  writeImage(arguments.out, input.image, transform);
 }
 
 }  // namespace
