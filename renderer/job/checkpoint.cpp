@@ -5,6 +5,7 @@
 
 #include "image/io/exr_state.h"
 #include "image/io/write_exr.h"
+#include "job/develop_image.h"
 #include "job/job_description.h"
 #include "job/job_report.h"
 
@@ -95,7 +96,7 @@ void JobControl::publish(const RenderState& state) {
 void JobControl::writeFiles(const RenderState& state) {
   const OutputImage image = imageOf(state).image;
   try {
-    for (const std::string& output : job_.outputs) writeImage(output, image, job_.display);
+    writeOutputs(job_, image);
   } catch (const std::runtime_error& error) {  // a long render does not end for want of a file
     const std::string text = fmt::format("while rendering: {}", error.what());
     if (messages_.empty() || messages_.back().text != text)

@@ -35,7 +35,7 @@ Messages checkOutputs(const RenderJob& job) {
       messages.push_back({Message::Kind::Warning,
                           fmt::format("{} has no effect: {}", settings.location(setting), why)});
   };
-  for (const char* name : {"tonemap", "exposure"})
+  for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png"))
       warn(name, fmt::format("it is for .png; {} holds radiance", job.outputs.front()));
   if (!has(".exr")) warn("output.aovs", "only an .exr holds layers");

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "base/error.h"
 #include "composite/layers.h"
 #include "job/arguments.h"
 #include "job/check_job.h"
+#include "job/develop_text.h"
 #include "job/scene_file_camera.h"
 
 namespace chromeball {
@@ -220,6 +222,20 @@ RenderSettings integratorSettings(const SceneFile& file) {
   return withShard(s, std::move(r));
 }
 
+// What a .png clips is relative to its white.
+DevelopSettings plannedDevelop(const Settings& s, float exposure) {
+  const auto text = s.getIfGiven<std::string>("output.develop");
+  if (!text) return {};
+  const std::string location = s.location("output.develop");
+  DevelopSettings develop = parseDevelop(*text, location);
+  if (develop.clip) *develop.clip *= std::exp2(-exposure);
+  if (develop.lens &&
+      std::ranges::count(s.get<std::vector<std::string>>("output.aovs"), "depth") == 0)
+    throw InputError(fmt::format("{}: depth-blur needs the layer `depth`", location),
+                     Remedy{"output.aovs", "depth"});
+  return develop;
+}
+
 }  // namespace
 
 RenderJob planJob(SceneFile scene, const Settings& over) {
@@ -239,6 +255,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   job.makesOutputFolders = !over.has("output.file");
   job.display = {parseToneOperator(s.get<std::string>("tonemap")),
                  float(s.get<double>("exposure"))};
+  job.develop = plannedDevelop(s, job.display.exposure);
   if (job.file.composite) planComposite(job);
   return job;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "image/develop/develop.h"
 #include "image/tonemap.h"
 #include "integrate/render.h"
 #include "job/choose_camera.h"
@@ -28,6 +29,7 @@ struct RenderJob {
   // For writing the image; no effect on rendering.
   std::vector<std::string> outputs;
   bool makesOutputFolders = false;  // the scene file names the outputs
+  DevelopSettings develop;          // of a .png, before `display`
   DisplayTransform display;         // of a .png
 };
 

@@ -237,6 +237,17 @@ void addOutput(std::vector<Setting>& rows) {
                           "shadow.NAME, the factor by which its shadow darkens. ao and "
                           "bent_normal serve `image relight`.",
                   .renderOnly = true});
+  rows.push_back({.section = "output",
+                  .key = "develop",
+                  .option = "develop",
+                  .argument = "\"NAME=VALUE ...\"",
+                  .type = Name,
+                  .absent = "as rendered",
+                  .help = "Optics of a .png, before tone mapping, as the options of `image "
+                          "develop`: \"bloom=.75:1,.15:8,.07:32,.03:128 vignette=.4\"; also clip, "
+                          "depth-blur, motion, glare. An .exr stays as rendered.",
+                  .effect = Effect::Display,
+                  .renderOnly = true});
 }
 
 }  // namespace

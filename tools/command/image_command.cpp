@@ -8,6 +8,7 @@ void addImageCommand(CLI::App& app) {
   CLI::App* image = app.add_subcommand("image", "View and compare images.");
   image->require_subcommand(1);
   addImageDenoiseCommand(*image);
+  addImageDevelopCommand(*image);
   addImageDivideCommand(*image);
   addImageErrorCommand(*image);
   addImageFlatFieldCommand(*image);

@@ -7,6 +7,7 @@
 namespace chromeball {
 
 void addImageDenoiseCommand(CLI::App& image);
+void addImageDevelopCommand(CLI::App& image);
 void addImageDivideCommand(CLI::App& image);
 void addImageErrorCommand(CLI::App& image);
 void addImageFlatFieldCommand(CLI::App& image);

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "image_noise_text.h"
 #include "image_render.h"
+#include "job/develop_image.h"
 #include "job/frame_scene.h"
 #include "job/job.h"
 #include "job/job_description.h"
@@ -74,7 +75,7 @@ void stopOnSignals() {
 void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
                  PhaseSeconds seconds) {
   Stopwatch watch;
-  for (const std::string& path : job.outputs) writeImage(path, result.image, job.display);
+  print(writeOutputs(job, result.image), false);
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Gaussian filter of one line of pixels.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+enum class GaussianMethod {
+  Fast,   // as Exact up to kMaxExactSigma; above, from a line of lower resolution
+  Exact,  // the kernel at full resolution, up to 6 sigma
+};
+
+inline constexpr double kMaxExactSigma = 8;
+
+// The kernel is the integral of the Gaussian over each pixel,
+//   k(d) = (erf((d + 1/2) / (sqrt2 sigma)) - erf((d - 1/2) / (sqrt2 sigma))) / 2,
+// of variance sigma^2 + 1/12; so a square of a x a pixels (a odd) has erf(a / (2 sqrt2 sigma))^2 in
+// its centre. The line is mirrored at its ends (mirrored.h), and its sum is kept.
+//
+// Fast: with f = 2^n, 4 <= sigma / f < 8, cubic B-splines of f pixels per knot reduce the line; a
+// Gaussian of standard deviation s filters it; the same splines interpolate. The variances are
+// f^2/3, s^2 f^2 and f^2/3; s is chosen for the right sum. The kurtosis of the whole differs from
+// the Gaussian's by -(f / sigma)^4 / 15, the kernel by less than 1e-4 of its peak.
+class GaussianLine {
+ public:
+  // Of lines of `length` pixels; sigma in pixels, at least 0. 0 changes nothing.
+  GaussianLine(double sigma, int length, GaussianMethod method);
+
+  // Replaces the line by the filtered one. `scratch` is resized as needed.
+  void apply(std::span<double> line, std::vector<double>& scratch) const;
+
+  size_t work() const { return work_; }  // per pixel, as a number of elements (base/for_ranges.h)
+
+ private:
+  void applyTaps(std::span<const double> extended, std::span<double> filtered) const;
+  void applyExact(std::span<double> line, std::vector<double>& scratch) const;
+  void applyFast(std::span<double> line, std::vector<double>& scratch) const;
+  void foldTaps(int length);
+
+  // Of the pixels of a reduced pixel: the weights of four reduced pixels, from `offset` on.
+  struct Phase {
+    int offset;
+    std::array<double, 4> weights;
+  };
+  static Phase splinePhase(int phase, int factor);
+
+  int factor_ = 1;             // f; 1: exact
+  std::vector<Phase> phases_;  // f of them
+  std::vector<double> taps_;   // of the distances 0, 1, ... to both sides
+  size_t work_ = 1;
+};
+
+}  // namespace chromeball

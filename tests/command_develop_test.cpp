@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image develop, and the setting `develop` of renders.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "base/error.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "job/develop_text.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+Image filled(int width, int height, int channels, float number) {
+  Image image(width, height, channels);
+  std::ranges::fill(image.texels, number);
+  return image;
+}
+
+// A lamp of 100 on 0.01, with a depth of 5 metres.
+void writeLamp(const std::string& path, const Metadata& metadata = {}) {
+  Image color = filled(64, 32, 3, 0.01f);
+  color.setRgb(32, 16, Rgb(100));
+  writeImage(path, OutputImage{{{"", "RGB", std::move(color)}, {"depth", "", filled(64, 32, 1, 5)}},
+                               metadata});
+}
+
+CommandResult run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"image", "develop"});
+  CommandResult result = runCommand(arguments);
+  EXPECT_EQ(result.status, 0) << result.error;
+  return result;
+}
+
+TEST(CommandDevelop, BlurIsBeforeToneMapping) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", out = folder / "out.png", linear = folder / "out.exr";
+  writeLamp(in);
+  run({in, linear, "--motion", "40@0"});
+  EXPECT_NEAR(readImage(linear).rgb(20, 16).x, 100.0 / 40 + 0.01, 1e-2);
+  run({in, out, "--motion", "40@0"});
+  EXPECT_EQ(readImage(out).rgb(20, 16).x, 1) << "the streak is white";
+  run({in, out, "--motion", "40@0", "--clip", "1"});
+  EXPECT_LT(readImage(out).rgb(20, 16).x, 0.05f) << "clipped first, it is grey";
+  // White is at radiance 8 with an exposure of -3 stops: that is where the image is clipped.
+  run({in, linear, "--clip", "1", "--exposure", "-3"});
+  EXPECT_NEAR(readImage(linear).rgb(32, 16).x, 8, 1e-5);
+}
+
+TEST(CommandDevelop, WithoutOptionsNothingChanges) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", out = folder / "out.exr";
+  writeLamp(in);
+  run({in, out});
+  EXPECT_EQ(readImage(out).texels, readImage(in).texels);
+}
+
+TEST(CommandDevelop, FieldOfViewOfTheFileOrTheOption) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", plain = folder / "plain.exr", a = folder / "a.exr",
+                    b = folder / "b.exr";
+  writeLamp(in, {{"cameraFov", 50.0f}});
+  writeLamp(plain);
+  run({in, a, "--vignette", ".4"});
+  run({plain, b, "--vignette", ".4", "--fov", "50"});
+  EXPECT_EQ(readImage(a).texels, readImage(b).texels);
+  EXPECT_LT(readImage(a).rgb(0, 0).x, 0.0095f);
+  expectError({"image", "develop", plain, a, "--vignette", ".4"}, "--fov DEGREES");
+  expectError({"image", "develop", plain, a, "--glare", "spencer"}, "--fov DEGREES");
+}
+
+TEST(CommandDevelop, AllAtOnceKeepsAlphaAndMetadata) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", out = folder / "out.exr";
+  writeImage(
+      in, OutputImage{{{"", "RGBA", filled(40, 30, 4, 0.5f)}, {"depth", "", filled(40, 30, 1, 3)}},
+                      {{"cameraFov", 40.0f}}});
+  run({in, out, "--bloom", ".75:1,.15:8,.07:32,.03:128", "--glare", "spencer", "--motion", "9@30",
+       "--depth-blur", "2:0.01", "--vignette", "0"});
+  const ImageFile file = readImageFile(out);
+  const std::optional<Image> color = findColorAndAlpha(file);
+  ASSERT_TRUE(color);
+  ASSERT_EQ(color->channels, 4);
+  for (const float texel : color->texels) EXPECT_NEAR(texel, 0.5f, 1e-5f);
+  EXPECT_TRUE(file.metadata.contains("cameraFov"));
+}
+
+TEST(CommandDevelop, InvalidPixelsAreReported) {
+  const TemporaryFolder folder;
+  Image image = filled(32, 32, 3, 1);
+  image.at(5, 5)[0] = std::numeric_limits<float>::quiet_NaN();
+  writeImage(folder / "in.exr", image);
+  const CommandResult result =
+      run({folder / "in.exr", folder / "out.exr", "--bloom", ".5:1,.5:20"});
+  EXPECT_NE(result.error.find("1 pixel is NaN or infinite"), std::string::npos) << result.error;
+  for (const float texel : readImage(folder / "out.exr").texels) EXPECT_GT(texel, 0.5f);
+}
+
+TEST(CommandDevelop, BadInput) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", out = folder / "out.png";
+  writeLamp(in);
+  const auto expect = [&](const std::vector<std::string>& options, const char* reason) {
+    std::vector<std::string> words{"image", "develop", in, out};
+    words.insert(words.end(), options.begin(), options.end());
+    expectError(words, reason);
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  expect({"--bloom", "1:1e9"}, "sigma (pixels) 1e+09 should be 0 to 4096");
+  expect({"--bloom", "1:nan"}, "not a number");
+  expect({"--bloom=-.5:1,1.5:2"}, "weight -0.5 should be 0 to 1");
+  expect({"--bloom", ".5:1,.4:2"}, "the weights sum to 0.9");
+  expect({"--bloom", "1"}, "is not WEIGHT:SIGMA");
+  expect({"--bloom", "1:2,"}, "is not WEIGHT:SIGMA");
+  expect({"--motion", "1e9@0"}, "length (pixels) 1e+09 should be 0 to 4096");
+  expect({"--motion", "60"}, "is not LENGTH@ANGLE");
+  expect({"--motion", "60@inf"}, "not a number");
+  expect({"--vignette", "2"}, "strength 2 should be 0 to 1");
+  expect({"--vignette", "none.exr"}, "none.exr");
+  expect({"--glare", "spenser"}, "did you mean `spencer`");
+  expect({"--depth-blur", "2"}, "is not FOCUS:APERTURE");
+  expect({"--depth-blur", "0:1"}, "focus (metres) 0");
+  expect({"--depth-blur", "1:1e9"}, "aperture (metres) 1e+09");
+  expect({"--clip", "-1"}, "--clip: -1");
+  expect({"--fov", "180", "--vignette", "1"}, "between 0 and 180");
+  expect({"--exposure", "nan"}, "--exposure");
+  expect({"--tonemap", "acis"}, "aces");
+  writeImage(folder / "no-depth.exr", filled(8, 8, 3, 1));
+  expectError(
+      {"image", "develop", folder / "no-depth.exr", out, "--depth-blur", "1:.1", "--fov", "40"},
+      "has no layer `depth`");
+  Image negative = filled(2, 2, 3, -1);
+  writeImage(folder / "negative.exr", negative);
+  expect({"--vignette", folder / "negative.exr"}, "they are factors");
+  expectError({"image", "develop", in, in}, "would overwrite");
+  expectError({"image", "develop", in, folder / "out.exr", "--tonemap", "aces"}, "is linear");
+}
+
+TEST(DevelopText, SeveralInOneString) {
+  const DevelopSettings settings =
+      parseDevelop(" bloom=.75:1,.255:32  vignette=.4 motion=60@-30 ", "here");
+  ASSERT_EQ(settings.bloom.size(), 2u);
+  EXPECT_NEAR(settings.bloom[0].weight + settings.bloom[1].weight, 1, 1e-12);
+  EXPECT_EQ(settings.vignette, 0.4);
+  EXPECT_EQ(settings.motion->length, 60);
+  EXPECT_TRUE(parseDevelop("", "here").isEmpty());
+  EXPECT_THROW(parseDevelop("blom=1:1", "here"), InputError);
+  EXPECT_THROW(parseDevelop("vignette", "here"), InputError);
+  EXPECT_THROW(parseDevelop("vignette=.1 vignette=.2", "here"), InputError);
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball image develop IN.exr OUT.png --bloom .75:1,.25:32 --vignette .4
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "image_commands.h"
+#include "job/arguments.h"
+#include "job/develop_image.h"
+#include "job/develop_text.h"
+#include "job/output_file.h"
+#include "messages.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string in, out, tone = "none", vignette;
+  std::vector<std::pair<std::string, std::string>> optics = {
+      {"clip", ""}, {"depth-blur", ""}, {"motion", ""}, {"bloom", ""}, {"glare", ""}};
+  float exposure = 0;
+  std::optional<double> fov;
+  bool exact = false;
+};
+
+bool isNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == 0;
+}
+
+Image readFalloff(const std::string& path) {
+  Image falloff = readImage(path);
+  for (const float texel : falloff.texels)
+    if (!(texel >= 0) || !std::isfinite(texel))
+      throwInput("--vignette: {}: has texels that are negative, infinite or NaN; they are factors",
+                 path);
+  return falloff;
+}
+
+DevelopSettings settingsOf(const Arguments& arguments) {
+  DevelopSettings settings;
+  for (const auto& [name, text] : arguments.optics)
+    if (!text.empty()) setDevelop(settings, name, text, "--" + name);
+  if (isNumber(arguments.vignette))
+    setDevelop(settings, "vignette", arguments.vignette, "--vignette");
+  else if (!arguments.vignette.empty())
+    settings.falloff = readFalloff(arguments.vignette);
+  if (arguments.exact) settings.method = GaussianMethod::Exact;
+  if (settings.clip) *settings.clip *= std::exp2(-arguments.exposure);
+  return settings;
+}
+
+void checkDisplay(const Arguments& arguments) {
+  if (!std::isfinite(arguments.exposure) || std::fabs(arguments.exposure) > 100)
+    throwInput("--exposure: {} should be -100 to 100 stops", arguments.exposure);
+  if (lowerExtension(arguments.out) != ".png" && arguments.tone != "none")
+    throwInput("--tonemap: {} is linear; tone mapping is for .png", arguments.out);
+}
+
+ViewFrame frameOf(const Arguments& arguments, const ImageFile& file, const Image& color,
+                  const DevelopSettings& settings) {
+  ViewFrame frame = viewFrame(color, file.placement, file.metadata);
+  if (arguments.fov) {
+    if (!(*arguments.fov > 0 && *arguments.fov < 180))
+      throwInput("--fov: {} should be between 0 and 180 degrees", *arguments.fov);
+    frame.fov = *arguments.fov;
+  }
+  if (settings.needsFov() && !(frame.fov > 0))
+    throwInput(
+        "{}: vignette, glare and depth blur need the camera's field of view, which the file does "
+        "not have; give --fov DEGREES (vertical)",
+        arguments.in);
+  return frame;
+}
+
+Image depthOf(const ImageFile& file, const std::string& path) {
+  std::optional<Image> depth = findLayer(file, "depth");
+  if (!depth || depth->channels != 1)
+    throwInput("--depth-blur: {} has no layer `depth`; `render --aov depth` writes one", path);
+  return *std::move(depth);
+}
+
+Image colorOf(const ImageFile& file, const std::string& path) {
+  if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
+  throwInput("{}: has no color", path);
+}
+
+// What is needed of a file, whose other layers are not kept in memory.
+struct Input {
+  OutputImage image;  // the color alone
+  Image depth;        // empty unless needed
+  ViewFrame frame;
+};
+
+Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
+  const ImageFile file = readImageFile(arguments.in);
+  Image color = colorOf(file, arguments.in);
+  Input input;
+  input.frame = frameOf(arguments, file, color, settings);
+  if (settings.lens) input.depth = depthOf(file, arguments.in);
+  input.image.metadata = file.metadata;
+  input.image.placement = file.placement;
+  input.image.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
+  return input;
+}
+
+void run(const Arguments& arguments) {
+  checkWritable(arguments.out);
+  checkDistinct({arguments.out}, {arguments.in, arguments.vignette});
+  checkDisplay(arguments);
+  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+  const DevelopSettings settings = settingsOf(arguments);
+  Input input = readInput(arguments, settings);
+  Image& color = input.image.layers.front().image;
+  print(inWords(develop(color, settings, &input.depth, input.frame)), false);
+  writeImage(arguments.out, input.image, transform);
+}
+
+}  // namespace
+
+void addImageDevelopCommand(CLI::App& image) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = image.add_subcommand(
+      "develop",
+      "Show an HDR image through the optics of a camera: blur, streaks and vignetting before tone "
+      "mapping. In the order of the options.");
+  command->add_option("IN", arguments->in, "The image, linear")->required();
+  command
+      ->add_option("OUT", arguments->out,
+                   "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)")
+      ->required();
+  const auto add = [&](const char* name, const char* type, const char* help) {
+    const auto found =
+        std::ranges::find(arguments->optics, name, &std::pair<std::string, std::string>::first);
+    command->add_option(std::string("--") + name, found->second, help)->type_name(type);
+  };
+  add("clip", "X",
+      "Clip red, green and blue at X times white (after --exposure) first: what a blurred image of "
+      "low dynamic range would be");
+  add("depth-blur", "FOCUS:APERTURE",
+      "Blur by the layer `depth` as a lens of this diameter, focused at this distance, both in "
+      "metres, would");
+  add("motion", "LENGTH@ANGLE",
+      "Blur along a line of LENGTH pixels, ANGLE degrees counter-clockwise from the right");
+  add("bloom", "WEIGHT:SIGMA,...",
+      "A sum of Gaussian blurs, sigma in pixels; the weights sum to 1: .75:1,.15:8,.07:32,.03:128");
+  add("glare", "spencer", "The blur of the human eye by day (Spencer et al. 1995); needs the fov");
+  command
+      ->add_option("--vignette", arguments->vignette,
+                   "Multiply by 1 - STRENGTH (1 - cos^4 of the angle to the axis), or by an image "
+                   "that is stretched over the picture")
+      ->type_name("STRENGTH|FILE");
+  command->add_option("--fov", arguments->fov,
+                      "Vertical field of view in degrees, of the whole picture; without it that of "
+                      "the .exr");
+  command->add_flag("--exact", arguments->exact,
+                    "Use the exact kernels for all Gaussians: slow, the reference");
+  command->add_option("--exposure", arguments->exposure,
+                      "Stops: a .png shows radiance times 2^STOPS");
+  command
+      ->add_option("--tonemap", arguments->tone,
+                   fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      ->capture_default_str();
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace chromeball
