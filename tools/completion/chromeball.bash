@@ -12,7 +12,7 @@ _chromeball() {
       words='render merge compare bake probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --camera-file --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --allow-external --output --aov --develop --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
       options='--help --output --quiet' ;;
     'compare')
@@ -55,10 +55,12 @@ _chromeball() {
     'probe plot')
       options='--help --row --elevation --azimuth --samples --compensated --mapping' ;;
     'image')
-      words='denoise divide error flat-field relight view'
+      words='denoise develop divide error flat-field relight view'
       options='--help' ;;
     'image denoise')
       options='--help --quiet' ;;
+    'image develop')
+      options='--help --clip --depth-blur --motion --bloom --glare --vignette --fov --exact --exposure --tonemap' ;;
     'image divide')
       options='--help --output' ;;
     'image error')
