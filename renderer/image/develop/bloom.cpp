@@ -71,12 +71,12 @@ void blurGaussian(Image& image, double sigma, GaussianMethod method) {
 Image bloom(const Image& image, const std::vector<WeightedGaussian>& mixture,
             GaussianMethod method) {
   Image sum(image.width, image.height, image.channels);
-  for (const auto& [weight, sigma] : mixture) {
+  for (const WeightedGaussian& part : mixture) {
     Image blurred = image;
-    blurGaussian(blurred, sigma, method);
+    blurGaussian(blurred, part.sigma, method);
     forRanges(sum.texels.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
-        sum.texels[i] += float(weight * double(blurred.texels[i]));
+        sum.texels[i] += float(part.weight * double(blurred.texels[i]));
     });
   }
   return sum;
