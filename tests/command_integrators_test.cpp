@@ -68,6 +68,7 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--integrator", "ambient-occlusion", "--max-diffuse-depth", "2"}, "limits of depth");
   refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
   refuses({"--bent", "flat"}, "--bent");
+  refuses({"--bent", "uniform"}, "--bent: is for the layer");
 }
 
 TEST_F(CommandIntegrators, CacheIrradiance) {
@@ -80,6 +81,10 @@ TEST_F(CommandIntegrators, CacheIrradiance) {
   Strings turned = cached;
   turned.insert(turned.end(), {"--orbit", "20"});
   render(turned);  // another view of the same light
+  Strings frames = with(cached);
+  frames.insert(frames.end(), {"--orbit", "40", "--frames", "1:2", "-o", folder_ / "f#.exr"});
+  EXPECT_EQ(runCommand(frames).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "f2.exr"));
   Strings brighter = cached;
   brighter.insert(brighter.end(), {"--probe-scale", "2"});
   refuses(brighter, "is the cache of another scene: `probe-scale`");
@@ -87,6 +92,7 @@ TEST_F(CommandIntegrators, CacheIrradiance) {
   refuses(cached, "damaged");
   refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "probe.exr"},
           "is not an irradiance cache");
+  refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "none/records"}, "none");
   refuses({"--cache", cache}, "--irradiance-cache");
   for (const char* error : {"0", "-1", "nan", "1.5", "x"})
     refuses({"--irradiance-cache", error}, "--irradiance-cache");

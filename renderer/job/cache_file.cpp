@@ -26,6 +26,7 @@ CacheFile::CacheFile(const RenderJob& job, const LoadedScene& loaded)
     : cache_(job.settings.cacheError.value()),
       path_(job.file.settings.getIfGiven<std::string>("cache")) {
   if (!path_) return;
+  checkReplaceable(*path_);
   identity_ = lightIdentity(job, loaded);
   if (std::filesystem::exists(*path_)) read();
 }

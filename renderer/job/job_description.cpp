@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <filesystem>
 
 #include "base/hash.h"
@@ -107,6 +108,14 @@ Json describeContents(const RenderJob& job, const LoadedScene& loaded) {
   return identity;
 }
 
+uint64_t hashOf(const std::vector<PunctualLight>& lights) {
+  uint64_t sum = 0;
+  for (const PunctualLight& light : lights)
+    for (const vec3& v : {light.position, light.direction, light.intensity})
+      for (int i = 0; i < 3; ++i) sum = hash(sum, uint64_t(std::bit_cast<uint32_t>(v[i])));
+  return sum;
+}
+
 }  // namespace
 
 Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
@@ -165,6 +174,10 @@ std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
 std::string lightIdentity(const RenderJob& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   for (const char* name : kOfImage) identity.erase(name);
+  if (std::ranges::none_of(loaded.scene.instances, &Instance::moves)) {
+    for (const char* name : {"animation", "animation-time"}) identity.erase(name);
+    identity["lamps"] = hashOf(loaded.scene.lights);  // which may move
+  }
   return jsonText(identity);
 }
 

@@ -36,7 +36,8 @@ std::string identityOf(const RenderJob& job, const LoadedScene& loaded);
 // The same for parts of one render (render_part.h): also with the settings that a comparison
 // varies, and without threads.
 std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded);
-// The same for a scene and its light, whatever the camera, the image and the sampling.
+// The same for a scene and its light, whatever the camera, the image and the sampling, and the time
+// of an animation in which no geometry moves.
 std::string lightIdentity(const RenderJob& job, const LoadedScene& loaded);
 std::string withoutParts(const std::string& identity);  // without `shard` and `crop`
 

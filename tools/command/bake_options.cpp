@@ -51,6 +51,8 @@ void checkBakeOptions(const BakeOptions& a) {
           std::pair(a.texel.has_value(), "--texel"),
           std::pair(a.denoises || a.keepsNoise, "--denoise")})
       if (given) throwInput("{}: is for lightmaps; leave it out with --to vertices", option);
+  if (a.settings.has("render.ao_distance") && a.what != "ambient-occlusion")
+    throwInput("--ao-distance: is for --what ambient-occlusion");
   if (a.settings.get<uint64_t>("render.samples") < 2) throwInput("--samples: should be 2 or more");
   checkOutputFile(a.output, {".glb", ".gltf"});
   if (!a.toVertices()) checkWritable(a.lightmapPath());
