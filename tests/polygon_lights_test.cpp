@@ -18,6 +18,7 @@
 #include "math/rotation.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
+#include "probe/suggest_polygons.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "sphere_test.h"

@@ -20,17 +20,10 @@ CachedIntegrator::CachedIntegrator(const PathTracer& tracer, const IrradianceCac
 
 Sample CachedIntegrator::sample(const CameraSample& camera, PathContext& context) const {
   ++context.counts.camera;
-  context.sampler.startVertex(0);
   PathState state = camera.path();
-  const auto first = firstSurface(tracer_, state, camera.hit, context);
-  if (!first) {
-    tracer_.vertex(state, std::nullopt, context);
-    return context.clamp(state.radiance);
-  }
   Rgb radiance(0);
-  if (first->surface.material->emits())
-    radiance += tracer_.foundEmission(state, first->surface, first->instance);
-  if (first->surface.material->unlit) return context.clamp(radiance);
+  const auto first = firstReflector(tracer_, state, camera.hit, context, radiance);
+  if (!first) return context.clamp(radiance);
   const Bsdf bsdf = first->bsdf(tracer_, state);
   const auto diffuse = cached(bsdf, first->surface);
   if (!diffuse) {

@@ -50,17 +50,10 @@ EnvironmentMapIntegrator::EnvironmentMapIntegrator(const World& world, const Lig
 
 Sample EnvironmentMapIntegrator::sample(const CameraSample& camera, PathContext& context) const {
   ++context.counts.camera;
-  context.sampler.startVertex(0);
   PathState state = camera.path();
-  const auto first = firstSurface(tracer_, state, camera.hit, context);
-  if (!first) {
-    tracer_.vertex(state, std::nullopt, context);
-    return context.clamp(state.radiance);
-  }
   Rgb radiance(0);
-  if (first->surface.material->emits())
-    radiance += tracer_.foundEmission(state, first->surface, first->instance);
-  if (first->surface.material->unlit) return context.clamp(radiance);
+  const auto first = firstReflector(tracer_, state, camera.hit, context, radiance);
+  if (!first) return context.clamp(radiance);
   const Bsdf bsdf = first->bsdf(tracer_, state);
   const GuidedBsdf guided(bsdf, first->surface.position, -state.ray.direction, nullptr);
   const LightPoint light{first->surface.position, bsdf.normal(), &bsdf, 0, bsdf.transmits()};
@@ -91,17 +84,18 @@ Rgb EnvironmentMapIntegrator::specular(const Point& point, const MapLobe& lobe,
                                        PathContext& context) const {
   const Surface& surface = point.first.surface;
   const PrefilteredProbe& maps = environment_.maps();
-  Rgb radiance = maps.radiance(lobe.direction, lobe.roughness);
+  const bool isTransmitted = glm::dot(surface.geometricNormal, lobe.direction) <= 0;
+  const bool isSampled =
+      !isTransmitted && lobe.roughness > 0 && lobe.roughness < PrefilteredProbe::kLeastRoughness;
+  const bool isBlocked = !isTransmitted && occlusion_.reflection;
+  vec3 wi = lobe.direction;
+  if (isSampled || isBlocked)
+    wi = reflectedBy(lobe, -point.state.ray.direction, context.sampler.get2(dimension::kBsdf));
+  Rgb radiance = isSampled ? maps.radiance(wi, 0) : maps.radiance(lobe.direction, lobe.roughness);
   // Light samples find the suns, except in smooth lobes.
   if (environment_.suns() && lobe.roughness == 0)
     radiance += environment_.suns()->background({}, lobe.direction);
-  const bool isTransmitted = glm::dot(surface.geometricNormal, lobe.direction) <= 0;
-  const bool isNarrow = lobe.roughness > 0 && lobe.roughness < PrefilteredProbe::kLeastRoughness;
-  if (isTransmitted || !(isNarrow || occlusion_.reflection)) return radiance;
-  const vec3 wi =
-      reflectedBy(lobe, -point.state.ray.direction, context.sampler.get2(dimension::kBsdf));
-  if (isNarrow) radiance = maps.radiance(wi, 0);
-  if (!occlusion_.reflection) return radiance;
+  if (!isBlocked) return radiance;
   if (glm::dot(surface.geometricNormal, wi) <= 0) return Rgb(0);
   ++context.counts.shadow;
   return radiance * tracer_.world().accel.transmittance({surface.rayOrigin(wi), wi},

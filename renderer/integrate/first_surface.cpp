@@ -35,4 +35,20 @@ std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& st
   return found;
 }
 
+std::optional<FirstSurface> firstReflector(const PathTracer& tracer, PathState& state,
+                                           const std::optional<Hit>& hit, PathContext& context,
+                                           Rgb& radiance) {
+  context.sampler.startVertex(0);
+  const auto first = firstSurface(tracer, state, hit, context);
+  if (!first) {
+    tracer.vertex(state, std::nullopt, context);
+    radiance += state.radiance;
+    return {};
+  }
+  const Material& material = *first->surface.material;
+  if (material.emits()) radiance += tracer.foundEmission(state, first->surface, first->instance);
+  if (material.unlit) return {};
+  return first;
+}
+
 }  // namespace chromeball

@@ -29,6 +29,9 @@ struct PolygonSource {
 // sees all of them gets so much more or less of the irradiance of surfaces that face them.
 double unevenness(std::span<const PolygonSource> sources);
 
+// The source that a polygon alone would become.
+PolygonSource sourceOf(const Image& latLong, const SphericalPolygon& polygon);
+
 // The sources, and the map without them. From each texel the part that a polygon covers gives up
 // its radiance above `fill`, the mean of the texels around the polygon, channel by channel. The
 // source's radiance is what was taken, by radiance x solid angle, over the polygon's solid angle,
@@ -39,12 +42,5 @@ struct PolygonExtraction {
 };
 PolygonExtraction extractPolygons(const Image& latLong,
                                   const std::vector<SphericalPolygon>& polygons);
-
-// Proposals: convex polygons around the connected regions whose luminance is above 4 times the mean
-// of the sphere, at most `count`, in order of decreasing flux; without regions that reach more than
-// 60 degrees from their middle. Where the uneven part of a region's flux is more than the flux of
-// the next region, the former is cut in two instead, through the middle of its flux and across the
-// direction in which that is spread most.
-std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count);
 
 }  // namespace chromeball

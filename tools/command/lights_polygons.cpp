@@ -10,6 +10,7 @@
 #include "job/polygon_file.h"
 #include "lighting/light_preview.h"
 #include "messages.h"
+#include "probe/suggest_polygons.h"
 
 namespace chromeball {
 namespace {
