@@ -144,7 +144,7 @@ TEST(Align, ARoomOfTwoEqualHalvesHasTwoAnswers) {
 TEST(SlowAlign, GalileosCrossHasTheOrientationOfItsAngularMap) {
   const auto cross = sharedData("probes/debevec/galileo_cross.hdr");
   const auto angular = sharedData("probes/debevec/galileo_probe.hdr");
-  if (!cross || !angular) GTEST_SKIP();
+  if (!cross || !angular) GTEST_SKIP() << "no shared data";
   const Image first = loadProbe(*angular).latLong, second = loadProbe(*cross).latLong;
   const ProbeAlignment found = alignProbes(first, second, "probe", "cross");
   EXPECT_LT(degreesBetween(found.rotation, Rotation()), 0.5 * texelDegrees(second));
