@@ -85,7 +85,8 @@ void checkIntegrator(const SceneFile& file) {
   if (s.has("render.ao_distance") && !approximates && !wants("ao") && !wants("bent_normal"))
     throwInput("{}: is for ambient occlusion: `--aov ao,bent_normal`, or an integrator with it",
                s.location("render.ao_distance"));
-  if (s.has("render.bent") && !wants("bent_normal"))
+  // The default has no effect and is in the header that reproduces an image.
+  if (s.get<std::string>("render.bent") != "cosine" && !wants("bent_normal"))
     throwInput("{}: is for the layer of `--aov bent_normal`", s.location("render.bent"));
   if (!approximates) return;
   const std::string location = s.location("render.integrator");
