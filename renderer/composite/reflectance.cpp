@@ -42,7 +42,7 @@ class VisibilityIntegrator : public Integrator {
     const Scene& scene = tracer_.world().scene;
     const vec3& direction = state.ray.direction;
     const Surface surface = surfaceAt(scene, scene.instances[hit->instance], hit->triangle,
-                                      hit->barycentric, -direction);
+                                      hit->barycentric, -direction, 0, state.ray.time);
     const float distance = glm::length(surface.position - camera.ray.origin);
     context.layers[kDepth] = Rgb(camera_.depth(direction, distance));
     context.layers[kCoverage] = Rgb(1);
@@ -72,8 +72,8 @@ class RepaintedIntegrator : public Integrator {
     const Scene& scene = tracer_.world().scene;
     const Instance& instance = scene.instances[hit->instance];
     state.length += hit->distance;
-    const Surface surface =
-        surfaceAt(scene, instance, hit->triangle, hit->barycentric, -state.ray.direction);
+    const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
+                                      -state.ray.direction, 0, state.ray.time);
     if (surface.material->emits())
       state.radiance += tracer_.foundEmission(state, surface, instance);
     MaterialPoint material = materialAt(scene, surface);

@@ -3,6 +3,7 @@
 
 #include "integrate/light_groups.h"
 #include "integrate/mis.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -100,7 +101,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const vec3& wi = light.direction.wi;
     const BsdfValue bsdf = vertex.bsdf.evaluate(wi);
     if (isBlack(bsdf.fCos)) return;
-    const Rgb passed = transmittance(vertex, {vertex.surface.rayOrigin(wi), wi}, context);
+    const Rgb passed = transmittance(vertex, rayFrom(vertex.surface, wi), context);
     if (isBlack(passed)) return;
     const Rgb scattered = weighted(light.direction, bsdf) * passed;
     sum += scattered * light.direction.irradiance;
@@ -129,7 +130,7 @@ void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLig
   const BsdfValue bsdf = vertex.bsdf.evaluate(chosen.direction);
   if (isBlack(bsdf.fCos)) return;
   light.hasShadowRay = true;
-  light.shadowRay = {vertex.surface.rayOrigin(chosen.direction), chosen.direction};
+  light.shadowRay = rayFrom(vertex.surface, chosen.direction);
   if (guided) {
     light.region = vertex.region;
     light.treePdf = chosen.pdf;
@@ -164,7 +165,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
     const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), light.wi);
     if (isBlack(broad.fCos) && isBlack(narrow.fCos)) continue;
     // To a point that is offset, too, so that neither surface shadows itself.
-    Ray ray{vertex.surface.rayOrigin(light.wi), light.wi, light.distance};
+    Ray ray = rayFrom(vertex.surface, light.wi, light.distance);
     if (isSurface) {
       ray.tMax = glm::length(light.end.position - ray.origin);
       ray.direction = (light.end.position - ray.origin) / ray.tMax;

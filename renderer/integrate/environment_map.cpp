@@ -4,6 +4,7 @@
 #include "integrate/first_surface.h"
 #include "math/frame.h"
 #include "shading/ggx.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -56,7 +57,8 @@ Sample EnvironmentMapIntegrator::sample(const CameraSample& camera, PathContext&
   if (!first) return context.clamp(radiance);
   const Bsdf bsdf = first->bsdf(tracer_, state);
   const GuidedBsdf guided(bsdf, first->surface.position, -state.ray.direction, nullptr);
-  const LightPoint light{first->surface.position, bsdf.normal(), &bsdf, 0, bsdf.transmits()};
+  const LightPoint light{first->surface.position, bsdf.normal(),      &bsdf, 0,
+                         bsdf.transmits(),        first->surface.time};
   const Point point{
       *first, state, bsdf, {light, first->surface, guided, state.media, nullptr, state.throughput}};
   radiance += ofSources(point, context) + ofProbe(point, context);
@@ -98,8 +100,8 @@ Rgb EnvironmentMapIntegrator::specular(const Point& point, const MapLobe& lobe,
   if (!isBlocked) return radiance;
   if (glm::dot(surface.geometricNormal, wi) <= 0) return Rgb(0);
   ++context.counts.shadow;
-  return radiance * tracer_.world().accel.transmittance({surface.rayOrigin(wi), wi},
-                                                        tracer_.settings().visible);
+  return radiance *
+         tracer_.world().accel.transmittance(rayFrom(surface, wi), tracer_.settings().visible);
 }
 
 Rgb EnvironmentMapIntegrator::ofProbe(const Point& point, PathContext& context) const {

@@ -23,7 +23,7 @@ std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& st
   const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
   FirstSurface found(scene, instance,
                      surfaceAt(scene, instance, visible->triangle, visible->barycentric,
-                               -state.ray.direction, crossSection));
+                               -state.ray.direction, crossSection, state.ray.time));
   if (state.first) {
     FirstHit& first = *state.first;
     first.hit = true;

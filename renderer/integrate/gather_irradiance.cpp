@@ -10,6 +10,7 @@
 
 #include "film/invalid.h"
 #include "math/frame.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -53,7 +54,7 @@ Seen seenAlong(const PathTracer& tracer, const Surface& surface, const vec3& nor
   if (glm::dot(wi, surface.geometricNormal) * glm::dot(normal, surface.geometricNormal) <= 0)
     return {};
   FirstHit first;
-  PathState state{.ray = {surface.rayOrigin(wi), wi},
+  PathState state{.ray = rayFrom(surface, wi),
                   .from = {surface.position, normal, nullptr, 0},
                   .isDelta = false,
                   .pdf = 0,
@@ -169,7 +170,7 @@ float meanDistance(const PathTracer& tracer, const Surface& surface, const vec3&
     for (int k = 0; k < kFew.azimuths; ++k) {
       const vec2 u = (vec2(j, k) + 0.5f) / vec2(kFew.elevations, kFew.azimuths);
       const vec3 wi = cosineDirection(frame, u);
-      if (const auto hit = tracer.closestHit({surface.rayOrigin(wi), wi}, context))
+      if (const auto hit = tracer.closestHit(rayFrom(surface, wi), context))
         inverse += 1 / double(hit->distance);
     }
   return float(kFew.count() / inverse);

@@ -3,6 +3,7 @@
 
 #include "math/frame.h"
 #include "math/warp.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -11,8 +12,7 @@ SkyRay traced(const World& world, const Surface& surface, const vec3& direction,
               RayMask visible, PathContext& context) {
   if (glm::dot(surface.geometricNormal, direction) <= 0) return {direction, Rgb(0)};
   ++context.counts.shadow;
-  return {direction,
-          world.accel.transmittance({surface.rayOrigin(direction), direction, distance}, visible)};
+  return {direction, world.accel.transmittance(rayFrom(surface, direction, distance), visible)};
 }
 
 }  // namespace

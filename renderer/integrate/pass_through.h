@@ -4,6 +4,7 @@
 
 #include "integrate/path.h"
 #include "scene/thin_wall.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 
@@ -34,7 +35,7 @@ inline bool goesStraight(const PathState& state, const Material& material) {
 // Continues the path straight through the surface. `state.from` and its pdf stay, because shadow
 // rays from there pass the surface too.
 inline void passStraight(PathState& state, const Surface& surface) {
-  state.ray = {surface.rayOrigin(state.ray.direction), state.ray.direction};
+  state.ray = rayFrom(surface, state.ray.direction);
   if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
 }
 

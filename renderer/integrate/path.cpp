@@ -8,6 +8,7 @@
 #include "integrate/mis.h"
 #include "integrate/pass_through.h"
 #include "integrate/regularization.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -81,7 +82,8 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   const bool atLimit = state.bounces() == settings_.maxDepth;
   const LightPoint before = state.from;
   const GuideRegion* const regionBefore = state.region;
-  state.from = {surface.position, bsdf.normal(), &bsdf, state.depth, bsdf.transmits()};
+  state.from = {surface.position, bsdf.normal(),    &bsdf,
+                state.depth,      bsdf.transmits(), surface.time};
   state.region = nullptr;
   const GuidedBsdf guided(bsdf, surface.position, -state.ray.direction, settings_.caustics);
   if (!atLimit) {
@@ -133,7 +135,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   state.pdf = next.pdf;
   state.isDelta = next.isDelta;
   state.lobes = next.lobes;
-  state.ray = {surface.rayOrigin(next.wi), next.wi};
+  state.ray = rayFrom(surface, next.wi);
   return true;
 }
 
@@ -176,7 +178,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   // Rough reflection does not widen the beam; textures seen by reflection stay sharp.
   const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
   const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
-                                    -state.ray.direction, crossSection);
+                                    -state.ray.direction, crossSection, state.ray.time);
   if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
   if (isHiddenFrom(state, surface) || choosesBehind(state, surface, *hit, context.sampler))
       [[unlikely]] {
@@ -225,14 +227,15 @@ bool PathTracer::isHiddenBack(const PathState& state, const Hit& hit) const {
   const Instance& instance = world_.scene.instances[hit.instance];
   return world_.scene.materials[size_t(instance.material)].hidesBack() &&
          isHiddenFrom(state, surfaceAt(world_.scene, instance, hit.triangle, hit.barycentric,
-                                       -state.ray.direction));
+                                       -state.ray.direction, 0, state.ray.time));
 }
 
 std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                                PathContext& context) const {
   while (hit && isHiddenBack(state, *hit)) {
-    const Surface back = surfaceAt(world_.scene, world_.scene.instances[hit->instance],
-                                   hit->triangle, hit->barycentric, -state.ray.direction);
+    const Surface back =
+        surfaceAt(world_.scene, world_.scene.instances[hit->instance], hit->triangle,
+                  hit->barycentric, -state.ray.direction, 0, state.ray.time);
     state.length += hit->distance;
     state.ray.origin = back.rayOrigin(state.ray.direction);
     hit = closestHit(state.ray, context);

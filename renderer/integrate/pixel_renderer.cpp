@@ -29,9 +29,12 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
       settings_(settings),
       window_(settings.window()),
       cameraRays_(camera, float(settings.width) / float(settings.height)),
+      drawsTimes_(camera.motion || world.scene.moves),
       sequence_(settings),
       table_(sequence_.tableSize(), tabulatedDimensions(settings.maxDepth), settings.seed),
-      result_(result) {}
+      result_(result) {
+  if (camera.motion) moving_.emplace(camera, float(settings.width) / float(settings.height));
+}
 
 PixelWorker PixelRenderer::makeWorker() const {
   return {{.sampler = PixelSampler(table_, settings_.seed),
@@ -83,10 +86,14 @@ void PixelRenderer::traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
     const float u = (float(cameras[i].x) + offset.x) / float(settings_.width);
     const float v = (float(cameras[i].y) + offset.y) / float(settings_.height);
     Ray& ray = rays[i];
-    if (cameraRays_.hasLens())
-      cameraRays_.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
-    else
-      cameraRays_.ray(u, v, ray.origin, ray.direction);
+    if (drawsTimes_) ray.time = sampler.time();
+    const auto aim = [&](const CameraRays& camera) {
+      if (camera.hasLens())
+        camera.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
+      else
+        camera.ray(u, v, ray.origin, ray.direction);
+    };
+    moving_ ? aim(moving_->at(ray.time)) : aim(cameraRays_);
     keys[i] = sampler.sampleKey();
   }
   world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
@@ -163,7 +170,7 @@ void PixelRenderer::add(PixelWorker& worker, const Block& block, const CameraSam
     if (!result_.layers.empty()) result_.layers.add(x, y, half, worker.context.layers);
   }
   if (camera.first) {
-    camera.first->depth = cameraRays_.depth(camera.ray.direction, camera.first->depth);
+    camera.first->depth = raysAt(camera.ray.time).depth(camera.ray.direction, camera.first->depth);
     if (!result_.aovs.empty()) result_.aovs.add(x, y, *camera.first);
     if (!result_.features.empty() && !sample.defect)
       result_.features.add(x, y, half, *camera.first, sample.radiance);

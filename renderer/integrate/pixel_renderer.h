@@ -5,7 +5,7 @@
 #include "integrate/integrator.h"
 #include "integrate/render.h"
 #include "integrate/sample_sequence.h"
-#include "scene/camera.h"
+#include "scene/moving_camera.h"
 
 namespace chromeball {
 
@@ -38,6 +38,7 @@ class PixelRenderer {
     SampleSequence::Run run;
   };
 
+  CameraRays raysAt(float time) const { return moving_ ? moving_->at(time) : cameraRays_; }
   void traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
                        std::span<CameraSample> cameras) const;
   SampleSums renderBlock(PixelWorker& worker, const Block& block, const Beam& beam) const;
@@ -52,6 +53,8 @@ class PixelRenderer {
   const RenderSettings& settings_;
   const Crop window_;
   CameraRays cameraRays_;
+  std::optional<MovingCamera> moving_;  // camera
+  const bool drawsTimes_;               // something moves while the shutter is open
   SampleSequence sequence_;
   SobolTable table_;
   RenderResult& result_;

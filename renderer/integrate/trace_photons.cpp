@@ -12,6 +12,7 @@
 #include "math/warp.h"
 #include "scene/bounds.h"
 #include "shading/bsdf.h"
+#include "trace/surface_ray.h"
 
 namespace chromeball {
 namespace {
@@ -138,8 +139,8 @@ class PhotonTracer {
                        sides * kPi *
                        surfaceAlpha(world_.scene, instance, lamp.triangle, lamp.barycentric) /
                        world_.sources.emitters->pdf(instance.material, 1, 1);
-    follow({{surface.rayOrigin(direction), direction}, flux, {0, 0, 1}, hash(lamp.instance)},
-           nullptr, random, out);
+    follow({rayFrom(surface, direction), flux, {0, 0, 1}, hash(lamp.instance)}, nullptr, random,
+           out);
   }
 
  private:
@@ -206,7 +207,7 @@ class PhotonTracer {
       chain = hash(chain, hit.instance);
       flux *= luminance(next.weight);
       media.follow(surface, next.wi);
-      ray = {surface.rayOrigin(next.wi), next.wi};
+      ray = rayFrom(surface, next.wi);
     }
   }
 

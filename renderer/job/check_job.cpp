@@ -115,6 +115,7 @@ void checkCache(const SceneFile& file) {
   const std::string integrator = s.get<std::string>("render.integrator");
   if (integrator != "path") refuse("--integrator " + integrator);
   if (file.composite) refuse("[composite]");
+  if (s.getIfGiven<double>("camera.shutter").value_or(0) > 0) refuse("--shutter");
   const auto layers = s.get<std::vector<std::string>>("output.aovs");
   if (std::ranges::any_of(layers, isOfLight)) refuse("light groups");
   if (s.get<bool>("render.regularize")) refuse("--regularize");

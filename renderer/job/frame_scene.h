@@ -10,7 +10,7 @@ namespace chromeball {
 class FrameScene {
  public:
   // Loads and builds the scene of a job, which becomes final as with loadScene(). All jobs must be
-  // alike but for their times, `orbit` and the rotation of the probe. Files are opened, images
+  // alike but for their times, `orbit`, and the probe's file and rotation. Files are opened, images
   // decoded, and the tables of the probe made with the first; meshes, and the acceleration
   // structures over them, are made again where they have moved or changed, the probe where it has
   // turned, and all for composites. Throws InputError.

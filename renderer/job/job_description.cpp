@@ -128,6 +128,7 @@ Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
     d.erase("probe-mapping");
   if (const auto& found = loaded.plateScale)
     d["probe-scale"] = fmt::format("{},{},{}", found->scale.x, found->scale.y, found->scale.z);
+  if (job.shutter) d["fps"] = settings.get<double>("fps");
   d["size"] = fmt::format("{}x{}", job.settings.width, job.settings.height);
   if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
   d["strategy"] = resolveStrategy(job.strategy.name);

@@ -28,7 +28,8 @@ struct LoadedScene {
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle
   bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one
-  Messages messages;  // of the job's settings, of the models and of the probe
+  Messages messages;      // of the job's settings, of the models and of the probe
+  std::string probeFile;  // of these files; empty: none
 
   // For composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
@@ -45,8 +46,9 @@ struct FrameChange {
   bool lighting = false;  // the probe, or its surroundings
 };
 
-// Replaces the camera, the probe if it has turned and, where a model is animated, what moves with
-// it, for another frame of the same job. Not for composites; a probe that turns must have a file.
+// Replaces the camera, the probe if it has turned or is another file, and, where a model is
+// animated, what moves with it, for another frame of the same job. Not for composites; a probe that
+// turns must have a file.
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
 
 }  // namespace chromeball

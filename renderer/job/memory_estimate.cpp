@@ -22,6 +22,10 @@ constexpr double kProbeTexel = 3 * sizeof(float), kTableTexel = sizeof(double);
 double triangleCountOfMeshes(const Scene& scene) {
   double count = 0;
   for (const Mesh& mesh : scene.meshes) count += double(mesh.triangles.size());
+  for (const Instance& instance : scene.instances)
+    if (instance.motion && !instance.motion->isRigid())
+      count += double(scene.meshes[size_t(instance.mesh)].triangles.size()) *
+               double(instance.motion->keys.size() - 1);
   return count;
 }
 

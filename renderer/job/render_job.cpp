@@ -222,6 +222,16 @@ RenderSettings integratorSettings(const SceneFile& file) {
   return withShard(s, std::move(r));
 }
 
+std::optional<Shutter> shutterOf(const Settings& s) {
+  const auto open = s.getIfGiven<double>("camera.shutter");
+  if (!open || *open == 0) return {};
+  Shutter shutter{*open / s.get<double>("fps")};
+  if (const auto steps = s.getIfGiven<uint64_t>("camera.shutter_steps"))
+    shutter.steps = int(*steps);
+  shutter.turn = *open * s.getIfGiven<double>("orbit-step").value_or(0);
+  return shutter;
+}
+
 // What a .png clips is relative to its white.
 DevelopSettings plannedDevelop(const Settings& s, float exposure) {
   const auto text = s.getIfGiven<std::string>("output.develop");
@@ -250,6 +260,7 @@ RenderJob planJob(SceneFile scene, const Settings& over) {
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
   job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
+  job.shutter = shutterOf(s);
   job.strategy = named(s, "lighting.strategy");
   job.outputs = s.get<std::vector<std::string>>("output.file");
   job.makesOutputFolders = !over.has("output.file");

@@ -16,12 +16,20 @@
 
 namespace chromeball {
 
+// The time that an image takes, from its own on.
+struct Shutter {
+  double seconds = 0;
+  int steps = 8;    // straight pieces in which what moves moves, up to kMostMotionSteps
+  double turn = 0;  // of the camera's orbit, degrees
+};
+
 struct RenderJob {
   SceneFile file;                 // its `settings` include the given ones
   RenderSettings settings;        // of the integrator; the size is final after loadScene()
   std::optional<ImageSize> size;  // nullopt: determined by the model's camera
   SingleSided singleSided = SingleSided::Camera;
   bool straightGlassShadows = false;  // passShadowsStraight()
+  std::optional<Shutter> shutter;     // nullopt: an image of one instant
   NamedSetting strategy;
   std::optional<CompositePlan> composite;
   std::optional<AutomaticView> view;  // nullopt: to be found by loadScene()

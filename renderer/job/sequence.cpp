@@ -49,16 +49,25 @@ void nameFiles(Settings& settings, int number) {
       settings.set(name, named(name, *path), settings.location(name));
 }
 
-void check(const Settings& given) {
+void check(const Settings& all, const Settings& given) {
   const auto refuse = [&](const char* name, const char* why) {
     if (given.has(name)) throwInput("{}: {}", given.location(name), why);
   };
   if (!given.has("frames")) {
-    for (const char* name : {"frame", "fps", "overwrite", "seed-per-frame"})
+    for (const char* name : {"frame", "overwrite", "seed-per-frame", "probe-sequence"})
       refuse(name, "needs --frames FIRST:LAST");
+    if (!all.has("camera.shutter")) refuse("fps", "needs --frames FIRST:LAST or --shutter");
     return;
   }
   refuse("model.time", "frames have times of their own; leave one of the two out");
+  refuse("orbit-step", "frames turn by --orbit; leave one of the two out");
+  if (given.has("probe-sequence")) {
+    refuse("probe.file", "each frame has a probe of --probe-sequence; leave one of the two out");
+    const auto pattern = given.get<std::string>("probe-sequence");
+    if (withNumber(pattern, 0) == pattern)
+      throwInput("{}: `{}` has no # for the number of the frame, as in probe.####.exr",
+                 given.location("probe-sequence"), pattern);
+  }
   refuse("write-every", "a frame is written when it is finished");
 }
 
@@ -73,7 +82,9 @@ std::string withNumber(const std::string& pattern, int number) {
 }
 
 Sequence::Sequence(const SceneFile& scene, const Settings& given) : scene_(scene), given_(given) {
-  check(given);
+  Settings all = scene.settings;
+  all.merge(given);
+  check(all, given);
   if (!given.has("frames")) return;
   const FrameRange range = rangeOf(given);
   for (int number = range.first; number <= range.last; number += range.step)
@@ -97,8 +108,14 @@ SequenceFrame Sequence::frame(int number) const {
   all.merge(given_);
   Settings& s = frame.given;
   s.set("model.time", number / all.get<double>("fps"), "--frames");
-  if (const auto orbit = all.getIfGiven<double>("orbit"))
+  if (const auto orbit = all.getIfGiven<double>("orbit")) {
     s.set("orbit", *orbit * (number - first_) / (end_ - first_), given_.location("orbit"));
+    if (all.has("camera.shutter")) s.set("orbit-step", *orbit / (end_ - first_), "--orbit");
+  }
+  if (const auto pattern = all.getIfGiven<std::string>("probe-sequence")) {
+    s.set("probe.file", withNumber(*pattern, number), given_.location("probe-sequence"));
+    s.erase("probe-sequence");
+  }
   if (all.get<bool>("seed-per-frame"))
     s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
   return frame;

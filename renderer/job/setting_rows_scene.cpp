@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/setting_rows.h"
 #include "lighting/strategy.h"
+#include "scene/motion.h"
 
 namespace chromeball {
 namespace {
@@ -124,6 +125,24 @@ void addCamera(std::vector<Setting>& rows) {
        .unit = "metres",
        .absent = "none",
        .help = "Distance of the plane in focus, along the camera's axis."});
+  add({.key = "shutter",
+       .option = "shutter",
+       .argument = "FRAMES",
+       .type = Number,
+       .range = {.min = 0, .max = 100},
+       .unit = "of the time 1 / fps of a frame",
+       .absent = "0: an image of one instant",
+       .help = "Motion blur: how long the shutter is open, from the time of the frame or of "
+               "--animation-time on; 0.5 is a shutter of 180 degrees. What moves meanwhile: nodes, "
+               "skins and morphs of an animation, its cameras and lamps, and --orbit."});
+  add({.key = "shutter_steps",
+       .option = "shutter-steps",
+       .argument = "N",
+       .type = Integer,
+       .range = {.min = 1, .max = kMostMotionSteps},
+       .absent = "8",
+       .help = "While the shutter is open, vertices move along so many straight lines, one after "
+               "the other; a warning says if they are far from the true motion."});
   add({.key = "principal_point",
        .type = Compound,
        .form = "two numbers",

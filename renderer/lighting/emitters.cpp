@@ -87,22 +87,41 @@ Emitters::Point Emitters::choose(double choice, float v) const {
   return {t.instance, t.triangle, b, (1 - b.x - b.y) * t.p0 + b.x * t.p1 + b.y * t.p2};
 }
 
+vec3 Emitters::placeOf(const Point& point, const Instance& instance, float time) const {
+  if (!instance.motion) return point.position;
+  const Triangle& triangle = scene_.meshes[size_t(instance.mesh)].triangles[point.triangle];
+  const auto corners = cornersAt(scene_, instance, triangle, time);
+  const vec2& b = point.barycentric;
+  return (1 - b.x - b.y) * corners[0] + b.x * corners[1] + b.y * corners[2];
+}
+
+float Emitters::areaRatio(const Surface& surface, const Instance& instance) const {
+  if (!instance.motion) return 1;
+  const auto areaAt = [&](float time) {
+    const auto [p0, p1, p2] = cornersAt(scene_, instance, surface.triangle, time);
+    return glm::length(glm::cross(p1 - p0, p2 - p0));
+  };
+  return areaAt(0) / areaAt(surface.time);
+}
+
 void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
                       std::vector<DirectionSample>& out) const {
   const Point emitter = choose(sampler.getFine1(dimension::kEmitter),  //
                                sampler.get1(dimension::kEmitter + 1));
-  const vec3 to = emitter.position - point.position;
+  const Instance& instance = scene_.instances[emitter.instance];
+  const vec3 to = placeOf(emitter, instance, point.time) - point.position;
   const float distance = glm::length(to);
   const vec3 wi = to / distance;
   // Plain BSDFs transmit no light: saves the surface of a sample that they would drop.
   if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || point.bsdf->isLayered())) return;
-  const Instance& instance = scene_.instances[emitter.instance];
-  const Surface surface = surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi);
+  const Surface surface =
+      surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi, 0, point.time);
   const float cosine = glm::dot(surface.geometricNormal, -wi);
   const Rgb radiance = emittedRadiance(scene_, instance, surface, -wi) *
                        surfaceAlpha(scene_, instance, emitter.triangle, emitter.barycentric);
   if (isBlack(radiance) || !(cosine > 0)) return;
-  const float density = pdf(instance.material, distance, cosine);
+  const float density = pdf(instance.material, distance, cosine) * areaRatio(surface, instance);
+  if (!(density > 0)) return;
   out.push_back({.wi = wi,
                  .irradiance = radiance / density,
                  .pdf = density,
@@ -116,7 +135,8 @@ float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
   const float distance = glm::length(to);
   constexpr float kGrazing = 1e-12f;
   const float cosine = -glm::dot(surface.geometricNormal, to) / distance;
-  return pdf(instance.material, distance, std::max(cosine, kGrazing));
+  return pdf(instance.material, distance, std::max(cosine, kGrazing)) *
+         areaRatio(surface, instance);
 }
 
 }  // namespace chromeball

@@ -15,6 +15,8 @@ namespace chromeball {
 // and sampled uniformly over its area. The pdf over area is then the same for all points of a
 // material: its mean luminance x alpha / total.
 //
+// While the shutter is open, a triangle is chosen by the area that it has when it opens.
+//
 // A call of sample() gives one sample. Its radiance is that of the point times its alpha, with
 // which a BSDF-sampled ray hits it.
 class Emitters : public LightSource {
@@ -44,6 +46,9 @@ class Emitters : public LightSource {
   }
 
  private:
+  vec3 placeOf(const Point& point, const Instance& instance, float time) const;
+  // Of the area by which a triangle was chosen to the area that it has at the surface's time.
+  float areaRatio(const Surface& surface, const Instance& instance) const;
   struct EmissiveTriangle {
     uint32_t instance, triangle;
     vec3 p0, p1, p2;

@@ -24,6 +24,7 @@ struct LightPoint {
   const Bsdf* bsdf;        // null in escaped()
   int depth;               // 0 at the first hit; a strategy may take fewer samples at later hits
   bool transmits = false;  // light from behind contributes too
+  float time = 0;          // of the shutter (scene/motion.h)
 };
 
 // The surface at which a shadow ray to a light in the scene ends.

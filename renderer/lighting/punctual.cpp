@@ -12,24 +12,26 @@ float rangeAttenuation(const PunctualLight& light, float distance) {
 // Minimum of cosInner - cosOuter, as in the extension's example code: avoids division by 0.
 constexpr float kMinConeWidth = 0.001f;
 
-float coneAttenuation(const PunctualLight& light, const vec3& wi) {
+float coneAttenuation(const PunctualLight& light, const vec3& direction, const vec3& wi) {
   const float width = std::max(kMinConeWidth, light.cosInner - light.cosOuter);
-  const float fraction = (glm::dot(light.direction, -wi) - light.cosOuter) / width;
+  const float fraction = (glm::dot(direction, -wi) - light.cosOuter) / width;
   const float clamped = std::clamp(fraction, 0.0f, 1.0f);
   return clamped * clamped;
 }
 
 }  // namespace
 
-DirectionSample incidentLight(const PunctualLight& light, const vec3& position) {
+DirectionSample incidentLight(const PunctualLight& light, const vec3& position, float time) {
+  const LampPose pose = light.poseAt(time);
   if (light.kind == PunctualLight::Kind::Directional)
-    return {-light.direction, light.intensity, 0, true};
-  const vec3 to = light.position - position;
+    return {-pose.direction, light.intensity, 0, true};
+  const vec3 to = pose.position - position;
   const float distance = glm::length(to);
-  if (!(distance > 0)) return {-light.direction, Rgb(0), 0, true, 0, 0};
+  if (!(distance > 0)) return {-pose.direction, Rgb(0), 0, true, 0, 0};
   const vec3 wi = to / distance;
   float attenuation = rangeAttenuation(light, distance) / (distance * distance);
-  if (light.kind == PunctualLight::Kind::Spot) attenuation *= coneAttenuation(light, wi);
+  if (light.kind == PunctualLight::Kind::Spot)
+    attenuation *= coneAttenuation(light, pose.direction, wi);
   return {wi, light.intensity * attenuation, 0, true, 0, distance};
 }
 
@@ -44,8 +46,8 @@ std::vector<std::string> PunctualLights::groups() const {
   return names;
 }
 
-DirectionSample PunctualLights::sampleOf(size_t i, const vec3& position) const {
-  DirectionSample s = incidentLight(lights_[i], position);
+DirectionSample PunctualLights::sampleOf(size_t i, const LightPoint& point) const {
+  DirectionSample s = incidentLight(lights_[i], point.position, point.time);
   s.group = int(i);
   return s;
 }
@@ -53,22 +55,21 @@ DirectionSample PunctualLights::sampleOf(size_t i, const vec3& position) const {
 void PunctualLights::sample(const LightPoint& point, const PixelSampler& sampler,
                             std::vector<DirectionSample>& out) const {
   const size_t wanted = point.depth == 0 ? kFirst : kLater;
-  if (lights_.size() > wanted) return choose(point.position, sampler, int(wanted), out);
+  if (lights_.size() > wanted) return choose(point, sampler, int(wanted), out);
   for (size_t i = 0; i < lights_.size(); ++i)
-    if (const DirectionSample s = sampleOf(i, point.position); !isBlack(s.irradiance))
-      out.push_back(s);
+    if (const DirectionSample s = sampleOf(i, point); !isBlack(s.irradiance)) out.push_back(s);
 }
 
-void PunctualLights::choose(const vec3& position, const PixelSampler& sampler, int count,
+void PunctualLights::choose(const LightPoint& point, const PixelSampler& sampler, int count,
                             std::vector<DirectionSample>& out) const {
   float total = 0;
   for (const PunctualLight& light : lights_)
-    total += luminance(incidentLight(light, position).irradiance);
+    total += luminance(incidentLight(light, point.position, point.time).irradiance);
   const float step = total / float(count);
   constexpr uint64_t kPurpose = 0x6c616d70;  // separate random stream
   float target = step * toUnit(uint32_t(hash(sampler.sampleKey(), kPurpose))), sum = 0;
   for (size_t i = 0; i < lights_.size(); ++i) {
-    DirectionSample s = sampleOf(i, position);
+    DirectionSample s = sampleOf(i, point);
     const float weight = luminance(s.irradiance);
     sum += weight;
     s.irradiance *= step / weight;

@@ -13,7 +13,8 @@ namespace chromeball {
 // The light that arrives at `position` (KHR_lights_punctual): intensity / distance^2, times
 // max(min(1 - (distance / range)^4, 1), 0) for the range, and for a spot times
 // ((cos - cosOuter) / (cosInner - cosOuter))^2, clamped to [0, 1] before squaring. A delta light.
-DirectionSample incidentLight(const PunctualLight& light, const vec3& position);
+// `time`: of the shutter.
+DirectionSample incidentLight(const PunctualLight& light, const vec3& position, float time = 0);
 
 class PunctualLights : public LightSource {
  public:
@@ -32,8 +33,8 @@ class PunctualLights : public LightSource {
  private:
   explicit PunctualLights(const Scene& scene) : lights_(scene.lights) {}
 
-  DirectionSample sampleOf(size_t i, const vec3& position) const;
-  void choose(const vec3& position, const PixelSampler& sampler, int count,
+  DirectionSample sampleOf(size_t i, const LightPoint& point) const;
+  void choose(const LightPoint& point, const PixelSampler& sampler, int count,
               std::vector<DirectionSample>& out) const;
 
   const std::vector<PunctualLight>& lights_;

@@ -69,6 +69,16 @@ class PixelSampler {
   }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
+  // When the shutter sees the sample: a dimension of its own, which only renders of moving scenes
+  // use, padded to those of the table.
+  float time() const {
+    constexpr uint64_t kPurpose = 0x74696d65;  // separate random stream
+    const uint64_t order = hash(seed_, kPurpose);
+    const uint32_t index = owenScramble(index_, uint32_t(order));
+    return toUnit(owenScramble(sobol(index, 0), uint32_t(order >> 32)) ^
+                  uint32_t(hash(key_, kPurpose)));
+  }
+
   // A key to hash for decisions that have no dimension of their own (stochastic alpha).
   uint32_t sampleKey() const {
     return uint32_t(key_) ^ (index_ * 0x9e3779b9u + uint32_t(base_) * 0x85ebca6bu);

@@ -2,7 +2,9 @@
 // Cameras and their rays.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "math/vec.h"
 #include "scene/distortion.h"
@@ -25,6 +27,8 @@ struct Camera {
   // the height is tan(fov / 2) focal lengths.
   vec2 principalPoint{0.5f, 0.5f};
   Distortion distortion;
+  // Its keys while the shutter is open (scene/moving_camera.h); null: it stands still.
+  std::shared_ptr<const std::vector<Camera>> motion = nullptr;
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
   static Camera lookAt(vec3 position, vec3 target, vec3 up, float fovRadians);

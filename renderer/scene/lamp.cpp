@@ -45,6 +45,14 @@ float PunctualLight::intensityOfOneWatt() const {
   return 1 / (2 * kPi * ((1 - cosInner) + (cosInner - cosOuter) / 3));
 }
 
+LampPose PunctualLight::poseAt(float time) const {
+  if (!motion) return {position, direction};
+  const KeySpan span = keysAround(motion->size(), time);
+  const LampPose &from = (*motion)[span.from], &to = (*motion)[span.to];
+  return {glm::mix(from.position, to.position, span.fraction),
+          glm::normalize(glm::mix(from.direction, to.direction, span.fraction))};
+}
+
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
   if (lamp.sun) return scene.suns.push_back(*lamp.sun);
   if (lamp.ambient) return scene.ambient.push_back(*lamp.ambient);

@@ -2,7 +2,9 @@
 // Lights that are not emissive surfaces of a model, and their units in files.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "math/vec.h"
 #include "probe/sun.h"
@@ -17,6 +19,12 @@ constexpr float lumensPerWatt(LightUnits units) {
   return units == LightUnits::Photometric ? 683.0f : 1.0f;
 }
 
+// Where a punctual light is while the shutter is open (scene/motion.h).
+struct LampPose {
+  vec3 position, direction;
+  bool operator==(const LampPose&) const = default;
+};
+
 struct PunctualLight {
   enum class Kind : uint8_t { Directional, Point, Spot };
 
@@ -28,6 +36,9 @@ struct PunctualLight {
   float range = INFINITY;                      // metres; beyond it the light is 0
   float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
   std::string name = {};                       // of its node
+  std::shared_ptr<const std::vector<LampPose>> motion = nullptr;  // its keys; null: stands still
+
+  LampPose poseAt(float time) const;
 
   bool operator==(const PunctualLight&) const = default;
 

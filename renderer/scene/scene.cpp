@@ -15,6 +15,13 @@ size_t bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
+size_t bytesOf(const Mesh& mesh) {
+  size_t bytes = bytesOf(mesh.triangles) + bytesOf(mesh.positions) + bytesOf(mesh.normals) +
+                 bytesOf(mesh.tangents) + bytesOf(mesh.colors);
+  for (const auto& uv : mesh.uvs) bytes += bytesOf(uv);
+  return bytes;
+}
+
 template <class T>
 void moveToEnd(std::vector<T>& to, std::vector<T>& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -30,11 +37,11 @@ size_t Scene::triangleCount() const {
 
 size_t Scene::byteCount() const {
   size_t bytes = bytesOf(instances);
-  for (const Mesh& mesh : meshes) {
-    bytes += bytesOf(mesh.triangles) + bytesOf(mesh.positions) + bytesOf(mesh.normals) +
-             bytesOf(mesh.tangents) + bytesOf(mesh.colors);
-    for (const auto& uv : mesh.uvs) bytes += bytesOf(uv);
-  }
+  for (const Mesh& mesh : meshes) bytes += bytesOf(mesh);
+  for (const Instance& instance : instances)
+    if (instance.motion)
+      for (const InstanceMotion::Key& key : instance.motion->keys)
+        if (key.mesh != meshes.shared(size_t(instance.mesh))) bytes += bytesOf(*key.mesh);
   return bytes + texelByteCount();
 }
 
@@ -85,6 +92,7 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.files, other.files);
   moveToEnd(scene.notes, other.notes);
   scene.isAnimated |= other.isAnimated;
+  scene.moves |= other.moves;
 }
 
 }  // namespace chromeball

@@ -12,17 +12,10 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
+#include "scene/motion.h"
+#include "scene/transform.h"
 
 namespace chromeball {
-
-// Affine: row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
-struct Transform {
-  glm::mat3 linear{1};
-  vec3 translation{0};
-
-  vec3 point(const vec3& p) const { return linear * p + translation; }
-  bool operator==(const Transform&) const = default;
-};
 
 // A mesh with a transform and a material. A mesh with a single instance is stored in world space
 // and has no transform here. Instances of one mesh may differ in material if the materials need the
@@ -33,6 +26,8 @@ struct Instance {
   int node = 0;  // index into Scene::nodeNames
   std::optional<Transform> toWorld;
   bool moves = false;  // at other times of the animation it may have another place or shape
+  // While the shutter is open, from this place and shape; null: it stands still.
+  std::shared_ptr<const InstanceMotion> motion = nullptr;
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
   bool operator==(const Instance&) const = default;
@@ -56,6 +51,7 @@ struct Scene {
   std::vector<int> nodeParents;    // by node, -1 for none; empty if no node has a parent
   std::vector<std::string> files;  // paths of all files read: models, their buffers and images
   bool isAnimated = false;         // shown at a time of an animation
+  bool moves = false;              // while the shutter is open
 
   size_t triangleCount() const;       // instanced triangles count once per instance
   size_t byteCount() const;           // of geometry and texels, for the statistics

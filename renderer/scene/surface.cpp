@@ -31,26 +31,60 @@ float footprintOf(float crossSection, float cosine, float doubleArea) {
   return doubleArea > 0 ? area / doubleArea : 0;
 }
 
-float handednessOf(const Instance& instance) {
-  return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0 ? -1.0f : 1.0f;
+float handednessOf(const std::optional<Transform>& toWorld) {
+  return toWorld && glm::determinant(toWorld->linear) < 0 ? -1.0f : 1.0f;
 }
 
 // The interpolated vertex normal in world space, on the front side; not unit.
-[[gnu::always_inline]] inline vec3 interpolatedNormal(const Mesh& mesh, const Instance& instance,
+[[gnu::always_inline]] inline vec3 interpolatedNormal(const Mesh& mesh,
+                                                      const std::optional<Transform>& toWorld,
                                                       const Triangle& triangle, vec2 barycentric,
                                                       float handedness) {
   const vec3 n = interpolate(mesh.normals, triangle, barycentric);
-  if (!instance.toWorld) return n;
-  const mat3& m = instance.toWorld->linear;  // normals are transformed by the cofactor matrix
+  if (!toWorld) return n;
+  const mat3& m = toWorld->linear;  // normals are transformed by the cofactor matrix
   return handedness * (n.x * glm::cross(m[1], m[2]) + n.y * glm::cross(m[2], m[0]) +
                        n.z * glm::cross(m[0], m[1]));
 }
 
+// The same of an instance that moves. Between two keys it turns as their vertices do.
+[[gnu::noinline]] vec3 movingNormal(const InstanceMotion& motion, const Triangle& triangle,
+                                    vec2 barycentric, float time) {
+  const KeySpan span = motion.at(time);
+  const auto unitAt = [&](const InstanceMotion::Key& key) {
+    const vec3 n = interpolatedNormal(*key.mesh, key.toWorld, triangle, barycentric,
+                                      handednessOf(key.toWorld));
+    const float length2 = glm::dot(n, n);
+    return length2 > 0 ? n * (1 / std::sqrt(length2)) : vec3(0);
+  };
+  return glm::mix(unitAt(motion.keys[span.from]), unitAt(motion.keys[span.to]), span.fraction);
+}
+
+[[gnu::noinline]] std::array<vec3, 3> movingCorners(const InstanceMotion& motion,
+                                                    const Triangle& triangle, float time) {
+  const KeySpan span = motion.at(time);
+  return {motion.point(triangle.x, span), motion.point(triangle.y, span),
+          motion.point(triangle.z, span)};
+}
+
+// In world space, with the sign of the bitangent in w; not unit.
+vec4 interpolatedTangent(const Surface& s, const Instance& instance) {
+  const auto tangentOf = [&](const Mesh& mesh, const std::optional<Transform>& toWorld) {
+    const vec4 tangent = interpolate(mesh.tangents, s.triangle, s.barycentric);
+    return toWorld ? vec4(toWorld->linear * vec3(tangent), tangent.w) : tangent;
+  };
+  if (!instance.motion) return tangentOf(*s.mesh, instance.toWorld);
+  const KeySpan span = instance.motion->at(s.time);
+  const InstanceMotion::Key &from = instance.motion->keys[span.from],
+                            &to = instance.motion->keys[span.to];
+  return glm::mix(tangentOf(*from.mesh, from.toWorld), tangentOf(*to.mesh, to.toWorld),
+                  span.fraction);
+}
+
 std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& instance,
                                          float handedness, const vec3& normal) {
-  const vec4 tangent4 = interpolate(s.mesh->tangents, s.triangle, s.barycentric);
+  const vec4 tangent4 = interpolatedTangent(s, instance);
   vec3 tangent(tangent4);
-  if (instance.toWorld) tangent = instance.toWorld->linear * tangent;
   tangent -= normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(tangent, tangent);
   if (!(length2 > 0)) return std::nullopt;
@@ -81,13 +115,22 @@ float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& norm
 
 }  // namespace
 
+std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance, const Triangle& t,
+                              float time) {
+  if (instance.motion) return movingCorners(*instance.motion, t, time);
+  const std::vector<vec3>& positions = scene.meshes[instance.mesh].positions;
+  return {instance.point(positions[t.x]), instance.point(positions[t.y]),
+          instance.point(positions[t.z])};
+}
+
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
-                  const vec3& wo, float crossSection) {
+                  const vec3& wo, float crossSection, float time) {
   Surface s;
   s.mesh = &scene.meshes[instance.mesh];
   s.material = &scene.materials[instance.material];
   s.triangle = s.mesh->triangles[triangle];
   s.barycentric = barycentric;
+  s.time = time;
 
   vec3 p0 = s.mesh->positions[s.triangle.x];
   vec3 p1 = s.mesh->positions[s.triangle.y];
@@ -97,7 +140,11 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     p0 = toWorld->point(p0);
     p1 = toWorld->point(p1);
     p2 = toWorld->point(p2);
-    handedness = handednessOf(instance);
+    handedness = handednessOf(toWorld);
+  }
+  if (instance.motion) [[unlikely]] {
+    const auto corners = movingCorners(*instance.motion, s.triangle, time);
+    p0 = corners[0], p1 = corners[1], p2 = corners[2];
   }
 
   s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
@@ -113,7 +160,9 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
 
   s.normal = s.geometricNormal;
   if (!s.mesh->normals.empty()) {
-    vec3 n = interpolatedNormal(*s.mesh, instance, s.triangle, barycentric, handedness);
+    vec3 n = interpolatedNormal(*s.mesh, instance.toWorld, s.triangle, barycentric, handedness);
+    if (instance.motion) [[unlikely]]
+      n = movingNormal(*instance.motion, s.triangle, barycentric, time);
     const float length2 = glm::dot(n, n);
     if (length2 > 0) {
       n *= 1 / std::sqrt(length2);
@@ -127,19 +176,18 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
 }
 
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
-                  const vec3& direction) {
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  const Triangle& t = mesh.triangles[triangle];
-  const vec3 p0 = instance.point(mesh.positions[t.x]);
-  const vec3 edge1 = instance.point(mesh.positions[t.y]) - p0;
-  const vec3 edge2 = instance.point(mesh.positions[t.z]) - p0;
-  return handednessOf(instance) * glm::dot(glm::cross(edge1, edge2), direction) > 0;
+                  const vec3& direction, float time) {
+  const Triangle& t = scene.meshes[instance.mesh].triangles[triangle];
+  const auto [p0, p1, p2] = cornersAt(scene, instance, t, time);
+  return handednessOf(instance.toWorld) * glm::dot(glm::cross(p1 - p0, p2 - p0), direction) > 0;
 }
 
 std::optional<TangentFrame> tangentFrameAt(const Surface& s, const Instance& instance) {
   if (s.mesh->tangents.empty()) return std::nullopt;
-  const float handedness = handednessOf(instance);
-  const vec3 n = interpolatedNormal(*s.mesh, instance, s.triangle, s.barycentric, handedness);
+  const float handedness = handednessOf(instance.toWorld);
+  const vec3 n = instance.motion ? movingNormal(*instance.motion, s.triangle, s.barycentric, s.time)
+                                 : interpolatedNormal(*s.mesh, instance.toWorld, s.triangle,
+                                                      s.barycentric, handedness);
   const float length2 = glm::dot(n, n);
   if (!(length2 > 0)) return std::nullopt;
   return tangentFrame(s, instance, handedness, n * (1 / std::sqrt(length2)));

@@ -2,6 +2,8 @@
 // Geometry, normals and material parameters at a hit point.
 #pragma once
 
+#include <array>
+
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -21,6 +23,7 @@ struct Surface {
   // Area of the texture filter on the triangle, divided by twice the triangle's area; 0 if textures
   // are not filtered.
   float footprint;
+  float time = 0;  // at which it is seen (scene/motion.h)
 
   // Origin of a ray that leaves the surface in direction `direction`.
   vec3 rayOrigin(const vec3& direction) const {
@@ -29,14 +32,18 @@ struct Surface {
   }
 };
 
+// The corners of a triangle in world space, in the order of its vertices.
+std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance,
+                              const Triangle& triangle, float time);
+
 // Whether a ray along `direction` hits the back of the triangle; equals !surfaceAt().frontFace.
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
-                  const vec3& direction);
+                  const vec3& direction, float time = 0);
 
 // `wo`: unit, towards the viewer. `crossSection`: of the beam around the ray, in square metres; 0
 // without texture filtering.
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
-                  const vec3& wo, float crossSection = 0);
+                  const vec3& wo, float crossSection = 0, float time = 0);
 
 // Fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
 inline void prefetchTriangle(const Scene& scene, const Instance& instance, uint32_t triangle) {

@@ -13,7 +13,7 @@ namespace {
 
 RTCRay embreeRay(const Ray& ray, RayMask mask) {
   const vec3 &o = ray.origin, &d = ray.direction;
-  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.tMax, mask, 0, 0};
+  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, ray.time, ray.tMax, mask, 0, 0};
 }
 
 // Embree supports coordinates up to 1.8e18. The Debian build of Embree aborts the program for a ray
@@ -32,7 +32,8 @@ void fillPacket(std::span<const Ray> rays, RayMask mask, int* valid, RTCRay8& r)
     valid[i] = isTraceable(ray) ? -1 : 0;
     r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
     r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
-    r.tnear[i] = r.time[i] = 0;
+    r.tnear[i] = 0;
+    r.time[i] = ray.time;
     r.tfar[i] = ray.tMax;
     r.mask[i] = mask;
     r.id[i] = r.flags[i] = 0;

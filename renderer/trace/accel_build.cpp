@@ -20,13 +20,27 @@ void throwOnError(RTCDevice device) {
                                                       : fmt::format("error {}", int(error)));
 }
 
-RTCGeometry newInstance(RTCDevice device, RTCScene scene, const Transform& toWorld) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, scene);
+void setTransform(RTCGeometry geometry, unsigned step, const Transform& toWorld) {
   float columns[12];
   std::memcpy(columns, &toWorld.linear, sizeof toWorld.linear);
   std::memcpy(columns + 9, &toWorld.translation, sizeof toWorld.translation);
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+}
+
+RTCGeometry newInstance(RTCDevice device, RTCScene scene, const Transform& toWorld) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, scene);
+  setTransform(geometry, 0, toWorld);
+  return geometry;
+}
+
+// Embree interpolates the transforms' elements, so that vertices move along straight lines.
+RTCGeometry newMovingInstance(RTCDevice device, RTCScene scene, const InstanceMotion& motion) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, scene);
+  rtcSetGeometryTimeStepCount(geometry, unsigned(motion.keys.size()));
+  for (size_t k = 0; k < motion.keys.size(); ++k)
+    setTransform(geometry, unsigned(k), motion.keys[k].toWorld.value_or(Transform{}));
   return geometry;
 }
 
@@ -91,15 +105,21 @@ void Accel::build() {
   for (const Instance& instance : scene.instances) ++uses[size_t(instance.mesh)];
   const std::vector<uint32_t> still = staticInstances(scene, uses);
 
+  const auto geometryOf = [&](const Instance& instance) -> RTCGeometry {
+    if (instance.motion)
+      return instance.motion->isRigid()
+                 ? newMovingInstance(built_->device(), built_->meshScene(instance.mesh),
+                                     *instance.motion)
+                 : built_->newMovingGeometry(instance);
+    if (uses[size_t(instance.mesh)] == 1 && !instance.toWorld)
+      return built_->newGeometry(instance.mesh);
+    return newInstance(built_->device(), built_->meshScene(instance.mesh),
+                       instance.toWorld.value_or(Transform{}));
+  };
   scene_ = built_->newScene();
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     if (std::ranges::binary_search(still, uint32_t(i))) continue;
-    const Instance& instance = scene.instances[i];
-    RTCGeometry geometry = uses[size_t(instance.mesh)] == 1 && !instance.toWorld
-                               ? built_->newGeometry(instance.mesh)
-                               : newInstance(built_->device(), built_->meshScene(instance.mesh),
-                                             instance.toWorld.value_or(Transform{}));
-    BuiltGeometry::attach(scene_, geometry, uint32_t(i), mask(uint32_t(i)));
+    BuiltGeometry::attach(scene_, geometryOf(scene.instances[i]), uint32_t(i), mask(uint32_t(i)));
   }
   if (!still.empty())
     BuiltGeometry::attach(

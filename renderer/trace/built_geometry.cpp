@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/built_geometry.h"
 
-#include <cstring>
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -9,6 +9,16 @@
 #include "trace/filter.h"
 
 namespace chromeball {
+namespace {
+
+// Of a time step. Embree's memory, because it reads 16 bytes per vertex, past the end of an array
+// of vec3. Null if there is none.
+vec3* newVertices(RTCGeometry geometry, size_t step, size_t count) {
+  return static_cast<vec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, unsigned(step), RTC_FORMAT_FLOAT3, sizeof(vec3), count));
+}
+
+}  // namespace
 
 BuiltGeometry::BuiltGeometry(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr)) {
   if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
@@ -57,19 +67,35 @@ void BuiltGeometry::attach(RTCSceneTy* scene, RTCGeometryTy* geometry, uint32_t 
   rtcReleaseGeometry(geometry);
 }
 
-RTCGeometryTy* BuiltGeometry::newGeometry(int index) const {
+RTCGeometryTy* BuiltGeometry::newTriangles(int index) const {
   const Mesh& mesh = scene_.meshes[size_t(index)];
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Copied, because Embree reads 16 bytes per vertex, past the end of an array of vec3.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(vec3), mesh.positions.size());
-  if (vertices) std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
   if (filters_.ofMesh[size_t(index)]) {
     rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene_));
     if (filters_.hasAlpha) rtcSetGeometryIntersectFilterFunction(geometry, filterClosest);
     rtcSetGeometryOccludedFilterFunction(geometry, filterShadow);
+  }
+  return geometry;
+}
+
+RTCGeometryTy* BuiltGeometry::newGeometry(int index) const {
+  const std::vector<vec3>& positions = scene_.meshes[size_t(index)].positions;
+  RTCGeometry geometry = newTriangles(index);
+  if (vec3* vertices = newVertices(geometry, 0, positions.size()))
+    std::ranges::copy(positions, vertices);
+  return geometry;
+}
+
+RTCGeometryTy* BuiltGeometry::newMovingGeometry(const Instance& instance) const {
+  const std::vector<InstanceMotion::Key>& keys = instance.motion->keys;
+  RTCGeometry geometry = newTriangles(instance.mesh);
+  rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
+  for (size_t k = 0; k < keys.size(); ++k) {
+    const size_t count = keys[k].mesh->positions.size();
+    if (vec3* vertices = newVertices(geometry, k, count))
+      for (size_t i = 0; i < count; ++i) vertices[i] = keys[k].point(uint32_t(i));
   }
   return geometry;
 }

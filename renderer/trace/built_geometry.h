@@ -42,6 +42,8 @@ class BuiltGeometry {
 
   RTCSceneTy* newScene() const;
   RTCGeometryTy* newGeometry(int mesh) const;
+  // In world space, of an instance that changes its shape while the shutter is open.
+  RTCGeometryTy* newMovingGeometry(const Instance& instance) const;
   RTCSceneTy* meshScene(int mesh);
   // Of instances whose meshes are stored in world space; `mask` by instance, empty: all.
   RTCSceneTy* staticScene(const std::vector<uint32_t>& instances, const std::vector<RayMask>& mask);
@@ -62,6 +64,8 @@ class BuiltGeometry {
     bool operator==(const Member&) const = default;
   };
   void releaseStatic();
+  // Without vertices.
+  RTCGeometryTy* newTriangles(int mesh) const;
 
   const Scene& scene_;
   RTCDeviceTy* device_;

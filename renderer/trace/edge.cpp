@@ -4,16 +4,18 @@
 #include <array>
 #include <limits>
 
+#include "scene/surface.h"
+
 namespace chromeball {
 
 std::optional<Ray> turnedOffEdges(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Instance& instance = scene.instances[hit.instance];
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  const Triangle& triangle = mesh.triangles[hit.triangle];
-  std::array<vec3, 3> corners;  // relative to the origin, projected perpendicular to the ray
-  for (int i = 0; i < 3; ++i) {
-    const vec3 away = instance.point(mesh.positions[triangle[i]]) - ray.origin;
-    corners[i] = away - glm::dot(away, ray.direction) * ray.direction;
+  const Triangle& triangle = scene.meshes[instance.mesh].triangles[hit.triangle];
+  // Relative to the origin, projected perpendicular to the ray.
+  std::array<vec3, 3> corners = cornersAt(scene, instance, triangle, ray.time);
+  for (vec3& corner : corners) {
+    const vec3 away = corner - ray.origin;
+    corner = away - glm::dot(away, ray.direction) * ray.direction;
   }
   const vec2& b = hit.barycentric;
   const std::array weights{1 - b.x - b.y, b.x, b.y};
@@ -39,7 +41,7 @@ std::optional<Ray> turnedOffEdges(const Scene& scene, const Ray& ray, const Hit&
   }
   if (inwards == vec3(0)) return std::nullopt;
   const vec3 target = hit.distance * ray.direction + move * inwards;
-  return Ray{ray.origin, glm::normalize(target), ray.tMax};
+  return Ray{ray.origin, glm::normalize(target), ray.tMax, ray.time};
 }
 
 }  // namespace chromeball

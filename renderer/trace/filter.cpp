@@ -53,8 +53,9 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   const Scene& scene = sceneOf(arguments);
   const Hit hit = hitOf(arguments);
   const Instance& instance = scene.instances[hit.instance];
+  const float time = RTCRayN_time(arguments->ray, 1, 0);
   if (scene.materials[instance.material].backLetsLightThrough() &&
-      !isFromBehind(scene, instance, hit.triangle, query.direction)) {
+      !isFromBehind(scene, instance, hit.triangle, query.direction, time)) {
     arguments->valid[0] = 0;
     return;
   }
@@ -63,7 +64,7 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
   const Material& material = scene.materials[instance.material];
   if (alpha > 0 && passesShadows(material)) {
     const Surface surface =
-        surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction);
+        surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction, 0, time);
     passed += alpha * straightTransmittance(scene, instance, surface, query.direction);
     if (material.straightShadows) absorb(query, material, surface.frontFace, hit.distance);
   }

@@ -16,6 +16,7 @@ struct Ray {
   vec3 origin;
   vec3 direction;  // unit
   float tMax = INFINITY;
+  float time = 0;  // at which it sees the scene (scene/motion.h)
 };
 
 struct Hit {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// How models, lamps and camera move while a job's shutter is open: they are read at equally spaced
+// times, and move along straight lines between these (scene/motion.h).
+#pragma once
+
+#include "job/place_models.h"
+
+namespace chromeball {
+
+// Gives the models, their lamps and the camera their motion. Warns where straight lines are far
+// from the models' own motion, and of parts that appear or vanish: a part that is there when the
+// shutter opens stays, and another does not come. Throws InputError.
+void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache);
+
+// The camera's turn around models that stand still.
+void moveCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view,
+                const glm::dvec3& origin, Camera& camera);
+
+}  // namespace chromeball

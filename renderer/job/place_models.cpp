@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/place_models.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "job/memory_estimate.h"
+#include "job/open_shutter.h"
+#include "job/scene_lighting.h"
+#include "scene/bounds.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/thin_wall.h"
+
+namespace chromeball {
+namespace {
+
+// The origin of the scene's coordinates in the world. Floats have a relative precision of 1e-7, so
+// a scene that is small compared with its distance from the origin is moved to its own centre. The
+// distant probe is not affected.
+glm::dvec3 originFor(const Scene& scene, const std::string& file) {
+  constexpr float kMaxReach = 1e9f, kFar = 1000;
+  const Bounds box = bounds(scene);
+  const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+  if (!(maxComponent(reach) < kMaxReach))
+    throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", file,
+               maxComponent(reach), kMaxReach);
+  const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+  return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
+}
+
+// The job's size; else the default height, with the aspect ratio of the model's camera. Throws
+// InputError if the image does not fit into the job's memory.
+void chooseSize(RenderJob& job, const Scene& scene) {
+  RenderSettings& settings = job.settings;
+  if (job.size) {
+    settings.width = job.size->width;
+    settings.height = job.size->height;
+  } else if (!job.file.camera && !scene.cameras.empty()) {
+    const float aspect = chooseCamera(job, scene, {}).aspect;
+    if (aspect > 0.05f && aspect < 20)
+      settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
+  }
+  if (const auto& crop = settings.crop)
+    if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
+      throwInput("{}: is not within the image of {}x{} pixels", job.file.settings.location("crop"),
+                 settings.width, settings.height);
+  const Settings& given = job.file.settings;
+  const double needed = imageBytes(job), budget = memoryLimit(job);
+  if (needed > budget)
+    throw InputError(
+        fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
+                    given.has("render.size") ? given.location("render.size") + ": " : "",
+                    settings.width, settings.height, needed * 1e-9, budget * 1e-9),
+        Remedy{"memory", {}});
+}
+
+// Moves what the scene file places in the world to the scene's coordinates.
+void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
+  if (job.file.camera) job.file.camera->position -= vec3(origin);
+  if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
+}
+
+PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {
+  PlacedModels placed;
+  placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
+  placed.origin = originFor(placed.scene, file.models.front().file);
+  if (placed.origin != glm::dvec3(0))
+    placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
+  return placed;
+}
+
+// That of time 0, also in the coordinates of that time: with the same rounding for all times.
+AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCache& cache) {
+  if (job.view) return *job.view;
+  const AutomaticView view = automaticView(job, now.scene, now.origin);
+  if (!now.scene.isAnimated || !(view.camera || job.file.settings.has("orbit"))) return view;
+  SceneFile start = job.file;
+  for (ModelEntry& model : start.models)
+    if (model.choice.animation) model.choice.animation->seconds = 0;
+  const PlacedModels first = modelsAtOrigin(start, cache);
+  return automaticView(job, first.scene, first.origin);
+}
+
+}  // namespace
+
+Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
+                 std::vector<std::string>& warnings) {
+  Scene scene;
+  const auto add = [&](const std::string& line) {
+    if (std::ranges::find(warnings, line) == warnings.end()) warnings.push_back(line);
+  };
+  for (const ModelEntry& model : file.models) {
+    GltfChoice choice = model.choice;
+    choice.origin = origin;
+    choice.cache = &cache;
+    choice.environment = !file.settings.has("probe.file");
+    append(scene, loadGltf(model.file, model.placement, add, choice));
+  }
+  if (scene.instances.empty())
+    throwInput("{}: the model has no triangles to render", file.models.front().file);
+  const float factor = float(file.settings.get<double>("lighting.lights"));
+  if (factor == 0) scene.lights.clear();
+  for (PunctualLight& light : scene.lights) light.intensity *= factor;
+  return scene;
+}
+
+Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& view,
+                const glm::dvec3& origin, double turn) {
+  const AutomaticView here = view.seenFrom(origin);
+  const Camera camera = chooseCamera(job, scene, here);
+  if (!fillsImage(camera, double(job.settings.width) / job.settings.height))
+    throwInput(
+        "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
+        "ascend; `distortion` may be for another `fov`",
+        job.file.optics->location);
+  return camera.turnedAround(here.centre,
+                             job.file.settings.getIfGiven<double>("orbit").value_or(0) + turn);
+}
+
+PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
+  PlacedModels placed = modelsAtOrigin(job.file, cache);
+  if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
+  Scene& scene = placed.scene;
+  chooseSize(job, scene);
+  placed.view = viewAtStart(job, placed, cache);
+  placed.camera = cameraOf(job, scene, placed.view, placed.origin);
+  if (job.shutter) openShutter(job, placed, cache);
+  for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
+  removeLamps(job, scene);
+  for (Material& material : scene.materials) material.singleSided = job.singleSided;
+  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
+  return placed;
+}
+
+Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view,
+                   const glm::dvec3& origin) {
+  chooseSize(job, scene);
+  moveToOrigin(job, origin);
+  Camera camera = cameraOf(job, scene, view, origin);
+  if (job.shutter) moveCamera(job, scene, view, origin, camera);
+  return camera;
+}
+
+}  // namespace chromeball
