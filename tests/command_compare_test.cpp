@@ -219,6 +219,8 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                                 {"animation", {"Still"}},
                                                 {"animation-time", {"1"}},
                                                 {"variant", {"Red"}},
+                                                {"shutter", {"0.5"}},
+                                                {"shutter-steps", {"4"}},
                                                 {"seed", {"7"}},
                                                 {"threads", {"1"}}};
   const std::map<std::string, std::string> defaults = {

@@ -125,6 +125,12 @@ void checkCache(const SceneFile& file) {
     refuse("a strategy without light samples");
 }
 
+void checkShutter(const SceneFile& file) {
+  const Settings& s = file.settings;
+  if (s.has("orbit-step") && !s.has("camera.shutter"))
+    throwInput("{}: needs --shutter FRAMES", s.location("orbit-step"));
+}
+
 void checkParts(const SceneFile& file) {
   const Settings& s = file.settings;
   if (s.get<bool>("resume") && !s.has("checkpoint"))
@@ -176,6 +182,7 @@ void checkJob(const SceneFile& file) {
   checkGroups(file);
   checkIntegrator(file);
   checkCache(file);
+  checkShutter(file);
   checkParts(file);
   checkOrbit(file);
   checkTransparent(file);

@@ -9,6 +9,7 @@ import approximations
 import capture
 import formulas
 import lights
+import optics
 import probes
 import rendering
 import scenes
@@ -19,7 +20,7 @@ from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
-            ("Suns", [suns.rows]), ("Cheaper answers", [approximations.rows]),
+            ("Suns", [suns.rows]), ("Optics", [optics.rows]), ("Cheaper answers", [approximations.rows]),
             ("Composites and rooms", [scenes.rows, formulas.rows])]
 
 
