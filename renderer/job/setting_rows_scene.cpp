@@ -134,7 +134,8 @@ void addCamera(std::vector<Setting>& rows) {
        .absent = "0: an image of one instant",
        .help = "Motion blur: how long the shutter is open, from the time of the frame or of "
                "--animation-time on; 0.5 is a shutter of 180 degrees. What moves meanwhile: nodes, "
-               "skins and morphs of an animation, its cameras and lamps, and --orbit."});
+               "skins and morphs of an animation, its cameras and lamps, and the orbit of the "
+               "camera."});
   add({.key = "shutter_steps",
        .option = "shutter-steps",
        .argument = "N",
