@@ -10,6 +10,7 @@
 #include "image/io/write_image.h"
 #include "job/develop_text.h"
 #include "run_command.h"
+#include "small_model.h"
 
 namespace chromeball {
 namespace {
@@ -137,6 +138,37 @@ TEST(CommandDevelop, BadInput) {
   expect({"--vignette", folder / "negative.exr"}, "they are factors");
   expectError({"image", "develop", in, in}, "would overwrite");
   expectError({"image", "develop", in, folder / "out.exr", "--tonemap", "aces"}, "is linear");
+}
+
+// The .png of a render is its .exr, developed; the .exr stays as rendered.
+TEST(SlowCommandDevelop, RendersHaveTheirPngDeveloped) {
+  const TemporaryFolder folder;
+  writeSmallModel(folder / "m.gltf");
+  Image probe(4, 2, 3);
+  probe.texels.assign(probe.texels.size(), 0.7f);
+  probe.setRgb(1, 0, Rgb(90, 40, 10));
+  writeImage(folder / "probe.pfm", probe);
+  const std::vector<std::string> render{
+      "render", folder / "m.gltf", "--probe", folder / "probe.pfm", "--size",
+      "48x32",  "--samples",       "4",       "--tonemap",          "reinhard"};
+  const auto rendered = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), render.begin(), render.end());
+    const CommandResult result = runCommand(more);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.error;
+  };
+  rendered({"-o", folder / "plain.exr", "--aov", "depth"});
+  rendered({"-o", folder / "o.exr", "-o", folder / "o.png", "--aov", "depth", "--develop",
+            "depth-blur=3:0.2 bloom=.75:1,.25:8 vignette=.5"});
+  EXPECT_EQ(readImage(folder / "o.exr").texels, readImage(folder / "plain.exr").texels);
+  run({folder / "plain.exr", folder / "developed.png", "--tonemap", "reinhard", "--depth-blur",
+       "3:0.2", "--bloom", ".75:1,.25:8", "--vignette", ".5"});
+  EXPECT_EQ(readImage(folder / "o.png").texels, readImage(folder / "developed.png").texels);
+  EXPECT_EQ(rendered({"-o", folder / "only.png", "--aov", "depth", "--develop", "depth-blur=3:0.2"})
+                .find("has no effect"),
+            std::string::npos);
+  EXPECT_NE(rendered({"-o", folder / "o.exr", "--develop", "bloom=1:3"}).find("has no effect"),
+            std::string::npos);
 }
 
 TEST(DevelopText, SeveralInOneString) {

@@ -38,7 +38,9 @@ Messages checkOutputs(const RenderJob& job) {
   for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png"))
       warn(name, fmt::format("it is for .png; {} holds radiance", job.outputs.front()));
-  if (!has(".exr")) warn("output.aovs", "only an .exr holds layers");
+  const auto layers = settings.get<std::vector<std::string>>("output.aovs");
+  const bool isForLens = job.develop.lens && layers == std::vector<std::string>{"depth"};
+  if (!has(".exr") && !isForLens) warn("output.aovs", "only an .exr holds layers");
   if (const std::string strategy = resolveStrategy(job.strategy.name);
       !strategy.starts_with("suns"))
     warn("lighting.sun_angle", fmt::format("the strategy is {}; only suns has discs", strategy));
