@@ -13,7 +13,6 @@ namespace chromeball {
 namespace {
 
 constexpr uint32_t kMaxTable = 4096;       // points; more samples take another randomisation
-constexpr int kTabulatedVertices = 4;      // deeper ones use independent random numbers
 constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
 
 struct Worker {
@@ -29,10 +28,7 @@ class Baker {
         meshes_(meshes),
         settings_(settings),
         table_(std::bit_ceil(std::clamp((settings.samples + 1) / 2, 16u, kMaxTable)),
-               dimension::kVertex +
-                   dimension::kPerVertex *
-                       std::min(std::max(settings.maxDepth, 0) + 1, kTabulatedVertices),
-               settings.seed) {}
+               dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
 
   Worker makeWorker() const {
     return {{.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp()}, {}};

@@ -16,7 +16,6 @@ namespace {
 constexpr int kCoarsest = 64, kFinest = 4;  // pixels between points of the first and the last pass
 constexpr float kLeastReach = 3;            // of records, in pixels
 constexpr size_t kLargestGroup = 64;        // of points that are tried together
-constexpr int kTabulatedVertices = 6;
 
 // A point that needs the irradiance on one side of a surface.
 struct CachePoint {
@@ -37,7 +36,7 @@ class CacheFiller {
         cameraRays_(camera, float(settings.width) / float(settings.height)),
         strata_(strataOf(64 / (cache.error() * cache.error()))),
         table_(std::bit_ceil(uint32_t(strata_.count())),
-               dimension::kVertex + dimension::kPerVertex * kTabulatedVertices, settings.seed),
+               dimension::tabulated(dimension::kTabulatedVertices), settings.seed),
         contexts_([this] {
           return PathContext{.sampler = PixelSampler(table_, settings_.seed),
                              .clamp = Clamp(std::nullopt)};

@@ -9,18 +9,6 @@
 #include "integrate/regularization.h"
 
 namespace chromeball {
-namespace {
-
-// Deeper vertices contribute too little to profit from stratification; they use independent random
-// numbers.
-constexpr int kTabulatedVertices = 6;
-
-int tabulatedDimensions(int maxDepth) {
-  return dimension::kVertex +
-         dimension::kPerVertex * (std::min(maxDepth, kTabulatedVertices - 1) + 1);
-}
-
-}  // namespace
 
 PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, const Camera& camera,
                              const RenderSettings& settings, RenderResult& result)
@@ -31,7 +19,7 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
       cameraRays_(camera, float(settings.width) / float(settings.height)),
       drawsTimes_(camera.motion || world.scene.moves),
       sequence_(settings),
-      table_(sequence_.tableSize(), tabulatedDimensions(settings.maxDepth), settings.seed),
+      table_(sequence_.tableSize(), dimension::tabulated(settings.maxDepth + 1), settings.seed),
       result_(result) {
   if (camera.motion) moving_.emplace(camera, float(settings.width) / float(settings.height));
 }

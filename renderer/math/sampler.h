@@ -2,6 +2,7 @@
 // The random numbers of one path, a function of (pixel, sample, dimension, seed).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,14 @@ inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
 // and the rest of the path are added, so they need not be independent.
 inline constexpr int kGuide = 6, kBounce = 7;
 inline constexpr int kPerVertex = 8;
+
+// Deeper vertices contribute too little to profit from stratification; they use independent random
+// numbers.
+inline constexpr int kTabulatedVertices = 6;
+// How many dimensions a table needs for paths of so many vertices.
+constexpr int tabulated(int vertices) {
+  return kVertex + kPerVertex * std::clamp(vertices, 1, kTabulatedVertices);
+}
 }  // namespace dimension
 
 // Random numbers for the samples of one pixel. All pixels share the table's points; each pixel and
