@@ -50,7 +50,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"composite",
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "shading", "lighting", "film",
       "integrate", "denoise"}},
-    {"relight", {"base", "math", "image", "probe"}},
+    {"relight", {"base", "math", "image", "image/io", "probe", "lighting", "film", "integrate"}},
     {"bake", {"base", "math", "image", "image/io", "scene", "film", "integrate"}},
     {"measure", {"base", "math", "image"}},
     {"job",
