@@ -102,6 +102,12 @@ int DirectionBasis::cell(const vec3& direction) const {
 }
 
 std::vector<double> cellSolidAngles(const DirectionBasis& basis) {
+  if (basis.kind() == DirectionBasis::LatLong) {
+    std::vector<double> boxes;
+    for (int i = 0; i < basis.size(); ++i)
+      boxes.push_back(texelSolidAngle(i / basis.columns(), basis.columns(), basis.rows()));
+    return boxes;
+  }
   const bool isSlow = basis.kind() == DirectionBasis::Nearest;
   return sumOverSphere<double>(isSlow ? ImageSize{1024, 512} : ImageSize{4096, 2048},
                                size_t(basis.size()),

@@ -60,8 +60,8 @@ class DirectionBasis {
   std::vector<vec3> directions_;
 };
 
-// The solid angle of each cell, sr, by quadrature: exact for boxes whose numbers divide 4096 and
-// 2048; else to about 1e-3 of a cell of a hundredth of the sphere.
+// The solid angle of each cell, sr: exact for boxes of a lat-long map, else by quadrature, to about
+// 1e-3 of a cell of a hundredth of the sphere.
 std::vector<double> cellSolidAngles(const DirectionBasis& basis);
 
 }  // namespace chromeball

@@ -4,6 +4,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
 #include <vector>
 
 #include "probe/solid_angle.h"
@@ -16,12 +17,16 @@ namespace chromeball {
 template <class T, class Add>
 std::vector<T> sumOverSphere(const ImageSize& grid, size_t count, const Add& add) {
   constexpr int kParts = 32;
+  std::vector<dvec3> columns(static_cast<size_t>(grid.width));  // directions of the equator
+  for (int x = 0; x < grid.width; ++x) columns[size_t(x)] = texelDirection({grid.width, 1}, x, 0);
   std::vector<std::vector<T>> parts(kParts, std::vector<T>(count, T(0)));
   tbb::parallel_for(0, kParts, [&](int part) {
     for (int y = grid.height * part / kParts; y < grid.height * (part + 1) / kParts; ++y) {
       const double solidAngle = texelSolidAngle(y, grid.width, grid.height);
-      for (int x = 0; x < grid.width; ++x)
-        add(texelDirection(grid, x, y), solidAngle, parts[size_t(part)]);
+      const dvec3 row = texelDirection({1, grid.height}, 0, y);
+      const double sine = std::hypot(row.x, row.z);
+      for (const dvec3& column : columns)
+        add(dvec3(sine * column.x, row.y, sine * column.z), solidAngle, parts[size_t(part)]);
     }
   });
   for (size_t part = 1; part < kParts; ++part)

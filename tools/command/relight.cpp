@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball relight STAGE.exr --probe P -o OUT.exr: a light stage under a probe.
-#include "relight/relight.h"
+// chromeball relight STAGE.exr --probe P --probe Q --preview: on a page, where the probes turn.
+#include <filesystem>
+
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
@@ -11,8 +13,10 @@
 #include "probe/load.h"
 #include "relight/light_weights.h"
 #include "relight/reflectance_function.h"
+#include "relight/relight.h"
 #include "relight/stage_photographs.h"
 #include "rotation_option.h"
+#include "viewers/relight_server.h"
 
 namespace chromeball {
 namespace {
@@ -21,13 +25,15 @@ struct Arguments {
   std::string stage;               // or:
   std::string images, directions;  // photographs
   std::string irradiance = "1";    // of these
-  std::string probe, mapping = "auto", scale = "1";
+  std::vector<std::string> probes;
+  std::string mapping = "auto", scale = "1";
   Rotation rotation;
   std::string domain = "auto", keep = "100%", keepLight = "100%";
   std::string pixel;  // of the reflectance function
   std::string out, tone = "none";
   float exposure = 0;
   bool quiet = false;
+  std::string preview;  // the port; empty: none
 
   bool isOfPhotographs() const { return !images.empty() || !directions.empty(); }
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
@@ -62,9 +68,9 @@ glm::ivec2 parsePixel(const std::string& text, const LightStage& stage) {
   return {int(at[0]), int(at[1])};
 }
 
-Image loadLight(const Arguments& a) {
-  const LoadedProbe loaded = loadProbe(a.probe, a.mapping, "--mapping");
-  for (const std::string& warning : warnings(loaded, a.probe)) warn(warning);
+Image loadLight(const Arguments& a, const std::string& path) {
+  const LoadedProbe loaded = loadProbe(path, a.mapping, "--mapping");
+  for (const std::string& warning : warnings(loaded, path)) warn(warning);
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
 }
 
@@ -112,7 +118,7 @@ void writePicture(const Arguments& a, const Image& picture, const DirectionBasis
   output.metadata = {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
                      {"stage", a.source()},
                      {"basis", basis.name()}};
-  if (!a.probe.empty()) output.metadata["probe"] = a.probe;
+  if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
   writeImage(a.out, output, transform);
 }
 
@@ -120,7 +126,7 @@ void runPicture(const Arguments& a) {
   const Stopwatch watch;
   parseShare(a.keep, "--keep");
   parseShare(a.keepLight, "--keep-light");
-  const Image light = loadLight(a);
+  const Image light = loadLight(a, a.probes.front());
   LightStage stage = readStageOf(a);
   const RelightDomain domain = parseDomain(a.domain, stage.basis);
   const Relit relit = relitPicture(a, stage, lightWeights(stage.basis, light, a.rotation), domain);
@@ -142,6 +148,44 @@ void runReflectanceFunction(const Arguments& a) {
                pixel.y, stage.basis.name(), map.width, map.height, a.out);
 }
 
+uint64_t parsePort(const std::string& text) {
+  const double port = parseNumbers(text, 1, "--preview")[0];
+  if (!(port >= 0 && port <= 65535 && port == std::floor(port)))
+    throwInput("--preview: `{}` is not a port, 0 to 65535", text);
+  return uint64_t(port);
+}
+
+void runPreview(const Arguments& a) {
+  const uint64_t port = parsePort(a.preview);
+  std::vector<NamedProbe> probes;
+  for (const std::string& path : a.probes)
+    probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
+  const RelightView view(readStageOf(a), std::move(probes));
+  RelightServer server(int(port), view);
+  note(fmt::format("preview at {}; Ctrl-C or its button ends it", server.address()));
+  server.run();
+}
+
+void checkOutput(const Arguments& a) {
+  if (a.probes.size() > 1) throwInput("--probe: give one; --preview takes several");
+  if (a.out.empty()) throwInput("--output: needs a name; or give --preview");
+  checkWritable(a.out);
+  std::vector<std::string> inputs{a.stage, a.directions};
+  inputs.insert(inputs.end(), a.probes.begin(), a.probes.end());
+  checkDistinct({a.out}, inputs);
+}
+
+void checkPreview(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.out.empty(), "--output"),
+        std::pair(!a.pixel.empty(), "--reflectance-function"),
+        std::pair(a.domain != "auto", "--domain"), std::pair(a.keep != "100%", "--keep"),
+        std::pair(a.keepLight != "100%", "--keep-light"),
+        std::pair(a.rotation != Rotation(), "--rotation"), std::pair(a.exposure != 0, "--exposure"),
+        std::pair(a.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: has no effect with --preview; leave it out", option);
+}
+
 void check(const Arguments& a) {
   if (a.isOfPhotographs() != a.stage.empty())
     throwInput("{}", a.stage.empty()
@@ -149,16 +193,16 @@ void check(const Arguments& a) {
                          : "--images, --directions: are in place of a light stage; give one");
   if (a.isOfPhotographs() && (a.images.empty() || a.directions.empty()))
     throwInput("--images, --directions: go together");
-  if (a.probe.empty() == a.pixel.empty())
+  if (a.probes.empty() == a.pixel.empty())
     throwInput("--probe, --reflectance-function: give one of the two");
   parseColor(a.scale, "--scale");
   parseToneOperator(a.tone);
-  checkWritable(a.out);
-  checkDistinct({a.out}, {a.stage, a.directions, a.probe});
+  a.preview.empty() ? checkOutput(a) : checkPreview(a);
 }
 
 void run(const Arguments& a) {
   check(a);
+  if (!a.preview.empty()) return runPreview(a);
   a.pixel.empty() ? runPicture(a) : runReflectanceFunction(a);
 }
 
@@ -178,7 +222,10 @@ void addRelightCommand(CLI::App& app) {
       ->add_option("--irradiance", a->irradiance,
                    "of these: what the lamp puts on a surface that faces it")
       ->capture_default_str();
-  command->add_option("--probe", a->probe, "the light");
+  command->add_option("--probe", a->probes, "the light; with --preview several, each by --probe")
+      ->type_name("TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--mapping", a->mapping, "of the probe; auto detects it")
       ->capture_default_str();
   addRotationOption(*command, a->rotation);
