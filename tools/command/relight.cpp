@@ -248,8 +248,13 @@ void addRelightCommand(CLI::App& app) {
   command->add_option("--reflectance-function", a->pixel,
                       "X,Y: in place of a probe, what this pixel reflects of light from each "
                       "direction, as a lat-long map");
-  command->add_option("-o,--output", a->out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
+  command->add_option("-o,--output", a->out, "the image to write: .exr, .hdr, .pfm or .png");
+  command->add_flag("--preview")
+      ->description(
+          "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
+          "which the probes are turned and swapped")
+      ->each([a](const std::string& word) { a->preview = word == "true" ? "0" : word; })
+      ->type_name("[=PORT]");
   command->add_option("--exposure", a->exposure, "of a .png, in stops");
   command
       ->add_option("--tonemap", a->tone,
