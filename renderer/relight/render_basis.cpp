@@ -3,16 +3,10 @@
 
 #include "base/for_ranges.h"
 #include "integrate/light_groups.h"
-#include "lighting/uniform.h"
+#include "relight/white_light.h"
 
 namespace chromeball {
 namespace {
-
-Image whiteMap() {
-  Image map(2, 1, 3);
-  std::fill(map.texels.begin(), map.texels.end(), 1.0f);
-  return map;
-}
 
 RenderSettings plainSettings(const RenderSettings& from) {
   RenderSettings s;
@@ -89,10 +83,10 @@ void divide(Image& sums, const Image& counts) {
 }  // namespace
 
 BasisRender renderBasis(const World& world, const Camera& camera, const DirectionBasis& basis,
-                        const RenderSettings& settings, const Progress& progress) {
+                        const RenderSettings& settings, int lightSamples,
+                        const Progress& progress) {
   const RenderSettings plain = plainSettings(settings);
-  const Probe white(whiteMap());
-  const Uniform lighting(white);
+  const WhiteLight lighting(lightSamples);
   const LightGroups groups(world, lighting);
   LightStage sums{basis, Image(plain.width, plain.height, 3 * basis.size()), {}};
   if (groups.names().size() > groups.rangeOf({})[1]) sums.own = Image(plain.width, plain.height, 3);
