@@ -26,9 +26,9 @@ class CommandRelight : public testing::Test {
 
   std::string basis(const std::string& directions, const Strings& more = {}) const {
     const std::string path = folder_ / "s.exr";
-    Strings words{"basis",   folder_ / "m.gltf", "--size", "16x12",        "--samples",
-                  "16",      "--max-depth",      "1",      "-o",           path,
-                  "--quiet", "--light-samples",  "1",      "--directions", directions};
+    Strings words{"basis",   folder_ / "m.gltf", "--size",  "16x12", "--samples",
+                  "16",      "--max-depth",      "1",       "-o",    path,
+                  "--quiet", "--directions",     directions};
     words.insert(words.end(), more.begin(), more.end());
     const CommandResult result = runCommand(words);
     EXPECT_EQ(result.status, 0) << result.error;
@@ -288,7 +288,6 @@ TEST_F(CommandRelight, BasisRefusesWhatItCannotRender) {
   refuses(
       {"basis", model, "--directions", "lat-long:64x32", "--size", "320x240", "--memory", "0.5"},
       "--directions: 2048 elements of 320 x 240 pixels take 1.89 GB of memory");
-  refuses({"basis", model, "--light-samples", "0"}, "--light-samples: should be");
   refuses({"basis", model, "--frames", "1:3"}, "unknown option `--frames`");
   refuses({"basis", model, "--probe", folder_ / "probe.exr"}, "unknown option `--probe`");
   refuses({"basis", folder_ / "none.gltf"}, "none.gltf");
@@ -308,7 +307,7 @@ TEST_F(CommandRelight, LampsOfTheSceneAreAdded) {
                                        "[[light]]\ntype = \"sun\"\ndirection = [0, 0, 1]\n"
                                        "irradiance = [3, 2, 1]\nangle = 0.5\n";
   const Strings same{"--size", "16x12", "--samples", "16", "--max-depth", "1"};
-  Strings words{"basis", folder_ / "l.toml", "--light-samples", "1", "--directions", "lat-long:8x8",
+  Strings words{"basis", folder_ / "l.toml", "--directions", "lat-long:8x8",
                 "-o",    folder_ / "s.exr"};
   words.insert(words.end(), same.begin(), same.end());
   const CommandResult result = runCommand(words);

@@ -16,7 +16,6 @@
 #include "relight/relight.h"
 #include "relight/render_basis.h"
 #include "relight/sphere_sum.h"
-#include "relight/white_light.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
 #include "temporary_folder.h"
@@ -34,11 +33,9 @@ RenderSettings settingsOf(uint32_t samples, uint64_t seed = 0) {
 
 Camera cameraOf() { return Camera::lookAt({0, 2, 4}, {0, 0.4f, 0}, {0, 1, 0}, 0.6f); }
 
-BasisRender stageOf(const Scene& scene, const char* basis, const RenderSettings& settings,
-                    int lightSamples = 1) {
+BasisRender stageOf(const Scene& scene, const char* basis, const RenderSettings& settings) {
   const World world(scene, {}, allTables());
-  return renderBasis(world, cameraOf(), DirectionBasis(basis, "test"), settings, lightSamples,
-                     [](double) {});
+  return renderBasis(world, cameraOf(), DirectionBasis(basis, "test"), settings, [](double) {});
 }
 
 Image relit(const LightStage& stage, const std::vector<Rgb>& weights) {
@@ -261,7 +258,7 @@ TEST(SlowLightStage, AgreesWithImportanceSamplingOfAProbeThatIsConstantOnTheCell
     SCOPED_TRACE(named.name);
     std::vector<Image> staged, direct;
     for (int i = 0; i < kRepeats; ++i) {
-      const BasisRender render = stageOf(named.scene, "lat-long:8x4", hidden(uint64_t(i)), 16);
+      const BasisRender render = stageOf(named.scene, "lat-long:8x4", hidden(uint64_t(i)));
       staged.push_back(relit(render.stage, weights));
       direct.push_back(
           renderScene(named.scene, cameraOf(), Probe(map), "importance", hidden(uint64_t(100 + i)))
@@ -326,7 +323,7 @@ TEST(LightStage, ReflectanceFunctionOfAPlaneIsItsCosine) {
   const World world(scene, {}, allTables());
   const RenderSettings settings = smallRender(8, 8, 1024, 1);
   const BasisRender render = renderBasis(
-      world, topCamera(5, 30), DirectionBasis("lat-long:8x8", "test"), settings, 16, [](double) {});
+      world, topCamera(5, 30), DirectionBasis("lat-long:8x8", "test"), settings, [](double) {});
   std::vector<Image> maps;
   for (int i = 0; i < 64; ++i) maps.push_back(reflectanceFunction(render.stage, i % 8, i / 8));
   for (int row = 0; row < 8; ++row) {
@@ -349,43 +346,6 @@ TEST(LightStage, ReflectanceFunctionOfAPlaneIsItsCosine) {
       EXPECT_EQ(found.mean, 0);
     }
   }
-}
-
-// The density is the one that the pdf of the samples states, of every lighting condition.
-TEST(WhiteLight, SamplesTheHemisphereUniformly) {
-  const vec3 normal = glm::normalize(vec3(1, 2, -0.5f));
-  constexpr int kCount = 16, kCalls = 20000;
-  const WhiteLight light(kCount);
-  const DirectionBasis cells("cube:4", "test");
-  const std::vector<double> expectedShares = [&] {
-    return sumOverSphere<double>({1024, 512}, size_t(cells.size()),
-                                 [&](const dvec3& d, double solidAngle, auto& shares) {
-                                   if (glm::dot(vec3(d), normal) > 0)
-                                     shares[size_t(cells.cell(vec3(d)))] += solidAngle / (2 * kPiD);
-                                 });
-  }();
-  const SobolTable table(1024, 16, 3);
-  PixelSampler sampler(table, 3);
-  std::vector<double> counts(size_t(cells.size())), expected(size_t(cells.size()));
-  std::vector<DirectionSample> samples;
-  for (int i = 0; i < kCalls; ++i) {
-    sampler.startPixel(uint32_t(i), 0, 0);
-    sampler.startSample(uint32_t(i) % 1024);
-    samples.clear();
-    light.sample({vec3(0), normal, nullptr, 0}, sampler, samples);
-    ASSERT_EQ(samples.size(), size_t(kCount));
-    for (const DirectionSample& s : samples) {
-      ASSERT_NEAR(s.pdf, kCount / (2 * kPi), 1e-5);
-      ASSERT_NEAR(s.irradiance.x * s.pdf, 1, 1e-5);
-      ASSERT_EQ(s.pdf, light.escaped({vec3(0), normal, nullptr, 0}, s.wi).pdf);
-    }
-    ++counts[size_t(cells.cell(samples[size_t(i) % kCount].wi))];  // one of each call: independent
-  }
-  for (size_t i = 0; i < expected.size(); ++i) expected[i] = kCalls * expectedShares[i];
-  EXPECT_GT(chiSquareTest(counts, expected).pValue, 1e-3);
-  samples.clear();
-  light.sample({vec3(0), normal, nullptr, 1}, sampler, samples);
-  EXPECT_EQ(samples.size(), 1u);
 }
 
 TEST(LightStage, FileKeepsItsElements) {

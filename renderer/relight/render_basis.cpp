@@ -3,10 +3,16 @@
 
 #include "base/for_ranges.h"
 #include "integrate/light_groups.h"
-#include "relight/white_light.h"
+#include "lighting/uniform.h"
 
 namespace chromeball {
 namespace {
+
+Image whiteMap() {
+  Image map(2, 1, 3);
+  std::fill(map.texels.begin(), map.texels.end(), 1.0f);
+  return map;
+}
 
 RenderSettings plainSettings(const RenderSettings& from) {
   RenderSettings s;
@@ -83,10 +89,10 @@ void divide(Image& sums, const Image& counts) {
 }  // namespace
 
 BasisRender renderBasis(const World& world, const Camera& camera, const DirectionBasis& basis,
-                        const RenderSettings& settings, int lightSamples,
-                        const Progress& progress) {
+                        const RenderSettings& settings, const Progress& progress) {
   const RenderSettings plain = plainSettings(settings);
-  const WhiteLight lighting(lightSamples);
+  const Probe white(whiteMap());
+  const Uniform lighting(white);
   const LightGroups groups(world, lighting);
   LightStage sums{basis, Image(plain.width, plain.height, 3 * basis.size()), {}};
   if (groups.names().size() > groups.rangeOf({})[1]) sums.own = Image(plain.width, plain.height, 3);

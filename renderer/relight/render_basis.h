@@ -15,12 +15,11 @@ struct BasisRender {
   RayCounts rays;
 };
 
-// The scene is lit from everywhere by radiance 1, with `lightSamples` of it at each first hit
-// (white_light.h); what a path finds from a direction goes to the elements that are not 0 there. So
-// a stage costs little more than a picture, and takes 12 bytes for each pixel and element. Of the
-// settings, those of light and paths count, with the size, samples and seed; all pixels take the
-// same number of samples.
+// The scene is lit from everywhere by radiance 1, as the strategy `uniform` samples it; what a path
+// finds from a direction goes to the elements that are not 0 there. So a stage costs little more
+// than a picture, and takes 12 bytes for each pixel and element. Of the settings, those of light
+// and paths count, with the size, samples and seed; all pixels take the same number of samples.
 BasisRender renderBasis(const World& world, const Camera& camera, const DirectionBasis& basis,
-                        const RenderSettings& settings, int lightSamples, const Progress& progress);
+                        const RenderSettings& settings, const Progress& progress);
 
 }  // namespace chromeball

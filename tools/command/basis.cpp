@@ -17,11 +17,8 @@
 namespace chromeball {
 namespace {
 
-constexpr int kMaxLightSamples = 1024;
-
 struct Arguments : SceneOptions {
   std::string directions = "lat-long:32x16", out;
-  int64_t lightSamples = 16;
   bool halves = false;
 };
 
@@ -74,8 +71,6 @@ Metadata metadataOf(const Arguments& a, const RenderJob& job) {
 void run(const Arguments& a) {
   const Stopwatch watch;
   const DirectionBasis basis(a.directions, "--directions");
-  if (a.lightSamples < 1 || a.lightSamples > kMaxLightSamples)
-    throwInput("--light-samples: should be a whole number from 1 to {}", kMaxLightSamples);
   checkOutputFile(a.out, {".exr"});
   const ThreadLimit threads(a.settings);
   RenderJob job = plannedJob(a);
@@ -85,9 +80,8 @@ void run(const Arguments& a) {
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
   print(loaded.messages, a.quiet());  // after the last error that input can cause
   ProgressBar bar(a.showsProgress());
-  const BasisRender render =
-      renderBasis(world, loaded.camera, basis, job.settings, int(a.lightSamples),
-                  [&](double fraction) { bar.update(fraction); });
+  const BasisRender render = renderBasis(world, loaded.camera, basis, job.settings,
+                                         [&](double fraction) { bar.update(fraction); });
   loaded.scene.checkTexels();
   if (render.invalid.total() > 0)
     warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
@@ -111,10 +105,6 @@ void addBasisCommand(CLI::App& app) {
       ->add_option("--directions", arguments->directions,
                    "lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS (triangles), "
                    "sh:ORDER (spherical harmonics)")
-      ->capture_default_str();
-  command
-      ->add_option("--light-samples", arguments->lightSamples,
-                   "N directions of light at the first hit of each path")
       ->capture_default_str();
   command->add_flag("--half", arguments->halves,
                     "write 16 bits per number: half the file, to 0.05%");
