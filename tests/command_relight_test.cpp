@@ -223,6 +223,7 @@ TEST_F(CommandRelight, RefusesBadOptions) {
   refusesOptions({"--images", "."}, "are in place of a light stage");
   refusesOptions({"--scale", "-1"}, "--scale");
   refusesOptions({"--rotation", "x"}, "--rotation");
+  refusesOptions({"--exposure", "nan"}, "--exposure: must be a finite number");
   refusesOptions({"--preview"}, "--output: has no effect with --preview");
   expectError({"relight", stage, "--probe", probe, "--preview=99999"}, "is not a port");
   expectError({"relight", stage, "--probe", probe}, "--output: needs a name");

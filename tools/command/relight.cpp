@@ -197,6 +197,7 @@ void check(const Arguments& a) {
     throwInput("--probe, --reflectance-function: give one of the two");
   parseColor(a.scale, "--scale");
   parseToneOperator(a.tone);
+  if (!std::isfinite(a.exposure)) throwInput("--exposure: must be a finite number of stops");
   a.preview.empty() ? checkOutput(a) : checkPreview(a);
 }
 
