@@ -105,6 +105,8 @@ int run(int argc, char** argv) {
   addMergeCommand(app);
   addCompareCommand(app);
   addBakeCommand(app);
+  addBasisCommand(app);
+  addRelightCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
   addCameraCommand(app);
