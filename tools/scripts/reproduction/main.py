@@ -14,6 +14,7 @@ import probes
 import rendering
 import scenes
 import shadows
+import stage
 import suns
 from page import page
 from run import ROOT, Run
@@ -21,6 +22,7 @@ from run import ROOT, Run
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
             ("Suns", [suns.rows]), ("Optics", [optics.rows]), ("Cheaper answers", [approximations.rows]),
+            ("Relighting", [stage.rows]),
             ("Composites and rooms", [scenes.rows, formulas.rows])]
 
 
