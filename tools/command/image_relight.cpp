@@ -2,6 +2,7 @@
 // chromeball image relight GROUPS.exr --gain sun=2,lamp=1,0.8,0.6 -o OUT.exr
 // chromeball image relight AO.exr --probe PROBE -o OUT.exr
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "base/error.h"
@@ -172,6 +173,8 @@ void run(const Arguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.probe, arguments.added});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
+  if (!std::isfinite(arguments.exposure))
+    throwInput("--exposure: must be a finite number of stops");
   if (arguments.gains.empty() == arguments.probe.empty())
     throwInput("--gain, --probe: give one of the two");
   arguments.probe.empty() ? runGains(arguments, transform) : runProbe(arguments, transform);
