@@ -9,7 +9,7 @@ _chromeball() {
   esac
   case $command in
     '')
-      words='render merge compare bake probe image camera lights lights-error'
+      words='render merge compare bake basis relight probe image camera lights lights-error'
       options='--help --version' ;;
     'render')
       options='--help --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --orbit-step --allow-external --output --aov --develop --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --probe-sequence --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
@@ -19,6 +19,10 @@ _chromeball() {
       options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
     'bake')
       options='--help --output --what --to --size --texel --padding --scale --denoise --no-denoise --keep-materials --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --sun-angle --light-from --light-units --samples --ao-distance --max-depth --seed --allow-external --memory --texture-memory --threads --progress --quiet' ;;
+    'basis')
+      options='--help --directions --half --output --animation --animation-time --variant --camera --camera-file --mis --light-units --size --samples --glass-shadows --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --transparent --allow-external --memory --texture-memory --threads --progress --quiet' ;;
+    'relight')
+      options='--help --images --directions --irradiance --probe --mapping --rotation --scale --domain --keep --keep-light --reflectance-function --output --preview --exposure --tonemap --quiet' ;;
     'probe')
       words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;
