@@ -44,7 +44,7 @@ Surface tessellate(int columns, int rows, const Parametrisation& point) {
   const auto add = [&](int a, int b, int c) {
     const auto& p = surface.positions;
     if (glm::length(glm::cross(p[b] - p[a], p[c] - p[a])) > 1e-10f)
-      surface.triangles.push_back(glm::u16vec3(a, b, c));
+      surface.triangles.push_back(glm::uvec3(a, b, c));
   };
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {

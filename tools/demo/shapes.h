@@ -17,14 +17,14 @@ inline constexpr double kTableRadius = 2.3;
 struct Surface {
   std::vector<vec3> positions, normals;
   std::vector<vec2> uvs;
-  std::vector<glm::u16vec3> triangles;
+  std::vector<glm::uvec3> triangles;
 };
 
 // The point of a surface at (u, v) in [0, 1]^2. u runs counter-clockwise seen from above, v
 // upwards, so that dp/du x dp/dv points out.
 using Parametrisation = std::function<dvec3(double u, double v)>;
 
-// 2 * columns * rows triangles, less those that a pole makes degenerate. At most 2^16 vertices.
+// 2 * columns * rows triangles, less those that a pole makes degenerate.
 Surface tessellate(int columns, int rows, const Parametrisation& point);
 
 // The parallelogram at `corner` with the edges `right` and `up`; faces along right x up.

@@ -14,7 +14,7 @@ constexpr float kTextureSize = 3;  // metres of wall or floor that a texture cov
 // The parallelogram of a and b, facing along cross(a, b).
 void addPatch(Surface& surface, vec3 corner, vec3 a, vec3 b) {
   const vec3 normal = glm::normalize(glm::cross(a, b));
-  const auto first = uint16_t(surface.positions.size());
+  const auto first = uint32_t(surface.positions.size());
   for (const vec3& p : {corner, corner + a, corner + a + b, corner + b}) {
     surface.positions.push_back(p);
     surface.normals.push_back(normal);
@@ -22,7 +22,7 @@ void addPatch(Surface& surface, vec3 corner, vec3 a, vec3 b) {
                           : std::abs(normal.z) > 0.5f ? vec2(p.x, -p.y) / kTextureSize
                                                       : vec2(p.z, -p.y) / kTextureSize);
   }
-  for (glm::u16vec3 t : {glm::u16vec3(0, 1, 2), glm::u16vec3(0, 2, 3)})
+  for (glm::uvec3 t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)})
     surface.triangles.push_back(t + first);
 }
 
@@ -130,7 +130,7 @@ std::vector<Object> objects() {
 }  // namespace
 
 void writeTerrace(const std::string& path, Terrace what) {
-  GlbWriter glb;
+  GltfDocument glb;
   std::vector<Object> things = realThings();
   if (what == Terrace::Model) {
     for (Object& thing : things) thing.color = Rgb(0.3f);
