@@ -9,6 +9,7 @@
 #include "dusk.h"
 #include "gallery.h"
 #include "image/io/write_image.h"
+#include "nave.h"
 #include "still_life.h"
 #include "terrace.h"
 
@@ -25,6 +26,10 @@ Write terrace(Terrace what) {
   return [what](const std::string& path) { writeTerrace(path, what); };
 }
 
+Write nave(Nave what) {
+  return [what](const std::string& path) { writeNave(path, what); };
+}
+
 const std::map<std::string, Write> kModels = {{"still-life", stillLife(Finish::Demo)},
                                               {"lambertian", stillLife(Finish::Lambertian)},
                                               {"conductors", stillLife(Finish::Conductors)},
@@ -39,7 +44,10 @@ const std::map<std::string, Write> kModels = {{"still-life", stillLife(Finish::D
                                               {"terrace-whole", terrace(Terrace::Whole)},
                                               {"five-shapes", writeFiveShapes},
                                               {"rnl", writePedestal},
-                                              {"temple", writeTemple}};
+                                              {"temple", writeTemple},
+                                              {"nave", nave(Nave::Whole)},
+                                              {"nave-room", nave(Nave::Room)},
+                                              {"nave-things", nave(Nave::Things)}};
 
 const std::map<std::string, chromeball::Image (*)()> kProbes = {
     {"dusk", [] { return paintDusk(1536); }}, {"noon", [] { return terraceProbe(768); }}};

@@ -19,7 +19,7 @@ constexpr float kStep = 0.52f, kFloor = 3 * kStep;  // the stylobate's height ab
 const DoricColumn kColumn;
 const float kTop = kFloor + float(kColumn.height);  // where the architrave starts
 constexpr float kArchitrave = 1.35f, kFrieze = 1.35f, kCornice = 0.55f, kBeam = 0.85f;
-constexpr Rgb kMarble(0.62f, 0.55f, 0.45f);
+constexpr Rgb kMarble(0.72f, 0.65f, 0.54f);
 
 // A box about the middle: half its width and length, its lower and upper height.
 void addLayer(Surface& s, float beyond, float low, float high) {
@@ -131,21 +131,32 @@ float terrain(float x, float z) {
   return rough * stones + hill + mountains - 0.02f;
 }
 
-Parametrisation ground() {
+// Around the temple a square of the same height field as the land beyond, with more detail.
+constexpr double kNear = 110, kFar = 6000;
+
+Parametrisation hill() {
   return [](double u, double v) {
-    const double radius = 6000 * std::pow(v, 3.2), angle = -2 * kPiD * u;  // faces up
-    const double x = radius * std::cos(angle), z = -radius * std::sin(angle);
+    const double x = kNear * (2 * u - 1), z = kNear * (1 - 2 * v);
     return dvec3(x, terrain(float(x), float(z)), z);
+  };
+}
+
+Parametrisation land() {
+  return [](double u, double v) {
+    const double radius = 0.95 * kNear * std::pow(kFar / kNear, v), angle = -2 * kPiD * u;
+    const double x = radius * std::cos(angle), z = -radius * std::sin(angle);
+    const float below = radius < 1.5 * kNear ? 0.3f : 0.0f;  // the square
+    return dvec3(x, terrain(float(x), float(z)) - below, z);
   };
 }
 
 // Dry grass between bare stone; blue haze with the distance.
 Rgb earth(const vec3& p) {
   const float bare = glm::smoothstep(0.42f, 0.6f, fractalNoise(0.12f * p, 5));
-  const float grain = 0.7f + 0.6f * fractalNoise(2.3f * p, 4);
+  const float grain = 0.55f + 0.9f * fractalNoise(1.7f * p, 6);
   const Rgb near = grain * glm::mix(Rgb(0.2f, 0.17f, 0.08f), Rgb(0.36f, 0.31f, 0.24f), bare);
   const float haze = 1 - std::exp(-glm::length(p) / 3500);
-  return glm::mix(near, Rgb(0.25f, 0.31f, 0.4f), haze);
+  return glm::mix(near, Rgb(0.15f, 0.18f, 0.23f), haze);
 }
 
 }  // namespace
@@ -174,10 +185,12 @@ void writeTemple(const std::string& path) {
   }
   const int triglyphMesh = addMesh(glb, stone("triglyph", triglyph(0.84f, kFrieze), blocks));
   for (const Placement& at : triglyphs()) addNode(glb, "triglyph", triglyphMesh, at);
-  const int soil = addTexture(glb, carve({2048, 1024}, ground(), earth));
-  addObject(glb, stone("ground", tessellate(160, 100, ground(), Uvs::Parameters), soil));
-
-  Camera camera = Camera::lookAt({-41, 2.4f, 84}, {-5.5f, 8.6f, 20}, {0, 1, 0}, glm::radians(27.0f));
+  addObject(glb, stone("hill", tessellate(120, 120, hill(), Uvs::Parameters),
+                       addTexture(glb, carve({2048, 2048}, hill(), earth))));
+  addObject(glb, stone("land", tessellate(128, 64, land(), Uvs::Parameters),
+                       addTexture(glb, carve({1024, 512}, land(), earth))));
+  Camera camera =
+      Camera::lookAt({-38, 2.0f, 80}, {-5.2f, 9.4f, 20}, {0, 1, 0}, glm::radians(27.5f));
   camera.name = "View";
   addCamera(glb, camera);
   writeScene(glb, path);
