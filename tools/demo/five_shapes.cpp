@@ -10,7 +10,7 @@ namespace {
 const Profile kSlab = filleted({{0, -0.3}, {2.55, -0.3}, {2.6, 0}, {0, 0}}, 0.025);
 
 std::vector<Object> shapes() {
-  const dvec3 cylinder(0.62, 0, 0.72), cone(-0.95, 0, -0.72);
+  const dvec3 cylinder(0.8, 0, 0.85), cone(-0.95, 0, -0.72);
   return {
       {.name = "steel ball",
        .surface = tessellate(128, 64, ball({0.12, 0.55, -0.35}, 0.55), Uvs::Parameters),

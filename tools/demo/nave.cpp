@@ -13,6 +13,7 @@ namespace {
 
 const NaveMeasures kNave;
 constexpr float kTexture = 4, kSpring = 4.4f, kAisleWall = 6.4f;
+constexpr int kCoffersAcross = 9, kCofferSteps = 8;
 constexpr float kApse = 4, kApseSpring = 8.6f;
 
 // The arcade on one side, with the clerestory above; fronts face the nave.
@@ -50,7 +51,7 @@ void addEnds(Surface& s) {
   addWall(s, {{x, 0, z}, {-2 * x, 0, 0}, kNave.springOfVault, kNave.wall}, {1.6f, 6.6f, 9.2f},
           kTexture);
   std::vector<vec3> lunette;
-  constexpr int kSegments = 24;
+  constexpr int kSegments = kCoffersAcross * kCofferSteps;  // as the vault
   for (int i = 0; i <= kSegments; ++i) {
     const float angle = kPi * float(i) / kSegments;
     lunette.push_back({x * std::cos(angle), kNave.springOfVault + x * std::sin(angle), -z});
@@ -92,28 +93,25 @@ void addApse(Surface& s) {
 
 // A quarter of a sphere that faces its centre.
 Surface conch() {
-  const vec3 center(0, kApseSpring, -kNave.halfLength() - kNave.wall);
-  return tessellate(
-      48, 24,
-      [=](double u, double v) {
-        const double bearing = kPiD * (1 + u), height = kPiD / 2 * v;  // from +x over -z to -x
-        return dvec3(center) + double(kApse) * dvec3(-std::cos(bearing) * std::cos(height),
-                                                     std::sin(height),
-                                                     std::sin(bearing) * std::cos(height));
-      },
-      Uvs::Parameters);
+  const dvec3 center(0, kApseSpring, -kNave.halfLength() - kNave.wall);
+  const auto point = [=](double u, double v) {
+    const double bearing = kPiD * u, height = kPiD / 2 * v;  // from -x over -z to +x
+    return center + double(kApse) * dvec3(-std::cos(bearing) * std::cos(height), std::sin(height),
+                                          -std::sin(bearing) * std::cos(height));
+  };
+  return tessellate(48, 24, point, Uvs::Parameters);
 }
 
 // The vault, with coffers sunk into it: faces down.
 Surface vault() {
-  constexpr int kAcross = 9, kAlong = 21, kSteps = 8;
+  constexpr int kAlong = 21;
   return tessellate(
-      kAcross * kSteps, kAlong * kSteps,
+      kCoffersAcross * kCofferSteps, kAlong * kCofferSteps,
       [](double u, double v) {
         const auto edge = [](double t) {
           return 2 * std::abs(t - std::floor(t) - 0.5);
         };  // 1 on a rib
-        const double rib = std::max(edge(kAcross * u), edge(kAlong * v));
+        const double rib = std::max(edge(kCoffersAcross * u), edge(kAlong * v));
         const double depth = 0.3 * (1 - glm::smoothstep(0.62, 0.8, rib));
         const double angle = kPiD * u, radius = kNave.halfWidth + depth;
         return dvec3(-radius * std::cos(angle), kNave.springOfVault + radius * std::sin(angle),
@@ -231,8 +229,7 @@ void writeNave(const std::string& path, Nave what) {
   addFloor(glb);
   if (what != Nave::Things) addRoom(glb);
   if (what != Nave::Room) addThings(glb);
-  Camera camera =
-      Camera::lookAt({0.7f, 1.9f, 12.5f}, {-0.1f, 2.9f, 0}, {0, 1, 0}, glm::radians(40.0f));
+  Camera camera = Camera::lookAt({0.7f, 1.7f, 12.8f}, {0, 3.9f, 0}, {0, 1, 0}, glm::radians(52.0f));
   camera.name = "View";
   addCamera(glb, camera);
   writeScene(glb, path);

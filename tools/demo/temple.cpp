@@ -190,7 +190,7 @@ void writeTemple(const std::string& path) {
   addObject(glb, stone("land", tessellate(128, 64, land(), Uvs::Parameters),
                        addTexture(glb, carve({1024, 512}, land(), earth))));
   Camera camera =
-      Camera::lookAt({-38, 2.0f, 80}, {-5.2f, 9.4f, 20}, {0, 1, 0}, glm::radians(27.5f));
+      Camera::lookAt({-38, 2.0f, 82}, {-3.2f, 8.6f, 20}, {0, 1, 0}, glm::radians(29.0f));
   camera.name = "View";
   addCamera(glb, camera);
   writeScene(glb, path);
