@@ -79,6 +79,6 @@ int main(int argc, char** argv) {
       writeImage(argv[2], probe->second());
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
-    return 1;
+    return dynamic_cast<const InputError*>(&error) ? 2 : 1;
   }
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Captures the probe of scenes/fiat-lux.toml: six views from the middle of the empty nave, stitched.
 
-Writes out/nave-room.glb, out/nave-things.glb and out/nave-probe.exr."""
+Writes out/nave-room.glb, nave-things.glb, nave-probe.exr, and the sources nave-windows.json."""
 import argparse
 import pathlib
 import subprocess
@@ -58,6 +58,7 @@ def main():
         (folder / "tiles.toml").write_text("\n".join(tiles) + "\n")
         run("chromeball", "probe", "stitch", folder / "tiles.toml", "--same-exposure",
             "--size", f"{options.width}x{options.width // 2}", "-o", out / "nave-probe.exr")
+    run("chromeball", "lights", out / "nave-probe.exr", "--suggest", 24, "-o", out / "nave-windows.json")
 
 
 if __name__ == "__main__":
