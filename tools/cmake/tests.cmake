@@ -24,4 +24,7 @@ set_property(SOURCE tests/consumer_test.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_INSTALLS=$<BOOL:${CHROMEBALL_INSTALL}>
              CHROMEBALL_INSTRUMENTED=${instrumented})
 add_dependencies(tests chromeball command_server)
+if(TARGET make_demo)
+  add_dependencies(tests make_demo)
+endif()
 gtest_discover_tests(tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)

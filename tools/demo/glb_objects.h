@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named surfaces with simple materials, as a .glb.
+// Named surfaces with simple materials, in a glTF document.
 #pragma once
 
-#include "glb_writer.h"
+#include <filesystem>
+#include <string>
+
+#include "bake/gltf_document.h"
 #include "image/image.h"
 #include "scene/camera.h"
 #include "shapes.h"
@@ -17,15 +20,26 @@ struct Object {
   float glow = 0;           // strength of its emission
   int texture = -1;         // of the base colour, as addTexture() returned it
   bool lambertian = false;  // purely diffuse
-  bool glass = false;       // smooth glass
+  bool glass = false;       // smooth glass of the colour that 0.2 m of it transmit
+  float anisotropy = 0;     // of a metal whose scratches run along the texture's u
+  float clearcoat = 0;      // a layer of smooth lacquer
 };
 
-// Each appends to the file; the texture's index is returned.
-void addObject(GlbWriter& glb, const Object& object);
-int addTexture(GlbWriter& glb, const Image& color);
-void addCamera(GlbWriter& glb, const Camera& camera);  // by its name
+// Where a mesh stands: scaled, turned about the vertical (radians), then moved.
+struct Placement {
+  vec3 position{0, 0, 0};
+  float turn = 0;
+  vec3 scale{1, 1, 1};
+};
+
+// Each appends to the document. A mesh may have many nodes.
+int addMesh(GltfDocument& document, const Object& object);
+void addNode(GltfDocument& document, const std::string& name, int mesh, const Placement& at);
+void addObject(GltfDocument& document, const Object& object);  // a mesh and its node
+int addTexture(GltfDocument& document, const Image& color);    // returns its index
+void addCamera(GltfDocument& document, const Camera& camera);  // by its name
 
 // Makes a scene of all nodes, and writes the file. Throws RunError.
-void writeScene(GlbWriter& glb, const std::string& path);
+void writeScene(GltfDocument& document, const std::filesystem::path& path);
 
 }  // namespace chromeball::demo

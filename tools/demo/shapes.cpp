@@ -7,17 +7,7 @@
 namespace chromeball::demo {
 namespace {
 
-using glm::dvec2;
-
 constexpr double kTau = 2 * kPiD;
-
-// A profile (radius, height) turned about the axis x = center.x, z = center.z.
-Parametrisation lathe(dvec3 center, const std::function<dvec2(double v)>& profile) {
-  return [=](double u, double v) {
-    const dvec2 p = profile(v);
-    return center + dvec3(p.x * std::cos(kTau * u), p.y, -p.x * std::sin(kTau * u));
-  };
-}
 
 // Turns p about the vertical and moves it to the centre.
 dvec3 placed(dvec3 center, double turn, dvec3 p) {
@@ -27,7 +17,7 @@ dvec3 placed(dvec3 center, double turn, dvec3 p) {
 
 }  // namespace
 
-Surface tessellate(int columns, int rows, const Parametrisation& point) {
+Surface tessellate(int columns, int rows, const Parametrisation& point, Uvs uvs) {
   constexpr double kStep = 1e-5;
   Surface surface;
   for (int j = 0; j <= rows; ++j)
@@ -39,12 +29,13 @@ Surface tessellate(int columns, int rows, const Parametrisation& point) {
       const vec3 p(point(u, v));
       surface.positions.push_back(p);
       surface.normals.push_back(vec3(glm::normalize(glm::cross(du, dv))));
-      surface.uvs.push_back(vec2(p.x, p.z) / float(2 * kTableRadius) + 0.5f);
+      surface.uvs.push_back(
+          uvs == Uvs::Parameters ? vec2(u, v) : vec2(p.x, p.z) / float(2 * kTableRadius) + 0.5f);
     }
   const auto add = [&](int a, int b, int c) {
     const auto& p = surface.positions;
     if (glm::length(glm::cross(p[b] - p[a], p[c] - p[a])) > 1e-10f)
-      surface.triangles.push_back(glm::u16vec3(a, b, c));
+      surface.triangles.push_back(glm::uvec3(a, b, c));
   };
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
@@ -53,6 +44,24 @@ Surface tessellate(int columns, int rows, const Parametrisation& point) {
       add(a, c, d);
     }
   return surface;
+}
+
+void append(Surface& surface, const Surface& more) {
+  const auto first = uint32_t(surface.positions.size());
+  const auto add = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  add(surface.positions, more.positions);
+  add(surface.normals, more.normals);
+  add(surface.uvs, more.uvs);
+  for (const glm::uvec3& triangle : more.triangles) surface.triangles.push_back(triangle + first);
+}
+
+Parametrisation lathe(dvec3 center, const std::function<dvec2(double v)>& profile) {
+  return [=](double u, double v) {
+    const dvec2 p = profile(v);
+    return center + dvec3(p.x * std::cos(kTau * u), p.y, -p.x * std::sin(kTau * u));
+  };
 }
 
 Parametrisation patch(dvec3 corner, dvec3 right, dvec3 up) {

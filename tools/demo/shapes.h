@@ -9,23 +9,32 @@
 
 namespace chromeball::demo {
 
+using glm::dvec2;
 using glm::dvec3;
 
 inline constexpr double kTableRadius = 2.3;
 
-// Smooth, with UVs that lay the table's square over x and z.
 struct Surface {
   std::vector<vec3> positions, normals;
   std::vector<vec2> uvs;
-  std::vector<glm::u16vec3> triangles;
+  std::vector<glm::uvec3> triangles;
 };
 
 // The point of a surface at (u, v) in [0, 1]^2. u runs counter-clockwise seen from above, v
 // upwards, so that dp/du x dp/dv points out.
 using Parametrisation = std::function<dvec3(double u, double v)>;
 
-// 2 * columns * rows triangles, less those that a pole makes degenerate. At most 2^16 vertices.
-Surface tessellate(int columns, int rows, const Parametrisation& point);
+// What a texture covers: the table's square of x and z, or [0, 1]^2 of u and v.
+enum class Uvs { Table, Parameters };
+
+// Smooth; 2 * columns * rows triangles, less those that a pole makes degenerate.
+Surface tessellate(int columns, int rows, const Parametrisation& point, Uvs uvs = Uvs::Table);
+
+void append(Surface& surface, const Surface& more);
+
+// A profile (radius, height) turned about the axis x = center.x, z = center.z. It points out where
+// the profile rises outside, and down where its radius grows.
+Parametrisation lathe(dvec3 center, const std::function<dvec2(double v)>& profile);
 
 // The parallelogram at `corner` with the edges `right` and `up`; faces along right x up.
 Parametrisation patch(dvec3 corner, dvec3 right, dvec3 up);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "terrace.h"
 
+#include "flat.h"
 #include "glb_objects.h"
 #include "noise.h"
 #include "probe/sky.h"
@@ -11,48 +12,23 @@ namespace {
 
 constexpr float kTextureSize = 3;  // metres of wall or floor that a texture covers
 
-// The parallelogram of a and b, facing along cross(a, b).
-void addPatch(Surface& surface, vec3 corner, vec3 a, vec3 b) {
-  const vec3 normal = glm::normalize(glm::cross(a, b));
-  const auto first = uint16_t(surface.positions.size());
-  for (const vec3& p : {corner, corner + a, corner + a + b, corner + b}) {
-    surface.positions.push_back(p);
-    surface.normals.push_back(normal);
-    surface.uvs.push_back(std::abs(normal.y) > 0.5f   ? vec2(p.x, p.z) / kTextureSize
-                          : std::abs(normal.z) > 0.5f ? vec2(p.x, -p.y) / kTextureSize
-                                                      : vec2(p.z, -p.y) / kTextureSize);
-  }
-  for (glm::u16vec3 t : {glm::u16vec3(0, 1, 2), glm::u16vec3(0, 2, 3)})
-    surface.triangles.push_back(t + first);
-}
-
-// A box without its bottom face.
-void addBox(Surface& s, vec3 low, vec3 high) {
-  const vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-  addPatch(s, {low.x, high.y, high.z}, x, -z);
-  addPatch(s, {low.x, low.y, high.z}, x, y);
-  addPatch(s, {high.x, low.y, low.z}, -x, y);
-  addPatch(s, {high.x, low.y, high.z}, -z, y);
-  addPatch(s, low, z, y);
-}
-
 Surface floorSlab() {
   Surface s;
-  addPatch(s, {-20, 0, 12}, {40, 0, 0}, {0, 0, -40});
+  addQuad(s, {-20, 0, 12}, {40, 0, 0}, {0, 0, -40}, kTextureSize);
   return s;
 }
 
 Surface parapet() {
   Surface s;
-  addBox(s, {-7, 0, -3.6f}, {7, 0.9f, -3.3f});
-  addBox(s, {-7.1f, 0.9f, -3.68f}, {7.1f, 1, -3.22f});
+  addBox(s, {-7, 0, -3.6f}, {7, 0.9f, -3.3f}, kTextureSize);
+  addBox(s, {-7.1f, 0.9f, -3.68f}, {7.1f, 1, -3.22f}, kTextureSize);
   return s;
 }
 
 Surface pillar(float x) {
   Surface s;
   const auto block = [&](float half, float bottom, float top) {
-    addBox(s, {x - half, bottom, -3.0f - half}, {x + half, top, -3.0f + half});
+    addBox(s, {x - half, bottom, -3.0f - half}, {x + half, top, -3.0f + half}, kTextureSize);
   };
   block(0.36f, 0, 0.22f);
   block(0.25f, 0.22f, 2.6f);
@@ -130,7 +106,7 @@ std::vector<Object> objects() {
 }  // namespace
 
 void writeTerrace(const std::string& path, Terrace what) {
-  GlbWriter glb;
+  GltfDocument glb;
   std::vector<Object> things = realThings();
   if (what == Terrace::Model) {
     for (Object& thing : things) thing.color = Rgb(0.3f);
