@@ -14,6 +14,7 @@
 #include "option_typos.h"
 
 namespace chromeball {
+void addTransferTry(CLI::App& app);
 namespace {
 
 constexpr int kFailed = 1, kBadInput = 2, kInterrupted = 130;
@@ -105,6 +106,7 @@ int run(int argc, char** argv) {
   addMergeCommand(app);
   addCompareCommand(app);
   addBakeCommand(app);
+  addTransferTry(app);
   addProbeCommand(app);
   addImageCommand(app);
   addCameraCommand(app);
