@@ -30,3 +30,16 @@ inline std::string dumpedPage(const std::string& chromium, const TemporaryFolder
   EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "log");
   return fileContents(folder / "dom.html");
 }
+
+// The option for an extension that runs `script` in pages of this machine: the pages themselves
+// have no test code.
+inline std::string extensionIn(const TemporaryFolder& folder, const std::string& script) {
+  const std::string path = folder / "extension";
+  std::filesystem::create_directory(path);
+  std::ofstream(path + "/manifest.json") << R"({
+    "manifest_version": 3, "name": "use", "version": "1",
+    "content_scripts": [{"matches": ["http://127.0.0.1/*"], "js": ["use.js"],
+                         "run_at": "document_end", "world": "MAIN"}]})";
+  std::ofstream(path + "/use.js") << script;
+  return "--disable-extensions-except=" + path + " --load-extension=" + path;
+}

@@ -72,18 +72,6 @@ constexpr const char* kUse = R"(
   use();
 )";
 
-// A browser runs the script of an extension in the page, as the page itself has no test code.
-std::string extensionIn(const TemporaryFolder& folder) {
-  const std::string path = folder / "extension";
-  std::filesystem::create_directory(path);
-  std::ofstream(path + "/manifest.json") << R"({
-    "manifest_version": 3, "name": "use", "version": "1",
-    "content_scripts": [{"matches": ["http://127.0.0.1/*"], "js": ["use.js"],
-                         "run_at": "document_end", "world": "MAIN"}]})";
-  std::ofstream(path + "/use.js") << kUse;
-  return "--disable-extensions-except=" + path + " --load-extension=" + path;
-}
-
 TEST(SlowPreview, worksInABrowser) {
   const std::string chromium = findChromium();
   if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
@@ -93,7 +81,7 @@ TEST(SlowPreview, worksInABrowser) {
   const TemporaryFolder folder;
   const std::string dom =
       dumpedPage(chromium, folder, fmt::format("http://127.0.0.1:{}/", preview.port()),
-                 extensionIn(folder), 600);
+                 extensionIn(folder, kUse), 600);
   preview.post("/stop");  // if the page has failed to
   EXPECT_EQ(preview.result().status, 130);
 

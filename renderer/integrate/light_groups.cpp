@@ -56,12 +56,14 @@ void GroupSums::add(std::optional<size_t> source, const Rgb& throughput, const S
 
 void GroupSums::addEscaped(const LightSource& light, std::optional<size_t> source,
                            const LightPoint& point, const vec3& wi, const Rgb& throughput) {
+  if (isDirected(source)) return directions_->push_back({wi, throughput});
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitEscaped(point, wi, radiances); });
 }
 
 void GroupSums::addBackground(const LightSource& light, std::optional<size_t> source,
                               const vec3& origin, const vec3& wi, const Rgb& throughput) {
+  if (isDirected(source)) return directions_->push_back({wi, throughput});
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });
 }

@@ -51,12 +51,20 @@ class LightGroups {
   std::vector<int> ofNode_;  // -1 for a node that does not emit
 };
 
+// What a path would find of unit radiance from one direction of the probe.
+struct DirectedLight {
+  vec3 wi;  // unit
+  Rgb throughput;
+};
+
 // Where a path adds what it finds, beside its whole radiance.
 class GroupSums {
  public:
-  // `sums`: one element per group. `scratch` keeps its capacity.
-  GroupSums(const LightGroups& groups, std::span<Rgb> sums, std::vector<Rgb>& scratch)
-      : groups_(groups), sums_(sums), scratch_(scratch) {}
+  // `sums`: one element per group. `scratch` keeps its capacity. `directions`, if not null, gets
+  // the probe's light in place of its groups, one entry each time that the path finds the probe.
+  GroupSums(const LightGroups& groups, std::span<Rgb> sums, std::vector<Rgb>& scratch,
+            std::vector<DirectedLight>* directions = nullptr)
+      : groups_(groups), sums_(sums), scratch_(scratch), directions_(directions) {}
 
   void addEmitted(const Instance& instance, const Rgb& radiance) {
     sums_[size_t(groups_.ofInstance(instance))] += radiance;
@@ -78,9 +86,12 @@ class GroupSums {
   template <class Split>
   void add(std::optional<size_t> source, const Rgb& throughput, const Split& split);
 
+  bool isDirected(std::optional<size_t> source) const { return directions_ && !source; }
+
   const LightGroups& groups_;
   std::span<Rgb> sums_;
   std::vector<Rgb>& scratch_;
+  std::vector<DirectedLight>* directions_;
 };
 
 // Path tracing of all instances; the layers are the groups, whose sum is the radiance up to

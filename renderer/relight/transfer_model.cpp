@@ -19,7 +19,7 @@ LightBasis basisOf(const CustomData& data, const std::string& path) {
   if (name == data.texts.end() || data.attributes.empty())
     throwInput("{}: has no transfer ({}); `basis MODEL --at vertices` writes it", path,
                attributeOf(0));
-  return LightBasis::parse(name->second, path + ": extras.chromeball.basis");
+  return {name->second, path + ": extras.chromeball.basis"};
 }
 
 Scene sceneOf(const std::string& path, ExternalFiles external, const Warn& warn,
@@ -92,7 +92,7 @@ const CustomData::Arrays& TransferModel::arraysOf(size_t instance) const {
 }
 
 TransferModel::Lit TransferModel::lit(const std::vector<BakePoint>& points,
-                                      std::span<const dvec3> light) const {
+                                      std::span<const Rgb> light) const {
   std::vector<std::vector<dvec3>> sums;
   for (size_t i = 0; i < scene_.instances.size(); ++i) {
     const CustomData::Arrays& arrays = arraysOf(i);
@@ -101,7 +101,7 @@ TransferModel::Lit TransferModel::lit(const std::vector<BakePoint>& points,
       for (size_t v = 0; v < sum.size(); ++v) sum[v] += factor * dvec3(transfer[v]);
     };
     for (size_t k = 0; k < light.size(); ++k)
-      if (light[k] != dvec3(0)) add(arrays.at(attributeOf(k)), light[k]);
+      if (light[k] != Rgb(0)) add(arrays.at(attributeOf(k)), dvec3(light[k]));
     if (const auto own = arrays.find(kOwn); own != arrays.end()) add(own->second, dvec3(1));
   }
   Lit lit;

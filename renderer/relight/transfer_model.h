@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A model that carries its transfer, to be lit by any probe and seen from any side (HDRI book,
-// section 9.9.1, figure 9.46).
+// section 9.9.2, figure 9.46).
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@ class TransferModel {
   };
   // Of points of the scene's vertices under light with these coefficients (LightBasis::project()):
   // pi times the sum of l_k _PRT_k, and _PRT_OWN. It does not depend on the viewer.
-  Lit lit(const std::vector<BakePoint>& points, std::span<const dvec3> light) const;
+  Lit lit(const std::vector<BakePoint>& points, std::span<const Rgb> light) const;
 
  private:
   void checkAttributes() const;

@@ -41,9 +41,9 @@ VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh
           found += dvec3(path.found);
         });
     if (valid == 0) return;
-    basis.transform(worker.sums);
-    for (size_t k = 0; k < result.count; ++k)
-      result.values[i * result.count + k] = Rgb(worker.sums[k] / double(valid));
+    const std::span<Rgb> values = std::span(result.values).subspan(i * result.count, result.count);
+    for (size_t k = 0; k < result.count; ++k) values[k] = Rgb(worker.sums[k] / double(valid));
+    basis.transform(values);
     own[i] = Rgb(found / double(valid));
   });
   if (std::ranges::any_of(own, [](const Rgb& light) { return light != Rgb(0); }))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Precomputed radiance transfer of diffuse surfaces: what each function of a basis of light makes
-// at points of a scene (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.1).
+// at points of a scene (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
 #pragma once
 
 #include "bake/bake_points.h"
@@ -32,7 +32,8 @@ struct VertexTransfer {
 
 // Values are irradiance / pi per unit of each function: the radiance of a white Lambertian surface,
 // as light that shines on it, with shadows and light that other surfaces reflect to it. For
-// harmonics and an open point with normal n, value k is A_l / pi Y_k(n) (shCosineFactor). `meshes`:
+// harmonics and an open point with normal n, value k is A_l / pi Y_k(n), with the A_l of
+// shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`:
 // of all instances. The result depends on points, samples and seed only.
 VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                 const std::vector<BakePoint>& points, const LightBasis& basis,

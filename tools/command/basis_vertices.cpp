@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basis_vertices.h"
 
+#include <algorithm>
+
 #include "bake/baked_file.h"
 #include "base/stopwatch.h"
-#include "job/job.h"
+#include "basis_job.h"
 #include "job/memory_estimate.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -14,25 +16,35 @@
 namespace chromeball {
 namespace {
 
-// Transfer needs no light of the user's: a lamp stands for it until the scene is loaded.
-RenderJob plannedJob(const BasisVerticesOptions& a, bool& hasStandIn) {
-  SceneFile scene = openScene(a.scene);
-  if (scene.composite)
-    throwInput("{}: a composite has no transfer; take its model", scene.composite->location);
-  hasStandIn = !scene.settings.has("probe.file");
-  if (hasStandIn) scene.lamps.push_back({.ambient = AmbientLamp{}});
-  return planJob(std::move(scene), a.settings);
+// Options of the pixels of a light stage.
+constexpr std::string_view kOfPixels[] = {
+    "size",       "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
+    "mis",        "glass-shadows",     "single-sided",       "transparent",
+    "camera-file"};
+
+void check(const SceneOptions& options, const std::string& output) {
+  checkOutputFile(output, {".glb", ".gltf"});
+  for (const Setting& setting : settingTable())
+    if (options.settings.has(setting.name()) && std::ranges::count(kOfPixels, setting.option) > 0)
+      throwInput("--{}: has no effect with --at vertices; leave it out", setting.option);
+}
+
+RenderJob transferJob(const SceneOptions& options) {
+  RenderJob job = basisJob(options, "transfer");
+  if (job.settings.maxDepth < 1)
+    throwInput("--max-depth: should be 1 (direct light) or more for transfer");
+  return job;
 }
 
 class BasisVertices {
  public:
-  explicit BasisVertices(const BasisVerticesOptions& options)
+  BasisVertices(const SceneOptions& options, const std::string& basis, const std::string& output)
       : options_(options),
-        basis_(LightBasis::parse(options.basis, "--basis")),
-        job_(plannedJob(options, hasStandIn_)),
-        loaded_(loadScene(job_)) {
-    if (hasStandIn_) loaded_.scene.ambient.pop_back();
-    checkDistinct({options.output}, loaded_.files);
+        output_(output),
+        basis_(basis, "--basis"),
+        job_(transferJob(options)),
+        loaded_(loadBasisScene(job_)) {
+    checkDistinct({output}, loaded_.files);
   }
 
   void run() {
@@ -49,11 +61,11 @@ class BasisVertices {
     if (transfer.invalid.total() > 0)
       warn(fmt::format("{} invalid samples were left out; the first is of vertex {} {}",
                        transfer.invalid.total(), transfer.invalid.x, transfer.invalid.y));
-    writeBaked(options_.output, loaded_.scene, transferGeometry(meshes, points, transfer), {},
+    writeBaked(output_, loaded_.scene, transferGeometry(meshes, points, transfer), {},
                file(transfer));
     if (!options_.quiet())
       fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples: {}\n", points.size(),
-                 watch_.seconds(), basis_.name(), job_.settings.samples, options_.output);
+                 watch_.seconds(), basis_.name(), job_.settings.samples, output_);
   }
 
  private:
@@ -92,22 +104,21 @@ class BasisVertices {
     return file;
   }
 
-  const BasisVerticesOptions& options_;
+  const SceneOptions& options_;
+  const std::string& output_;
   Stopwatch watch_;
   LightBasis basis_;
-  bool hasStandIn_ = false;
   RenderJob job_;
   LoadedScene loaded_;
 };
 
 }  // namespace
 
-void runBasisVertices(const BasisVerticesOptions& options) {
-  checkOutputFile(options.output, {".glb", ".gltf"});
-  if (options.settings.get<int64_t>("render.max_depth") < 1)
-    throwInput("--max-depth: should be 1 (direct light) or more for transfer");
+void runBasisVertices(const SceneOptions& options, const std::string& basis,
+                      const std::string& output) {
+  check(options, output);
   const ThreadLimit threads(options.settings);
-  BasisVertices(options).run();
+  BasisVertices(options, basis, output).run();
 }
 
 }  // namespace chromeball

@@ -6,11 +6,8 @@
 
 namespace chromeball {
 
-struct BasisVerticesOptions : SceneOptions {
-  std::string basis = "sh:4", output;
-};
-
-// Throws InputError and RunError.
-void runBasisVertices(const BasisVerticesOptions& options);
+// `basis`: its name, from --basis. Throws InputError and RunError.
+void runBasisVertices(const SceneOptions& options, const std::string& basis,
+                      const std::string& output);
 
 }  // namespace chromeball

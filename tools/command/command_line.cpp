@@ -14,7 +14,6 @@
 #include "option_typos.h"
 
 namespace chromeball {
-void addTransferTry(CLI::App& app);
 namespace {
 
 constexpr int kFailed = 1, kBadInput = 2, kInterrupted = 130;
@@ -106,7 +105,8 @@ int run(int argc, char** argv) {
   addMergeCommand(app);
   addCompareCommand(app);
   addBakeCommand(app);
-  addTransferTry(app);
+  addBasisCommand(app);
+  addRelightCommand(app);
   addProbeCommand(app);
   addImageCommand(app);
   addCameraCommand(app);

@@ -11,6 +11,8 @@ void addRenderCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBakeCommand(CLI::App& app);
+void addBasisCommand(CLI::App& app);
+void addRelightCommand(CLI::App& app);
 void addProbeCommand(CLI::App& app);   // info, convert, synth, irradiance
 void addImageCommand(CLI::App& app);   // view, error
 void addCameraCommand(CLI::App& app);  // solve

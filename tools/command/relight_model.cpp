@@ -11,6 +11,7 @@
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
+#include "relight/escaping_path.h"
 #include "relight/transfer_model.h"
 
 namespace chromeball {
@@ -18,7 +19,6 @@ namespace {
 
 // Of `count` coefficients.
 size_t parseKeep(std::string text, size_t count) {
-  if (text.empty()) return count;
   const bool isPercent = text.back() == '%';
   if (isPercent) text.pop_back();
   const double number = parseNumbers(text, 1, "--keep")[0];
@@ -43,9 +43,9 @@ class RelightModel {
 
   void run() {
     checkDistinct({options_.output}, model_.scene().files);
-    std::vector<dvec3> light = coefficients();
+    std::vector<Rgb> light = coefficients();
     const Stopwatch watch;
-    keepLargest(model_.basis(), kept_, light);
+    keepMostImportant(model_.basis(), kept_, light);
     const std::vector<PlacedMesh> meshes = placedMeshes(model_.scene());
     const std::vector<BakePoint> points = vertexPoints(meshes);
     const TransferModel::Lit lit = model_.lit(points, light);
@@ -67,7 +67,7 @@ class RelightModel {
   }
 
  private:
-  std::vector<dvec3> coefficients() {
+  std::vector<Rgb> coefficients() {
     const LoadedProbe loaded = loadProbe(options_.probe, options_.mapping, "--mapping");
     for (const auto& lines :
          {warnings(loaded, options_.probe), lightWarnings(loaded, options_.probe)})

@@ -10,8 +10,8 @@
 namespace chromeball {
 
 struct RelightModelOptions {
-  std::string model, output, probe, mapping = "auto", scale = "1";
-  std::string keep;  // "25" coefficients, or "10%"; empty: all
+  std::string model, output, probe, mapping, scale;
+  std::string keep;  // "25" coefficients, or "10%"
   Rotation rotation;
   std::optional<double> white;  // the light that the file's white stands for
   bool allowsExternal = false, quiet = false;

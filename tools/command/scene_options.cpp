@@ -57,8 +57,34 @@ constexpr std::string_view kOfBake[] = {
     "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
     "texture-memory", "allow-external", "progress",       "quiet"};
 
+// Those that decide the picture, and none about its light, which comes from everywhere.
+constexpr std::string_view kOfBasis[] = {"size",
+                                         "samples",
+                                         "seed",
+                                         "max-depth",
+                                         "max-diffuse-depth",
+                                         "max-specular-depth",
+                                         "max-transmission-depth",
+                                         "mis",
+                                         "glass-shadows",
+                                         "single-sided",
+                                         "transparent",
+                                         "light-units",
+                                         "animation",
+                                         "animation-time",
+                                         "variant",
+                                         "camera",
+                                         "camera-file",
+                                         "memory",
+                                         "threads",
+                                         "texture-memory",
+                                         "allow-external",
+                                         "progress",
+                                         "quiet"};
+
 bool isOf(SceneCommand command, const Setting& setting) {
   if (command == SceneCommand::Bake) return std::ranges::count(kOfBake, setting.option) > 0;
+  if (command == SceneCommand::Basis) return std::ranges::count(kOfBasis, setting.option) > 0;
   return command == SceneCommand::Render || !setting.renderOnly;
 }
 

@@ -18,8 +18,8 @@ struct SceneOptions {
 };
 
 // The command that the options are for: compare varies some settings itself, and does not need
-// others; bake needs few.
-enum class SceneCommand { Render, Compare, Bake };
+// others; bake and basis need few.
+enum class SceneCommand { Render, Compare, Bake, Basis };
 
 // `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command);

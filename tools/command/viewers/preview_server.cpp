@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/preview_server.h"
 
-#include <httplib.h>
-
-#include <cctype>
-#include <charconv>
 #include <future>
 
-#include "base/error.h"
+#include "viewers/local_server.h"
 #include "viewers/preview_image.h"
 #include "viewers/watched_render.h"
 
@@ -17,33 +13,6 @@ extern const char* const kPreviewPage;
 extern const char* const kPreviewScript;
 
 namespace {
-
-// A name of this machine. Other names could be those of a page that another server has sent, whose
-// address was changed to this machine afterwards (DNS rebinding).
-bool isLocal(std::string host) {
-  for (char& c : host) c = char(std::tolower(uint8_t(c)));
-  if (const size_t scheme = host.find("://"); scheme != std::string::npos)
-    host = host.substr(scheme + 3);
-  host = host.substr(0, host.rfind(':'));
-  return host == "127.0.0.1" || host == "localhost" || host == "[::1]";
-}
-
-bool isAllowed(const httplib::Request& request) {
-  return isLocal(request.get_header_value("Host")) &&
-         (!request.has_header("Origin") || isLocal(request.get_header_value("Origin")));
-}
-
-// The number after `name=` in the address. Throws InputError.
-template <class T>
-T numberOf(const httplib::Request& request, const char* name, T fallback) {
-  if (!request.has_param(name)) return fallback;
-  const std::string text = request.get_param_value(name);
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throwInput("{}: `{}` is not a number", name, text);
-  return value;
-}
 
 ImageView viewOf(const httplib::Request& request) {
   return {
@@ -59,19 +28,9 @@ ImageView viewOf(const httplib::Request& request) {
 class PreviewServer::Server {
  public:
   Server(int port, bool saves, std::function<void()> stop) : stop_(std::move(stop)) {
-    http_.new_task_queue = [] { return new httplib::ThreadPool(kConnections); };
-    http_.set_payload_max_length(1024);
-    // Not SO_REUSEPORT, the library's choice, with which two renders could share a port.
-    http_.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
+    keepLocal(http_);
     addRoutes(saves);
-    if (port == 0)
-      port_ = http_.bind_to_any_port(kHost);
-    else
-      port_ = http_.bind_to_port(kHost, port) ? port : -1;
-    if (port_ < 0) throwInput("--preview: port {} is in use, or not allowed; give another", port);
+    port_ = bindLocal(http_, port);
   }
 
   // On a thread, until stop().
@@ -94,15 +53,7 @@ class PreviewServer::Server {
   WatchedRender render;
 
  private:
-  static constexpr const char* kHost = "127.0.0.1";
-  static constexpr size_t kConnections = 8;  // browsers open six, and keep them
-
   using Handler = std::function<void(const httplib::Request&, httplib::Response&)>;
-
-  static void refuse(httplib::Response& response, int status, const std::string& reason) {
-    response.status = status;
-    response.set_content(reason + "\n", "text/plain");
-  }
 
   // Answers that depend on the image; 404 before there is one.
   template <class Answer>
@@ -119,12 +70,6 @@ class PreviewServer::Server {
   }
 
   void addRoutes(bool saves) {
-    http_.set_default_headers({{"Cache-Control", "no-store"}});
-    http_.set_pre_routing_handler([](const auto& request, auto& response) {
-      if (isAllowed(request)) return httplib::Server::HandlerResponse::Unhandled;
-      refuse(response, 403, "only for pages of this machine");
-      return httplib::Server::HandlerResponse::Handled;
-    });
     http_.Get("/", [](const auto&, auto& response) {
       response.set_content(kPreviewPage, "text/html; charset=utf-8");
     });

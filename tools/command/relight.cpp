@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// chromeball relight STAGE.exr --probe P -o OUT.exr: a light stage under a probe.
+// chromeball relight STAGE.exr --probe P --probe Q --preview: on a page, where the probes turn.
+// chromeball relight MODEL_PRT.glb --probe P -o MODEL_LIT.glb: vertices by their transfer.
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "commands.h"
+#include "image/io/write_image.h"
+#include "job/arguments.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "probe/load.h"
+#include "relight/light_weights.h"
+#include "relight/reflectance_function.h"
+#include "relight/relight.h"
+#include "relight/stage_photographs.h"
+#include "relight_model.h"
+#include "rotation_option.h"
+#include "viewers/relight_server.h"
+
+namespace chromeball {
+namespace {
+
+struct Arguments {
+  std::string stage;               // or:
+  std::string images, directions;  // photographs
+  std::string irradiance = "1";    // of these
+  std::vector<std::string> probes;
+  std::string mapping = "auto", scale = "1";
+  Rotation rotation;
+  std::string domain = "auto", keep = "100%", keepLight = "100%";
+  std::string pixel;  // of the reflectance function
+  std::string out, tone = "none";
+  float exposure = 0;
+  std::optional<double> white;  // of a model
+  bool allowsExternal = false, quiet = false;
+  std::string preview;  // the port; empty: none
+
+  bool isOfPhotographs() const { return !images.empty() || !directions.empty(); }
+  bool isOfModel() const { return stage.ends_with(".glb") || stage.ends_with(".gltf"); }
+  const std::string& source() const { return isOfPhotographs() ? images : stage; }
+};
+
+// "10%", as a fraction above 0 and up to 1.
+double parseShare(std::string text, const char* option) {
+  const std::string given = text;
+  if (text.ends_with('%')) text.pop_back();
+  const double percent = parseNumbers(text, 1, option)[0];
+  if (!(percent > 0 && percent <= 100))
+    throwInput("{}: `{}` should be above 0% and up to 100%", option, given);
+  return percent / 100;
+}
+
+LightStage readStageOf(const Arguments& a) {
+  if (!a.isOfPhotographs()) return readStage(a.stage);
+  const double irradiance = parseNumbers(a.irradiance, 1, "--irradiance")[0];
+  if (!isPositiveFloat(irradiance)) throwInput("--irradiance: should be {}", kPositiveFloats);
+  return stageOf(a.images, readPhotographs(a.directions), float(irradiance));
+}
+
+glm::ivec2 parsePixel(const std::string& text, const LightStage& stage) {
+  constexpr const char* kOption = "--reflectance-function";
+  const std::vector<double> at = parseNumbers(text, 2, kOption);
+  const auto isIn = [](double number, int count) {
+    return number >= 0 && number < count && number == std::floor(number);
+  };
+  if (!isIn(at[0], stage.width()) || !isIn(at[1], stage.height()))
+    throwInput("{}: pixel `{}` is not in the {} x {} pixels of the stage", kOption, text,
+               stage.width(), stage.height());
+  return {int(at[0]), int(at[1])};
+}
+
+Image loadLight(const Arguments& a, const std::string& path) {
+  const LoadedProbe loaded = loadProbe(path, a.mapping, "--mapping");
+  for (const std::string& warning : warnings(loaded, path)) warn(warning);
+  return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
+}
+
+std::span<float> floatsOf(std::vector<Rgb>& colors) {
+  return {&colors.front().x, 3 * colors.size()};
+}
+
+struct Relit {
+  Image picture;
+  std::string summary;  // of what was left out
+};
+
+// With all elements, then with those that are kept: the difference is the error of the rest.
+Relit relitPicture(const Arguments& a, LightStage& stage, std::vector<Rgb> weights,
+                   RelightDomain domain) {
+  const double keep = parseShare(a.keep, "--keep"),
+               keepLight = parseShare(a.keepLight, "--keep-light");
+  const bool keepsAll = keep == 1 && keepLight == 1;
+  Image whole;
+  if (!keepsAll) whole = weightedSum(stage.elements, weights);
+  transform(stage, domain);
+  transform(weights, stage.basis, domain);
+  double zeros = 0, lightZeros = 0;
+  if (keep < 1) zeros = keepLargest(stage.elements.texels, keep);
+  if (keepLight < 1) lightZeros = keepLargest(floatsOf(weights), keepLight);
+  Relit relit{weightedSum(stage.elements, weights), ""};
+  if (!keepsAll)
+    relit.summary =
+        fmt::format(": {:.2f}% of the stage and {:.2f}% of the light are zeros, error {:.3g}%",
+                    100 * zeros, 100 * lightZeros, 100 * relativeDifference(relit.picture, whole));
+  addOwnLight(relit.picture, stage);
+  return relit;
+}
+
+void checkFinite(const Image& picture, const std::string& path) {
+  for (const float texel : picture.texels)
+    if (!std::isfinite(texel))
+      throwInput("{}: the picture exceeds the largest float, 3.4e38; give a smaller --scale", path);
+}
+
+void writePicture(const Arguments& a, const Image& picture, const DirectionBasis& basis) {
+  const DisplayTransform transform{parseToneOperator(a.tone), a.exposure};
+  OutputImage output;
+  output.layers.push_back({"", "RGB", picture});
+  output.metadata = {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
+                     {"stage", a.source()},
+                     {"basis", basis.name()}};
+  if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
+  writeImage(a.out, output, transform);
+}
+
+void runPicture(const Arguments& a) {
+  const Stopwatch watch;
+  parseShare(a.keep, "--keep");
+  parseShare(a.keepLight, "--keep-light");
+  const Image light = loadLight(a, a.probes.front());
+  LightStage stage = readStageOf(a);
+  const RelightDomain domain = parseDomain(a.domain, stage.basis);
+  const Relit relit = relitPicture(a, stage, lightWeights(stage.basis, light, a.rotation), domain);
+  checkFinite(relit.picture, a.source());
+  writePicture(a, relit.picture, stage.basis);
+  if (!a.quiet)
+    fmt::print("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),
+               stage.height(), stage.basis.size(), stage.basis.name(), watch.seconds(),
+               relit.summary, a.out);
+}
+
+void runReflectanceFunction(const Arguments& a) {
+  const LightStage stage = readStageOf(a);
+  const glm::ivec2 pixel = parsePixel(a.pixel, stage);
+  const Image map = reflectanceFunction(stage, pixel.x, pixel.y);
+  writePicture(a, map, stage.basis);
+  if (!a.quiet)
+    fmt::print("reflectance function of pixel {}, {} ({}), {} x {} directions: {}\n", pixel.x,
+               pixel.y, stage.basis.name(), map.width, map.height, a.out);
+}
+
+uint64_t parsePort(const std::string& text) {
+  const double port = parseNumbers(text, 1, "--preview")[0];
+  if (!(port >= 0 && port <= 65535 && port == std::floor(port)))
+    throwInput("--preview: `{}` is not a port, 0 to 65535", text);
+  return uint64_t(port);
+}
+
+void runPreview(const Arguments& a) {
+  const uint64_t port = parsePort(a.preview);
+  std::vector<NamedProbe> probes;
+  for (const std::string& path : a.probes)
+    probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
+  const RelightView view(readStageOf(a), std::move(probes));
+  RelightServer server(int(port), view);
+  note(fmt::format("preview at {}; Ctrl-C or its button ends it", server.address()));
+  server.run();
+}
+
+void checkOutput(const Arguments& a) {
+  if (a.probes.size() > 1) throwInput("--probe: give one; --preview takes several");
+  if (a.out.empty()) throwInput("--output: needs a name; or give --preview");
+  checkWritable(a.out);
+  std::vector<std::string> inputs{a.stage, a.directions};
+  inputs.insert(inputs.end(), a.probes.begin(), a.probes.end());
+  checkDistinct({a.out}, inputs);
+}
+
+void checkPreview(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.out.empty(), "--output"),
+        std::pair(!a.pixel.empty(), "--reflectance-function"),
+        std::pair(a.domain != "auto", "--domain"), std::pair(a.keep != "100%", "--keep"),
+        std::pair(a.keepLight != "100%", "--keep-light"),
+        std::pair(a.rotation != Rotation(), "--rotation"), std::pair(a.exposure != 0, "--exposure"),
+        std::pair(a.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: has no effect with --preview; leave it out", option);
+}
+
+void runModel(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.preview.empty(), "--preview"), std::pair(a.isOfPhotographs(), "--images"),
+        std::pair(!a.pixel.empty(), "--reflectance-function"),
+        std::pair(a.domain != "auto", "--domain"), std::pair(a.keepLight != "100%", "--keep-light"),
+        std::pair(a.exposure != 0, "--exposure"), std::pair(a.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: has no effect on a model; leave it out", option);
+  if (a.probes.size() != 1) throwInput("--probe: give one");
+  if (a.out.empty()) throwInput("--output: needs a name");
+  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation,
+                   a.white, a.allowsExternal, a.quiet});
+}
+
+void check(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(a.white.has_value(), "--white"), std::pair(a.allowsExternal, "--allow-external")})
+    if (given) throwInput("{}: needs a model with transfer, .glb or .gltf", option);
+  if (a.isOfPhotographs() != a.stage.empty())
+    throwInput("{}", a.stage.empty()
+                         ? "STAGE: give a light stage, or photographs by --images and --directions"
+                         : "--images, --directions: are in place of a light stage; give one");
+  if (a.isOfPhotographs() && (a.images.empty() || a.directions.empty()))
+    throwInput("--images, --directions: go together");
+  if (a.probes.empty() == a.pixel.empty())
+    throwInput("--probe, --reflectance-function: give one of the two");
+  parseColor(a.scale, "--scale");
+  parseToneOperator(a.tone);
+  if (!std::isfinite(a.exposure)) throwInput("--exposure: must be a finite number of stops");
+  a.preview.empty() ? checkOutput(a) : checkPreview(a);
+}
+
+void run(const Arguments& a) {
+  if (a.isOfModel()) return runModel(a);
+  check(a);
+  if (!a.preview.empty()) return runPreview(a);
+  a.pixel.empty() ? runPicture(a) : runReflectanceFunction(a);
+}
+
+}  // namespace
+
+void addRelightCommand(CLI::App& app) {
+  const auto a = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("relight", "Light a light stage, or a model with transfer, by a probe");
+  command->add_option("STAGE", a->stage, "the light stage or model, from `chromeball basis`");
+  command->add_option("--images", a->images,
+                      "in place of STAGE: a folder of linear photographs of a subject, each under "
+                      "light from one direction");
+  command->add_option(
+      "--directions", a->directions,
+      "a .csv of these: FILE,X,Y,Z or FILE,AZIMUTH,ELEVATION (degrees) on each line");
+  command
+      ->add_option("--irradiance", a->irradiance,
+                   "of these: what the lamp puts on a surface that faces it")
+      ->capture_default_str();
+  command->add_option("--probe", a->probes, "the light; with --preview several, each by --probe")
+      ->type_name("TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--mapping", a->mapping, "of the probe; auto detects it")
+      ->capture_default_str();
+  addRotationOption(*command, a->rotation);
+  command->add_option("--scale", a->scale, "X or R,G,B: factor of the probe")
+      ->capture_default_str();
+  command
+      ->add_option("--domain", a->domain,
+                   "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the result is "
+                   "the same, unless some is left out")
+      ->capture_default_str();
+  command
+      ->add_option("--keep", a->keep,
+                   "PERCENT of the stage's numbers in that domain to keep, the largest; prints the "
+                   "error. Of a model: how many of the light's coefficients to keep, or PERCENT%")
+      ->capture_default_str();
+  command
+      ->add_option("--keep-light", a->keepLight,
+                   "PERCENT of the light's numbers in that domain to keep, the largest")
+      ->capture_default_str();
+  command->add_option("--reflectance-function", a->pixel,
+                      "X,Y: in place of a probe, what this pixel reflects of light from each "
+                      "direction, as a lat-long map");
+  command->add_option("-o,--output", a->out,
+                      "the image to write: .exr, .hdr, .pfm or .png; of a model .glb or .gltf");
+  command->add_flag("--preview")
+      ->description(
+          "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
+          "which the probes are turned and swapped")
+      ->each([a](const std::string& word) { a->preview = word == "true" ? "0" : word; })
+      ->type_name("[=PORT]");
+  command->add_option("--white", a->white,
+                      "of a model: the light that its white stands for; without it, the brightest");
+  command->add_flag("--allow-external", a->allowsExternal,
+                    "of a model: read files outside of its folder");
+  command->add_option("--exposure", a->exposure, "of a .png, in stops");
+  command
+      ->add_option("--tonemap", a->tone,
+                   fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      ->capture_default_str();
+  command->add_flag("--quiet", a->quiet, "print nothing but warnings and errors");
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace chromeball

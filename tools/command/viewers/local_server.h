@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the servers of pages for this machine have in common.
+#pragma once
+
+#include <httplib.h>
+
+#include <charconv>
+#include <string>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+// Answers programs of this machine, but not pages that other servers have sent to a browser; short
+// requests, of which nothing is stored.
+void keepLocal(httplib::Server& server);
+
+// At 127.0.0.1. `port` 0: any that is free. Returns the port. Throws InputError.
+int bindLocal(httplib::Server& server, int port);
+
+void refuse(httplib::Response& response, int status, const std::string& reason);
+
+// The number after `name=` in the address. Throws InputError.
+template <class T>
+T numberOf(const httplib::Request& request, const char* name, T fallback) {
+  if (!request.has_param(name)) return fallback;
+  const std::string text = request.get_param_value(name);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throwInput("{}: `{}` is not a number", name, text);
+  return value;
+}
+
+}  // namespace chromeball
