@@ -23,7 +23,7 @@ size_t parseKeep(std::string text, size_t count) {
   if (isPercent) text.pop_back();
   const double number = parseNumbers(text, 1, "--keep")[0];
   const double kept = isPercent ? std::round(number / 100 * double(count)) : number;
-  if (!(number > 0) || kept > double(count) || kept != std::floor(kept))
+  if (!(number > 0) || number > (isPercent ? 100 : double(count)) || kept != std::floor(kept))
     throwInput(
         "--keep: should be a whole number from 1 to {}, or a percentage above 0 and up to "
         "100%",
