@@ -66,6 +66,9 @@ class Writer {
     document_.root["scene"] = 0;
     document_.root["scenes"] = Json::array({{{"nodes", nodes_}}});
     document_.root["extras"] = file_.extras;
+    for (const NamedArray& table : file_.tables)
+      document_.root["extras"]["chromeball"]["tables"][table.name] =
+          document_.accessor(table.elements);
     document_.write(path);
   }
 
@@ -89,6 +92,8 @@ class Writer {
       const char* names[] = {"_IRRADIANCE", "_OCCLUSION", "_RADIANCE"};
       attributes[names[int(file_.what)]] = document_.accessor(geometry.light);
     }
+    for (const NamedArray& more : geometry.attributes)
+      attributes[more.name] = document_.accessor(more.elements);
     return attributes;
   }
 

@@ -26,6 +26,8 @@ struct BakedFile {
   std::optional<Camera> camera;
   float aspect = 1;           // of the camera, if it states none
   GltfDocument::Json extras;  // of the file
+  // Accessors that no vertex refers to; extras.chromeball.tables has their indices by name.
+  std::vector<NamedArray> tables = {};
 };
 
 // A lightmap's page: shown / scale as sRGB PNG, or the occlusion as grey.

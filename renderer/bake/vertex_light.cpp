@@ -2,33 +2,10 @@
 #include "bake/vertex_light.h"
 
 #include "bake/shown_color.h"
+#include "bake/vertex_geometry.h"
 
 namespace chromeball {
 namespace {
-
-// Of an instance: vertices without light take the mean of those that they share edges with, from
-// the edge of the lit part inwards.
-void fillVertices(const std::vector<Triangle>& triangles, std::vector<Rgb>& light,
-                  std::vector<uint8_t>& isLit) {
-  for (bool grows = true; grows;) {
-    grows = false;
-    std::vector<Rgb> sums(light.size(), Rgb(0));
-    std::vector<int> counts(light.size());
-    for (const Triangle& t : triangles)
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-          if (!isLit[t[a]] && isLit[t[b]]) {
-            sums[t[a]] += light[t[b]];
-            ++counts[t[a]];
-          }
-    for (size_t i = 0; i < light.size(); ++i) {
-      if (counts[i] == 0) continue;
-      light[i] = sums[i] / float(counts[i]);
-      isLit[i] = 1;
-      grows = true;
-    }
-  }
-}
 
 vec4 colorOf(const PointLight& what, const PlacedMesh& placed, const BakePoint& point,
              const Rgb& light) {
@@ -60,25 +37,19 @@ std::vector<BakedGeometry> colouredGeometry(const PointLight& what,
                                             const std::vector<PlacedMesh>& meshes,
                                             const std::vector<BakePoint>& points,
                                             const BakeResult& baked) {
-  std::vector<BakedGeometry> all;
+  std::vector<BakedGeometry> all = vertexGeometry(meshes, points);
   size_t at = 0;
-  for (const PlacedMesh& placed : meshes) {
-    BakedGeometry& geometry = all.emplace_back(placed);
-    std::vector<uint32_t> own(placed.positions.size());
-    std::vector<uint8_t> isLit;
+  for (BakedGeometry& geometry : all) {
     const size_t first = at;
-    for (; at < points.size() && points[at].instance == placed.instance; ++at) {
-      own[points[at].x] = uint32_t(geometry.vertices.size());
-      geometry.vertices.push_back(points[at].x);
+    std::vector<uint8_t> isLit;
+    for (size_t i = 0; i < geometry.vertices.size(); ++i, ++at) {
       geometry.light.push_back(baked.points[at].mean());
       isLit.push_back(!baked.points[at].buried);
     }
-    for (uint32_t i = 0; i < placed.triangleCount(); ++i)
-      if (const Triangle& t = placed.triangle(i); placed.hasArea(i))
-        geometry.add({own[t.x], own[t.y], own[t.z]});
-    fillVertices(geometry.triangles, geometry.light, isLit);
+    fillVertices(geometry.triangles, geometry.light, std::move(isLit));
     for (size_t i = 0; i < geometry.light.size(); ++i)
-      geometry.colors.push_back(colorOf(what, placed, points[first + i], geometry.light[i]));
+      geometry.colors.push_back(
+          colorOf(what, *geometry.placed, points[first + i], geometry.light[i]));
   }
   return all;
 }

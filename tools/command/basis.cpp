@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// chromeball basis SCENE --directions lat-long:32x16 -o STAGE.exr: a light stage of a scene, for
-// `chromeball relight`.
+// chromeball basis SCENE --directions lat-long:32x16 -o STAGE.exr: a light stage of a scene.
+// chromeball basis MODEL --at vertices --basis sh:4 -o MODEL_PRT.glb: transfer at its vertices.
+// Both for `chromeball relight`.
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "basis_job.h"
+#include "basis_vertices.h"
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "job/job.h"
@@ -18,33 +21,10 @@ namespace chromeball {
 namespace {
 
 struct Arguments : SceneOptions {
-  std::string directions = "lat-long:32x16", out;
+  std::string at = "pixels", out;
+  std::string directions, functions;  // at pixels; at vertices
   bool halves = false;
 };
-
-// The light comes from everywhere, in place of the scene's probe.
-RenderJob plannedJob(const Arguments& a) {
-  SceneFile scene = openScene(a.scene);
-  if (scene.composite)
-    throwInput("{}: a composite has no light stage; take its model", scene.composite->location);
-  if (scene.surroundings)
-    throwInput("{}: [surroundings] are not at infinity, as the light of a light stage is",
-               scene.path);
-  for (const char* name : {"probe.file", "probe.mapping", "probe.rotation", "probe.scale"})
-    scene.settings.erase(name);
-  scene.sources.clear();
-  scene.probeTurns.clear();
-  scene.lamps.push_back({.ambient = AmbientLamp{}});  // black: no scene needs a light of its own
-  RenderJob job = planJob(std::move(scene), a.settings);
-  job.settings.crop.reset();
-  return job;
-}
-
-LoadedScene loadedScene(RenderJob& job) {
-  LoadedScene loaded = loadScene(job);
-  std::erase_if(loaded.scene.ambient, [](const auto& lamp) { return isBlack(lamp.radiance); });
-  return loaded;
-}
 
 void checkStageMemory(const RenderJob& job, const LoadedScene& loaded,
                       const DirectionBasis& basis) {
@@ -68,13 +48,14 @@ Metadata metadataOf(const Arguments& a, const RenderJob& job) {
           {"max_depth", job.settings.maxDepth}};
 }
 
-void run(const Arguments& a) {
+void runPixels(const Arguments& a) {
   const Stopwatch watch;
-  const DirectionBasis basis(a.directions, "--directions");
+  const DirectionBasis basis(a.directions.empty() ? "lat-long:32x16" : a.directions,
+                             "--directions");
   checkOutputFile(a.out, {".exr"});
   const ThreadLimit threads(a.settings);
-  RenderJob job = plannedJob(a);
-  const LoadedScene loaded = loadedScene(job);
+  RenderJob job = basisJob(a, "light stage");
+  const LoadedScene loaded = loadBasisScene(job);
   checkDistinct({a.out}, loaded.files);
   checkStageMemory(job, loaded, basis);
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
@@ -94,21 +75,41 @@ void run(const Arguments& a) {
                watch.seconds(), a.out);
 }
 
+void run(const Arguments& a) {
+  if (a.at == "pixels") {
+    if (!a.functions.empty()) throwInput("--basis: needs --at vertices; see --directions");
+    return runPixels(a);
+  }
+  if (a.at != "vertices") throwInput("--at: `{}` is not pixels or vertices", a.at);
+  if (!a.directions.empty())
+    throwInput("--directions: has no effect with --at vertices; see --basis");
+  if (a.halves) throwInput("--half: has no effect with --at vertices; leave it out");
+  runBasisVertices(a, a.functions.empty() ? "sh:4" : a.functions, a.out);
+}
+
 }  // namespace
 
 void addBasisCommand(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
-      "basis", "Render a light stage: a scene under light from each of many directions");
+      "basis",
+      "Render a light stage, a scene under light from each of many directions; or the same "
+      "at a model's vertices");
   addSceneOptions(*command, *arguments, SceneCommand::Basis);
-  command
-      ->add_option("--directions", arguments->directions,
-                   "lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS (triangles), "
-                   "sh:ORDER (spherical harmonics)")
+  command->add_option("--at", arguments->at, "pixels, or vertices: precomputed radiance transfer")
       ->capture_default_str();
+  command->add_option("--directions", arguments->directions,
+                      "of pixels: lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS "
+                      "(triangles), sh:ORDER (spherical harmonics); else lat-long:32x16");
+  command->add_option("--basis", arguments->functions,
+                      "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube "
+                      "of N x N cells a face); else sh:4");
   command->add_flag("--half", arguments->halves,
                     "write 16 bits per number: half the file, to 0.05%");
-  command->add_option("-o,--output", arguments->out, "the light stage to write, .exr")->required();
+  command
+      ->add_option("-o,--output", arguments->out,
+                   "the light stage to write, .exr; of vertices the model, .glb or .gltf")
+      ->required();
   command->callback([arguments] { run(*arguments); });
 }
 

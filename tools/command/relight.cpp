@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball relight STAGE.exr --probe P -o OUT.exr: a light stage under a probe.
 // chromeball relight STAGE.exr --probe P --probe Q --preview: on a page, where the probes turn.
+// chromeball relight MODEL_PRT.glb --probe P -o MODEL_LIT.glb: vertices by their transfer.
 #include <filesystem>
 
 #include "base/error.h"
@@ -15,6 +16,7 @@
 #include "relight/reflectance_function.h"
 #include "relight/relight.h"
 #include "relight/stage_photographs.h"
+#include "relight_model.h"
 #include "rotation_option.h"
 #include "viewers/relight_server.h"
 
@@ -32,10 +34,12 @@ struct Arguments {
   std::string pixel;  // of the reflectance function
   std::string out, tone = "none";
   float exposure = 0;
-  bool quiet = false;
+  std::optional<double> white;  // of a model
+  bool allowsExternal = false, quiet = false;
   std::string preview;  // the port; empty: none
 
   bool isOfPhotographs() const { return !images.empty() || !directions.empty(); }
+  bool isOfModel() const { return stage.ends_with(".glb") || stage.ends_with(".gltf"); }
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
 };
 
@@ -186,7 +190,23 @@ void checkPreview(const Arguments& a) {
     if (given) throwInput("{}: has no effect with --preview; leave it out", option);
 }
 
+void runModel(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.preview.empty(), "--preview"), std::pair(a.isOfPhotographs(), "--images"),
+        std::pair(!a.pixel.empty(), "--reflectance-function"),
+        std::pair(a.domain != "auto", "--domain"), std::pair(a.keepLight != "100%", "--keep-light"),
+        std::pair(a.exposure != 0, "--exposure"), std::pair(a.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: has no effect on a model; leave it out", option);
+  if (a.probes.size() != 1) throwInput("--probe: give one");
+  if (a.out.empty()) throwInput("--output: needs a name");
+  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation,
+                   a.white, a.allowsExternal, a.quiet});
+}
+
 void check(const Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(a.white.has_value(), "--white"), std::pair(a.allowsExternal, "--allow-external")})
+    if (given) throwInput("{}: needs a model with transfer, .glb or .gltf", option);
   if (a.isOfPhotographs() != a.stage.empty())
     throwInput("{}", a.stage.empty()
                          ? "STAGE: give a light stage, or photographs by --images and --directions"
@@ -202,6 +222,7 @@ void check(const Arguments& a) {
 }
 
 void run(const Arguments& a) {
+  if (a.isOfModel()) return runModel(a);
   check(a);
   if (!a.preview.empty()) return runPreview(a);
   a.pixel.empty() ? runPicture(a) : runReflectanceFunction(a);
@@ -211,8 +232,9 @@ void run(const Arguments& a) {
 
 void addRelightCommand(CLI::App& app) {
   const auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("relight", "Light a light stage by a probe");
-  command->add_option("STAGE", a->stage, "the light stage, from `chromeball basis`");
+  CLI::App* command =
+      app.add_subcommand("relight", "Light a light stage, or a model with transfer, by a probe");
+  command->add_option("STAGE", a->stage, "the light stage or model, from `chromeball basis`");
   command->add_option("--images", a->images,
                       "in place of STAGE: a folder of linear photographs of a subject, each under "
                       "light from one direction");
@@ -240,7 +262,7 @@ void addRelightCommand(CLI::App& app) {
   command
       ->add_option("--keep", a->keep,
                    "PERCENT of the stage's numbers in that domain to keep, the largest; prints the "
-                   "error")
+                   "error. Of a model: how many of the light's coefficients to keep, or PERCENT%")
       ->capture_default_str();
   command
       ->add_option("--keep-light", a->keepLight,
@@ -249,13 +271,18 @@ void addRelightCommand(CLI::App& app) {
   command->add_option("--reflectance-function", a->pixel,
                       "X,Y: in place of a probe, what this pixel reflects of light from each "
                       "direction, as a lat-long map");
-  command->add_option("-o,--output", a->out, "the image to write: .exr, .hdr, .pfm or .png");
+  command->add_option("-o,--output", a->out,
+                      "the image to write: .exr, .hdr, .pfm or .png; of a model .glb or .gltf");
   command->add_flag("--preview")
       ->description(
           "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
           "which the probes are turned and swapped")
       ->each([a](const std::string& word) { a->preview = word == "true" ? "0" : word; })
       ->type_name("[=PORT]");
+  command->add_option("--white", a->white,
+                      "of a model: the light that its white stands for; without it, the brightest");
+  command->add_flag("--allow-external", a->allowsExternal,
+                    "of a model: read files outside of its folder");
   command->add_option("--exposure", a->exposure, "of a .png, in stops");
   command
       ->add_option("--tonemap", a->tone,

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/custom_data.h"
+
+#include "scene/gltf/accessor.h"
+#include "scene/gltf/gltf_file.h"
+#include "scene/gltf/meshopt.h"
+
+namespace chromeball {
+namespace {
+
+using tinygltf::Value;
+
+std::vector<vec3> readFinite(GltfFile& file, int accessor, const std::string& where) {
+  std::vector<vec3> vectors = readVectors<3>(file, accessor, where);
+  for (size_t i = 0; i < vectors.size(); ++i)
+    if (!isFinite(vectors[i])) file.fail("{}: element {} is not finite", where, i);
+  return vectors;
+}
+
+void readExtras(GltfFile& file, CustomData& data) {
+  if (!file.model.extras.IsObject()) return;
+  const Value& extras = file.model.extras.Get("chromeball");
+  if (!extras.IsObject()) return;
+  for (const std::string& key : extras.Keys())
+    if (const Value& value = extras.Get(key); value.IsString())
+      data.texts[key] = value.Get<std::string>();
+  const Value& origin = extras.Get("origin");
+  if (origin.IsArray() && origin.ArrayLen() == 3)
+    for (int i = 0; i < 3; ++i)
+      if (const Value& number = origin.Get(i); number.IsNumber())
+        data.origin[i] = number.GetNumberAsDouble();
+  const Value& tables = extras.Get("tables");
+  if (!tables.IsObject()) return;
+  for (const std::string& name : tables.Keys()) {
+    const Value& index = tables.Get(name);
+    data.tables[name] = readFinite(file, index.IsInt() ? index.GetNumberAsInt() : -1,
+                                   "extras.chromeball.tables." + name);
+  }
+}
+
+}  // namespace
+
+CustomData readCustomData(const std::string& path, const std::string& prefix,
+                          ExternalFiles external) {
+  GltfFile file(path, external);
+  decodeMeshopt(file);
+  CustomData data;
+  readExtras(file, data);
+  for (size_t i = 0; i < file.model.nodes.size(); ++i) {
+    const int index = file.model.nodes[i].mesh;
+    if (index == -1) continue;
+    const tinygltf::Mesh& mesh =
+        file.at(file.model.meshes, index, "meshes", fmt::format("nodes[{}].mesh", i));
+    if (mesh.primitives.size() != 1) continue;
+    for (const auto& [name, accessor] : mesh.primitives[0].attributes)
+      if (name.starts_with(prefix))
+        data.attributes[int(i)][name] = readFinite(
+            file, accessor, fmt::format("meshes[{}].primitives[0].attributes.{}", index, name));
+  }
+  return data;
+}
+
+}  // namespace chromeball

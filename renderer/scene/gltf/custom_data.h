@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a glTF file of this program carries besides a scene.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/load_gltf.h"
+
+namespace chromeball {
+
+struct CustomData {
+  using Arrays = std::map<std::string, std::vector<vec3>>;
+
+  // By node: the attributes of its mesh's only primitive whose names start with the prefix, each of
+  // finite vectors. Nodes whose mesh has several primitives have none.
+  std::map<int, Arrays> attributes;
+  Arrays tables;                             // the accessors of extras.chromeball.tables
+  std::map<std::string, std::string> texts;  // strings of extras.chromeball
+  glm::dvec3 origin{0};                      // extras.chromeball.origin
+};
+
+// Throws InputError ("FILE: reason") as loadGltf(), and for vectors that are not finite.
+CustomData readCustomData(const std::string& path, const std::string& prefix,
+                          ExternalFiles external);
+
+}  // namespace chromeball

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basis_job.h"
+
+namespace chromeball {
+
+RenderJob basisJob(const SceneOptions& options, const char* what) {
+  SceneFile scene = openScene(options.scene);
+  if (scene.composite)
+    throwInput("{}: a composite has no {}; take its model", scene.composite->location, what);
+  if (scene.surroundings)
+    throwInput("{}: [surroundings] are not at infinity, as the light of a {} is", scene.path, what);
+  for (const char* name : {"probe.file", "probe.mapping", "probe.rotation", "probe.scale"})
+    scene.settings.erase(name);
+  scene.sources.clear();
+  scene.probeTurns.clear();
+  scene.lamps.push_back({.ambient = AmbientLamp{}});  // black: no scene needs a light of its own
+  RenderJob job = planJob(std::move(scene), options.settings);
+  job.settings.crop.reset();
+  return job;
+}
+
+LoadedScene loadBasisScene(RenderJob& job) {
+  LoadedScene loaded = loadScene(job);
+  std::erase_if(loaded.scene.ambient, [](const auto& lamp) { return isBlack(lamp.radiance); });
+  return loaded;
+}
+
+}  // namespace chromeball

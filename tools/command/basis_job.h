@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The job of `chromeball basis`: a scene whose light comes from everywhere.
+#pragma once
+
+#include "job/job.h"
+#include "scene_options.h"
+
+namespace chromeball {
+
+// Without the scene's probe, which relighting replaces. `what`: "light stage", for errors. Throws
+// InputError for composites and surroundings, which have none.
+RenderJob basisJob(const SceneOptions& options, const char* what);
+
+LoadedScene loadBasisScene(RenderJob& job);
+
+}  // namespace chromeball
