@@ -8,6 +8,7 @@ import time
 import approximations
 import capture
 import formulas
+import gallery
 import lights
 import probes
 import rendering
@@ -20,7 +21,7 @@ from run import ROOT, Run
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
             ("Suns", [suns.rows]), ("Cheaper answers", [approximations.rows]),
-            ("Composites and rooms", [scenes.rows, formulas.rows])]
+            ("Composites and rooms", [scenes.rows, formulas.rows, gallery.rows])]
 
 
 def main():
