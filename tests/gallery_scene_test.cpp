@@ -31,14 +31,17 @@ const std::map<std::string, std::function<void(const std::string&)>> kModels = {
     {"nave-room", [](const std::string& path) { demo::writeNave(path, Nave::Room); }},
     {"nave-things", [](const std::string& path) { demo::writeNave(path, Nave::Things); }}};
 
-// Written and loaded once.
+// The model's file, written once.
+std::string fileOf(const std::string& name) {
+  static const TemporaryFolder folder;
+  const std::string path = folder / (name + ".glb");
+  if (!std::filesystem::exists(path)) kModels.at(name)(path);
+  return path;
+}
+
 const Scene& modelOf(const std::string& name) {
   static std::map<std::string, Scene> scenes;
-  if (!scenes.contains(name)) {
-    const TemporaryFolder folder;
-    kModels.at(name)(folder / "model.glb");
-    scenes[name] = loadGltf(folder / "model.glb", {}, nullptr);
-  }
+  if (!scenes.contains(name)) scenes[name] = loadGltf(fileOf(name), {}, nullptr);
   return scenes[name];
 }
 
@@ -99,8 +102,7 @@ TEST_P(SlowGallery, BodiesOfGlassAreClosedAndFaceOut) {
 
 TEST_P(SlowGallery, RendersWithoutWarningsAndInvalidSamples) {
   const TemporaryFolder folder;
-  const std::string model = folder / "model.glb", stats = folder / "stats.json";
-  kModels.at(GetParam())(model);
+  const std::string model = fileOf(GetParam()), stats = folder / "stats.json";
   const CommandResult result = runCommand(
       {"render", model, "--probe", std::string(kSourceDir) + "/probes/noon.exr", "--size", "48x32",
        "--samples", "4", "-o", folder / "image.exr", "--stats", stats});
@@ -121,7 +123,7 @@ TEST(SlowGalleryScenes, AreCompleteWithTheModelsThatTheirHeadersName) {
     fs::copy_file(source, scene);
     const std::string text = fileContents(scene), model = std::string("out/") + name + ".glb";
     EXPECT_NE(text.find("build/make_demo " + std::string(name) + " " + model), std::string::npos);
-    kModels.at(name)(folder / model);
+    fs::copy_file(fileOf(name), folder / model);
     const CommandResult result = runCommand(
         {"render", scene, "--size", "32x32", "--samples", "2", "-o", folder / "out/image.png"});
     EXPECT_EQ(result.status, 0) << result.error;

@@ -33,9 +33,7 @@ class TransferPoints {
         points_(points),
         settings_(settings),
         table_(std::bit_ceil(std::clamp(settings.samples, 16u, kMaxTable)),
-               dimension::kVertex +
-                   dimension::kPerVertex * std::min(settings.maxDepth + 1, kTabulatedVertices),
-               settings.seed) {}
+               dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
 
   // estimate(point, surface, worker) for each point that is not buried, where it may call
   // forSamples(); `result` gets the rest.
@@ -94,7 +92,6 @@ class TransferPoints {
 
  private:
   static constexpr uint32_t kMaxTable = 4096;  // points; more samples take another randomisation
-  static constexpr int kTabulatedVertices = 4;
   static constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
 
   PointLight light_;

@@ -164,7 +164,7 @@ void addFloor(GltfDocument& glb) {
                .surface = tessellate(2, 2, floorPlane(), Uvs::Parameters),
                .color = {1, 1, 1},
                .roughness = 0.16f};
-  floor.texture = addTexture(glb, carve({2048, 4096}, floorPlane(), pavement));
+  floor.texture = addTexture(glb, carve({1536, 2816}, floorPlane(), pavement));
   addObject(glb, floor);
 }
 

@@ -20,7 +20,7 @@ const Profile kPedestal = filleted({{0, 0},
                                     {1.42, 1.22},
                                     {1.42, 1.36},
                                     {0, 1.36}},
-                                   0.03);
+                                   0.03, 0.08);
 
 // A stand whose cup's rim, of radius 0.62 of the ball's, is at height 1.
 const Profile kStand = filleted({{0, 0},
@@ -93,7 +93,7 @@ Object carved(GltfDocument& glb, const char* name, int columns, const Profile& p
 void writePedestal(const std::string& path) {
   GltfDocument glb;
   const SolidTexture white = marble({0.72f, 0.69f, 0.64f}, {0.24f, 0.23f, 0.24f}, 0.9f);
-  addObject(glb, carved(glb, "pedestal", 160, kPedestal, white, {2048, 1024}));
+  addObject(glb, carved(glb, "pedestal", 160, kPedestal, white, {2048, 1536}));
 
   const int stand = addMesh(glb, {.name = "stand",
                                   .surface = tessellateTurned(48, dvec3(0), kStand),

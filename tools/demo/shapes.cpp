@@ -33,8 +33,11 @@ Surface tessellate(int columns, int rows, const Parametrisation& point, Uvs uvs)
           uvs == Uvs::Parameters ? vec2(u, v) : vec2(p.x, p.z) / float(2 * kTableRadius) + 0.5f);
     }
   const auto add = [&](int a, int b, int c) {
-    const auto& p = surface.positions;
-    if (glm::length(glm::cross(p[b] - p[a], p[c] - p[a])) > 1e-10f)
+    // In double precision: with FMA, the cross product of equal vectors is not 0.
+    const dvec3 corner(surface.positions[a]);
+    const dvec3 right = dvec3(surface.positions[b]) - corner;
+    const dvec3 up = dvec3(surface.positions[c]) - corner;
+    if (glm::length(glm::cross(right, up)) > 1e-10)
       surface.triangles.push_back(glm::uvec3(a, b, c));
   };
   for (int j = 0; j < rows; ++j)

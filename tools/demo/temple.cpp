@@ -189,8 +189,7 @@ void writeTemple(const std::string& path) {
                        addTexture(glb, carve({2048, 2048}, hill(), earth))));
   addObject(glb, stone("land", tessellate(128, 64, land(), Uvs::Parameters),
                        addTexture(glb, carve({1024, 512}, land(), earth))));
-  Camera camera =
-      Camera::lookAt({-38, 2.0f, 82}, {-3.2f, 8.6f, 20}, {0, 1, 0}, glm::radians(29.0f));
+  Camera camera = Camera::lookAt({-38, 1.7f, 82}, {-3.2f, 10, 20}, {0, 1, 0}, glm::radians(28.0f));
   camera.name = "View";
   addCamera(glb, camera);
   writeScene(glb, path);

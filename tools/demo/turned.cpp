@@ -6,19 +6,25 @@
 
 namespace chromeball::demo {
 
-Profile filleted(const Profile& corners, double radius) {
+Profile filleted(const Profile& corners, double radius, double longest) {
   constexpr int kSteps = 6;
   Profile profile = {corners.front()};
+  const auto straightTo = [&](dvec2 end) {
+    const dvec2 start = profile.back();
+    const int pieces = std::max(1, int(std::ceil(glm::length(end - start) / longest)));
+    for (int k = 1; k <= pieces; ++k) profile.push_back(glm::mix(start, end, double(k) / pieces));
+  };
   for (size_t i = 1; i + 1 < corners.size(); ++i) {
     const dvec2 before = corners[i - 1] - corners[i], after = corners[i + 1] - corners[i];
     const dvec2 a = corners[i] + before * std::min(radius / glm::length(before), 0.49);
     const dvec2 b = corners[i] + after * std::min(radius / glm::length(after), 0.49);
-    for (int k = 0; k <= kSteps; ++k) {  // Bezier's parabola of a, the corner and b
+    straightTo(a);
+    for (int k = 1; k <= kSteps; ++k) {  // Bezier's parabola of a, the corner and b
       const double t = double(k) / kSteps;
       profile.push_back(glm::mix(glm::mix(a, corners[i], t), glm::mix(corners[i], b, t), t));
     }
   }
-  profile.push_back(corners.back());
+  straightTo(corners.back());
   return profile;
 }
 

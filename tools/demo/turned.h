@@ -9,8 +9,9 @@ namespace chromeball::demo {
 // (radius, height) of the corners of a profile.
 using Profile = std::vector<dvec2>;
 
-// The same with each inner corner rounded by a parabolic arc that starts `radius` before it.
-Profile filleted(const Profile& corners, double radius);
+// The same with each inner corner rounded by a parabolic arc that starts `radius` before it, and
+// with straight parts cut into pieces no longer than `longest`.
+Profile filleted(const Profile& corners, double radius, double longest = INFINITY);
 
 // The profile turned about the vertical through `foot`. It runs up the outside: from the axis below
 // to the axis above makes a closed body.

@@ -8,6 +8,7 @@ import time
 import approximations
 import capture
 import formulas
+import gallery
 import lights
 import optics
 import probes
@@ -21,9 +22,14 @@ from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
+<<<<<<< HEAD
             ("Suns", [suns.rows]), ("Optics", [optics.rows]), ("Cheaper answers", [approximations.rows]),
             ("Relighting", [stage.rows]),
             ("Composites and rooms", [scenes.rows, formulas.rows])]
+=======
+            ("Suns", [suns.rows]), ("Cheaper answers", [approximations.rows]),
+            ("Composites and rooms", [scenes.rows, formulas.rows, gallery.rows])]
+>>>>>>> gallery
 
 
 def main():
