@@ -7,6 +7,7 @@ import time
 
 import approximations
 import capture
+import film
 import formulas
 import gallery
 import lights
@@ -22,14 +23,9 @@ from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
             ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
-<<<<<<< HEAD
             ("Suns", [suns.rows]), ("Optics", [optics.rows]), ("Cheaper answers", [approximations.rows]),
-            ("Relighting", [stage.rows]),
-            ("Composites and rooms", [scenes.rows, formulas.rows])]
-=======
-            ("Suns", [suns.rows]), ("Cheaper answers", [approximations.rows]),
+            ("Relighting", [stage.rows]), ("Films", [film.rows]),
             ("Composites and rooms", [scenes.rows, formulas.rows, gallery.rows])]
->>>>>>> gallery
 
 
 def main():
