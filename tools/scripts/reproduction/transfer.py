@@ -9,7 +9,7 @@ from run import NOON, ROOT, SCENES
 
 MODEL = SCENES / "models" / "still-life.glb"
 DUSK = ROOT / "probes" / "dusk.exr"
-SAMPLES = 512
+SAMPLES = 128
 BASES = {"sh:2": [9], "sh:4": [25], "haar:16": [25, 100, 1536]}
 
 
