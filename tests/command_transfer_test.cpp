@@ -65,11 +65,12 @@ class CommandTransfer : public testing::Test {
   }
   // A copy of the model with transfer whose JSON `change` changes.
   template <class Change>
-  void refusesChanged(const Change& change, const std::string& reason) const {
+  void refusesChanged(const Change& change, const std::string& reason,
+                      const Strings& more = {}) const {
     Json root = Json::parse(fileContents(folder_ / "t.gltf"));
     change(root, root["meshes"][0]["primitives"][0]["attributes"]);
     std::ofstream(folder_ / "changed.gltf") << root;
-    refusesRelight("changed.gltf", {}, reason);
+    refusesRelight("changed.gltf", more, reason);
   }
 
   TemporaryFolder folder_;
@@ -120,7 +121,49 @@ TEST_F(CommandTransfer, TheModelStaysAndTheSumIsRepeatable) {
   EXPECT_EQ(render.status, 0) << render.error;
 }
 
+// Three vertices need two vectors: the compression is exact, and an open matte triangle under
+// constant light shows its colour (white in this model, at most) from each side.
+TEST_F(CommandTransfer, GlossyTransferIsSeenFromAPoint) {
+  const auto glossy = [&](const char* vectors) {
+    const CommandResult result = runCommand(
+        {"basis", folder_ / "m.gltf", "--at", "vertices", "--basis", "sh:1", "--samples", "64",
+         "--glossy", "--clusters", "1", "--vectors", vectors, "-o", folder_ / "t.gltf"});
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.out;
+  };
+  EXPECT_NE(glossy("0").find("1 clusters of 0 vectors, error"), std::string::npos);
+  glossy("2");
+  const Json extras = Json::parse(fileContents(folder_ / "t.gltf"))["extras"]["chromeball"];
+  EXPECT_LT(extras["compressionError"].get<double>(), 1e-5);
+  const auto seenFrom = [&](const std::string& eye) {
+    relight("white.exr", {"--view", eye});
+    return attributes("lit.glb", "_RADIANCE").at("_RADIANCE");
+  };
+  const auto front = seenFrom("0.3,0.3,5"), side = seenFrom("5,0.3,1");
+  for (const vec3& radiance : front) {
+    EXPECT_GT(radiance.x, 0.3f);
+    EXPECT_LT(radiance.x, 1.05f);
+    EXPECT_NEAR(radiance.z, 3 * radiance.x, 0.02f * radiance.z);
+  }
+  EXPECT_NE(front, side);
+  refusesRelight("t.gltf", {}, "its transfer is glossy; give the eye by --view");
+  refusesRelight("t.gltf", {"--view", "1,2"}, "--view");
+  refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["tables"].erase("vector0"); },
+                 "tables has no vector", {"--view", "1,2,3"});
+  refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["basis"] = "sh:3"; }, "elements",
+                 {"--view", "1,2,3"});
+  refusesChanged([](Json&, Json& a) { a["_PRT_0"] = a["POSITION"]; }, "is not a cluster, 0 to 0",
+                 {"--view", "1,2,3"});
+  refusesChanged([](Json&, Json& a) { a.erase("_PRT_NORMAL"); }, "has no _PRT_NORMAL",
+                 {"--view", "1,2,3"});
+  basis("sh:1");
+  refusesRelight("t.gltf", {"--view", "1,2,3"}, "--view: the model's transfer is diffuse");
+}
+
 TEST_F(CommandTransfer, RefusesBadOptions) {
+  refusesBasis({"--clusters", "2"}, "--clusters, --vectors: need --glossy");
+  refusesBasis({"--glossy", "--clusters", "0"}, "--clusters");
+  refuses({"basis", folder_ / "m.gltf", "--glossy"}, "--glossy: needs --at vertices");
   refusesBasis({"--basis", "sh:9"}, "--basis: `sh:9` is not sh:ORDER");
   refusesBasis({"--basis", "haar:3"}, "--basis: `haar:3` is not");
   refusesBasis({"--directions", "sh:2"}, "--directions: has no effect with --at vertices");

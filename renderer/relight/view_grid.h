@@ -45,6 +45,7 @@ class ViewGrid {
     float fraction;  // of the next index
   };
   static Place place(float position) {
+    if (!(position > 0)) return {0, 0};  // a file's frame may be degenerate
     const float at = std::clamp(position * kSize - 0.5f, 0.0f, float(kSize - 1));
     const int index = std::min(int(at), kSize - 2);
     return {index, at - float(index)};

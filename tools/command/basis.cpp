@@ -23,7 +23,8 @@ namespace {
 struct Arguments : SceneOptions {
   std::string at = "pixels", out;
   std::string directions, functions;  // at pixels; at vertices
-  bool halves = false;
+  bool halves = false, isGlossy = false;
+  std::optional<uint64_t> clusters, vectors;
 };
 
 void checkStageMemory(const RenderJob& job, const LoadedScene& loaded,
@@ -76,15 +77,18 @@ void runPixels(const Arguments& a) {
 }
 
 void run(const Arguments& a) {
+  if (!a.isGlossy && (a.clusters || a.vectors)) throwInput("--clusters, --vectors: need --glossy");
   if (a.at == "pixels") {
     if (!a.functions.empty()) throwInput("--basis: needs --at vertices; see --directions");
+    if (a.isGlossy) throwInput("--glossy: needs --at vertices");
     return runPixels(a);
   }
   if (a.at != "vertices") throwInput("--at: `{}` is not pixels or vertices", a.at);
   if (!a.directions.empty())
     throwInput("--directions: has no effect with --at vertices; see --basis");
   if (a.halves) throwInput("--half: has no effect with --at vertices; leave it out");
-  runBasisVertices(a, a.functions.empty() ? "sh:4" : a.functions, a.out);
+  runBasisVertices(a, {a.functions.empty() ? "sh:4" : a.functions, a.out, a.isGlossy,
+                       a.clusters.value_or(16), a.vectors.value_or(8)});
 }
 
 }  // namespace
@@ -104,6 +108,14 @@ void addBasisCommand(CLI::App& app) {
   command->add_option("--basis", arguments->functions,
                       "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube "
                       "of N x N cells a face); else sh:4");
+  command->add_flag("--glossy", arguments->isGlossy,
+                    "of vertices: matrices for surfaces that look different from each side; "
+                    "compressed");
+  command
+      ->add_option("--clusters", arguments->clusters, "of matrices with principal components: 16")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--vectors", arguments->vectors, "of each cluster: 8")
+      ->check(CLI::Range(0, 256));
   command->add_flag("--half", arguments->halves,
                     "write 16 bits per number: half the file, to 0.05%");
   command

@@ -10,7 +10,7 @@
 #include "job/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
-#include "relight/transfer_model.h"
+#include "relight/glossy_model.h"
 #include "thread_limit.h"
 
 namespace chromeball {
@@ -22,8 +22,8 @@ constexpr std::string_view kOfPixels[] = {
     "mis",        "glass-shadows",     "single-sided",       "transparent",
     "camera-file"};
 
-void check(const SceneOptions& options, const std::string& output) {
-  checkOutputFile(output, {".glb", ".gltf"});
+void check(const SceneOptions& options, const BasisVerticesOptions& own) {
+  checkOutputFile(own.output, {".glb", ".gltf"});
   for (const Setting& setting : settingTable())
     if (options.settings.has(setting.name()) && std::ranges::count(kOfPixels, setting.option) > 0)
       throwInput("--{}: has no effect with --at vertices; leave it out", setting.option);
@@ -38,13 +38,13 @@ RenderJob transferJob(const SceneOptions& options) {
 
 class BasisVertices {
  public:
-  BasisVertices(const SceneOptions& options, const std::string& basis, const std::string& output)
+  BasisVertices(const SceneOptions& options, const BasisVerticesOptions& own)
       : options_(options),
-        output_(output),
-        basis_(basis, "--basis"),
+        own_(own),
+        basis_(own.basis, "--basis"),
         job_(transferJob(options)),
         loaded_(loadBasisScene(job_)) {
-    checkDistinct({output}, loaded_.files);
+    checkDistinct({own.output}, loaded_.files);
   }
 
   void run() {
@@ -52,29 +52,57 @@ class BasisVertices {
     const std::vector<BakePoint> points = vertexPoints(meshes);
     if (points.empty())
       throwInput("{}: has no triangle with an area; there is no transfer", options_.scene);
-    checkMemoryOf(points.size());
-    const World world(loaded_.scene);
+    own_.isGlossy ? checkGlossyMemory(points.size()) : checkMemory(points.size());
+    const World world(loaded_.scene, {}, BsdfTables(loaded_.scene.materials, false));
     print(loaded_.messages, options_.quiet());  // after the last error that input can cause
-    ProgressBar bar(options_.showsProgress(), "transfer");
-    const VertexTransfer transfer = estimateTransfer(
-        world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
-    if (transfer.invalid.total() > 0)
-      warn(fmt::format("{} invalid samples were left out; the first is of vertex {} {}",
-                       transfer.invalid.total(), transfer.invalid.x, transfer.invalid.y));
-    writeBaked(output_, loaded_.scene, transferGeometry(meshes, points, transfer), {},
-               file(transfer));
+    own_.isGlossy ? writeGlossy(world, meshes, points) : writeDiffuse(world, meshes, points);
     if (!options_.quiet())
-      fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples: {}\n", points.size(),
-                 watch_.seconds(), basis_.name(), job_.settings.samples, output_);
+      fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
+                 watch_.seconds(), basis_.name(), job_.settings.samples, summary_, own_.output);
   }
 
  private:
+  void writeDiffuse(const World& world, const std::vector<PlacedMesh>& meshes,
+                    const std::vector<BakePoint>& points) const {
+    ProgressBar bar(options_.showsProgress(), "transfer");
+    const VertexTransfer transfer = estimateTransfer(
+        world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
+    report(transfer.invalid);
+    writeBaked(own_.output, loaded_.scene, transferGeometry(meshes, points, transfer), {},
+               file(transfer.invalid));
+  }
+
+  void writeGlossy(const World& world, const std::vector<PlacedMesh>& meshes,
+                   const std::vector<BakePoint>& points) {
+    ProgressBar bar(options_.showsProgress(), "transfer");
+    const GlossyTransfer transfer = estimateGlossyTransfer(
+        world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
+    report(transfer.matrices.invalid);
+    const Signals signals = signalsOf(transfer);
+    if (signals.count() == 0)
+      throwInput("{}: all vertices are inside of bodies; there is no transfer", options_.scene);
+    const ClusteredPca pca = clusteredPca(signals, int(own_.clusters), int(own_.vectors));
+    GlossyFile glossy = glossyFile(meshes, points, transfer, pca);
+    BakedFile out = file(transfer.matrices.invalid);
+    out.extras["chromeball"]["compressionError"] = pca.error;
+    out.tables = std::move(glossy.tables);
+    writeBaked(own_.output, loaded_.scene, glossy.geometry, {}, out);
+    summary_ = fmt::format(", {} clusters of {} vectors, error {:.3g}%", pca.clusters.size(),
+                           own_.vectors, 100 * pca.error);
+  }
+
+  static void report(const InvalidSamples& invalid) {
+    if (invalid.total() > 0)
+      warn(fmt::format("{} invalid samples were left out; the first is of vertex {} {}",
+                       invalid.total(), invalid.x, invalid.y));
+  }
+
   TransferSettings settings() const {
     return {job_.settings.samples, job_.settings.seed, job_.settings.maxDepth};
   }
 
   // The values, their columns, the bytes of the file's buffer and those of the file.
-  void checkMemoryOf(size_t points) const {
+  void checkMemory(size_t points) const {
     const double values = double(points) * double(basis_.size() + 1) * sizeof(Rgb);
     const double needed = 4 * values + estimateMemory(job_, loaded_).peak;
     if (needed > memoryLimit(job_))
@@ -89,7 +117,22 @@ class BasisVertices {
                  basis_.name(), points, basis_.size());
   }
 
-  BakedFile file(const VertexTransfer& transfer) const {
+  // The values, the signals, and those of a cluster in double; and the products of its analysis.
+  void checkGlossyMemory(size_t points) const {
+    const double count = ViewGrid::kCount * double(basis_.size() + 1);
+    const double product = std::min(double(points), 3 * count);
+    const double needed = 5 * double(points) * count * sizeof(Rgb) +
+                          3 * sizeof(double) * product * product +
+                          estimateMemory(job_, loaded_).peak;
+    if (needed > memoryLimit(job_))
+      throw InputError(fmt::format("--glossy: {} vertices with matrices of {} x {} take {:.3g} GB "
+                                   "of memory with all else; the limit is {:.3g} GB",
+                                   points, ViewGrid::kCount, basis_.size() + 1, 1e-9 * needed,
+                                   1e-9 * memoryLimit(job_)),
+                       Remedy{"memory", {}});
+  }
+
+  BakedFile file(const InvalidSamples& invalid) const {
     BakedFile file{.look = BakedLook::Lit, .what = BakedLight::Irradiance};
     file.origin = loaded_.origin;
     file.camera = loaded_.camera;
@@ -100,25 +143,25 @@ class BasisVertices {
                                  {"maxDepth", job_.settings.maxDepth},
                                  {"seed", job_.settings.seed},
                                  {"origin", {o.x, o.y, o.z}},
-                                 {"invalidSamples", transfer.invalid.total()}};
+                                 {"invalidSamples", invalid.total()}};
     return file;
   }
 
   const SceneOptions& options_;
-  const std::string& output_;
+  const BasisVerticesOptions& own_;
   Stopwatch watch_;
   LightBasis basis_;
   RenderJob job_;
   LoadedScene loaded_;
+  std::string summary_;  // of the compression
 };
 
 }  // namespace
 
-void runBasisVertices(const SceneOptions& options, const std::string& basis,
-                      const std::string& output) {
-  check(options, output);
+void runBasisVertices(const SceneOptions& options, const BasisVerticesOptions& own) {
+  check(options, own);
   const ThreadLimit threads(options.settings);
-  BasisVertices(options, basis, output).run();
+  BasisVertices(options, own).run();
 }
 
 }  // namespace chromeball

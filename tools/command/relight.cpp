@@ -35,6 +35,7 @@ struct Arguments {
   std::string out, tone = "none";
   float exposure = 0;
   std::optional<double> white;  // of a model
+  std::string view;             // of a model with glossy transfer
   bool allowsExternal = false, quiet = false;
   std::string preview;  // the port; empty: none
 
@@ -199,13 +200,14 @@ void runModel(const Arguments& a) {
     if (given) throwInput("{}: has no effect on a model; leave it out", option);
   if (a.probes.size() != 1) throwInput("--probe: give one");
   if (a.out.empty()) throwInput("--output: needs a name");
-  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation,
+  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation, a.view,
                    a.white, a.allowsExternal, a.quiet});
 }
 
 void check(const Arguments& a) {
   for (const auto& [given, option] :
-       {std::pair(a.white.has_value(), "--white"), std::pair(a.allowsExternal, "--allow-external")})
+       {std::pair(a.white.has_value(), "--white"), std::pair(!a.view.empty(), "--view"),
+        std::pair(a.allowsExternal, "--allow-external")})
     if (given) throwInput("{}: needs a model with transfer, .glb or .gltf", option);
   if (a.isOfPhotographs() != a.stage.empty())
     throwInput("{}", a.stage.empty()
@@ -281,6 +283,7 @@ void addRelightCommand(CLI::App& app) {
       ->type_name("[=PORT]");
   command->add_option("--white", a->white,
                       "of a model: the light that its white stands for; without it, the brightest");
+  command->add_option("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
   command->add_flag("--allow-external", a->allowsExternal,
                     "of a model: read files outside of its folder");
   command->add_option("--exposure", a->exposure, "of a .png, in stops");

@@ -12,7 +12,7 @@
 #include "probe/load.h"
 #include "probe/probe.h"
 #include "relight/escaping_path.h"
-#include "relight/transfer_model.h"
+#include "relight/glossy_model.h"
 
 namespace chromeball {
 namespace {
@@ -35,38 +35,61 @@ class RelightModel {
  public:
   explicit RelightModel(const RelightModelOptions& options)
       : options_(options),
-        model_(options.model, options.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse,
-               [&](const std::string& line) { warnings_.push_back(line); }),
-        kept_(parseKeep(options.keep, model_.basis().size())),
-        world_(model_.scene()),
-        tracer_(world_, dark_, {}) {}
+        file_(options.model, options.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse,
+              [&](const std::string& line) { warnings_.push_back(line); }),
+        what_(isGlossy(file_) ? BakedLight::Radiance : BakedLight::Irradiance),
+        kept_(parseKeep(options.keep, file_.basis().size())),
+        world_(file_.scene()),
+        tracer_(world_, dark_, {}) {
+    if (isGlossy(file_) == options.view.empty())
+      throwInput("{}: {}", options.view.empty() ? options.model : "--view",
+                 options.view.empty() ? "its transfer is glossy; give the eye by --view X,Y,Z"
+                                      : "the model's transfer is diffuse, the same from each side");
+  }
 
   void run() {
-    checkDistinct({options_.output}, model_.scene().files);
+    checkDistinct({options_.output}, file_.scene().files);
     std::vector<Rgb> light = coefficients();
     const Stopwatch watch;
-    keepMostImportant(model_.basis(), kept_, light);
-    const std::vector<PlacedMesh> meshes = placedMeshes(model_.scene());
+    keepMostImportant(file_.basis(), kept_, light);
+    const std::vector<PlacedMesh> meshes = placedMeshes(file_.scene());
     const std::vector<BakePoint> points = vertexPoints(meshes);
-    const TransferModel::Lit lit = model_.lit(points, light);
+    const TransferLight lit = lightAt(meshes, points, light);
     const double seconds = watch.seconds();
-    const PointLight what(tracer_, BakedLight::Irradiance, INFINITY);
+    const PointLight what(tracer_, what_, INFINITY);
     std::vector<BakedGeometry> geometry = colouredGeometry(what, meshes, points, lit.light);
     const float white =
         options_.white ? float(*options_.white) : scaleOf(brightestOf(what, geometry));
-    writeBaked(options_.output, model_.scene(), geometry, {}, file(white));
+    writeBaked(options_.output, file_.scene(), geometry, {}, file(white));
     if (lit.negative > 0)
       warnings_.push_back(fmt::format(
           "{} of {} vertices had a negative channel, which was raised to 0: {} light rings there",
-          lit.negative, points.size(), model_.basis().name()));
-    if (options_.quiet) return;
+          lit.negative, points.size(), file_.basis().name()));
     for (const std::string& line : warnings_) warn(line);
+    if (options_.quiet) return;
     fmt::print("lit {} vertices in {:.3f} s by {} of {} coefficients of {}, scale {:g}: {}\n",
-               points.size(), seconds, kept_, model_.basis().size(), model_.basis().name(), white,
+               points.size(), seconds, kept_, file_.basis().size(), file_.basis().name(), white,
                options_.output);
   }
 
  private:
+  TransferLight lightAt(const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
+                        std::span<const Rgb> light) const {
+    TransferLight lit;
+    if (options_.view.empty()) {
+      lit = lightOf(file_, points, light);
+    } else {
+      const std::vector<double> eye = parseNumbers(options_.view, 3, "--view");
+      lit = lightTowards(file_, meshes, points, light,
+                         glm::dvec3(eye[0], eye[1], eye[2]) - file_.data().origin);
+    }
+    for (const PointResult& point : lit.light.points)
+      if (!isFinite(point.mean()))
+        throwInput("{}: the light exceeds the largest float, 3.4e38; give a smaller --scale",
+                   options_.model);
+    return lit;
+  }
+
   std::vector<Rgb> coefficients() {
     const LoadedProbe loaded = loadProbe(options_.probe, options_.mapping, "--mapping");
     for (const auto& lines :
@@ -74,26 +97,28 @@ class RelightModel {
       warnings_.insert(warnings_.end(), lines.begin(), lines.end());
     const Rgb scale = parseColor(options_.scale, "--scale");
     const Image map = Probe(loaded.latLong, {}, scale).latLong();
-    return model_.basis().project(map, options_.rotation);
+    return file_.basis().project(map, options_.rotation);
   }
 
   BakedFile file(float white) const {
-    BakedFile file{.look = BakedLook::Unlit, .what = BakedLight::Irradiance};
+    BakedFile file{.look = BakedLook::Unlit, .what = what_};
     file.scale = white;
-    file.origin = model_.origin();
-    if (!model_.scene().cameras.empty()) file.camera = model_.scene().cameras.front();
+    file.origin = file_.data().origin;
+    if (!file_.scene().cameras.empty()) file.camera = file_.scene().cameras.front();
     file.extras["chromeball"] = {
         {"relit", std::filesystem::path(options_.model).filename().string()},
         {"probe", std::filesystem::path(options_.probe).filename().string()},
-        {"basis", model_.basis().name()},
+        {"basis", file_.basis().name()},
         {"kept", kept_},
         {"scale", white}};
+    if (!options_.view.empty()) file.extras["chromeball"]["view"] = options_.view;
     return file;
   }
 
   const RelightModelOptions& options_;
   std::vector<std::string> warnings_;
-  TransferModel model_;
+  TransferFile file_;
+  BakedLight what_;
   size_t kept_;
   World world_;
   NoProbe dark_;

@@ -13,6 +13,7 @@ struct RelightModelOptions {
   std::string model, output, probe, mapping, scale;
   std::string keep;  // "25" coefficients, or "10%"
   Rotation rotation;
+  std::string view;             // "X,Y,Z", metres: the eye, of glossy transfer; else empty
   std::optional<double> white;  // the light that the file's white stands for
   bool allowsExternal = false, quiet = false;
 };

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matrices of glossy transfer: against diffuse transfer and path-traced radiance, and in a file.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "relight/clustered_pca.h"
+#include "relight/glossy_transfer.h"
+#include "small_scenes.h"
+
+namespace chromeball {
+namespace {
+
+struct Estimated {
+  std::vector<PlacedMesh> meshes;
+  std::vector<BakePoint> points;
+  LightBasis basis{"sh:2", "test"};
+  World world;
+  TransferSettings settings;
+
+  Estimated(const Scene& scene, const TransferSettings& given)
+      : meshes(placedMeshes(scene)),
+        points(vertexPoints(meshes)),
+        world(scene, {}, allTables()),
+        settings(given) {}
+
+  GlossyTransfer glossy() const {
+    return estimateGlossyTransfer(world, meshes, points, basis, settings, [](double) {});
+  }
+  VertexTransfer diffuse() const {
+    return estimateTransfer(world, meshes, points, basis, settings, [](double) {});
+  }
+};
+
+Scene sphereOf(const Material& material) {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, material), {0, 0, 0}, 1, 8, false);
+  return scene;
+}
+
+TEST(ViewGrid, InterpolatesBetweenItsDirections) {
+  for (int node = 0; node < ViewGrid::kCount; ++node) {
+    const vec3 direction = ViewGrid::direction(node);
+    EXPECT_GT(direction.z, 0);
+    const auto [nodes, weights] = ViewGrid::at(direction);
+    float own = 0, sum = 0;
+    for (size_t i = 0; i < 4; ++i) {
+      sum += weights[i];
+      if (nodes[i] == node) own += weights[i];
+    }
+    EXPECT_NEAR(own, 1, 1e-5f) << node;
+    EXPECT_NEAR(sum, 1, 1e-6f);
+  }
+  for (const vec3& direction : {vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), vec3(0, 0, 1),
+                                vec3(0.6f, 0.8f, 0), vec3(NAN, NAN, NAN)})
+    for (const int node : ViewGrid::at(direction).nodes) {
+      EXPECT_GE(node, 0);
+      EXPECT_LT(node, ViewGrid::kCount);
+    }
+}
+
+// A Lambertian surface has the same radiance towards each node: albedo times that of a white one.
+// Each is a mean of `samples` values of Y_k, of a variance below 1.
+TEST(GlossyTransfer, LambertianSurfacesAreDiffuse) {
+  const Scene scene = sphereOf(lambert(Rgb(0.5f)));
+  const Estimated e(scene, {.samples = 1024, .maxDepth = 2});
+  const GlossyTransfer glossy = e.glossy();
+  const VertexTransfer diffuse = e.diffuse();
+  ASSERT_EQ(glossy.matrices.count, ViewGrid::kCount * 10u);
+  for (size_t i = 0; i < e.points.size(); ++i)
+    for (size_t node = 0; node < ViewGrid::kCount; ++node)
+      for (size_t k = 0; k < 9; ++k)
+        EXPECT_NEAR(glossy.matrices.of(i)[node * 10 + k].x, 0.5f * diffuse.of(i)[k].x, 5 / 32.);
+}
+
+// Under constant light, coefficients (sqrt(4 pi), 0, ...), a metal loses little: its radiance is
+// about its colour; and the gradient's light turns brighter towards its mirror direction.
+TEST(GlossyTransfer, MetalsShowTheirMirrorDirection) {
+  Material metal;
+  metal.baseColor = {0.9f, 0.9f, 0.9f, 1};
+  metal.roughness = 0.4f;
+  const Scene scene = sphereOf(metal);
+  const Estimated e(scene, {.samples = 256, .maxDepth = 2});
+  const GlossyTransfer glossy = e.glossy();
+  double same = 0, opposite = 0;
+  for (size_t i = 0; i < e.points.size(); ++i) {
+    const Frame frame(glossy.normals[i]);
+    for (int node = 0; node < ViewGrid::kCount; ++node) {
+      const std::span<const Rgb> row = glossy.matrices.of(i).subspan(size_t(node) * 10, 10);
+      const double constant = std::sqrt(4 * kPiD) * double(row[0].x);
+      EXPECT_GT(constant, 0.6);
+      EXPECT_LT(constant, 1.02);
+      const vec3 view = ViewGrid::direction(node);
+      const vec3 mirror = frame.toWorld(vec3(-view.x, -view.y, view.z));
+      // The first band, as a vector, points where light comes from that the surface reflects.
+      const vec3 from = glm::normalize(vec3(row[3].x, row[1].x, row[2].x));
+      same += double(glm::dot(from, mirror));
+      opposite += double(glm::dot(from, frame.toWorld(view)));
+    }
+  }
+  const auto count = double(e.points.size() * ViewGrid::kCount);
+  EXPECT_GT(same / count, 0.9);
+  EXPECT_LT(opposite / count, 0.6);
+}
+
+TEST(GlossyTransfer, SameBitsForAnyNumberOfThreads) {
+  const Scene scene = sphereOf(lambert(Rgb(0.5f)));
+  const Estimated e(scene, {.samples = 4});
+  const auto valuesOf = [&](size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return e.glossy().matrices.values;
+  };
+  EXPECT_EQ(valuesOf(1), valuesOf(3));
+}
+
+}  // namespace
+}  // namespace chromeball
