@@ -1,24 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the two films show: HDRI's figures 9.3, 9.4 and 9.30."""
+from gallery import scene_of
 from page import Row
-from run import ROOT, SCENES
 
 SMALL = ["--samples", 128, "--denoise"]
 MIX = ".75:0.5,.15:3,.07:12,.03:48"
 
 
-def scene_with(run, name):
-    """A scene of scenes/, with a model that is made for it."""
-    model = run.model(name)
-    text = (SCENES / f"{name}.toml").read_text()
-    scene = run.scratch / f"{name}.toml"
-    scene.write_text(text.replace(f'"../out/{name}.glb"', f'"{model}"').replace('"../probes/', f'"{ROOT}/probes/')
-                     .replace('"../out/', f'"{run.scratch}/'))
-    return scene
-
-
 def pedestal(run):
-    image = run.render(scene_with(run, "rnl"), "rnl.exr", *SMALL, "--size", "240x240")
+    image = run.render(scene_of(run, "rnl"), "rnl.exr", *SMALL, "--size", "240x240")
     run("image", "develop", image, run.pictures / "film-developed.png", "--bloom", MIX, "--vignette", 0.6)
     return Row(
         "HDRI figures 9.3 and 9.4: Rendering with Natural Light",
@@ -33,7 +23,7 @@ def pedestal(run):
 
 
 def spinning(run):
-    scene = scene_with(run, "five-shapes")
+    scene = scene_of(run, "five-shapes")
     common = [*SMALL, "--size", "240x150", "--animation-time", 0.3]
     still = run.render(scene, "still.exr", *common)
     moving = run.render(scene, "moving.exr", *common, "--fps", 24, "--shutter", 2)
