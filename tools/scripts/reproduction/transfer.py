@@ -60,9 +60,9 @@ def views(run):
     run("basis", MODEL, "--at", "vertices", "--basis", "sh:4", "--samples", SAMPLES, "-o", run.scratch / "sh.glb")
     run("relight", run.scratch / "sh.glb", "--probe", DUSK, "-o", run.scratch / "lit.glb")
     pictures = []
-    for name, position in {"front": "[0, 0.45, 1.3]", "left": "[-0.9, 0.6, 0.9]"}.items():
+    for name, position in {"front": "[0.3, 1.3, 5.4]", "left": "[-4, 2, 3.6]"}.items():
         scene = run.scratch / f"{name}.toml"
-        scene.write_text(f'model = "lit.glb"\n[camera]\nposition = {position}\nlook_at = [0, 0.12, 0]\nfov = 35\n')
+        scene.write_text(f'model = "lit.glb"\n[camera]\nposition = {position}\nlook_at = [0, 0.6, 0]\nfov = 29\n')
         image = run.render(scene, f"{name}.exr", "--size", "320x240", "--samples", 16)
         pictures.append((run.picture(image, f"transfer-{name}.png"), f"Dusk by `sh:4`, from the {name}"))
     return pictures
