@@ -436,7 +436,33 @@ TEST(MotionBlur, WarnsOfFewStepsAndOfWhatVanishes) {
   EXPECT_NE(messages("1").find("miss their way by up to 1 m"), std::string::npos) << messages("1");
   EXPECT_NE(messages("1").find("--shutter-steps 4"), std::string::npos);
   EXPECT_EQ(messages("64").find("miss their way"), std::string::npos) << messages("64");
-  EXPECT_NE(messages("64").find("`ghost` appears or vanishes"), std::string::npos);
+  EXPECT_NE(messages("64").find("`ghost` appears, vanishes or is mirrored"), std::string::npos);
+}
+
+// Its front would become its back.
+TEST(MotionBlur, WarnsOfWhatIsTurnedInsideOut) {
+  for (const bool isShared : {false, true}) {
+    GltfWriter w;
+    const int turned = addTriangle(w, {}, {{"name", "glove"}});
+    if (isShared) w.add("nodes", {{"mesh", 0}, {"translation", {0, 2, 0}}});
+    const std::vector<float> times{0, 1};
+    w.add("animations",
+          {{"channels", {{{"sampler", 0}, {"target", {{"node", turned}, {"path", "scale"}}}}}},
+           {"samplers",
+            {{{"input", w.accessor(w.view(times), kFloat, "SCALAR", 2)},
+              {"output", w.vec3s({1, 1, 1, -1, 1, 1})}}}}});
+    const std::string path = w.save();
+    Settings settings = settingsOf(0, 1.0, 1, 2, {8, 8});
+    settings.set("camera.shutter_steps", uint64_t(1));
+    RenderJob job = planJob(openScene(path), settings);
+    std::vector<std::string> texts;
+    job.file.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
+    const LoadedScene loaded = loadScene(job);
+    for (const Message& message : loaded.messages) texts.push_back(message.text);
+    EXPECT_TRUE(std::ranges::any_of(texts, [](const std::string& text) {
+      return text.find("`glove` appears, vanishes or is mirrored") != std::string::npos;
+    })) << isShared;
+  }
 }
 
 TEST(MotionBlur, RefusesWhatHasNoMeaning) {

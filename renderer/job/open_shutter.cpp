@@ -77,8 +77,8 @@ void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) 
   setMotion(std::move(cameras), placed.camera);
   for (const std::string& node : addMotion(placed.scene, later))
     placed.warnings.push_back(fmt::format(
-        "{}: node `{}` appears or vanishes while the shutter is open; it is rendered as it was "
-        "before",
+        "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
+        "rendered as it was before",
         job.file.models.front().file, node));
   if (!placed.scene.moves) return;
   MotionError error;

@@ -8,8 +8,8 @@
 namespace chromeball {
 
 // Gives the models, their lamps and the camera their motion. Warns where straight lines are far
-// from the models' own motion, and of parts that appear or vanish: a part that is there when the
-// shutter opens stays, and another does not come. Throws InputError.
+// from the models' own motion, and of parts that appear, vanish or are mirrored: a part that is
+// there when the shutter opens stays as it was, and another does not come. Throws InputError.
 void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache);
 
 // The camera's turn around models that stand still.

@@ -8,8 +8,12 @@
 namespace chromeball {
 namespace {
 
+bool mirrors(const Instance& instance) {
+  return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0;
+}
+
 // By instance of `scene`, the same part in another scene of the same models; null if the node has
-// other parts there.
+// other parts there, or ones that are turned inside out.
 std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
   std::map<int, std::vector<const Instance*>> own, others;
   for (const Instance& instance : scene.instances) own[instance.node].push_back(&instance);
@@ -21,7 +25,8 @@ std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
     for (size_t i = 0; i < parts.size(); ++i) {
       const Mesh &a = scene.meshes[size_t(parts[i]->mesh)],
                  &b = other.meshes[size_t(there[i]->mesh)];
-      if (a.positions.size() == b.positions.size() && a.triangles.size() == b.triangles.size())
+      if (a.positions.size() == b.positions.size() && a.triangles == b.triangles &&
+          mirrors(*parts[i]) == mirrors(*there[i]))
         found[size_t(parts[i] - scene.instances.data())] = there[i];
     }
   }
