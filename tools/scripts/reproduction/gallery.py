@@ -73,7 +73,7 @@ def temple(run):
 
 def nave(run):
     pictures = []
-    for name, text, rotation in [("morning", "Sun from the left", 8), ("evening", "Sun from behind the apse", 250)]:
+    for name, text, rotation in [("morning", "Sun from the left", 8), ("evening", "Sun high behind the apse", 250)]:
         scene = scene_of(run, "nave", lambda text, r=rotation: text.replace("rotation = 8", f"rotation = {r}"))
         image = run.render(scene, f"nave-{name}.exr", "--samples", 64, "--size", "160x200")
         pictures.append((run.picture(image, f"nave-{name}.png", "--tonemap", "filmic"), text))
