@@ -215,6 +215,22 @@ TEST(SlowGallery, TheNaveIsClosedButForItsWindows) {
   EXPECT_LT(open, kRays / 10);
 }
 
+// The conch of the apse rests on its wall, all the way round.
+TEST(SlowGallery, TheApseIsClosedUnderItsConch) {
+  const Accel accel(modelOf("nave-room"));
+  const demo::NaveMeasures nave;
+  const vec3 centre(0, nave.apseSpring, -nave.halfLength() - nave.wall);
+  for (int i = 1; i < 2000; ++i) {
+    const float bearing = kPi * float(i) / 2000;
+    for (const float elevation : {-0.004f, -0.001f, 0.001f, 0.002f, 0.004f}) {
+      Hit hit;
+      EXPECT_TRUE(accel.intersect(
+          {centre, glm::normalize(vec3(std::cos(bearing), elevation, -std::sin(bearing)))}, 0, hit))
+          << bearing << ' ' << elevation;
+    }
+  }
+}
+
 TEST(Gallery, WrongArgumentsOfMakeDemoGiveOneLine) {
   const std::string program = std::string(kBuildDir) + "/make_demo";
   if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without CHROMEBALL_DEMO";

@@ -46,6 +46,19 @@ TEST(MeshAttributes, VerticesOnMirrorSeamsAreSplit) {
   EXPECT_EQ(mesh.positions[t.y], vec3(1, 1, 0));
 }
 
+// A pose may turn a triangle over; the vertices of all poses are the same.
+TEST(MeshAttributes, PosesAreSplitAlike) {
+  for (const std::vector<vec2>& uv :
+       {kUpright, std::vector<vec2>{{0, 1}, {1, 1}, {1, 0}, {1, 1}}}) {
+    Mesh rest = square(), folded = square();
+    folded.positions[3] = {1, 0.2f, 0};
+    computeTangents(rest, uv);
+    computeTangents(folded, uv);
+    EXPECT_EQ(rest.triangles, folded.triangles);
+    EXPECT_EQ(rest.positions.size(), folded.positions.size());
+  }
+}
+
 TEST(MeshAttributes, DegenerateUvsGiveAPerpendicularTangent) {
   for (const vec2 uv : {vec2(0), vec2(NAN), vec2(INFINITY)}) {
     Mesh mesh = square();

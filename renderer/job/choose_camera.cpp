@@ -60,10 +60,14 @@ AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
   return view;
 }
 
+bool turnsCamera(const Settings& settings) {
+  return settings.has("orbit") || settings.has("orbit-step");
+}
+
 AutomaticView automaticView(const RenderJob& job, const Scene& scene, const glm::dvec3& origin) {
   const RenderSettings& s = job.settings;
   const float aspect = float(s.width) / float(s.height);
-  const bool turns = job.file.settings.has("orbit");
+  const bool turns = turnsCamera(job.file.settings);
   const bool isPlaced = job.file.camera || job.file.settings.has("camera.name");
   AutomaticView view{.origin = origin};
   if (turns) view.centre = centreOf(scene);

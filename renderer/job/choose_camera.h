@@ -9,12 +9,16 @@
 namespace chromeball {
 
 struct RenderJob;
+class Settings;
+
+// Whether the job turns its camera around the models, if only while the shutter is open.
+bool turnsCamera(const Settings& settings);
 
 // What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
 // times.
 struct AutomaticView {
   std::optional<Camera> camera;  // if nobody has placed one
-  vec3 centre{0};                // of `orbit`; 0 without that
+  vec3 centre{0};                // of the camera's turn; 0 without one
   glm::dvec3 origin{0};          // of these coordinates in the world, metres
 
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin

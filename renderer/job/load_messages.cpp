@@ -90,12 +90,11 @@ std::string plateScaleText(const CompositeEntry& composite, const PlateScale& fo
 
 }  // namespace
 
-Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
-                      const std::vector<std::string>& modelWarnings) {
+Messages loadMessages(const RenderJob& job, const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   Collector messages;
   for (const std::string& line : job.file.warnings) messages.warn(line);
-  for (const std::string& line : modelWarnings) messages.warn(line);
+  for (const std::string& line : loaded.modelWarnings) messages.warn(line);
   for (const std::string& line : scene.notes) messages.note(line);
   if (!scene.lights.empty() && hasBodies(scene))
     messages.warn(

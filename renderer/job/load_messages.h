@@ -6,9 +6,7 @@
 
 namespace chromeball {
 
-// Messages about the job's settings, the models (`modelWarnings`: unsupported contents of their
-// files), the probe and the plate.
-Messages loadMessages(const RenderJob& job, const LoadedScene& loaded,
-                      const std::vector<std::string>& modelWarnings);
+// Messages about the job's settings, the models, the probe and the plate.
+Messages loadMessages(const RenderJob& job, const LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -64,6 +64,43 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
   }
 }
 
+// The probe of the job's frame, if it has turned or is another file.
+void replaceProbe(RenderJob& job, LoadedScene& loaded, FrameChange& change) {
+  const auto file = job.file.settings.getIfGiven<std::string>("probe.file");
+  const bool isOther = file && *file != loaded.probeFile;
+  if (isOther) {
+    std::ranges::replace(loaded.files, loaded.probeFile, *file);
+    loaded.probeFile = *file;
+  }
+  if (isOther || !(loaded.probe.rotation() == rotationOf(job))) {
+    loaded.loadedProbe = loadProbeOf(job, loaded.scene);
+    loaded.probe = probeOf(job, loaded.loadedProbe);
+    loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
+    change.lighting = true;
+  }
+}
+
+void replaceModels(RenderJob& job, LoadedScene& loaded, ModelCache& cache, FrameChange& change) {
+  PlacedModels models = placeModels(job, cache);
+  if (job.file.surroundings && !loaded.room)
+    checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
+  loaded.view = models.view;
+  loaded.camera = models.camera;
+  loaded.modelWarnings = std::move(models.warnings);
+  if (!job.file.settings.has("probe.file") && !models.scene.environment)
+    checkLit(job, models.scene);
+  shareMeshes(loaded.scene, models.scene);
+  change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
+  if (change.geometry) loaded.scene = std::move(models.scene);
+  if (models.origin != loaded.origin) {
+    change.lighting = true;
+    loaded.origin = models.origin;
+    loaded.surroundings = job.file.surroundings;
+    std::vector<std::string> known;
+    loaded.room = loadRoom(job, loaded.origin, cache, known);
+  }
+}
+
 }  // namespace
 
 LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
@@ -100,12 +137,13 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      settings.get<bool>("lighting.show_lights"),
                      std::move(files)};
   result.probeFile = settings.getIfGiven<std::string>("probe.file").value_or("");
+  result.modelWarnings = std::move(models.warnings);
   if (job.composite) {
     prepareLocalScene(job, result);
     scaleProbeByPlate(job, result);
   }
   checkMemory(job, result);
-  const Messages found = loadMessages(job, result, models.warnings);
+  const Messages found = loadMessages(job, result);
   result.messages.insert(result.messages.end(), found.begin(), found.end());
   return result;
 }
@@ -113,41 +151,13 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
 FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
   FrameChange change;
-  const auto file = job.file.settings.getIfGiven<std::string>("probe.file");
-  const bool isOther = file && *file != loaded.probeFile;
-  if (isOther) {
-    std::ranges::replace(loaded.files, loaded.probeFile, *file);
-    loaded.probeFile = *file;
-  }
-  if (isOther || !(loaded.probe.rotation() == rotationOf(job))) {
-    loaded.loadedProbe = loadProbeOf(job, loaded.scene);
-    loaded.probe = probeOf(job, loaded.loadedProbe);
-    loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
-    change.lighting = true;
-  }
-  if (!loaded.scene.isAnimated) {
+  replaceProbe(job, loaded, change);
+  if (loaded.scene.isAnimated)
+    replaceModels(job, loaded, cache, change);
+  else
     loaded.camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
-    return change;
-  }
-  PlacedModels models = placeModels(job, cache);
-  if (job.file.surroundings && !loaded.room)
-    checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
-  loaded.view = models.view;
-  loaded.camera = models.camera;
-  if (!job.file.settings.has("probe.file") && !models.scene.environment)
-    checkLit(job, models.scene);
-  shareMeshes(loaded.scene, models.scene);
-  change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
-  if (change.geometry) loaded.scene = std::move(models.scene);
-  if (models.origin != loaded.origin) {
-    change.lighting = true;
-    loaded.origin = models.origin;
-    loaded.surroundings = job.file.surroundings;
-    std::vector<std::string> known;
-    loaded.room = loadRoom(job, loaded.origin, cache, known);
-  }
   checkMemory(job, loaded);
-  loaded.messages = loadMessages(job, loaded, models.warnings);
+  loaded.messages = loadMessages(job, loaded);
   return change;
 }
 

@@ -28,8 +28,9 @@ struct LoadedScene {
   std::optional<double> sunAngle;            // StrategyOptions::sunAngle
   bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one
-  Messages messages;      // of the job's settings, of the models and of the probe
-  std::string probeFile;  // of these files; empty: none
+  Messages messages;                       // of the job's settings, of the models and of the probe
+  std::string probeFile;                   // of these files; empty: none
+  std::vector<std::string> modelWarnings;  // of their files and their motion
 
   // For composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "job/memory_estimate.h"
+#include "job/motion_error.h"
 #include "job/scene_motion.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
@@ -48,55 +49,63 @@ void checkMotionMemory(const RenderJob& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
-void warnOfDeviation(const RenderJob& job, const MotionError& error,
-                     std::vector<std::string>& warnings) {
-  constexpr double kTolerance = 0.005;
-  if (error.deviation <= kTolerance * error.farthest) return;
-  warnings.push_back(fmt::format(
-      "{}: the models move by up to {:.2g} m while the shutter is open, and {} straight steps miss "
-      "their way by up to {:.2g} m; --shutter-steps {} is closer",
-      job.file.models.front().file, error.farthest, job.shutter->steps, error.deviation,
-      std::min(4 * job.shutter->steps, kMostMotionSteps)));
-}
+const std::string& modelOf(const RenderJob& job) { return job.file.models.front().file; }
 
 }  // namespace
 
 void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) {
+  const auto warn = [&](std::vector<std::string> lines) {
+    placed.warnings.insert(placed.warnings.end(), lines.begin(), lines.end());
+  };
   if (!placed.scene.isAnimated)
-    return moveCamera(job, placed.scene, placed.view, placed.origin, placed.camera);
+    return warn(turnCamera(job, placed.scene, placed.view, placed.origin, placed.camera));
   checkMotionMemory(job, placed.scene);
   const int steps = job.shutter->steps;
+  const auto cameraAt = [&](const Scene& scene, double fraction) {
+    return cameraOf(job, scene, placed.view, placed.origin, fraction * job.shutter->turn);
+  };
   std::vector<Scene> later;
   std::vector<Camera> cameras{placed.camera};
   for (int k = 1; k <= steps; ++k) {
     const double fraction = double(k) / steps;
     later.push_back(modelsAt(job, fraction, placed.origin, cache));
-    cameras.push_back(
-        cameraOf(job, later.back(), placed.view, placed.origin, fraction * job.shutter->turn));
+    cameras.push_back(cameraAt(later.back(), fraction));
   }
   setMotion(std::move(cameras), placed.camera);
   for (const std::string& node : addMotion(placed.scene, later))
     placed.warnings.push_back(fmt::format(
         "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
         "rendered as it was before",
-        job.file.models.front().file, node));
-  if (!placed.scene.moves) return;
+        modelOf(job), node));
   MotionError error;
+  error.addTurn(job.shutter->turn, steps);
   for (int k = 0; k < steps; ++k) {
     const double fraction = (k + 0.5) / steps;
-    error.add(placed.scene, modelsAt(job, fraction, placed.origin, cache), float(fraction));
+    const Scene then = modelsAt(job, fraction, placed.origin, cache);
+    error.add(placed.scene, then, float(fraction));
+    error.add(placed.camera, cameraAt(then, fraction), float(fraction));
   }
-  warnOfDeviation(job, error, placed.warnings);
+  warn(error.warnings(modelOf(job), steps));
 }
 
-void moveCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view,
-                const glm::dvec3& origin, Camera& camera) {
-  const Shutter& shutter = *job.shutter;
-  if (shutter.turn == 0) return;
+std::vector<std::string> turnCamera(const RenderJob& job, const Scene& scene,
+                                    const AutomaticView& view, const glm::dvec3& origin,
+                                    Camera& camera) {
+  const auto& [seconds, steps, turn] = *job.shutter;
+  if (turn == 0) return {};
+  const auto cameraAt = [&](double fraction) {
+    return cameraOf(job, scene, view, origin, fraction * turn);
+  };
   std::vector<Camera> keys{camera};
-  for (int k = 1; k <= shutter.steps; ++k)
-    keys.push_back(cameraOf(job, scene, view, origin, shutter.turn * k / shutter.steps));
+  for (int k = 1; k <= steps; ++k) keys.push_back(cameraAt(double(k) / steps));
   setMotion(std::move(keys), camera);
+  MotionError error;
+  error.addTurn(turn, steps);
+  for (int k = 0; k < steps; ++k) {
+    const double fraction = (k + 0.5) / steps;
+    error.add(camera, cameraAt(fraction), float(fraction));
+  }
+  return error.warnings(modelOf(job), steps);
 }
 
 }  // namespace chromeball

@@ -20,6 +20,7 @@ namespace {
 glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   constexpr float kMaxReach = 1e9f, kFar = 1000;
   const Bounds box = bounds(scene);
+  if (box.empty()) return glm::dvec3(0);
   const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
   if (!(maxComponent(reach) < kMaxReach))
     throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", file,
@@ -73,7 +74,7 @@ PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {
 AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCache& cache) {
   if (job.view) return *job.view;
   const AutomaticView view = automaticView(job, now.scene, now.origin);
-  if (!now.scene.isAnimated || !(view.camera || job.file.settings.has("orbit"))) return view;
+  if (!now.scene.isAnimated || !(view.camera || turnsCamera(job.file.settings))) return view;
   SceneFile start = job.file;
   for (ModelEntry& model : start.models)
     if (model.choice.animation) model.choice.animation->seconds = 0;
@@ -96,8 +97,6 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& ca
     choice.environment = !file.settings.has("probe.file");
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
-  if (scene.instances.empty())
-    throwInput("{}: the model has no triangles to render", file.models.front().file);
   const float factor = float(file.settings.get<double>("lighting.lights"));
   if (factor == 0) scene.lights.clear();
   for (PunctualLight& light : scene.lights) light.intensity *= factor;
@@ -119,6 +118,8 @@ Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& v
 
 PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
   PlacedModels placed = modelsAtOrigin(job.file, cache);
+  if (placed.scene.instances.empty() && !placed.scene.isAnimated)
+    throwInput("{}: the model has no triangles to render", job.file.models.front().file);
   if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
   chooseSize(job, scene);
@@ -137,7 +138,7 @@ Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view
   chooseSize(job, scene);
   moveToOrigin(job, origin);
   Camera camera = cameraOf(job, scene, view, origin);
-  if (job.shutter) moveCamera(job, scene, view, origin, camera);
+  if (job.shutter) turnCamera(job, scene, view, origin, camera);
   return camera;
 }
 

@@ -30,7 +30,8 @@ PlacedModels placeModels(RenderJob& job, ModelCache& cache);
 Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// The models at this origin, without lamps. `warnings`: each once.
+// The models at this origin, without lamps; an animated model may have no triangles at its time.
+// `warnings`: each once.
 Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
                  std::vector<std::string>& warnings);
 

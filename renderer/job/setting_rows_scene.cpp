@@ -142,8 +142,8 @@ void addCamera(std::vector<Setting>& rows) {
        .type = Integer,
        .range = {.min = 1, .max = kMostMotionSteps},
        .absent = "8",
-       .help = "While the shutter is open, vertices move along so many straight lines, one after "
-               "the other; a warning says if they are far from the true motion."});
+       .help = "While the shutter is open, vertices, lamps and camera move along so many straight "
+               "lines, one after the other; a warning says if they are far from the true motion."});
   add({.key = "principal_point",
        .type = Compound,
        .form = "two numbers",

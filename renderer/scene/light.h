@@ -36,6 +36,7 @@ struct PunctualLight {
   float range = INFINITY;                      // metres; beyond it the light is 0
   float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
   std::string name = {};                       // of its node
+  int node = -1;                               // index into Scene::nodeNames; -1: none
   std::shared_ptr<const std::vector<LampPose>> motion = nullptr;  // its keys; null: stands still
 
   LampPose poseAt(float time) const;

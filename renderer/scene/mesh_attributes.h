@@ -30,7 +30,8 @@ void repairNormals(Mesh& mesh);
 void repairTangents(Mesh& mesh);
 
 // Computes tangents from the UV coordinates of the normal map, one for each vertex. Splits vertices
-// whose triangles differ in handedness. Precondition: the mesh has normals.
+// whose triangles turn opposite ways in UV space; all poses of a mesh are split alike.
+// Precondition: the mesh has normals.
 void computeTangents(Mesh& mesh, const std::vector<vec2>& uv);
 
 // Applies an affine transform. Normals are transformed by the inverse transpose. If the transform

@@ -14,7 +14,7 @@ MovingCamera::MovingCamera(const Camera& camera, float aspectRatio)
         {key.position, glm::quat_cast(mat3(key.right, key.up, key.back)), key.fov, key.halfHeight});
 }
 
-CameraRays MovingCamera::at(float time) const {
+Camera MovingCamera::cameraAt(float time) const {
   const KeySpan span = keysAround(keys_.size(), time);
   const Key &from = keys_[span.from], &to = keys_[span.to];
   const mat3 frame = glm::mat3_cast(glm::slerp(from.frame, to.frame, span.fraction));
@@ -23,7 +23,7 @@ CameraRays MovingCamera::at(float time) const {
   camera.right = frame[0], camera.up = frame[1], camera.back = frame[2];
   camera.fov = glm::mix(from.fov, to.fov, span.fraction);
   camera.halfHeight = glm::mix(from.halfHeight, to.halfHeight, span.fraction);
-  return {camera, aspectRatio_};
+  return camera;
 }
 
 }  // namespace chromeball

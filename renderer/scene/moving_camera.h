@@ -15,7 +15,8 @@ class MovingCamera {
   // For an image of the given width / height. The camera has a motion.
   MovingCamera(const Camera& camera, float aspectRatio);
 
-  CameraRays at(float time) const;
+  Camera cameraAt(float time) const;  // stands still
+  CameraRays at(float time) const { return {cameraAt(time), aspectRatio_}; }
 
  private:
   struct Key {

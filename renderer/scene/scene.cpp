@@ -70,6 +70,8 @@ void append(Scene& scene, Scene&& other) {
     instance.material += materials;
     instance.node += nodes;
   }
+  for (PunctualLight& light : other.lights)
+    if (light.node >= 0) light.node += nodes;
   for (Material& material : other.materials)
     for (TextureSlot* slot : textureSlots(material))
       if (*slot) slot->texture += textures;

@@ -14,7 +14,7 @@ namespace {
 const NaveMeasures kNave;
 constexpr float kTexture = 4, kSpring = 4.4f, kAisleWall = 6.4f;
 constexpr int kCoffersAcross = 9, kCofferSteps = 8;
-constexpr float kApse = 4, kApseSpring = 8.6f;
+constexpr int kApsePanels = 45;  // of its wall; the conch above has the same corners
 
 // The arcade on one side, with the clerestory above; fronts face the nave.
 void addSide(Surface& s, float side) {
@@ -46,8 +46,8 @@ void addSide(Surface& s, float side) {
 // The ends of nave and aisles: an arch to the apse, and a round window high in the west.
 void addEnds(Surface& s) {
   const float x = kNave.halfWidth, out = kNave.aisle, z = kNave.halfLength();
-  addWall(s, {{-x, 0, -z}, {2 * x, 0, 0}, kNave.springOfVault, kNave.wall}, {kApse, 0, kApseSpring},
-          kTexture);
+  addWall(s, {{-x, 0, -z}, {2 * x, 0, 0}, kNave.springOfVault, kNave.wall},
+          {kNave.apse, 0, kNave.apseSpring}, kTexture);
   addWall(s, {{x, 0, z}, {-2 * x, 0, 0}, kNave.springOfVault, kNave.wall}, {1.6f, 6.6f, 9.2f},
           kTexture);
   std::vector<vec3> lunette;
@@ -73,33 +73,33 @@ void addEnds(Surface& s) {
   }
 }
 
-// Half a cylinder of sectors; three of them have windows.
+// Half a cylinder of flat panels; three windows are three panels wide.
 void addApse(Surface& s) {
-  constexpr int kSectors = 15;
   const auto at = [](int i, float y) {
-    const float angle = kPi * (1 - float(i) / kSectors);
-    return vec3(kApse * std::cos(angle), y,
-                -kNave.halfLength() - kNave.wall - kApse * std::sin(angle));
+    const float angle = kPi * (1 - float(i) / kApsePanels);
+    return vec3(kNave.apse * std::cos(angle), y,
+                -kNave.halfLength() - kNave.wall - kNave.apse * std::sin(angle));
   };
-  for (int i = 0; i < kSectors; ++i) {
+  for (int i = 0; i < kApsePanels; ++i) {
     const auto part = [&](float low, float high) {
       addPolygon(s, std::array{at(i, low), at(i + 1, low), at(i + 1, high), at(i, high)}, kTexture);
     };
-    const bool window = i == 4 || i == 7 || i == 10;
-    part(0, window ? 3.6f : kApseSpring);
-    if (window) part(7.4f, kApseSpring);
+    const bool window = i / 3 == 4 || i / 3 == 7 || i / 3 == 10;
+    part(0, window ? 3.6f : kNave.apseSpring);
+    if (window) part(7.4f, kNave.apseSpring);
   }
 }
 
 // A quarter of a sphere that faces its centre.
 Surface conch() {
-  const dvec3 center(0, kApseSpring, -kNave.halfLength() - kNave.wall);
+  const dvec3 center(0, kNave.apseSpring, -kNave.halfLength() - kNave.wall);
   const auto point = [=](double u, double v) {
     const double bearing = kPiD * u, height = kPiD / 2 * v;  // from -x over -z to +x
-    return center + double(kApse) * dvec3(-std::cos(bearing) * std::cos(height), std::sin(height),
-                                          -std::sin(bearing) * std::cos(height));
+    return center + double(kNave.apse) * dvec3(-std::cos(bearing) * std::cos(height),
+                                               std::sin(height),
+                                               -std::sin(bearing) * std::cos(height));
   };
-  return tessellate(48, 24, point, Uvs::Parameters);
+  return tessellate(kApsePanels, 24, point, Uvs::Parameters);
 }
 
 // The vault, with coffers sunk into it: faces down.
@@ -151,7 +151,8 @@ Rgb pavement(const vec3& p) {
 }
 
 Parametrisation floorPlane() {
-  const double x = kNave.aisle + 1, front = kNave.halfLength(), back = front + kNave.wall + kApse;
+  const double x = kNave.aisle + 1, front = kNave.halfLength(),
+               back = front + kNave.wall + kNave.apse;
   return patch({-x, 0, front}, {2 * x, 0, 0}, {0, 0, -front - back});
 }
 

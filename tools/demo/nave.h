@@ -25,6 +25,7 @@ struct NaveMeasures {
   int bays = 7;
   float springOfVault = 13;
   float clerestory = 8.2f, windowSill = 1.1f, windowSpring = 3.2f, windowHalfWidth = 0.95f;
+  float apse = 4, apseSpring = 8.6f;  // radius; the height from which its conch rises
   float halfLength() const { return bay * float(bays) / 2; }
   // The middle of the opening of a window of the clerestory; side -1 or 1, in the middle of the
   // wall's thickness.

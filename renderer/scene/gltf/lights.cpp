@@ -81,6 +81,7 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
     }
     light.direction = vec3(-backwards / length);
     light.name = tree.names[size_t(index)];
+    light.node = index;
     if (!isBlack(light.intensity)) lights.push_back(light);
   }
   return lights;

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scenes of the gallery as in HDRI's figures 9.1, 9.22 to 9.28 and 9.29."""
+import math
 import subprocess
 
 from page import Row, table
-from run import NOON, ROOT, SCENES
+from pfm import read_pfm
+from run import NOON, ROOT, SCENES, luminance
 
 DUSK = ROOT / "probes" / "dusk.exr"
 POINT = '[[light]]\ntype = "point"\nposition = [-2.5, 4, 3]\npower = 900\n'
@@ -21,24 +23,26 @@ def scene_of(run, name, change=lambda text: text):
 
 
 def five_shapes(run):
-    common = ["--samples", 64, "--size", "240x150"]
     pictures = []
 
     def show(name, text, *options, change=lambda text: text):
-        image = run.render(scene_of(run, "five-shapes", change), f"five-{name}.exr", *common, *options)
-        pictures.append((run.picture(image, f"five-{name}.png", "--tonemap", "neutral"), text))
+        image = run.render(scene_of(run, "five-shapes", change), f"five-{name}.pfm", "--samples", 64, "--size",
+                           "240x150", *options)
+        pixels = [luminance(pixel) for row in read_pfm(image) for pixel in row]
+        exposure = math.log2(0.3 * len(pixels) / sum(pixels))
+        pictures.append((run.picture(image, f"five-{name}.png", "--tonemap", "neutral", "--exposure",
+                                     f"{exposure:.2f}"), text))
 
     show("point", "A point light", "--probe-scale", 0, change=lambda text: text + POINT)
-    show("dusk", "The probe dusk")
-    show("noon", "The probe noon", "--probe", NOON, "--probe-scale", 0.8)
-    overcast = run.scratch / "overcast.exr"
-    run("probe", "synth", "overcast", overcast)
-    show("overcast", "An overcast sky", "--probe", overcast)
+    show("dusk", "The probe dusk", "--probe", DUSK)
+    show("noon", "The probe noon", "--probe", NOON)
+    if lobby := run.probe("Lobby"):
+        show("lobby", "The probe lobby of Poly Haven", "--probe", lobby)
     return [Row(
-        "HDRI figure 9.1, with five shapes: a point light, and three probes",
+        "HDRI figure 9.1: a point light, and three probes",
         "The same objects look computed under a point light, and real under captured light.",
         ["chromeball render scenes/five-shapes.toml --probe PROBE"],
-        "A point light, and three probes that this project makes.", "", pictures)]
+        "Four pictures, each exposed for itself.", "", pictures)]
 
 
 def temple(run):
@@ -47,7 +51,7 @@ def temple(run):
     reference = run.render(scene, "temple-ref.exr", "--samples", 512, *common[2:])
     white = run.scratch / "white.exr"
     run("probe", "synth", "constant", white)
-    rows, pictures = [], []
+    errors, pictures = {}, []
 
     def show(name, text, *options):
         image = run.render(scene, f"temple-{name}.exr", *common, *options)
@@ -60,14 +64,24 @@ def temple(run):
             ("uniform", "81 uniform samples, without MIS (9.24)", ["--strategy", "uniform", "--mis", "off"]),
             ("importance", "81 samples by importance", ["--strategy", "importance"]),
             ("suns", "Sky and sun, each sampled apart (9.28)", ["--strategy", "suns"])]:
-        rows.append([name, f"{run.error(show(name, text, *options), reference)['relmse']:.3g}"])
+        errors[name] = run.error(show(name, text, *options), reference)["relmse"]
+    bsdf = run.render(scene, "temple-bsdf.exr", *common, "--strategy", "bsdf")
+    errors["bsdf"] = run.error(bsdf, reference)["relmse"]
+    names = {"uniform": "uniform, without MIS", "bsdf": "BSDF alone", "importance": "importance", "suns": "suns"}
     show("only-suns", "The sun alone (9.26)", "--light-from", "suns")
     show("only-rest", "The sky alone (9.27)", "--light-from", "rest")
+    hit = 1 - math.cos(math.radians(0.5323 / 2))  # of a hemisphere
+    miss = (1 - hit) ** 81
     return [Row(
-        "HDRI figures 9.22 and 9.24 to 9.28, with a temple",
-        "The Parthenon under a white sky, under a sunny one with 81 rays, and by sun and sky apart.",
+        "HDRI figures 9.22 and 9.24 to 9.28: the sampling problem",
+        "The Parthenon under a white sky, and under a sunny one: 81 random rays mostly miss the sun, and the image is "
+        "speckled. Sun and sky are sampled apart and added.",
         ["chromeball render scenes/temple.toml --samples 81 --strategy STRATEGY"],
-        table(["81 samples", "relMSE"], rows),
+        f"A pixel misses a sun of 0.5323 degrees with all 81 rays with probability {miss:.5f}; those that hit it are "
+        f"{1 / (1 - miss):,.0f} times too bright.\n\n"
+        + table(["81 samples", "relMSE", "uniform / this"],
+                [[text, f"{errors[name]:.3g}", f"{errors['uniform'] / errors[name]:,.0f}"]
+                 for name, text in names.items()]),
         "The temple is a model of its own, not the scanned Parthenon; its probe is `probes/noon.exr`.", pictures)]
 
 
@@ -86,4 +100,4 @@ def nave(run):
 
 
 def rows(run):
-    return five_shapes(run) + temple(run) + nave(run)
+    return five_shapes(run) + nave(run)

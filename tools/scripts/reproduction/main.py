@@ -23,7 +23,7 @@ from page import page
 from run import ROOT, Run
 
 SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
-            ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [rendering.rows]),
+            ("Probes", [probes.rows, capture.rows]), ("Sampling a probe", [gallery.temple, rendering.rows]),
             ("Suns", [suns.rows]), ("Optics", [optics.rows]), ("Cheaper answers", [approximations.rows]),
             ("Relighting", [stage.rows, transfer.rows]), ("Films", [film.rows]),
             ("Composites and rooms", [scenes.rows, formulas.rows, gallery.rows])]

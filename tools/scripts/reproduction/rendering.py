@@ -1,41 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders by each way of sampling: HDRI's figures 9.22 to 9.28, 9.32, 9.33, 9.36 and 9.37."""
-import math
-
+"""Renders by each way of sampling: HDRI's figures 9.32, 9.33, 9.36 and 9.37."""
 from page import Row, table
 from run import NOON, SCENES
 
 PILLARS = SCENES / "models" / "pillars.gltf"
 STILL_LIFE = SCENES / "models" / "still-life.glb"
 SMALL = ["--size", "240x180", "--adaptive", "off", "--guide", "off"]
-
-
-def sampling_problem(run):
-    common = [*SMALL, "--probe", NOON]
-    reference = run.render(PILLARS, "ref.exr", *common, "--samples", 1024, "--strategy", "suns")
-    whole = {}
-    rows = []
-    for name, options in [("uniform, no MIS", ["--strategy", "uniform", "--mis", "off"]),
-                          ("BSDF only", ["--strategy", "bsdf"]),
-                          ("importance", ["--strategy", "importance"]), ("suns", ["--strategy", "suns"])]:
-        image = run.render(PILLARS, f"{options[1]}.exr", *common, "--samples", 81, *options)
-        whole[options[1]] = run.error(image, reference)["relmse"]
-        rows.append([name, f"{whole[options[1]]:.3g}", f"{whole['uniform'] / whole[options[1]]:,.0f}"])
-    pictures = [(run.picture("uniform.exr", "problem-uniform.png"), "81 uniform samples per pixel, without MIS"),
-                (run.picture("suns.exr", "problem-suns.png"), "81 samples of the strategy `suns`")]
-    for part in ("suns", "rest"):
-        image = run.render(PILLARS, f"part-{part}.exr", *common, "--samples", 81, "--strategy", "suns",
-                           "--light-from", part)
-        pictures.append((run.picture(image, f"problem-only-{part}.png"), f"`--light-from {part}`"))
-    hit = 1 - math.cos(math.radians(0.5323 / 2))  # of a hemisphere
-    miss = (1 - hit) ** 81
-    return [Row(
-        "HDRI figures 9.22 and 9.25 to 9.28: the sampling problem",
-        "81 random rays mostly miss the sun: the image is speckled. Sun and sky are sampled apart and added.",
-        ["chromeball render scenes/models/pillars.gltf --probe probes/noon.exr --samples 81 --strategy STRATEGY"],
-        f"A pixel misses a sun of 0.5323 degrees with all 81 rays with probability {miss:.5f}; those that hit it are "
-        f"{1 / (1 - miss):,.0f} times too bright.\n\n"
-        + table(["samples of 81", "relMSE", "uniform / this"], rows), "", pictures)]
 
 
 def grace_by_lights(run):
@@ -82,4 +52,4 @@ def st_peters(run):
 
 
 def rows(run):
-    return sampling_problem(run) + grace_by_lights(run) + st_peters(run)
+    return grace_by_lights(run) + st_peters(run)
