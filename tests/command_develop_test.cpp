@@ -89,6 +89,34 @@ TEST(CommandDevelop, AllAtOnceKeepsAlphaAndMetadata) {
   EXPECT_TRUE(file.metadata.contains("cameraFov"));
 }
 
+// The header tells what was done, also twice; other layers are not written, which is said.
+TEST(CommandDevelop, TheHeaderHasWhatWasDone) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", once = folder / "1.exr", twice = folder / "2.exr";
+  writeImage(in, OutputImage{{{"", "RGB", filled(8, 8, 3, 1)}, {"depth", "", filled(8, 8, 1, 3)}},
+                             {{"cameraFov", 40.0f}}});
+  const CommandResult result = run({in, once, "--bloom", "1:2", "--vignette", ".5", "--exact"});
+  EXPECT_NE(result.error.find("without the layers depth"), std::string::npos) << result.error;
+  run({once, twice, "--motion", "3@0"});
+  const auto developed = [](const std::string& path) {
+    return std::get<std::string>(readImageFile(path).metadata.at("developed"));
+  };
+  EXPECT_EQ(developed(once), "bloom=1:2 vignette=.5 exact");
+  EXPECT_EQ(developed(twice), "bloom=1:2 vignette=.5 exact; then motion=3@0");
+  run({in, once});
+  EXPECT_FALSE(readImageFile(once).metadata.contains("developed"));
+}
+
+TEST(CommandDevelop, InfinityIsClipped) {
+  const TemporaryFolder folder;
+  Image image = filled(4, 4, 3, 0.5f);
+  image.at(1, 1)[0] = std::numeric_limits<float>::infinity();
+  writeImage(folder / "in.exr", image);
+  const CommandResult result = run({folder / "in.exr", folder / "out.exr", "--clip", "2"});
+  EXPECT_EQ(result.error.find("infinite"), std::string::npos) << result.error;
+  EXPECT_EQ(readImage(folder / "out.exr").rgb(1, 1), Rgb(2, 0.5f, 0.5f));
+}
+
 TEST(CommandDevelop, InvalidPixelsAreReported) {
   const TemporaryFolder folder;
   Image image = filled(32, 32, 3, 1);
@@ -127,6 +155,10 @@ TEST(CommandDevelop, BadInput) {
   expect({"--depth-blur", "1:1e9"}, "aperture (metres) 1e+09");
   expect({"--clip", "-1"}, "--clip: -1");
   expect({"--fov", "180", "--vignette", "1"}, "between 0 and 180");
+  expect({"--fov", "40", "--clip", "1"}, "--fov: has no effect without");
+  expect({"--exact", "--clip", "1"}, "--exact: has no effect without");
+  expect({"--bloom", ""}, "`` is not WEIGHT:SIGMA");
+  expect({"--vignette", ""}, "--vignette");
   expect({"--exposure", "nan"}, "--exposure");
   expect({"--tonemap", "acis"}, "aces");
   writeImage(folder / "no-depth.exr", filled(8, 8, 3, 1));
@@ -138,6 +170,7 @@ TEST(CommandDevelop, BadInput) {
   expect({"--vignette", folder / "negative.exr"}, "they are factors");
   expectError({"image", "develop", in, in}, "would overwrite");
   expectError({"image", "develop", in, folder / "out.exr", "--tonemap", "aces"}, "is linear");
+  expectError({"image", "develop", in, folder / "out.exr", "--exposure", "1"}, "is linear");
 }
 
 // The .png of a render is its .exr, developed; the .exr stays as rendered.

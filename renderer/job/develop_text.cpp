@@ -13,6 +13,13 @@ namespace chromeball {
 namespace {
 
 constexpr size_t kMaxGaussians = 32;
+constexpr std::array<std::string_view, 6> kNames = {"clip",  "depth-blur", "motion",
+                                                    "bloom", "glare",      "vignette"};
+
+[[noreturn]] void throwUnknown(std::string_view name, std::string_view location) {
+  throwInput("{}: `{}` is not known; {}", location, name,
+             didYouMean(name, {kNames.begin(), kNames.end()}));
+}
 
 double numberIn(std::string_view text, double min, double max, std::string_view what,
                 std::string_view location) {
@@ -79,8 +86,6 @@ float parseClip(std::string_view text, std::string_view location) {
 
 void setDevelop(DevelopSettings& settings, std::string_view name, std::string_view text,
                 std::string_view location) {
-  static constexpr std::array<std::string_view, 6> kNames = {"clip",  "depth-blur", "motion",
-                                                             "bloom", "glare",      "vignette"};
   if (name == "clip") {
     settings.clip = parseClip(text, location);
   } else if (name == "depth-blur") {
@@ -96,8 +101,7 @@ void setDevelop(DevelopSettings& settings, std::string_view name, std::string_vi
   } else if (name == "vignette") {
     settings.vignette = numberIn(text, 0, 1, "strength", location);
   } else {
-    throwInput("{}: `{}` is not known; {}", location, name,
-               didYouMean(name, {kNames.begin(), kNames.end()}));
+    throwUnknown(name, location);
   }
 }
 
@@ -111,6 +115,7 @@ DevelopSettings parseDevelop(std::string_view text, std::string_view location) {
         split(text.substr(begin, end - begin), '=',
               "NAME=VALUE, as in vignette=.4 or bloom=.75:1,.25:32", location);
     if (!names.insert(name).second) throwInput("{}: `{}` is there twice", location, name);
+    if (std::ranges::find(kNames, name) == kNames.end()) throwUnknown(name, location);
     setDevelop(settings, name, value, fmt::format("{}: {}", location, name));
     begin = text.find_first_not_of(kSpaces, end);
   }

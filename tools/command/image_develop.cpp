@@ -17,19 +17,33 @@
 namespace chromeball {
 namespace {
 
+struct OpticsOption {
+  const char* name;
+  std::optional<std::string> value = {};
+};
+
 struct Arguments {
-  std::string in, out, tone = "none", vignette;
-  std::vector<std::pair<std::string, std::string>> optics = {
-      {"clip", ""}, {"depth-blur", ""}, {"motion", ""}, {"bloom", ""}, {"glare", ""}};
+  std::string in, out, tone = "none";
+  // In the order in which they are applied; the last also takes a file.
+  std::vector<OpticsOption> optics = {{"clip"},  {"depth-blur"}, {"motion"},
+                                      {"bloom"}, {"glare"},      {"vignette"}};
   float exposure = 0;
   std::optional<double> fov;
   bool exact = false;
+
+  // A file in place of the strength of the vignette; empty: none.
+  std::string falloff() const;
 };
 
 bool isNumber(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
   return !text.empty() && *end == 0;
+}
+
+std::string Arguments::falloff() const {
+  const auto& vignette = optics.back().value;
+  return vignette && !vignette->empty() && !isNumber(*vignette) ? *vignette : "";
 }
 
 Image readFalloff(const std::string& path) {
@@ -43,22 +57,30 @@ Image readFalloff(const std::string& path) {
 
 DevelopSettings settingsOf(const Arguments& arguments) {
   DevelopSettings settings;
-  for (const auto& [name, text] : arguments.optics)
-    if (!text.empty()) setDevelop(settings, name, text, "--" + name);
-  if (isNumber(arguments.vignette))
-    setDevelop(settings, "vignette", arguments.vignette, "--vignette");
-  else if (!arguments.vignette.empty())
-    settings.falloff = readFalloff(arguments.vignette);
+  for (const auto& [name, value] : arguments.optics)
+    if (value && *value != arguments.falloff())
+      setDevelop(settings, name, *value, fmt::format("--{}", name));
+  if (!arguments.falloff().empty()) settings.falloff = readFalloff(arguments.falloff());
   if (arguments.exact) settings.method = GaussianMethod::Exact;
   if (settings.clip) *settings.clip *= std::exp2(-arguments.exposure);
   return settings;
 }
 
-void checkDisplay(const Arguments& arguments) {
+void checkDisplay(const Arguments& arguments, const DevelopSettings& settings) {
   if (!std::isfinite(arguments.exposure) || std::fabs(arguments.exposure) > 100)
     throwInput("--exposure: {} should be -100 to 100 stops", arguments.exposure);
-  if (lowerExtension(arguments.out) != ".png" && arguments.tone != "none")
+  if (lowerExtension(arguments.out) == ".png") return;
+  if (arguments.tone != "none")
     throwInput("--tonemap: {} is linear; tone mapping is for .png", arguments.out);
+  if (arguments.exposure != 0 && !settings.clip)
+    throwInput("--exposure: {} is linear, and nothing is clipped; leave it out", arguments.out);
+}
+
+void checkEffects(const Arguments& arguments, const DevelopSettings& settings) {
+  if (arguments.exact && settings.bloom.empty() && !settings.glare)
+    throwInput("--exact: has no effect without --bloom or --glare");
+  if (arguments.fov && !settings.needsFov())
+    throwInput("--fov: has no effect without --vignette STRENGTH, --glare or --depth-blur");
 }
 
 ViewFrame frameOf(const Arguments& arguments, const ImageFile& file, const Image& color,
@@ -89,10 +111,21 @@ Image colorOf(const ImageFile& file, const std::string& path) {
   throwInput("{}: has no color", path);
 }
 
+// "bloom=.75:1,.25:32 vignette=.4", after what was done to the image before.
+std::string historyOf(const Arguments& arguments, const Metadata& metadata) {
+  std::string history;
+  if (const auto earlier = metadata.find("developed"); earlier != metadata.end())
+    if (const auto* text = std::get_if<std::string>(&earlier->second)) history = *text + "; then";
+  for (const auto& [name, value] : arguments.optics)
+    if (value) history += fmt::format("{}{}={}", history.empty() ? "" : " ", name, *value);
+  return history + (arguments.exact ? " exact" : "");
+}
+
 // What is needed of a file, whose other layers are not kept in memory.
 struct Input {
   OutputImage image;  // the color alone
-  Image depth;        // empty unless needed
+  std::vector<std::string> otherLayers;
+  Image depth;  // empty unless needed
   ViewFrame frame;
 };
 
@@ -103,6 +136,8 @@ Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
   input.frame = frameOf(arguments, file, color, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
   input.image.metadata = file.metadata;
+  if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
+  input.otherLayers = layerNames(file);
   input.image.placement = file.placement;
   input.image.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
   return input;
@@ -110,13 +145,17 @@ Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
 
 void run(const Arguments& arguments) {
   checkWritable(arguments.out);
-  checkDistinct({arguments.out}, {arguments.in, arguments.vignette});
-  checkDisplay(arguments);
+  checkDistinct({arguments.out}, {arguments.in, arguments.falloff()});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   const DevelopSettings settings = settingsOf(arguments);
+  checkDisplay(arguments, settings);
+  checkEffects(arguments, settings);
   Input input = readInput(arguments, settings);
   Image& color = input.image.layers.front().image;
   print(inWords(develop(color, settings, &input.depth, input.frame)), false);
+  if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
+    note(fmt::format("{}: its color alone is developed and written; without the layers {}",
+                     arguments.in, fmt::join(input.otherLayers, ", ")));
   writeImage(arguments.out, input.image, transform);
 }
 
@@ -135,8 +174,8 @@ void addImageDevelopCommand(CLI::App& image) {
       ->required();
   const auto add = [&](const char* name, const char* type, const char* help) {
     const auto found =
-        std::ranges::find(arguments->optics, name, &std::pair<std::string, std::string>::first);
-    command->add_option(std::string("--") + name, found->second, help)->type_name(type);
+        std::ranges::find(arguments->optics, std::string_view(name), &OpticsOption::name);
+    command->add_option(std::string("--") + name, found->value, help)->type_name(type);
   };
   add("clip", "X",
       "Clip red, green and blue at X times white (after --exposure) first: what a blurred image of "
@@ -149,11 +188,9 @@ void addImageDevelopCommand(CLI::App& image) {
   add("bloom", "WEIGHT:SIGMA,...",
       "A sum of Gaussian blurs, sigma in pixels; the weights sum to 1: .75:1,.15:8,.07:32,.03:128");
   add("glare", "spencer", "The blur of the human eye by day (Spencer et al. 1995); needs the fov");
-  command
-      ->add_option("--vignette", arguments->vignette,
-                   "Multiply by 1 - STRENGTH (1 - cos^4 of the angle to the axis), or by an image "
-                   "that is stretched over the picture")
-      ->type_name("STRENGTH|FILE");
+  add("vignette", "STRENGTH|FILE",
+      "Multiply by 1 - STRENGTH (1 - cos^4 of the angle to the axis), or by an image that is "
+      "stretched over the picture");
   command->add_option("--fov", arguments->fov,
                       "Vertical field of view in degrees, of the whole picture; without it that of "
                       "the .exr");

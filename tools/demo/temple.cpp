@@ -19,6 +19,8 @@ constexpr float kStep = 0.52f, kFloor = 3 * kStep;  // the stylobate's height ab
 const DoricColumn kColumn;
 const float kTop = kFloor + float(kColumn.height);  // where the architrave starts
 constexpr float kArchitrave = 1.35f, kFrieze = 1.35f, kCornice = 0.55f, kBeam = 0.85f;
+constexpr float kCeiling = kArchitrave + kFrieze;  // above kTop: what the cornice covers
+constexpr float kPorch = 28;                       // from the middle to the columns of a porch
 constexpr Rgb kMarble(0.72f, 0.65f, 0.54f);
 
 // A box about the middle: half its width and length, its lower and upper height.
@@ -43,31 +45,35 @@ Surface masonry() {
   addRing(s, kBeam, kTop, kTop + kArchitrave - 0.12f);
   addRing(s, kBeam + 0.06f, kTop + kArchitrave - 0.12f, kTop + kArchitrave);
   addRing(s, kBeam - 0.04f, kTop + kArchitrave, kTop + kArchitrave + kFrieze);
-  const float cornice = kTop + kArchitrave + kFrieze;
+  const float cornice = kTop + kCeiling;
   addLayer(s, kBeam + 0.25f, cornice, cornice + 0.16f);
   addLayer(s, kBeam + 0.75f, cornice + 0.16f, cornice + kCornice);
   return s;
 }
 
-// Walls from floor to architrave; the doors are behind the porches.
+// Walls from floor to ceiling, with a door behind each porch, whose columns carry a beam.
 Surface cella() {
-  constexpr float kWide = 10.2f, kLong = 23.6f, kThick = 1.1f;
-  const float height = kTop - kFloor;
-  const Opening door{2.4f, 0, 6.2f};
+  constexpr float kWide = 10.2f, kLong = 23.6f, kThick = 1.1f, kDoor = 2.4f, kLintel = kFloor + 8;
+  const float top = kTop + kCeiling;
   Surface s;
   addClosedBox(s, {-kWide - 0.4f, kFloor, -kLong - 5.4f},
                {kWide + 0.4f, kFloor + 0.35f, kLong + 5.4f}, kTexture);
-  addWall(s, {{-kWide, kFloor, kLong}, {2 * kWide, 0, 0}, height, kThick}, door, kTexture);
-  addWall(s, {{kWide, kFloor, -kLong}, {-2 * kWide, 0, 0}, height, kThick}, door, kTexture);
-  addClosedBox(s, {-kWide, kFloor, -kLong - 0.9f}, {-kWide + kThick, kTop, kLong + 0.9f}, kTexture);
-  addClosedBox(s, {kWide - kThick, kFloor, -kLong - 0.9f}, {kWide, kTop, kLong + 0.9f}, kTexture);
+  for (const float z : {kLong - kThick, -kLong}) {
+    addClosedBox(s, {-kWide + kThick, kFloor, z}, {-kDoor, top, z + kThick}, kTexture);
+    addClosedBox(s, {kDoor, kFloor, z}, {kWide - kThick, top, z + kThick}, kTexture);
+    addClosedBox(s, {-kDoor, kLintel, z}, {kDoor, top, z + kThick}, kTexture);
+  }
+  for (const float x : {-kWide, kWide - kThick})
+    addClosedBox(s, {x, kFloor, -kLong - 0.9f}, {x + kThick, top, kLong + 0.9f}, kTexture);
+  for (const float z : {-kPorch, kPorch})
+    addClosedBox(s, {-kWide - 0.8f, kTop, z - 0.75f}, {kWide + 0.8f, top, z + 0.75f}, kTexture);
   return s;
 }
 
 // The body of the gables, recessed, and two slopes that overhang it.
 Surface roof() {
   constexpr float kSlope = 0.245f, kThick = 0.45f, kRecess = 0.95f;
-  const float eaves = kTop + kArchitrave + kFrieze + kCornice;
+  const float eaves = kTop + kCeiling + kCornice;
   const float x = kHalfWidth + kBeam + 0.75f, z = kHalfLength + kBeam + 0.75f;
   const vec2 right(x, eaves), left(-x, eaves), ridge(0, eaves + kSlope * x), thick(0, kThick);
   Surface s;
@@ -94,10 +100,10 @@ std::vector<Placement> columns() {
   constexpr float kPlinth = 0.35f, kShorter = 1 - kPlinth / 10.4f;
   for (int i = 1; i + 1 < kFront; ++i)
     for (const float side : {-1.0f, 1.0f})
-      at.push_back(
-          {.position = {0.92f * (-kHalfWidth + kSpacing * float(i)), kFloor + kPlinth, side * 28},
-           .turn = 0.7f * float(at.size()),
-           .scale = {0.88f, kShorter, 0.88f}});
+      at.push_back({.position = {0.92f * (-kHalfWidth + kSpacing * float(i)), kFloor + kPlinth,
+                                 side * kPorch},
+                    .turn = 0.7f * float(at.size()),
+                    .scale = {0.88f, kShorter, 0.88f}});
   return at;
 }
 

@@ -42,8 +42,8 @@ size_t countLimited(const Image& depth, const ThinLens& lens, const ViewFrame& f
 DevelopReport develop(Image& image, const DevelopSettings& settings, const Image* depth,
                       const ViewFrame& frame) {
   DevelopReport report;
+  if (settings.clip) clipColor(image, *settings.clip);  // infinity too
   report.invalid = clearInvalid(image);
-  if (settings.clip) clipColor(image, *settings.clip);
   if (settings.lens) {
     report.limited = countLimited(*depth, *settings.lens, frame);
     image = blurByDepth(image, *depth, *settings.lens, frame);

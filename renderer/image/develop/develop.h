@@ -29,7 +29,7 @@ struct DevelopSettings {
 };
 
 struct DevelopReport {
-  size_t invalid = 0;  // pixels with NaN or infinity; they count as 0
+  size_t invalid = 0;  // pixels with NaN or infinity that no clip has made finite; they are 0
   size_t limited = 0;  // pixels whose radius of confusion is kMaxConfusionRadius
 };
 

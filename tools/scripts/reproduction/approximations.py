@@ -72,8 +72,9 @@ def ambient_occlusion(run):
         ["chromeball render scenes/models/pillars.gltf --probe PROBE --integrator ambient-occlusion --strategy suns",
          "chromeball image relight AO.exr --probe PROBE -o LIT.exr"],
         "Against paths:\n\n" + table(["light", "relMSE", "bias", "FLIP"], rows),
-        "What is left is light between the surfaces. Occlusion looks right and is too dark; without it, missing shadows "
-        "and missing interreflection nearly cancel in the mean, and the picture looks wrong. Where one sun dominates, "
+        "What is left is light between the surfaces. With occlusion there are shadows of contact, and the picture is too "
+        "dark; without it, missing shadows and missing interreflection nearly cancel, so that under the overcast sky "
+        "the numbers of the picture without shadows are the better ones. Where one sun dominates, "
         "occlusion without its shadows is no picture of the scene; with the sun apart it is.", pictures)
 
 

@@ -46,13 +46,22 @@ def closed_loop(run):
         run("probe", "assemble", *files, *more, *common)
         mean, largest = irradiance_error(irradiance(run, "made.exr", "made.pfm"), truth)
         rows.append([text, f"{mean:.2f}", f"{largest:.1f}"])
+    run("probe", "synth", "constant", "white.exr")
+    photograph(run, "white-ball.exr", "white.exr", 0)
+    middle = f"{SIZE // 2 - 10},{SIZE // 2 - 10},20,20"
+    measured = run.json("probe", "reflectivity", "white-ball.exr", "--direct", "2,2,10,10", "--reflected", middle)
+    found = ", ".join(f"{value:.3f}" for value in measured["reflectivity"])
     return [Row(
         "HDRI figures 9.2, 9.9 and 9.10: a probe from photographs of a mirror ball",
-        "Two photographs of a ball, 90 degrees apart, show all directions and remove the camera's reflection.",
-        ["chromeball probe assemble a.exr b.exr --azimuth 0,90 --distance 32 --schlick \\",
+        "Two photographs of a ball, 90 degrees apart, show all directions and remove the camera's reflection. The "
+        "ball's reflectivity is that of a surface in the ball and beside it.",
+        ["chromeball probe reflectivity white-ball.exr --direct 2,2,10,10 --reflected 190,190,20,20",
+         "chromeball probe assemble a.exr b.exr --azimuth 0,90 --distance 32 --schlick \\",
          "  --reflectivity .632,.647,.653 -o made.exr"],
         "Photographs of a chrome ball in Galileo's Tomb, rendered; the irradiance of the probe made from them:\n\n"
-        + table(["photographs", "mean error, %", "largest, %"], rows),
+        + table(["photographs", "mean error, %", "largest, %"], rows)
+        + f"\n\nThe reflectivity of the ball in a white room is measured as {found}; it is {CHROME[0]}, {CHROME[1]}, "
+        f"{CHROME[2]}.",
         "[From camera to probe](capture.md) has the whole way, from bracketed photographs through response, "
         "reflectivity and sun to the composite, with the error of each step.")]
 

@@ -77,8 +77,8 @@ def rows(run):
     return [Row(
         "HDRI 9.7.1: the difference for reflections, the ratio for shadows",
         "The difference may serve reflections better, the ratio shadows on matte surfaces.",
-        ["chromeball render floor.toml, with [composite] mode = \"difference\" or \"ratio\""],
-        "Two boxes on a floor that is matte on one side, dark and glossy on the other. RMS of the relative error in "
+        ["chromeball render formulas.toml -o composite.exr"],
+        "`[composite] mode = \"difference\"` and `\"ratio\"`. Two boxes on a floor that is matte on one side, dark and glossy on the other. RMS of the relative error in "
         "percent, where the boxes darken the matte side by more than 2%, and where they brighten the glossy one:\n\n"
         + table(["mistake in the local scene", "shadow, difference", "shadow, ratio", "reflection, difference",
                  "reflection, ratio"], lines),

@@ -52,12 +52,18 @@ def madsen_2003(run):
         rows.append([name] + [both(errors[("irradiance-fit-ambient", n)]) for n in (1, 4)])
     if not rows:
         return []
+    pictures = []
+    if lobby := run.probe("Lobby"):
+        run("lights", lobby, "--method", "irradiance-fit-ambient", "--count", 4, "-o", "l.json", "--sphere",
+            run.pictures / "spheres-lobby.png")
+        pictures = [("spheres-lobby.png", "White spheres in the lobby: under the probe, under ambient light and four "
+                                          "lights, and the difference, enlarged; from the front and from behind")]
     return [Row(
-        "M03 figures 2, 3 and 5 to 9: ambient light and a few directional lights",
+        "M03, figures 2, 3 and 5 to 9: ambient light and a few directional lights",
         "An ambient term and 1 to 4 lights are enough for augmented reality indoors: errors of a few percent.",
         ["chromeball lights PROBE --method irradiance-fit-ambient --count 4 -o l.json --sphere spheres.png"],
         table(["probe", "ambient + 1, %", "ambient + 4, %"], rows),
-        "M03 fits by hand-tuned descent from random starts; here the fit starts from the residual's peaks.")]
+        "M03 fits by hand-tuned descent from random starts; here the fit starts from the residual's peaks.", pictures)]
 
 
 def few_lights(run):

@@ -45,7 +45,7 @@ What three sources show, beside what this program computes:
 - M03: Madsen et al., "Estimating Positions and Radiances of a Small Number of Light Sources for Real-Time
   Image-Based Lighting" (2003).
 
-`tools/scripts/reproduce.sh` makes this page. Debevec's probes may be used for research; their numbers are given
+`tools/scripts/reproduce.sh` makes this page, with the scenes and images that are named without a folder. Debevec's probes may be used for research; their numbers are given
 here, and pictures are only of probes that may be copied: those of Poly Haven and of this project (CC0)."""
 
 

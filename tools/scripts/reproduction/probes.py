@@ -5,8 +5,10 @@ import math
 from lat_long import solid_angle_mean
 from page import Row, table
 from pfm import read_pfm
-from run import NOON, luminance
+from run import NOON, ROOT, SCENES, luminance
 
+DUSK = ROOT / "probes" / "dusk.exr"
+STILL_LIFE = SCENES / "models" / "still-life.glb"
 ALL = ["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi", "Beach", "Ennis", "Lobby", "Studio",
        "Qwantani", "Kloppenheim", "Hilly terrain"]
 
@@ -22,7 +24,8 @@ def mappings(run):
             {"lat-long": "512x256", "cube-3x2": "384x256"}.get(mapping, "256x256"))
         report = run.json("probe", "info", name, "--mapping", mapping, "--mapping-report")["mapping_report"]
         rows.append([mapping, f"{report['max_over_min']:.4g}", facts])
-        run.picture(name, f"noon-{mapping}.png", "--tonemap", "reinhard")
+        if mapping != "lat-long":
+            run.picture(name, f"noon-{mapping}.png", "--tonemap", "reinhard")
     return [Row(
         "HDRI 9.4.1 to 9.4.4: one probe in four mappings",
         "The ball is equal-area, the angular map has a constant radial density, cubes vary by 5.2.",
@@ -33,15 +36,16 @@ def mappings(run):
 
 
 def compare_irradiance(run, file, *more):
-    """Mean, maximum in % of the mean; share of texels below 0; of the irradiance map with these options."""
+    """Mean, maximum in % of the mean; shares of texels below 0 and of the energy that is kept, in %; of the
+    irradiance map with these options."""
     for name, options in (("exact.pfm", []), ("other.pfm", more)):
         run("probe", "convolve", file, name, "--kernel", "diffuse", "--size", "64x32", *options)
     exact, other = (read_pfm(run.scratch / name) for name in ("exact.pfm", "other.pfm"))
-    rows = [[(sum(a) / 3, abs(sum(a) - sum(b)) / 3, luminance(b) < 0) for a, b in zip(*pair)]
-            for pair in zip(exact, other)]
-    mean, error, below = solid_angle_mean(rows)
+    rows = [[(sum(a) / 3, abs(sum(a) - sum(b)) / 3, luminance(b) < 0, luminance(a) ** 2,
+              (luminance(a) - luminance(b)) ** 2) for a, b in zip(*pair)] for pair in zip(exact, other)]
+    mean, error, below, energy, lost = solid_angle_mean(rows)
     worst = max(pixel[1] for row in rows for pixel in row)
-    return 100 * error / mean, 100 * worst / mean, 100 * below
+    return 100 * error / mean, 100 * worst / mean, 100 * below, 100 * (1 - lost / energy)
 
 
 def irradiance(run):
@@ -50,7 +54,7 @@ def irradiance(run):
         reduced = compare_irradiance(run, file, "--from-size", "32x16")
         harmonics = compare_irradiance(run, file, "--method", "sh")
         rows.append([name, f"{reduced[0]:.2g} / {reduced[1]:.2g}", f"{harmonics[0]:.2g} / {harmonics[1]:.2g}",
-                     f"{harmonics[2]:.2g}"])
+                     f"{harmonics[2]:.2g}", f"{harmonics[3]:.4g}"])
     if not rows:
         return []
     return [Row(
@@ -60,10 +64,10 @@ def irradiance(run):
         ["chromeball probe convolve PROBE OUT.exr --kernel diffuse --from-size 32x16",
          "chromeball probe convolve PROBE OUT.exr --kernel diffuse --method sh"],
         "Mean / maximum error in percent of the mean irradiance, from a reduction to 32 x 16 texels and from nine "
-        "harmonics, and the share of the normals whose irradiance is negative with these:\n\n"
-        + table(["probe", "32 x 16", "harmonics", "negative, %"], rows),
-        "The 99% holds for the energy that is kept, not for the irradiance of a normal. An exact irradiance map "
-        "takes seconds.")]
+        "harmonics; with these, the share of the normals whose irradiance is negative, and of the energy (the square of "
+        "the irradiance over all normals) that is kept:\n\n"
+        + table(["probe", "32 x 16", "harmonics", "negative, %", "energy, %"], rows),
+        "The 99% is about the energy, not about the irradiance of a normal. An exact irradiance map takes seconds.")]
 
 
 def suns(run):
@@ -89,31 +93,39 @@ def suns(run):
 
 def clipping(run):
     rows = [[name, f"{100 * run.json('probe', 'info', file)['lost_if_clipped_at_white']:.0f}%"]
-            for name, file in run.probes(["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi",
-                                          "Qwantani", "Beach"]).items()]
-    if not rows:
-        return []
+            for name, file in {"dusk, of this project": DUSK,
+                               **run.probes(["Galileo's Tomb", "Grace Cathedral", "St Peter's", "Uffizi", "Qwantani",
+                                             "Beach"])}.items()]
+    white = 0.18 / luminance(run.json("probe", "info", DUSK)["mean_radiance"])
+    run("probe", "edit", DUSK, "clipped.exr", "--clip", 1 / white)
+    pictures = []
+    for name, probe, text in [("whole", DUSK, "Dusk"), ("clipped", "clipped.exr", "Dusk, clipped at white")]:
+        image = run.render(STILL_LIFE, "lit.exr", "--probe", probe, "--size", "240x160", "--samples", 128, "--denoise")
+        pictures.append((run.picture(image, f"range-{name}.png", "--tonemap", "neutral"), text))
     return [Row("HDRI figure 9.40: an image of low dynamic range as a probe",
-                "Clipped highlights change the light.", ["chromeball probe info PROBE"],
+                "Clipped highlights change the light.",
+                ["chromeball probe info PROBE", "chromeball probe edit probes/dusk.exr clipped.exr --clip WHITE"],
                 "Irradiance that is lost, exposed for a mean of 0.18 and clipped at 1:\n\n"
-                + table(["probe", "lost"], rows), "")]
+                + table(["probe", "lost"], rows), "", pictures)]
 
 
 def rays(run):
+    overcast = run.scratch / "overcast.exr"
+    run("probe", "synth", "overcast", overcast, "--size", "512x256")
     rows = []
-    for name, file in run.probes(["Uffizi", "Grace Cathedral", "Galileo's Tomb", "St Peter's", "Qwantani",
-                                  "Kloppenheim"]).items():
+    for name, file in {"an overcast sky": overcast,
+                       **run.probes(["Uffizi", "Grace Cathedral", "Galileo's Tomb", "St Peter's", "Qwantani",
+                                     "Kloppenheim"]), "noon, of this project": NOON}.items():
         counts = run.json("probe", "rays", file, "--size", "256x128")["rays"]
         rows.append([name] + [f"{counts[sampling]['upward']:,}" for sampling in ("uniform", "cosine", "luminance")])
-    if not rows:
-        return []
     return [Row(
         "HDRI 9.6, figure 9.24: how many rays?",
         "Tens of rays under an overcast sky, hundreds or thousands in interiors, hundreds of thousands with a sun.",
         ["chromeball probe rays PROBE --size 256x128"],
         "Random rays for a standard error of 10% on a surface that faces up:\n\n"
         + table(["probe", "uniform", "cosine", "luminance"], rows),
-        "All three statements hold for random rays; sampling by luminance needs few even with a sun.")]
+        "All three statements hold for random rays, those of the first for rays in proportion to the cosine or the "
+        "luminance; sampling by luminance needs few even with a sun.")]
 
 
 def rows(run):

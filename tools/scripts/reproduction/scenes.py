@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Composites and rooms: HDRI's figures 9.21, 9.29 and 9.38."""
+"""Composites and rooms: HDRI's 9.3, figures 9.21 and 9.38."""
 from page import Row, table
 from run import NOON, ROOT, SCENES
 
@@ -82,10 +82,10 @@ def rooms(run):
             pictures.append((run.picture(image, f"room-{name}-{place}.png", "--tonemap", "neutral"),
                              f"{name}, seen towards the {place}"))
     return [Row(
-        "HDRI 9.3 and figure 9.29: a probe on the walls of a room",
+        "HDRI 9.3: a probe on the walls of a box",
         "A probe mapped onto a box or a model of the place, so that its light depends on the position.",
-        ["chromeball render room.toml, with [surroundings] shape = \"box\""],
-        "The pillars in a box of 12 x 5.5 x 12 metres, in two lightings, from two directions of view.", "", pictures)]
+        ["chromeball render room.toml -o room.exr"],
+        "`[surroundings] shape = \"box\"`. The pillars in a box of 12 x 5.5 x 12 metres, in two lightings, from two directions of view.", "", pictures)]
 
 
 def rows(run):

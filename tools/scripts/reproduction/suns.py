@@ -43,8 +43,8 @@ radiance = 46700
         "HDRI 9.6.1: the radiance of the sun",
         "A sun of 46,700 times the radiance of the sky gives a white floor about the radiance 1; the sun's disc is "
         "1 / 100,000 of the sky.",
-        ["chromeball render floor.toml, with [[light]] direction, angle = 0.5323, radiance = 46700"],
-        f"{radiance:.5f}, rendered; {exact:.5f} = 46,700 sin^2(0.5323 / 2 degrees), exact.",
+        ["chromeball render floor.toml -o floor.pfm"],
+        f"A white floor under a `[[light]]` with angle = 0.5323 and radiance = 46700: {radiance:.5f}, rendered; {exact:.5f} = 46,700 sin^2(0.5323 / 2 degrees), exact.",
         "The number of the text is right; the solid angle of the disc is 1 / 92,700 of the hemisphere.")]
 
 

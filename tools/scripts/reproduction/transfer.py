@@ -80,5 +80,5 @@ def rows(run):
         "Irradiance at the 100 vertices of the pillars against `bake --to vertices`, root of the sum of squared differences over "
         f"that of the squares ({SAMPLES} samples of each vertex in both):\n\n" +
         table(["light", *names], measured),
-        "The figure has no numbers. Wavelets are closer at equal counts from 100 on, but for the noise of noon: few paths "
-        "find the one cell of the sun, and the error falls with the root of the samples, to 4% with 65536.", views(run))]
+        "The figure has no numbers. 25 wavelets are about as close as 25 harmonics, 100 are closer, but for the noise of "
+        "noon: few paths find the one cell of the sun, and the error falls with the root of the samples, to 4% with 65536.", views(run))]
