@@ -41,6 +41,27 @@ TEST(ProbeFile, GivenMappingOverridesDetection) {
   EXPECT_THROW(loadProbe(folder / "p.exr", "sphere"), InputError);
 }
 
+// A mirror ball and an angular map look alike: a file of this program tells what it is.
+TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
+  const TemporaryFolder folder;
+  const Image sky = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.2, 0.3, 0.4});
+  writeImage(folder / "sky.exr", sky);
+  for (const char* mapping : {"mirror-ball", "angular", "fisheye:360:equisolid", "cube-3x2",
+                              "cube-cross", "cube-strip", "lat-long"}) {
+    const std::string path = folder / "converted.exr";
+    ASSERT_EQ(runCommand({"probe", "convert", folder / "sky.exr", path, "--to", mapping}).status,
+              0);
+    const LoadedProbe probe = loadProbe(path);
+    EXPECT_EQ(mappingName(probe.mapping), mapping);
+    EXPECT_EQ(probe.reason, "its `mapping` attribute names it");
+  }
+  // Of other programs, or of another image.
+  for (const char* text : {"uv", "mirror-ball", ""}) {
+    writeImage(folder / "other.exr", OutputImage{{{"", "RGB", sky}}, {{"mapping", text}}});
+    EXPECT_EQ(loadProbe(folder / "other.exr").mapping, Mapping(Mapping::LatLong));
+  }
+}
+
 TEST(ProbeFile, InvalidTexelsAreRepairedAndReported) {
   const TemporaryFolder folder;
   Image image = constantProbe({16, 8}, Rgb(1));

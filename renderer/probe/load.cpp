@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/error.h"
 #include "base/for_ranges.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
@@ -14,16 +15,30 @@
 namespace chromeball {
 namespace {
 
+const std::string* textOf(const ImageFile& file, const char* attribute) {
+  const auto found = file.metadata.find(attribute);
+  return found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+}
+
 // The mapping in OpenEXR's `envmap` attribute, which OpenImageIO calls `textureformat`.
-std::optional<Mapping> statedMapping(const ImageFile& file) {
-  const auto found = file.metadata.find("textureformat");
-  const auto* format =
-      found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+std::optional<Mapping> openExrMapping(const ImageFile& file) {
+  const std::string* format = textOf(file, "textureformat");
   if (!format) return std::nullopt;
   if (*format == "LatLong Environment") return Mapping::LatLong;
   const bool isStrip = file.image.height == 6 * file.image.width;
   if (*format == "CubeFace Environment" && isStrip) return Mapping::VerticalStrip;
   return std::nullopt;
+}
+
+// The mapping that this program has written; other programs may have the same attribute.
+std::optional<Mapping> namedMapping(const ImageFile& file) {
+  const std::string* name = textOf(file, kMappingAttribute);
+  if (!name) return std::nullopt;
+  try {
+    return parseMapping(*name, file.image.width, file.image.height, kMappingAttribute);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 // Turned by 180 degrees; without resampling if the width is even.
@@ -69,7 +84,7 @@ void measureMaximum(const Image& image, LoadedProbe& probe) {
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
                       std::string_view mappingLocation) {
   ImageFile file = readImageFile(path);
-  const std::optional<Mapping> stated = statedMapping(file);
+  const std::optional<Mapping> stated = openExrMapping(file), named = namedMapping(file);
   LoadedProbe probe;
   probe.hasIntegerTexels = file.integers;
   Image image = colorOf(std::move(file), path);
@@ -81,6 +96,10 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
     probe.mapping = *stated;
     probe.detected = true;
     probe.reason = "its `envmap` attribute defines it";
+  } else if (named) {
+    probe.mapping = *named;
+    probe.detected = true;
+    probe.reason = "its `mapping` attribute names it";
   } else {
     DetectedMapping detected = detectMapping(image);
     probe.mapping = detected.mapping;

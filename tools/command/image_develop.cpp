@@ -58,7 +58,7 @@ Image readFalloff(const std::string& path) {
 DevelopSettings settingsOf(const Arguments& arguments) {
   DevelopSettings settings;
   for (const auto& [name, value] : arguments.optics)
-    if (value && *value != arguments.falloff())
+    if (value && (arguments.falloff().empty() || *value != arguments.falloff()))
       setDevelop(settings, name, *value, fmt::format("--{}", name));
   if (!arguments.falloff().empty()) settings.falloff = readFalloff(arguments.falloff());
   if (arguments.exact) settings.method = GaussianMethod::Exact;

@@ -66,7 +66,7 @@ void run(const Arguments& arguments) {
   const Image converted =
       convert(probe.latLong, Mapping::LatLong, mapping, size, arguments.rotation);
   busy.reset();
-  writeProbe(arguments.out, converted);
+  writeProbe(arguments.out, converted, mapping);
 }
 
 }  // namespace

@@ -8,11 +8,12 @@
 #include "base/file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
+#include "probe/load.h"
 
 namespace chromeball {
 
-void writeProbe(const std::string& file, const Image& map) {
-  writeImage(file, map);
+void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
+  writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, mappingName(mapping)}}});
   if (lowerExtension(file) != ".png") return;
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });

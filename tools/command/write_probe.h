@@ -5,10 +5,12 @@
 #include <string>
 
 #include "image/image.h"
+#include "probe/mapping.h"
 
 namespace chromeball {
 
-// As writeImage(). Warns of the channels above 1 that a .png clips.
-void writeProbe(const std::string& file, const Image& map);
+// As writeImage(); an .exr has the name of its mapping, which loadProbe() reads. Warns of the
+// channels above 1 that a .png clips.
+void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball

@@ -69,8 +69,11 @@ def ambient_occlusion(run):
     return Row(
         "HDRI 9.8.2 and figure 9.41: ambient occlusion",
         "Occlusion makes the light of an environment map plausible; key lights are better treated apart.",
-        ["chromeball render scenes/models/pillars.gltf --probe PROBE --integrator ambient-occlusion --strategy suns",
-         "chromeball image relight AO.exr --probe PROBE -o LIT.exr"],
+        ["chromeball render scenes/models/pillars.gltf --probe PROBE --integrator ambient-occlusion --strategy suns "
+         "-o AO.exr",
+         "chromeball render scenes/models/pillars.gltf --probe PROBE --integrator ambient-occlusion --aov albedo,normal,ao,"
+         "bent_normal -o LAYERS.exr",
+         "chromeball image relight LAYERS.exr --probe OTHER -o LIT.exr"],
         "Against paths:\n\n" + table(["light", "relMSE", "bias", "FLIP"], rows),
         "What is left is light between the surfaces. With occlusion there are shadows of contact, and the picture is too "
         "dark; without it, missing shadows and missing interreflection nearly cancel, so that under the overcast sky "

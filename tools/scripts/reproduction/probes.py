@@ -22,16 +22,17 @@ def mappings(run):
         name = f"noon-{mapping}.exr"
         run("probe", "convert", NOON, name, "--to", mapping, "--size",
             {"lat-long": "512x256", "cube-3x2": "384x256"}.get(mapping, "256x256"))
-        report = run.json("probe", "info", name, "--mapping", mapping, "--mapping-report")["mapping_report"]
+        report = run.json("probe", "info", name, "--mapping-report")["mapping_report"]
         rows.append([mapping, f"{report['max_over_min']:.4g}", facts])
         if mapping != "lat-long":
             run.picture(name, f"noon-{mapping}.png", "--tonemap", "reinhard")
     return [Row(
-        "HDRI 9.4.1 to 9.4.4: one probe in four mappings",
+        "HDRI 9.4.1 to 9.4.4, figures 9.18 and 9.19: one probe in four mappings",
         "The ball is equal-area, the angular map has a constant radial density, cubes vary by 5.2.",
-        ["chromeball probe convert probes/noon.exr OUT.exr --to MAPPING",
+        ["chromeball probe convert probes/noon.exr OUT.exr --to MAPPING --size 256x256",
          "chromeball probe info OUT.exr --mapping-report"],
-        table(["mapping", "largest / smallest solid angle of a texel", "closed form"], rows), "",
+        "Of 256 x 256 texels; the cube has 384 x 256, the lat-long map 512 x 256:\n\n"
+        + table(["mapping", "largest / smallest solid angle of a texel", "closed form"], rows), "",
         [(f"noon-{m}.png", f"The project's noon as {m}") for m in ("mirror-ball", "angular", "cube-3x2")])]
 
 
@@ -43,7 +44,8 @@ def compare_irradiance(run, file, *more):
     exact, other = (read_pfm(run.scratch / name) for name in ("exact.pfm", "other.pfm"))
     rows = [[(sum(a) / 3, abs(sum(a) - sum(b)) / 3, luminance(b) < 0, luminance(a) ** 2,
               (luminance(a) - luminance(b)) ** 2) for a, b in zip(*pair)] for pair in zip(exact, other)]
-    mean, error, below, energy, lost = solid_angle_mean(rows)
+    mean, error, below = solid_angle_mean([[pixel[:3] for pixel in row] for row in rows])
+    energy, lost, _ = solid_angle_mean([[(*pixel[3:], 0) for pixel in row] for row in rows])
     worst = max(pixel[1] for row in rows for pixel in row)
     return 100 * error / mean, 100 * worst / mean, 100 * below, 100 * (1 - lost / energy)
 
