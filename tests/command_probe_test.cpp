@@ -119,12 +119,12 @@ TEST(SlowCommandProbe, ConvertRoundTrip) {
 TEST(SlowCommandProbe, AGridOfFacesIsDetectedWithANote) {
   const TemporaryFolder folder;
   run({"probe", "synth", "gradient", folder / "a.exr", "--size", "64x32"});
-  run({"probe", "convert", folder / "a.exr", folder / "grid.exr", "--to", "cube-3x2"});
+  run({"probe", "convert", folder / "a.exr", folder / "grid.pfm", "--to", "cube-3x2"});
   const CommandResult back =
-      run({"probe", "convert", folder / "grid.exr", folder / "b.exr", "--to", "lat-long"});
+      run({"probe", "convert", folder / "grid.pfm", folder / "b.exr", "--to", "lat-long"});
   EXPECT_NE(back.error.find("detected as cube-3x2"), std::string::npos) << back.error;
   const json info =
-      json::parse(run({"probe", "info", folder / "grid.exr", "--json", "--mapping-report"}).out);
+      json::parse(run({"probe", "info", folder / "grid.pfm", "--json", "--mapping-report"}).out);
   EXPECT_EQ(info["mapping"], "cube-3x2");
   EXPECT_EQ(info["width"], 48);
   EXPECT_EQ(info["height"], 32);

@@ -258,6 +258,12 @@ TEST_F(CommandRelight, RefusesBadPhotographs) {
   refusesList("a.exr,0,1,0\na.exr,0,0,1\n", "d.csv:2: `a.exr` is on line 1 too");
   refusesList("a.exr,0,1,0\nb.exr,90,10\n", "d.csv:2: has 2 numbers, and the lines before 3");
   refusesList("a.exr,0,91\n", "d.csv:1: the elevation");
+  refusesList("a.exr,0,0,1.O\nb.exr,0,1,0\n", "d.csv:1: should be FILE,X,Y,Z");
+  refusesList("a.exr,nan,0,1\nb.exr,0,1,0\n", "d.csv:1: should be FILE,X,Y,Z");
+  refusesList(
+      "\xef\xbb\xbf"
+      "none.exr,0,0,1\n",
+      "/none.exr: no such file");
   refusesList("a.exr,0,1,0\nb.exr,1,x,0\n", "d.csv:2: should be FILE,X,Y,Z");
   refusesList("a.exr,0,1,0\nb.exr,1,nan,0\n", "d.csv:2: should be");
   refusesList("a.exr,0,1,0\nb.exr\n", "d.csv:2: should be");

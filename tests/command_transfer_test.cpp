@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "gltf_writer.h"
+#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -158,6 +160,88 @@ TEST_F(CommandTransfer, GlossyTransferIsSeenFromAPoint) {
                  {"--view", "1,2,3"});
   basis("sh:1");
   refusesRelight("t.gltf", {"--view", "1,2,3"}, "--view: the model's transfer is diffuse");
+}
+
+// A ball of a rough metal.
+std::string writeBall(GltfWriter& w) {
+  constexpr int kRows = 16, kColumns = 32;
+  std::vector<float> positions;
+  std::vector<uint16_t> indices;
+  for (int r = 0; r <= kRows; ++r)
+    for (int c = 0; c <= kColumns; ++c) {
+      const double theta = kPiD * r / kRows, phi = 2 * kPiD * c / kColumns;
+      positions.insert(positions.end(),
+                       {float(std::sin(theta) * std::sin(phi)), float(std::cos(theta)),
+                        float(std::sin(theta) * std::cos(phi))});
+    }
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kColumns; ++c) {
+      const auto a = uint16_t(r * (kColumns + 1) + c), b = uint16_t(a + kColumns + 1);
+      if (r > 0) indices.insert(indices.end(), {a, b, uint16_t(a + 1)});
+      if (r + 1 < kRows) indices.insert(indices.end(), {uint16_t(a + 1), b, uint16_t(b + 1)});
+    }
+  w.add("materials", {{"pbrMetallicRoughness",
+                       {{"baseColorFactor", {.9, .6, .3, 1}}, {"roughnessFactor", .5}}}});
+  const int mesh =
+      w.mesh({{"material", 0},
+              {"indices", w.indices(indices)},
+              {"attributes", {{"POSITION", w.vec3s(positions)}, {"NORMAL", w.vec3s(positions)}}}});
+  w.add("nodes", {{"mesh", mesh}});
+  return w.save();
+}
+
+using SlowCommandTransfer = CommandTransfer;
+
+// Under light that the basis has in full, what is seen is what a render shows.
+TEST_F(SlowCommandTransfer, GlossySurfacesLookAsRendered) {
+  GltfWriter ball;
+  const std::string model = writeBall(ball);
+  const auto run = [](const Strings& words) {
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+  };
+  run({"basis", model, "--at", "vertices", "--basis", "sh:2", "--glossy", "--clusters", "8",
+       "--vectors", "16", "--samples", "512", "-o", folder_ / "t.gltf"});
+  // An image of the ball, as fractions of its own mean.
+  const auto seen = [&](const std::string& file, const std::string& eye) {
+    const std::string scene = folder_ / "seen.toml";
+    std::ofstream(scene) << "model = \"" << file << "\"\n[camera]\nposition = [" << eye
+                         << "]\nlook_at = [0, 0, 0]\nfov = 40\n";
+    run({"render", scene, "--probe", folder_ / "probe.exr", "--size", "48x48", "--samples", "256",
+         "--adaptive", "off", "--transparent", "-o", folder_ / "seen.pfm"});
+    Image image = readImage(folder_ / "seen.pfm");
+    double sum = 0;
+    for (const float texel : image.texels) sum += double(texel) / double(image.texels.size());
+    for (float& texel : image.texels) texel /= float(sum);
+    return image;
+  };
+  const auto difference = [](const Image& a, const Image& b) {
+    double squares = 0, all = 0;
+    for (size_t i = 0; i < a.texels.size(); ++i) {
+      squares += std::pow(double(a.texels[i]) - double(b.texels[i]), 2);
+      all += std::pow(double(b.texels[i]), 2);
+    }
+    return std::sqrt(squares / all);
+  };
+  const std::string eye = "2,1.5,3", other = "-2,-1,-3";
+  const Image rendered = seen(model, eye);
+  relight("probe.exr", {"--view", eye});
+  EXPECT_LT(difference(seen(folder_ / "lit.glb", eye), rendered), 0.05);
+  relight("probe.exr", {"--view", other});
+  EXPECT_GT(difference(seen(folder_ / "lit.glb", eye), rendered), 0.08)
+      << "it must be able to fail";
+}
+
+TEST_F(CommandTransfer, AFarEyeSeesItsDirection) {
+  runCommand({"basis", folder_ / "m.gltf", "--at", "vertices", "--basis", "sh:1", "--samples", "16",
+              "--glossy", "-o", folder_ / "t.gltf"});
+  const auto seenFrom = [&](const std::string& eye) {
+    relight("probe.exr", {"--view", eye});
+    return attributes("lit.glb", "_RADIANCE").at("_RADIANCE");
+  };
+  const auto far = seenFrom("1e9,0,1e9"), farthest = seenFrom("1e300,0,1e300");
+  for (size_t i = 0; i < far.size(); ++i)
+    EXPECT_NEAR(glm::distance(far[i], farthest[i]), 0, 1e-4f * glm::length(far[i]));
 }
 
 TEST_F(CommandTransfer, RefusesBadOptions) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bake/vertex_geometry.h"
@@ -14,6 +15,12 @@ namespace {
 constexpr const char* kNormal = "_PRT_NORMAL";
 constexpr const char* kMean = "mean";
 constexpr float kBuried = -1;
+
+// Of any finite length.
+glm::dvec3 unitOrZero(const glm::dvec3& v) {
+  const double longest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  return longest > 0 ? glm::normalize(v / longest) : glm::dvec3(0);
+}
 
 std::string vectorName(size_t m) { return fmt::format("vector{}", m); }
 
@@ -155,10 +162,9 @@ TransferLight lightTowards(const TransferFile& file, const std::vector<PlacedMes
       throwInput("{}: {}: vertex {}: {} is not a cluster, 0 to {}", file.path(),
                  TransferFile::nameOf(0), point.x, cluster, clusters.clusters() - 1);
     const Frame frame(file.attribute(instance, kNormal)[point.x]);
-    const glm::dvec3 towards = eye - meshes[instance].positions[point.x];
-    const bool isApart = glm::length(towards) > 0;
-    const auto view =
-        ViewGrid::at(isApart ? frame.toLocal(vec3(glm::normalize(towards))) : vec3(0, 0, 1));
+    const glm::dvec3 towards = unitOrZero(eye - glm::dvec3(meshes[instance].positions[point.x]));
+    const bool isApart = towards != glm::dvec3(0);
+    const auto view = ViewGrid::at(isApart ? frame.toLocal(vec3(towards)) : vec3(0, 0, 1));
     dvec3 radiance = clusters.at(0, size_t(cluster), view);
     for (size_t t = 1; t < clusters.tables(); ++t)
       radiance += number(t) * clusters.at(t, size_t(cluster), view);

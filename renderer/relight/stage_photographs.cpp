@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/stage_photographs.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -38,6 +39,14 @@ std::optional<std::vector<double>> numbersOf(const std::vector<std::string>& fie
   return numbers;
 }
 
+// Names of columns: nothing after the first that begins as a number does.
+bool isHeading(const std::vector<std::string>& fields) {
+  return std::none_of(fields.begin() + 1, fields.end(), [](const std::string& field) {
+    double number = 0;
+    return std::from_chars(field.data(), field.data() + field.size(), number).ec == std::errc();
+  });
+}
+
 class PhotographList {
  public:
   explicit PhotographList(const fs::path& csv) : csv_(csv) {}
@@ -46,7 +55,7 @@ class PhotographList {
     const auto numbers = numbersOf(fields);
     const size_t count = fields.size() - 1;
     if (!numbers || fields[0].empty() || (count != 2 && count != 3)) {
-      if (line == 1 && !numbers) return;  // the names of the columns
+      if (line == 1 && isHeading(fields)) return;
       fail(line, "should be FILE,X,Y,Z or FILE,AZIMUTH,ELEVATION");
     }
     if (columns_ > 0 && count != columns_)
@@ -103,7 +112,10 @@ void copyScaled(const Image& image, float scale, int element, const fs::path& pa
 
 std::vector<StagePhotograph> readPhotographs(const fs::path& csv) {
   const std::vector<uint8_t> bytes = readFile(csv);
-  std::istringstream text(std::string(bytes.begin(), bytes.end()));
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  std::string contents(bytes.begin(), bytes.end());
+  if (contents.starts_with(kByteOrderMark)) contents.erase(0, kByteOrderMark.size());
+  std::istringstream text(std::move(contents));
   PhotographList list(csv);
   std::string line;
   for (int number = 1; std::getline(text, line); ++number) {

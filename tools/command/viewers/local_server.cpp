@@ -29,6 +29,7 @@ bool isAllowed(const httplib::Request& request) {
 void keepLocal(httplib::Server& server) {
   server.new_task_queue = [] { return new httplib::ThreadPool(kConnections); };
   server.set_payload_max_length(1024);
+  server.set_read_timeout(2);  // seconds: a request that never ends holds a connection so long
   // Not SO_REUSEPORT, the library's choice, with which two renders could share a port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;

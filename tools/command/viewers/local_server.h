@@ -5,6 +5,7 @@
 #include <httplib.h>
 
 #include <charconv>
+#include <cmath>
 #include <string>
 
 #include "base/error.h"
@@ -20,14 +21,14 @@ int bindLocal(httplib::Server& server, int port);
 
 void refuse(httplib::Response& response, int status, const std::string& reason);
 
-// The number after `name=` in the address. Throws InputError.
+// The number after `name=` in the address, finite. Throws InputError.
 template <class T>
 T numberOf(const httplib::Request& request, const char* name, T fallback) {
   if (!request.has_param(name)) return fallback;
   const std::string text = request.get_param_value(name);
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(double(value)))
     throwInput("{}: `{}` is not a number", name, text);
   return value;
 }
