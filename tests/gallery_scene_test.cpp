@@ -105,7 +105,7 @@ TEST_P(SlowGallery, RendersWithoutWarningsAndInvalidSamples) {
   const std::string model = fileOf(GetParam()), stats = folder / "stats.json";
   const CommandResult result = runCommand(
       {"render", model, "--probe", std::string(kSourceDir) + "/probes/noon.exr", "--size", "48x32",
-       "--samples", "4", "-o", folder / "image.exr", "--stats", stats});
+       "--samples", "4", "--max-depth", "12", "-o", folder / "image.exr", "--stats", stats});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.error.find("warning"), std::string::npos) << result.error;
   EXPECT_EQ(nlohmann::json::parse(fileContents(stats)).at("invalid_samples"), 0);
