@@ -91,7 +91,8 @@ void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) 
 std::vector<std::string> turnCamera(const RenderJob& job, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera) {
-  const auto& [seconds, steps, turn] = *job.shutter;
+  const int steps = job.shutter->steps;
+  const double turn = job.shutter->turn;
   if (turn == 0) return {};
   const auto cameraAt = [&](double fraction) {
     return cameraOf(job, scene, view, origin, fraction * turn);
