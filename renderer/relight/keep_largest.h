@@ -13,6 +13,13 @@ namespace chromeball {
 // order of their bits.
 class Magnitudes {
  public:
+  static constexpr int kShift = 12;  // from a magnitude's bits to its bin
+  static constexpr size_t kBins = size_t(1) << (31 - kShift), kBytes = kBins * sizeof(uint64_t);
+
+  static size_t binOf(float value) {
+    return (std::bit_cast<uint32_t>(value) & 0x7fffffffu) >> kShift;
+  }
+
   void add(std::span<const float> values) {
     for (const float value : values) ++counts_[binOf(value)];
   }
@@ -21,13 +28,8 @@ class Magnitudes {
   // The bin from which on the numbers are together at most `share` of all.
   size_t leastBin(double share) const;
 
-  static size_t binOf(float value) {
-    return (std::bit_cast<uint32_t>(value) & 0x7fffffffu) >> kShift;
-  }
-
  private:
-  static constexpr int kShift = 12;
-  std::vector<uint64_t> counts_ = std::vector<uint64_t>(size_t(1) << (31 - kShift));
+  std::vector<uint64_t> counts_ = std::vector<uint64_t>(kBins);
 };
 
 // Sets those below this bin to 0. Returns the number of zeros.

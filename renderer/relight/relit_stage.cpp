@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <thread>
 #include <utility>
 
 #include "base/for_ranges.h"
@@ -73,6 +74,13 @@ RelitStage relitStage(StageBands& stage, const std::vector<Rgb>& weights, Religh
   if (!kept.isAll()) relit.error = relativeDifference(relit.picture, whole);
   addOwnLight(relit.picture, own);
   return relit;
+}
+
+// The pictures of all and of what is kept, the scene's own light, and two copies to write; and a
+// histogram for each thread and for all.
+double relitStageBytes(int width, int height) {
+  return 5. * sizeof(Rgb) * width * height +
+         (std::thread::hardware_concurrency() + 2.) * double(Magnitudes::kBytes);
 }
 
 }  // namespace chromeball

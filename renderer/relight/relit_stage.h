@@ -26,4 +26,7 @@ struct RelitStage {
 RelitStage relitStage(StageBands& stage, const std::vector<Rgb>& weights, RelightDomain domain,
                       const KeptShares& kept);
 
+// What that takes besides the bands, at most, with the picture's file. Bytes.
+double relitStageBytes(int width, int height);
+
 }  // namespace chromeball

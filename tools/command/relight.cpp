@@ -60,7 +60,8 @@ double parseShare(std::string text, const char* option) {
 double memoryOf(const Arguments& a) {
   if (a.memory && !(*a.memory > 0 && std::isfinite(*a.memory)))
     throw InputError("--memory: must be a positive number of GB");
-  return (a.memory ? 1e9 * *a.memory : memoryBudget()) - kProcessBytes;
+  constexpr double kLight = 3e7;  // the weights' sums, and a probe of usual size
+  return (a.memory ? 1e9 * *a.memory : memoryBudget()) - kProcessBytes - kLight;
 }
 
 LightStage readPhotographsOf(const Arguments& a) {
@@ -72,9 +73,8 @@ LightStage readPhotographsOf(const Arguments& a) {
 StageBands openStage(const Arguments& a) {
   if (a.isOfPhotographs()) return StageBands(readPhotographsOf(a));
   StageReader file(a.stage);
-  // Those of pictures: with and without what is left out, the scene's own light, and two to write.
-  const double pictures = 5. * sizeof(Rgb) * file.width() * file.height();
-  return {std::move(file), memoryOf(a) - pictures, a.stage};
+  const double rest = relitStageBytes(file.width(), file.height());
+  return {std::move(file), memoryOf(a) - rest, a.stage};
 }
 
 // At once, as --preview needs it.

@@ -13,7 +13,8 @@
 
 namespace chromeball {
 
-// A file of scanlines. Functions throw InputError ("FILE: reason").
+// A file of scanlines with channels of one type, float32 or 16 bits. Functions throw InputError
+// ("FILE: reason").
 class ExrRowsReader {
  public:
   // `maxNumbers`: that the image may have.
@@ -33,6 +34,8 @@ class ExrRowsReader {
   double bufferBytes() const;
 
  private:
+  int rowsAtOnce() const;
+
   class Input;
   std::filesystem::path path_;
   std::unique_ptr<Input> input_;
