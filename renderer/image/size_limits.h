@@ -17,16 +17,16 @@ inline constexpr uint64_t kMaxImageFloats = uint64_t(1) << 29;  // 2 GiB: 16k x 
 // one bit.
 inline constexpr uint64_t kMaxDeflateRatio = 1032, kMaxTexelsPerJpegByte = 8 * 64;
 
-// Throws InputError unless all three are positive and their product is at most kMaxImageFloats.
+// Throws InputError unless all three are positive and their product is at most `maxNumbers`.
 inline void checkImageSize(const std::filesystem::path& path, int64_t width, int64_t height,
-                           int64_t channels) {
+                           int64_t channels, uint64_t maxNumbers = kMaxImageFloats) {
   if (width < 1 || height < 1 || channels < 1)
     throwInput("{}: the header claims {} x {} texels with {} channels; all must be positive",
                path.string(), width, height, channels);
-  const uint64_t budget = kMaxImageFloats / uint64_t(channels);
+  const uint64_t budget = maxNumbers / uint64_t(channels);
   if (uint64_t(width) > budget || uint64_t(height) > budget / uint64_t(width))
     throwInput("{}: {} x {} texels with {} channels exceed the limit of {} numbers per image",
-               path.string(), width, height, channels, kMaxImageFloats);
+               path.string(), width, height, channels, maxNumbers);
 }
 
 }  // namespace chromeball

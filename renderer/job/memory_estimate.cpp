@@ -12,7 +12,6 @@
 namespace chromeball {
 namespace {
 
-constexpr double kProcess = 1.3e8;  // measured
 // Of Embree for a triangle, with its copy of the vertices; measured with grids of two triangles per
 // vertex, which is the ratio of closed surfaces.
 constexpr double kBuiltTriangle = 84, kBuildingTriangle = 116;
@@ -62,7 +61,7 @@ MemoryEstimate estimateMemory(const RenderJob& job, const LoadedScene& loaded) {
   const double map = kProbeTexel * mapTexels;
 
   MemoryEstimate e;
-  e.process = kProcess;
+  e.process = kProcessBytes;
   e.images = imageBytes(job);
   e.textures = texels;
   if (const auto& file = scene.texelFile)

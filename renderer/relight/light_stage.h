@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A light stage: pictures of one scene under each of many lighting conditions (HDRI book, section
-// 9.9; Debevec et al. 2000), and its file.
+// 9.9; Debevec et al. 2000).
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
+#include <string_view>
 
 #include "image/image.h"
-#include "image/io/read_image.h"
 #include "relight/direction_basis.h"
 
 namespace chromeball {
 
+// The whole, or a band of its rows.
 struct LightStage {
   DirectionBasis basis;
   // Pixel by pixel, three channels for each element of the basis: radiance where the element's
@@ -23,16 +24,20 @@ struct LightStage {
   int height() const { return elements.height; }
 };
 
-// Throws InputError, begun by `location`, if a stage of this size exceeds what a file may hold.
+// What a file may hold: 256 GiB of float32.
+inline constexpr uint64_t kMaxStageNumbers = uint64_t(1) << 36;
+
+// A file's numbers for each pixel, at most.
+int stageChannels(const DirectionBasis& basis);
+
+// Throws InputError, begun by `location`, if a stage of this size exceeds kMaxStageNumbers.
 void checkStageSize(const DirectionBasis& basis, int width, int height, std::string_view location);
 
-// An .exr: R, G, B are `color`, then the layers element.0000, element.0001, ... and own. `halves`:
-// in 16 bits. Throws RunError.
-void writeStage(const std::filesystem::path& path, const LightStage& stage, const Image& color,
-                Metadata metadata, bool halves);
+// The bytes of a pixel's elements in memory.
+double elementBytes(const DirectionBasis& basis);
 
-// Throws InputError for a file that is not one that writeStage() wrote, that lacks elements, or has
-// values that are not finite.
-LightStage readStage(const std::filesystem::path& path);
+// Throws InputError, begun by `location`, if the elements take more than `memory` bytes.
+void checkInMemory(const DirectionBasis& basis, int width, int height, double memory,
+                   std::string_view location);
 
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "relight/light_stage.h"
 
@@ -24,16 +25,23 @@ RelightDomain parseDomain(const std::string& name, const DirectionBasis& basis);
 
 // A pixel's elements, or the weights of a probe, in place.
 void transform(std::span<Rgb> values, const DirectionBasis& basis, RelightDomain domain);
-void transform(LightStage& stage, RelightDomain domain);
 
-// Sets all but the largest magnitudes to 0, each channel by itself: about `share` of all values
-// stay. Returns the share of zeros.
-double keepLargest(std::span<float> values, double share);
+// The numbers of colours: channels alternate.
+inline std::span<float> floatsOf(std::vector<Rgb>& colors) {
+  return {reinterpret_cast<float*>(colors.data()), 3 * colors.size()};
+}
+inline std::span<const float> floatsOf(std::span<const Rgb> colors) {
+  return {reinterpret_cast<const float*>(colors.data()), 3 * colors.size()};
+}
+
+// Sum of values times weights, of colours.
+Rgb product(std::span<const float> values, std::span<const float> weights);
 
 // Sum over the elements of element times weight, without the scene's own light.
 Image weightedSum(const Image& elements, std::span<const Rgb> weights);
 
-void addOwnLight(Image& sum, const LightStage& stage);
+// `own`: LightStage::own, which may be empty.
+void addOwnLight(Image& sum, const Image& own);
 
 // Root of the sum of squared differences, divided by that of the squares of `whole`; 0 if that is
 // black.

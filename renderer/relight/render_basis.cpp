@@ -2,8 +2,6 @@
 #include "relight/render_basis.h"
 
 #include "base/for_ranges.h"
-#include "integrate/light_groups.h"
-#include "lighting/uniform.h"
 
 namespace chromeball {
 namespace {
@@ -34,11 +32,11 @@ PathSettings pathSettings(const RenderSettings& from) {
   return paths;
 }
 
-// Adds the samples of a pixel to its elements.
+// Adds the samples of a pixel to its elements. `top`: the first row of `sums` in the picture.
 class BasisIntegrator : public Integrator {
  public:
-  BasisIntegrator(const PathTracer& tracer, const LightGroups& groups, LightStage& sums)
-      : tracer_(tracer), groups_(groups), sums_(sums) {}
+  BasisIntegrator(const PathTracer& tracer, const LightGroups& groups, int top, LightStage& sums)
+      : tracer_(tracer), groups_(groups), top_(top), sums_(sums) {}
 
   // Integrators with layers have a film with sums in double for each of them, which would be too
   // long; this writes to sums of its own, at the camera's pixel alone.
@@ -54,7 +52,7 @@ class BasisIntegrator : public Integrator {
     context.groups = &sums;
     const Sample whole = tracer_.radiance(camera.path(), camera.hit, context);
     context.groups = nullptr;
-    if (!whole.defect) add(camera.x, camera.y, found.directed, found.groups);
+    if (!whole.defect) add(camera.x, camera.y - top_, found.directed, found.groups);
     return whole;
   }
 
@@ -72,8 +70,9 @@ class BasisIntegrator : public Integrator {
     sums_.own.setRgb(x, y, own);
   }
 
-  PathTracer tracer_;
+  const PathTracer& tracer_;
   const LightGroups& groups_;
+  int top_;
   LightStage& sums_;
 };
 
@@ -88,22 +87,30 @@ void divide(Image& sums, const Image& counts) {
 
 }  // namespace
 
-BasisRender renderBasis(const World& world, const Camera& camera, const DirectionBasis& basis,
-                        const RenderSettings& settings, const Progress& progress) {
-  const RenderSettings plain = plainSettings(settings);
-  const Probe white(whiteMap());
-  const Uniform lighting(white);
-  const LightGroups groups(world, lighting);
-  LightStage sums{basis, Image(plain.width, plain.height, 3 * basis.size()), {}};
-  if (groups.names().size() > groups.rangeOf({})[1]) sums.own = Image(plain.width, plain.height, 3);
-  const PathTracer tracer(world, lighting, pathSettings(plain));
-  const std::atomic<bool> never = false;
-  const RenderResult result = render(BasisIntegrator(tracer, groups, sums), world, camera, plain,
-                                     progress, never, nullptr, nullptr);
+BasisRenderer::BasisRenderer(const World& world, const Camera& camera, DirectionBasis basis,
+                             const RenderSettings& settings)
+    : world_(world),
+      camera_(camera),
+      basis_(std::move(basis)),
+      settings_(plainSettings(settings)),
+      white_(whiteMap()),
+      lighting_(white_),
+      groups_(world, lighting_),
+      tracer_(world, lighting_, pathSettings(settings_)) {}
+
+BasisRender BasisRenderer::render(int top, int count, const Progress& progress,
+                                  const std::atomic<bool>& stop) const {
+  RenderSettings settings = settings_;
+  settings.crop = {0, top, settings.width, count};
+  LightStage sums{basis_, Image(settings.width, count, 3 * basis_.size()), {}};
+  if (groups_.names().size() > groups_.rangeOf({})[1]) sums.own = Image(settings.width, count, 3);
+  const RenderResult result =
+      chromeball::render(BasisIntegrator(tracer_, groups_, top, sums), world_, camera_, settings,
+                         progress, stop, nullptr, nullptr);
   const Image counts = result.film.sampleCounts();
   divide(sums.elements, counts);
   if (!sums.own.empty()) divide(sums.own, counts);
-  return {std::move(sums), result.film.mean(), result.invalid, result.rays};
+  return {std::move(sums), result.film.mean(), result.invalid, result.interrupted};
 }
 
 }  // namespace chromeball

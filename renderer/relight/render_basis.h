@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a light stage: all lighting conditions in one pass of path tracing.
+// Renders a light stage by bands of rows: all lighting conditions in one pass of path tracing.
 #pragma once
 
+#include <atomic>
+
 #include "base/progress.h"
+#include "integrate/light_groups.h"
 #include "integrate/render.h"
+#include "lighting/uniform.h"
 #include "relight/light_stage.h"
 
 namespace chromeball {
@@ -12,14 +16,35 @@ struct BasisRender {
   LightStage stage;
   Image color;  // under unit radiance from everywhere, and the scene's own light
   InvalidSamples invalid;
-  RayCounts rays;
+  bool interrupted = false;
 };
 
 // The scene is lit from everywhere by radiance 1, as the strategy `uniform` samples it; what a path
 // finds from a direction goes to the elements that are not 0 there. So a stage costs little more
 // than a picture, and takes 12 bytes for each pixel and element. Of the settings, those of light
 // and paths count, with the size, samples and seed; all pixels take the same number of samples.
-BasisRender renderBasis(const World& world, const Camera& camera, const DirectionBasis& basis,
-                        const RenderSettings& settings, const Progress& progress);
+class BasisRenderer {
+ public:
+  // `world` and `camera` must outlive this.
+  BasisRenderer(const World& world, const Camera& camera, DirectionBasis basis,
+                const RenderSettings& settings);
+  BasisRenderer(const BasisRenderer&) = delete;
+  BasisRenderer& operator=(const BasisRenderer&) = delete;
+
+  // `count` rows of the picture from `top` on: the same bits in bands of any height. Ends early,
+  // and says so, if `stop` is set.
+  BasisRender render(int top, int count, const Progress& progress,
+                     const std::atomic<bool>& stop) const;
+
+ private:
+  const World& world_;
+  const Camera& camera_;
+  DirectionBasis basis_;
+  RenderSettings settings_;
+  Probe white_;
+  Uniform lighting_;
+  LightGroups groups_;
+  PathTracer tracer_;
+};
 
 }  // namespace chromeball

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/for_ranges.h"
+#include "image/io/read_image.h"
 
 namespace chromeball {
 namespace {
@@ -128,7 +129,7 @@ std::vector<StagePhotograph> readPhotographs(const fs::path& csv) {
 }
 
 LightStage stageOf(const fs::path& folder, const std::vector<StagePhotograph>& photographs,
-                   float irradiance) {
+                   float irradiance, double memory) {
   std::vector<vec3> directions;
   for (const StagePhotograph& photograph : photographs) {
     checkReadable(folder / photograph.file);
@@ -140,7 +141,7 @@ LightStage stageOf(const fs::path& folder, const std::vector<StagePhotograph>& p
     const fs::path path = folder / photographs[i].file;
     const Image image = readImage(path);
     if (i == 0) {
-      checkStageSize(stage.basis, image.width, image.height, path.string());
+      checkInMemory(stage.basis, image.width, image.height, memory, path.string());
       stage.elements = Image(image.width, image.height, 3 * stage.basis.size());
     }
     if (image.width != stage.width() || image.height != stage.height())

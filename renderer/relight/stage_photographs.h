@@ -3,6 +3,8 @@
 // (HDRI book, section 9.9.1, Figure 9.42).
 #pragma once
 
+#include <filesystem>
+
 #include "relight/light_stage.h"
 
 namespace chromeball {
@@ -21,8 +23,10 @@ std::vector<StagePhotograph> readPhotographs(const std::filesystem::path& csv);
 // Each image shows the subject under distant light that puts `irradiance` on a surface that faces
 // it. It stands for the light of its Voronoi cell on the sphere: the element is the image x the
 // cell's solid angle / irradiance. Images are linear; files with integers are decoded as sRGB.
-// Throws InputError for images of different size or with values that are not finite.
+// Throws InputError for images of different size or with values that are not finite, and if the
+// stage takes more than `memory` bytes.
 LightStage stageOf(const std::filesystem::path& folder,
-                   const std::vector<StagePhotograph>& photographs, float irradiance);
+                   const std::vector<StagePhotograph>& photographs, float irradiance,
+                   double memory);
 
 }  // namespace chromeball

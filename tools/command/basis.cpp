@@ -3,19 +3,10 @@
 // chromeball basis MODEL --at vertices --basis sh:4 -o MODEL_PRT.glb: transfer at its vertices.
 // Both for `chromeball relight`.
 #include "base/error.h"
-#include "base/stopwatch.h"
-#include "basis_job.h"
+#include "basis_pixels.h"
 #include "basis_vertices.h"
 #include "commands.h"
-#include "image/io/write_image.h"
-#include "job/job.h"
-#include "job/memory_estimate.h"
-#include "job/output_file.h"
-#include "messages.h"
-#include "progress_bar.h"
-#include "relight/render_basis.h"
 #include "scene_options.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
@@ -27,61 +18,13 @@ struct Arguments : SceneOptions {
   std::optional<uint64_t> clusters, vectors;
 };
 
-void checkStageMemory(const RenderJob& job, const LoadedScene& loaded,
-                      const DirectionBasis& basis) {
-  const RenderSettings& s = job.settings;
-  checkStageSize(basis, s.width, s.height, "--directions");
-  const double elements = 3. * sizeof(float) * basis.size() * s.width * s.height;
-  const double needed = elements + estimateMemory(job, loaded).peak;
-  if (needed > memoryLimit(job))
-    throw InputError(fmt::format("--directions: {} elements of {} x {} pixels take {:.3g} GB of "
-                                 "memory, with all else {:.3g} GB; the limit is {:.3g} GB",
-                                 basis.size(), s.width, s.height, 1e-9 * elements, 1e-9 * needed,
-                                 1e-9 * memoryLimit(job)),
-                     Remedy{"memory", {}});
-}
-
-Metadata metadataOf(const Arguments& a, const RenderJob& job) {
-  return {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
-          {"scene", a.scene},
-          {"samples", int(job.settings.samples)},
-          {"seed", std::to_string(job.settings.seed)},
-          {"max_depth", job.settings.maxDepth}};
-}
-
-void runPixels(const Arguments& a) {
-  const Stopwatch watch;
-  const DirectionBasis basis(a.directions.empty() ? "lat-long:32x16" : a.directions,
-                             "--directions");
-  checkOutputFile(a.out, {".exr"});
-  const ThreadLimit threads(a.settings);
-  RenderJob job = basisJob(a, "light stage");
-  const LoadedScene loaded = loadBasisScene(job);
-  checkDistinct({a.out}, loaded.files);
-  checkStageMemory(job, loaded, basis);
-  const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
-  print(loaded.messages, a.quiet());  // after the last error that input can cause
-  ProgressBar bar(a.showsProgress());
-  const BasisRender render = renderBasis(world, loaded.camera, basis, job.settings,
-                                         [&](double fraction) { bar.update(fraction); });
-  loaded.scene.checkTexels();
-  if (render.invalid.total() > 0)
-    warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
-                     render.invalid.total(), render.invalid.x, render.invalid.y));
-  writeStage(a.out, render.stage, render.color, metadataOf(a, job), a.halves);
-  if (!a.quiet())
-    fmt::print("{} x {} pixels, {} samples, {} elements ({}){} in {:.2f} s: {}\n",
-               render.color.width, render.color.height, job.settings.samples, basis.size(),
-               basis.name(), render.stage.own.empty() ? "" : " and the scene's own light",
-               watch.seconds(), a.out);
-}
-
 void run(const Arguments& a) {
   if (!a.isGlossy && (a.clusters || a.vectors)) throwInput("--clusters, --vectors: need --glossy");
   if (a.at == "pixels") {
     if (!a.functions.empty()) throwInput("--basis: needs --at vertices; see --directions");
     if (a.isGlossy) throwInput("--glossy: needs --at vertices");
-    return runPixels(a);
+    return runBasisPixels(
+        a, {a.directions.empty() ? "lat-long:32x16" : a.directions, a.out, a.halves});
   }
   if (a.at != "vertices") throwInput("--at: `{}` is not pixels or vertices", a.at);
   if (!a.directions.empty())

@@ -9,12 +9,13 @@
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
+#include "job/image_memory.h"
 #include "job/output_file.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "relight/light_weights.h"
 #include "relight/reflectance_function.h"
-#include "relight/relight.h"
+#include "relight/relit_stage.h"
 #include "relight/stage_photographs.h"
 #include "relight_model.h"
 #include "rotation_option.h"
@@ -37,7 +38,8 @@ struct Arguments {
   std::optional<double> white;  // of a model
   std::string view;             // of a model with glossy transfer
   bool allowsExternal = false, quiet = false;
-  std::string preview;  // the port; empty: none
+  std::string preview;           // the port; empty: none
+  std::optional<double> memory;  // GB
 
   bool isOfPhotographs() const { return !images.empty() || !directions.empty(); }
   bool isOfModel() const { return stage.ends_with(".glb") || stage.ends_with(".gltf"); }
@@ -54,14 +56,37 @@ double parseShare(std::string text, const char* option) {
   return percent / 100;
 }
 
-LightStage readStageOf(const Arguments& a) {
-  if (!a.isOfPhotographs()) return readStage(a.stage);
-  const double irradiance = parseNumbers(a.irradiance, 1, "--irradiance")[0];
-  if (!isPositiveFloat(irradiance)) throwInput("--irradiance: should be {}", kPositiveFloats);
-  return stageOf(a.images, readPhotographs(a.directions), float(irradiance));
+// What is left for a stage beside the program, in bytes.
+double memoryOf(const Arguments& a) {
+  if (a.memory && !(*a.memory > 0 && std::isfinite(*a.memory)))
+    throw InputError("--memory: must be a positive number of GB");
+  constexpr double kLight = 3e7;  // the weights' sums, and a probe of usual size
+  return (a.memory ? 1e9 * *a.memory : memoryBudget()) - kProcessBytes - kLight;
 }
 
-glm::ivec2 parsePixel(const std::string& text, const LightStage& stage) {
+LightStage readPhotographsOf(const Arguments& a) {
+  const double irradiance = parseNumbers(a.irradiance, 1, "--irradiance")[0];
+  if (!isPositiveFloat(irradiance)) throwInput("--irradiance: should be {}", kPositiveFloats);
+  return stageOf(a.images, readPhotographs(a.directions), float(irradiance), memoryOf(a));
+}
+
+StageBands openStage(const Arguments& a) {
+  if (a.isOfPhotographs()) return StageBands(readPhotographsOf(a));
+  StageReader file(a.stage);
+  const double rest = relitStageBytes(file.width(), file.height());
+  return {std::move(file), memoryOf(a) - rest, a.stage};
+}
+
+// At once, as --preview needs it.
+LightStage readStage(const Arguments& a) {
+  if (a.isOfPhotographs()) return readPhotographsOf(a);
+  StageReader file(a.stage);
+  checkInMemory(file.basis(), file.width(), file.height(), memoryOf(a) - file.bufferBytes(),
+                "--preview");
+  return file.read(0, file.height());
+}
+
+glm::ivec2 parsePixel(const std::string& text, const StageBands& stage) {
   constexpr const char* kOption = "--reflectance-function";
   const std::vector<double> at = parseNumbers(text, 2, kOption);
   const auto isIn = [](double number, int count) {
@@ -77,37 +102,6 @@ Image loadLight(const Arguments& a, const std::string& path) {
   const LoadedProbe loaded = loadProbe(path, a.mapping, "--mapping");
   for (const std::string& warning : warnings(loaded, path)) warn(warning);
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
-}
-
-std::span<float> floatsOf(std::vector<Rgb>& colors) {
-  return {&colors.front().x, 3 * colors.size()};
-}
-
-struct Relit {
-  Image picture;
-  std::string summary;  // of what was left out
-};
-
-// With all elements, then with those that are kept: the difference is the error of the rest.
-Relit relitPicture(const Arguments& a, LightStage& stage, std::vector<Rgb> weights,
-                   RelightDomain domain) {
-  const double keep = parseShare(a.keep, "--keep"),
-               keepLight = parseShare(a.keepLight, "--keep-light");
-  const bool keepsAll = keep == 1 && keepLight == 1;
-  Image whole;
-  if (!keepsAll) whole = weightedSum(stage.elements, weights);
-  transform(stage, domain);
-  transform(weights, stage.basis, domain);
-  double zeros = 0, lightZeros = 0;
-  if (keep < 1) zeros = keepLargest(stage.elements.texels, keep);
-  if (keepLight < 1) lightZeros = keepLargest(floatsOf(weights), keepLight);
-  Relit relit{weightedSum(stage.elements, weights), ""};
-  if (!keepsAll)
-    relit.summary =
-        fmt::format(": {:.2f}% of the stage and {:.2f}% of the light are zeros, error {:.3g}%",
-                    100 * zeros, 100 * lightZeros, 100 * relativeDifference(relit.picture, whole));
-  addOwnLight(relit.picture, stage);
-  return relit;
 }
 
 void checkFinite(const Image& picture, const std::string& path) {
@@ -127,30 +121,38 @@ void writePicture(const Arguments& a, const Image& picture, const DirectionBasis
   writeImage(a.out, output, transform);
 }
 
+// "": all was kept.
+std::string leftOutInWords(const RelitStage& relit, const KeptShares& kept) {
+  if (kept.isAll()) return "";
+  return fmt::format(": {:.2f}% of the stage and {:.2f}% of the light are zeros, error {:.3g}%",
+                     100 * relit.zeros, 100 * relit.lightZeros, 100 * relit.error);
+}
+
 void runPicture(const Arguments& a) {
   const Stopwatch watch;
-  parseShare(a.keep, "--keep");
-  parseShare(a.keepLight, "--keep-light");
-  const Image light = loadLight(a, a.probes.front());
-  LightStage stage = readStageOf(a);
-  const RelightDomain domain = parseDomain(a.domain, stage.basis);
-  const Relit relit = relitPicture(a, stage, lightWeights(stage.basis, light, a.rotation), domain);
+  const KeptShares kept{parseShare(a.keep, "--keep"), parseShare(a.keepLight, "--keep-light")};
+  Image light = loadLight(a, a.probes.front());
+  StageBands stage = openStage(a);
+  const RelightDomain domain = parseDomain(a.domain, stage.basis());
+  const std::vector<Rgb> weights = lightWeights(stage.basis(), light, a.rotation);
+  light = {};
+  const RelitStage relit = relitStage(stage, weights, domain, kept);
   checkFinite(relit.picture, a.source());
-  writePicture(a, relit.picture, stage.basis);
+  writePicture(a, relit.picture, stage.basis());
   if (!a.quiet)
     fmt::print("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),
-               stage.height(), stage.basis.size(), stage.basis.name(), watch.seconds(),
-               relit.summary, a.out);
+               stage.height(), stage.basis().size(), stage.basis().name(), watch.seconds(),
+               leftOutInWords(relit, kept), a.out);
 }
 
 void runReflectanceFunction(const Arguments& a) {
-  const LightStage stage = readStageOf(a);
+  StageBands stage = openStage(a);
   const glm::ivec2 pixel = parsePixel(a.pixel, stage);
-  const Image map = reflectanceFunction(stage, pixel.x, pixel.y);
-  writePicture(a, map, stage.basis);
+  const Image map = reflectanceFunction(stage.row(pixel.y), pixel.x, 0);
+  writePicture(a, map, stage.basis());
   if (!a.quiet)
     fmt::print("reflectance function of pixel {}, {} ({}), {} x {} directions: {}\n", pixel.x,
-               pixel.y, stage.basis.name(), map.width, map.height, a.out);
+               pixel.y, stage.basis().name(), map.width, map.height, a.out);
 }
 
 uint64_t parsePort(const std::string& text) {
@@ -165,7 +167,7 @@ void runPreview(const Arguments& a) {
   std::vector<NamedProbe> probes;
   for (const std::string& path : a.probes)
     probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
-  const RelightView view(readStageOf(a), std::move(probes));
+  const RelightView view(readStage(a), std::move(probes));
   RelightServer server(int(port), view);
   note(fmt::format("preview at {}; Ctrl-C or its button ends it", server.address()));
   server.run();
@@ -195,8 +197,9 @@ void runModel(const Arguments& a) {
   for (const auto& [given, option] :
        {std::pair(!a.preview.empty(), "--preview"), std::pair(a.isOfPhotographs(), "--images"),
         std::pair(!a.pixel.empty(), "--reflectance-function"),
-        std::pair(a.domain != "auto", "--domain"), std::pair(a.keepLight != "100%", "--keep-light"),
-        std::pair(a.exposure != 0, "--exposure"), std::pair(a.tone != "none", "--tonemap")})
+        std::pair(a.memory.has_value(), "--memory"), std::pair(a.domain != "auto", "--domain"),
+        std::pair(a.keepLight != "100%", "--keep-light"), std::pair(a.exposure != 0, "--exposure"),
+        std::pair(a.tone != "none", "--tonemap")})
     if (given) throwInput("{}: has no effect on a model; leave it out", option);
   if (a.probes.size() != 1) throwInput("--probe: give one");
   if (a.out.empty()) throwInput("--output: needs a name");
@@ -286,6 +289,8 @@ void addRelightCommand(CLI::App& app) {
   command->add_option("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
   command->add_flag("--allow-external", a->allowsExternal,
                     "of a model: read files outside of its folder");
+  command->add_option("--memory", a->memory,
+                      "GB: a stage that takes more is read in bands; else 0.8 times the machine's");
   command->add_option("--exposure", a->exposure, "of a .png, in stops");
   command
       ->add_option("--tonemap", a->tone,

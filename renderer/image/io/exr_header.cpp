@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exr_header.h"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <string>
 #include <vector>
-
-#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {
@@ -26,6 +26,10 @@ const std::map<std::string, size_t> kLengths = {
     {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
     {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
     {"v3f", 12},        {"v3i", 12},     {"deepImageState", 1}};
+
+// Rows that are compressed together, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A,
+// DWAA, DWAB.
+constexpr std::array kRowsOfBlock = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
 // The number of channels in a channel list, in which each is a name that ends with 0, then 16
 // bytes; an empty name ends the list. 0 if the list and its attribute do not end at the same byte.
@@ -65,20 +69,25 @@ bool hasLengthOfType(const std::string& type, const Bytes& content) {
 // rows of blocks: gigabytes for a file of 400 bytes. So these sizes are checked first.
 class ExrHeaders {
  public:
-  explicit ExrHeaders(const fs::path& path)
-      : path_(path), in_(path, std::ios::binary), left_(int64_t(fs::file_size(path))) {}
+  ExrHeaders(const fs::path& path, uint64_t maxNumbers)
+      : path_(path),
+        maxNumbers_(maxNumbers),
+        in_(path, std::ios::binary),
+        left_(int64_t(fs::file_size(path))) {}
 
-  void check() {
+  int check() {
     constexpr uint32_t kMultiPart = 0x1000;
     number<uint32_t>();  // magic
     const bool multiPart = number<uint32_t>() & kMultiPart;
     do checkPart();
     while (multiPart && in_.peek() != 0 && left_ > 0);
+    return maxRowsOfBlock_;
   }
 
  private:
   void checkPart() {
     int64_t width = 1, height = 1, channels = 1;
+    int rowsOfBlock = 1;
     for (std::string name = word(); !name.empty(); name = word()) {
       const std::string type = word();
       const Bytes content = bytes(number<int32_t>());
@@ -98,10 +107,14 @@ class ExrHeaders {
         checkImageSize(path_, tile[0], tile[1], channels);
       } else if (type == "chlist") {
         channels = channelsIn(content);
+      } else if (type == "compression" && size_t(content[0]) < kRowsOfBlock.size()) {
+        rowsOfBlock = kRowsOfBlock[size_t(content[0])];
       }
     }
-    checkImageSize(path_, width, height, channels);
+    checkImageSize(path_, width, height, channels, maxNumbers_);
+    checkImageSize(path_, width, rowsOfBlock, channels);
     checkSide(width);
+    maxRowsOfBlock_ = std::max(maxRowsOfBlock_, rowsOfBlock);
   }
 
   void checkSide(int64_t side) const {
@@ -139,12 +152,16 @@ class ExrHeaders {
   }
 
   fs::path path_;
+  uint64_t maxNumbers_;
+  int maxRowsOfBlock_ = 1;
   std::ifstream in_;
   int64_t left_;
 };
 
 }  // namespace
 
-void checkExrHeaders(const fs::path& path) { ExrHeaders(path).check(); }
+int checkExrHeaders(const fs::path& path, uint64_t maxNumbers) {
+  return ExrHeaders(path, maxNumbers).check();
+}
 
 }  // namespace chromeball

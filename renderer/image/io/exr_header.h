@@ -4,10 +4,14 @@
 
 #include <filesystem>
 
+#include "image/size_limits.h"
+
 namespace chromeball {
 
 // Throws InputError if an attribute is longer than the file or of the wrong length for its type, or
-// if the image or the tile size of a part exceeds the limits (size_limits.h).
-void checkExrHeaders(const std::filesystem::path& path);
+// if a part exceeds the limits (size_limits.h): its image `maxNumbers`, its tiles or the rows that
+// are compressed together kMaxImageFloats. Returns the largest number of rows that are compressed
+// together.
+int checkExrHeaders(const std::filesystem::path& path, uint64_t maxNumbers = kMaxImageFloats);
 
 }  // namespace chromeball

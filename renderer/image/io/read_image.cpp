@@ -7,10 +7,10 @@
 
 #include "base/file.h"
 #include "image/io/exr_header.h"
+#include "image/io/oiio_file.h"
 #include "image/io/oiio_reader.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
-#include "image/io/silenced_stderr.h"
 #include "image/size_limits.h"
 #include "image/tonemap.h"
 
@@ -19,63 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Throws OpenImageIO's message about `path` as a one-line InputError. Text before the path is
-// dropped, since our message starts with the path, unless the path comes last. Characters that are
-// not printable are replaced, since names in a damaged file may hold any bytes.
-[[noreturn]] void fail(const fs::path& path, std::string reason) {
-  constexpr const char* kPunctuation = "\"'.:() \n";
-  const size_t pathBegin = reason.rfind(path.string());
-  if (pathBegin != std::string::npos) {
-    const std::string after = reason.substr(pathBegin + path.string().size());
-    const size_t textBegin = after.find_first_not_of(kPunctuation);
-    if (textBegin != std::string::npos) {
-      reason = after.substr(textBegin);
-    } else {
-      reason = reason.substr(0, pathBegin);
-      reason.erase(reason.find_last_not_of(kPunctuation) + 1);
-    }
-  }
-  reason.erase(reason.find_last_not_of(".: \n") + 1);
-  for (char& c : reason)
-    if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
-  throwInput("{}: cannot be read: {}", path.string(),
-             reason.empty() ? "it is damaged or of an unknown format" : reason);
-}
-
 std::string firstBytes(const fs::path& path) {
   checkReadable(path);
   std::string bytes(4, '\0');
   std::ifstream(path, std::ios::binary).read(bytes.data(), std::streamsize(bytes.size()));
   return bytes;
-}
-
-Metadata metadataOf(const OIIO::ImageSpec& spec) {
-  Metadata metadata;
-  for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
-    const std::string name = attribute.name().string();
-    if (attribute.type() == OIIO::TypeDesc::INT)
-      metadata[name] = attribute.get_int();
-    else if (attribute.type() == OIIO::TypeDesc::FLOAT)
-      metadata[name] = attribute.get_float();
-    else if (attribute.type() == OIIO::TypeDesc::STRING)
-      metadata[name] = attribute.get_string(0);
-    else if (attribute.type() == OIIO::TypeMatrix)
-      std::copy_n(static_cast<const float*>(attribute.data()), 16,
-                  std::get<Matrix44>(metadata[name] = Matrix44{}).begin());
-  }
-  return metadata;
-}
-
-// Throws if the file is too short for the image that its header claims. The compression ratio of
-// OpenEXR and TIFF has no known bound; kMaxRatio is an estimate, which small images may exceed.
-// stripJpeg() checks the frames of a JPEG.
-void checkFileLength(const fs::path& path, std::string_view reader, const OIIO::ImageSpec& spec) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
-  const uint64_t decodedBytes = spec.image_bytes(true), fileBytes = fs::file_size(path);
-  const uint64_t maxBytes =
-      std::max(kAlwaysAllowed, fileBytes * (reader == "png" ? kMaxDeflateRatio : kMaxRatio));
-  if (decodedBytes > maxBytes)
-    throwInput("{}: too short for {} x {} texels", path.string(), spec.width, spec.height);
 }
 
 // Of an .exr whose data window lies within its display window and is not all of it.
@@ -99,7 +47,8 @@ void associate(Image& image, int alphaChannel) {
 
 ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexels integers) {
   const OIIO::ImageSpec& spec = input.spec();
-  if (spec.deep || spec.depth > 1) fail(path, "deep and volume images are not supported");
+  if (spec.deep || spec.depth > 1)
+    throwUnreadable(path, "deep and volume images are not supported");
   ImageFile file;
   file.channels = spec.channelnames;
   file.metadata = metadataOf(spec);
@@ -108,7 +57,7 @@ ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexel
   file.bits = file.integers ? int(8 * spec.format.basesize()) : 0;
   file.image = Image(spec.width, spec.height, spec.nchannels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
-    fail(path, input.geterror());
+    throwUnreadable(path, input.geterror());
 
   if (file.integers && integers == IntegerTexels::Srgb)
     for (size_t i = 0; i < file.image.texels.size(); ++i)
@@ -165,7 +114,7 @@ Metadata readExrMetadata(const fs::path& path) {
   checkReadable(path);
   checkExrHeaders(path);
   const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) fail(path, OIIO::geterror());
+  if (!input) throwUnreadable(path, OIIO::geterror());
   return metadataOf(input->spec());
 }
 
@@ -175,17 +124,8 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
   const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
-  if (!reader) fail(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
-  try {
-    const SilencedStderr silenced;
-    return readByLibrary(path, reader, integers);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    fail(path, "its header claims more texels than fit into memory");
-  } catch (const std::exception& error) {  // thrown by OpenImageIO about a damaged file
-    fail(path, error.what());
-  }
+  if (!reader) throwUnreadable(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
+  return readByOiio(path, [&] { return readByLibrary(path, reader, integers); });
 }
 
 std::optional<Image> findColor(const ImageFile& file) {

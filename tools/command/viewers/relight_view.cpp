@@ -30,7 +30,7 @@ std::vector<uint8_t> RelightView::picture(size_t probe, const Rotation& rotation
                                           const DisplayTransform& transform) const {
   Image sum = weightedSum(stage_.elements,
                           lightWeights(stage_.basis, probes_[probe].map, rotation, kMapWidth));
-  addOwnLight(sum, stage_);
+  addOwnLight(sum, stage_.own);
   std::vector<uint8_t> bytes(4 * size_t(sum.width) * size_t(sum.height));
   forRows(sum.width, sum.height, 16, [&](int y) {
     uint8_t* to = bytes.data() + 4 * size_t(y) * size_t(sum.width);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes OpenEXR files by bands of rows, so that an image larger than the memory can be written.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/archive.h"
+#include "image/image.h"
+#include "image/io/read_image.h"
+
+namespace chromeball {
+
+struct ExrLayout {
+  int width, height;
+  std::vector<std::string> channels;
+  Metadata metadata;
+  std::optional<Placement> placement = {};
+  bool halves = false;  // 16 bits, in which numbers above 65504 become infinite; else float32
+  // ZIPS, else ZIP, which compresses 16 rows together. With hundreds of channels these gain nothing
+  // from each other, and take 16 times the memory.
+  bool separateRows = false;
+};
+
+// A file of scanlines. Atomic: it appears with commit(); without, nothing remains.
+class ExrRowsWriter {
+ public:
+  // Throws RunError, as all functions do.
+  ExrRowsWriter(const std::filesystem::path& path, const ExrLayout& layout);
+  ~ExrRowsWriter();
+
+  // The next rows, from the top down: images of one size, which have the layout's channels in turn.
+  void write(std::span<const Image* const> images);
+
+  // After the last row. `state`: what else the file holds (exr_state.h); may be empty.
+  void commit(const std::function<void(Archive&)>& state = {});
+
+  // What writing takes besides the images, at most. Bytes.
+  static double bufferBytes(int width, size_t channels);  // of separate rows
+
+ private:
+  class Output;
+  std::unique_ptr<Output> output_;
+};
+
+}  // namespace chromeball

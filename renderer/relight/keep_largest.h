@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps the numbers of largest magnitude, of more numbers than memory may hold.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+// A histogram of magnitudes. Bins are 2^-11 wide, relatively: the magnitudes of floats have the
+// order of their bits.
+class Magnitudes {
+ public:
+  static constexpr int kShift = 12;  // from a magnitude's bits to its bin
+  static constexpr size_t kBins = size_t(1) << (31 - kShift), kBytes = kBins * sizeof(uint64_t);
+
+  static size_t binOf(float value) {
+    return (std::bit_cast<uint32_t>(value) & 0x7fffffffu) >> kShift;
+  }
+
+  void add(std::span<const float> values) {
+    for (const float value : values) ++counts_[binOf(value)];
+  }
+  void add(const Magnitudes& other);
+
+  // The bin from which on the numbers are together at most `share` of all.
+  size_t leastBin(double share) const;
+
+ private:
+  std::vector<uint64_t> counts_ = std::vector<uint64_t>(kBins);
+};
+
+// Sets those below this bin to 0. Returns the number of zeros.
+uint64_t dropBelow(size_t leastBin, std::span<float> values);
+
+// Sets all but the largest magnitudes to 0: about `share` of the values stay. Returns the share of
+// zeros.
+double keepLargest(std::span<float> values, double share);
+
+}  // namespace chromeball

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/stage_file.h"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "base/error.h"
+
+namespace chromeball {
+namespace {
+
+constexpr const char* kBasisName = "basis";  // the attribute
+constexpr const char* kOwn = "own";
+
+std::string layerName(int element) { return fmt::format("element.{:04}", element); }
+
+void addChannels(std::vector<std::string>& names, const std::string& layer) {
+  for (const char* letter : {".R", ".G", ".B"}) names.push_back(layer + letter);
+}
+
+std::vector<std::string> channelNames(const DirectionBasis& basis) {
+  std::vector<std::string> names;
+  for (int i = 0; i < basis.size(); ++i) addChannels(names, layerName(i));
+  return names;
+}
+
+std::vector<std::string> ownNames() {
+  std::vector<std::string> names;
+  addChannels(names, kOwn);
+  return names;
+}
+
+ExrLayout layoutOf(const LightStage& like, int height, Metadata metadata, bool halves) {
+  metadata[kBasisName] = like.basis.name();
+  std::vector<std::string> channels{"R", "G", "B"};
+  for (int i = 0; i < like.basis.size(); ++i) addChannels(channels, layerName(i));
+  if (!like.own.empty()) addChannels(channels, kOwn);
+  return {.width = like.width(),
+          .height = height,
+          .channels = std::move(channels),
+          .metadata = std::move(metadata),
+          .halves = halves,
+          .separateRows = true};
+}
+
+DirectionBasis basisOf(const std::filesystem::path& path, const Metadata& metadata) {
+  const auto found = metadata.find(kBasisName);
+  const auto* name = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+  if (!name) throwInput("{}: is not a light stage; `chromeball basis` writes one", path.string());
+  return {*name, path.string()};
+}
+
+// The channels with these names; nullopt if one is missing.
+std::optional<std::vector<size_t>> positions(const std::vector<std::string>& channels,
+                                             const std::vector<std::string>& names) {
+  std::unordered_map<std::string, size_t> byName;
+  for (size_t i = 0; i < channels.size(); ++i) byName[channels[i]] = i;
+  std::vector<size_t> found;
+  for (const std::string& name : names) {
+    const auto at = byName.find(name);
+    if (at == byName.end()) return std::nullopt;
+    found.push_back(at->second);
+  }
+  return found;
+}
+
+Image extract(const Image& all, const std::vector<size_t>& channels) {
+  Image part(all.width, all.height, int(channels.size()));
+  for (int y = 0; y < all.height; ++y)
+    for (int x = 0; x < all.width; ++x)
+      for (size_t c = 0; c < channels.size(); ++c) part.at(x, y)[c] = all.at(x, y)[channels[c]];
+  return part;
+}
+
+// The same in place: a pixel's channels move to the front, so that the image never exists twice.
+Image extract(Image&& all, const std::vector<size_t>& channels) {
+  std::vector<float> pixel(channels.size());
+  const size_t pixels = size_t(all.width) * size_t(all.height), stride = size_t(all.channels);
+  for (size_t i = 0; i < pixels; ++i) {
+    for (size_t c = 0; c < pixel.size(); ++c) pixel[c] = all.texels[i * stride + channels[c]];
+    std::copy(pixel.begin(), pixel.end(), all.texels.begin() + ptrdiff_t(i * pixel.size()));
+  }
+  all.channels = int(channels.size());
+  all.texels.resize(pixels * channels.size());
+  return std::move(all);
+}
+
+// `top`: the image's first row in the stage.
+void checkFinite(const std::filesystem::path& path, const Image& image, int top) {
+  for (size_t i = 0; i < image.texels.size(); ++i)
+    if (!std::isfinite(image.texels[i])) {
+      const size_t pixel = i / size_t(image.channels);
+      throwInput("{}: pixel {}, {} has values that are not finite", path.string(),
+                 pixel % size_t(image.width), size_t(top) + pixel / size_t(image.width));
+    }
+}
+
+}  // namespace
+
+StageWriter::StageWriter(const std::filesystem::path& path, const LightStage& like, int height,
+                         Metadata metadata, bool halves)
+    : file_(path, layoutOf(like, height, std::move(metadata), halves)) {}
+
+void StageWriter::write(const LightStage& band, const Image& color) {
+  std::vector<const Image*> images{&color, &band.elements};
+  if (!band.own.empty()) images.push_back(&band.own);
+  file_.write(images);
+}
+
+double StageWriter::bufferBytes(const DirectionBasis& basis, int width) {
+  return ExrRowsWriter::bufferBytes(width, size_t(stageChannels(basis)));
+}
+
+StageReader::StageReader(const std::filesystem::path& path)
+    : path_(path), file_(path, kMaxStageNumbers), basis_(basisOf(path, file_.metadata())) {
+  const auto elements = positions(file_.channels(), channelNames(basis_));
+  if (!elements)
+    throwInput("{}: lacks elements of its basis {}, which has {}", path.string(), basis_.name(),
+               basis_.size());
+  elements_ = *elements;
+  own_ = positions(file_.channels(), ownNames()).value_or(std::vector<size_t>());
+}
+
+LightStage StageReader::read(int top, int count) {
+  Image all = file_.read(top, count);
+  LightStage band{basis_, {}, {}};
+  if (!own_.empty()) band.own = extract(all, own_);
+  band.elements = extract(std::move(all), elements_);
+  checkFinite(path_, band.elements, top);
+  checkFinite(path_, band.own, top);
+  return band;
+}
+
+double StageReader::rowBytes() const {
+  return double(sizeof(float)) * width() * double(file_.channels().size() + own_.size());
+}
+
+}  // namespace chromeball

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The file of a light stage, an .exr, written and read by bands of rows: R, G, B are the picture
+// under unit radiance from everywhere with the scene's own light, then the layers element.0000,
+// element.0001, ... and own; the attribute `basis` names the functions.
+#pragma once
+
+#include <filesystem>
+
+#include "image/io/exr_rows_reader.h"
+#include "image/io/exr_rows_writer.h"
+#include "relight/light_stage.h"
+
+namespace chromeball {
+
+// Atomic: the file appears with commit(); without, nothing remains.
+class StageWriter {
+ public:
+  // `like`: any band. `halves`: in 16 bits. Throws RunError, as all functions do.
+  StageWriter(const std::filesystem::path& path, const LightStage& like, int height,
+              Metadata metadata, bool halves);
+
+  // The next rows, from the top down; `color`: their R, G, B.
+  void write(const LightStage& band, const Image& color);
+  void commit() { file_.commit(); }
+
+  // What writing takes besides the band, at most. Bytes.
+  static double bufferBytes(const DirectionBasis& basis, int width);
+
+ private:
+  ExrRowsWriter file_;
+};
+
+class StageReader {
+ public:
+  // Throws InputError for a file that is not a light stage, or that lacks elements.
+  explicit StageReader(const std::filesystem::path& path);
+
+  const DirectionBasis& basis() const { return basis_; }
+  int width() const { return file_.width(); }
+  int height() const { return file_.height(); }
+
+  // `count` rows from `top` on. Throws InputError for values that are not finite.
+  LightStage read(int top, int count);
+
+  // What a row takes while it is read, and what reading takes besides, at most. Bytes.
+  double rowBytes() const;
+  double bufferBytes() const { return file_.bufferBytes(); }
+
+ private:
+  std::filesystem::path path_;
+  ExrRowsReader file_;
+  DirectionBasis basis_;
+  std::vector<size_t> elements_, own_;  // positions of their channels; empty: there are none
+};
+
+}  // namespace chromeball

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basis_pixels.h"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <optional>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "basis_job.h"
+#include "integrate/tile_grid.h"
+#include "job/memory_estimate.h"
+#include "job/output_file.h"
+#include "messages.h"
+#include "progress_bar.h"
+#include "relight/render_basis.h"
+#include "relight/stage_file.h"
+#include "thread_limit.h"
+
+namespace chromeball {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+int ceilDivide(int a, int b) { return (a + b - 1) / b; }
+
+// The rows of a band: all that there are, if they fit into the memory; else those of whole tiles,
+// in bands that are about as high as each other.
+int rowsOfBand(const RenderJob& job, const LoadedScene& loaded, const DirectionBasis& basis) {
+  constexpr int kTile = TileGrid::kSize;
+  const RenderSettings& s = job.settings;
+  checkStageSize(basis, s.width, s.height, "--directions");
+  const MemoryEstimate estimate = estimateMemory(job, loaded);
+  const double limit = memoryLimit(job);
+  const double row = elementBytes(basis) * s.width + estimate.images / s.height;
+  const double rest = estimate.peak - estimate.images + StageWriter::bufferBytes(basis, s.width);
+  const double most = (limit - rest) / row;
+  if (most >= s.height) return s.height;
+  const int least = std::min(kTile, s.height);
+  if (most < least)
+    throw InputError(
+        fmt::format("--directions: {} elements of {} rows of {} pixels, the least at a time, take "
+                    "{:.3g} GB of memory, with all else {:.3g} GB; the limit is {:.3g} GB",
+                    basis.size(), least, s.width, 1e-9 * row * least, 1e-9 * (rest + row * least),
+                    1e-9 * limit),
+        Remedy{"memory", {}});
+  const int bands = ceilDivide(s.height, int(most) / kTile * kTile);
+  return ceilDivide(ceilDivide(s.height, bands), kTile) * kTile;
+}
+
+Metadata metadataOf(const SceneOptions& options, const RenderJob& job) {
+  return {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
+          {"scene", options.scene},
+          {"samples", int(job.settings.samples)},
+          {"seed", std::to_string(job.settings.seed)},
+          {"max_depth", job.settings.maxDepth}};
+}
+
+struct Written {
+  InvalidSamples invalid;
+  bool hasOwnLight = false;
+};
+
+// Renders and writes bands of `rows` rows.
+Written writeStage(const BasisRenderer& renderer, const RenderSettings& s, int rows,
+                   const PixelBasis& own, const Metadata& metadata, const Progress& progress) {
+  std::optional<StageWriter> file;
+  Written written;
+  for (int top = 0; top < s.height; top += rows) {
+    const int count = std::min(rows, s.height - top);
+    const BasisRender band = renderer.render(
+        top, count, [&](double done) { progress((top + done * count) / s.height); }, interrupted);
+    if (interrupted) throw Interrupted(fmt::format("interrupted; {} is not written", own.out));
+    if (!file) file.emplace(own.out, band.stage, s.height, metadata, own.halves);
+    file->write(band.stage, band.color);
+    written.invalid.add(band.invalid);
+    written.hasOwnLight = !band.stage.own.empty();
+  }
+  file->commit();
+  return written;
+}
+
+}  // namespace
+
+void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
+  const Stopwatch watch;
+  const DirectionBasis basis(own.directions, "--directions");
+  checkOutputFile(own.out, {".exr"});
+  const ThreadLimit threads(options.settings);
+  RenderJob job = basisJob(options, "light stage");
+  const LoadedScene loaded = loadBasisScene(job);
+  checkDistinct({own.out}, loaded.files);
+  const int rows = rowsOfBand(job, loaded, basis);
+  const RenderSettings& s = job.settings;
+  const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
+  print(loaded.messages, options.quiet());  // after the last error that input can cause
+  const BasisRenderer renderer(world, loaded.camera, basis, s);
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const Written written = [&] {
+    ProgressBar bar(options.showsProgress());
+    return writeStage(renderer, s, rows, own, metadataOf(options, job),
+                      [&](double done) { bar.update(done); });
+  }();
+  if (const InvalidSamples& invalid = written.invalid; invalid.total() > 0)
+    warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
+                     invalid.total(), invalid.x, invalid.y));
+  if (!options.quiet())
+    fmt::print("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width,
+               s.height, s.samples, basis.size(), basis.name(),
+               written.hasOwnLight ? " and the scene's own light" : "",
+               rows < s.height ? fmt::format(", in {} bands", ceilDivide(s.height, rows)) : "",
+               watch.seconds(), own.out);
+}
+
+}  // namespace chromeball
