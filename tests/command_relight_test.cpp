@@ -224,6 +224,16 @@ TEST_F(CommandRelight, RefusesBadOptions) {
   refusesOptions({"--scale", "-1"}, "--scale");
   refusesOptions({"--rotation", "x"}, "--rotation");
   refusesOptions({"--exposure", "nan"}, "--exposure: must be a finite number");
+  refusesOptions({"--exposure", "1"}, "--exposure: is for a .png");
+  refusesOptions({"--tonemap", "aces"}, "--tonemap: is for a .png");
+  refusesOptions({"--irradiance", "2"}, "--irradiance: is for --images");
+  for (const Strings& option : {Strings{"--keep", "10"},
+                                {"--keep-light", "10"},
+                                {"--scale", "2"},
+                                {"--rotation", "20"},
+                                {"--domain", "pixel"}})
+    refuses({"relight", stage, "--reflectance-function", "1,1", option[0], option[1]},
+            option[0] + ": has no effect with --reflectance-function");
   refusesOptions({"--preview"}, "--output: has no effect with --preview");
   expectError({"relight", stage, "--probe", probe, "--preview=99999"}, "is not a port");
   expectError({"relight", stage, "--probe", probe}, "--output: needs a name");
@@ -271,6 +281,9 @@ TEST_F(CommandRelight, RefusesBadPhotographs) {
   refusesList("a.exr,0,1,0\nwide.exr,0,0,1\n", "wide.exr: has 5 x 4 pixels; a.exr has 4 x 4");
   refusesList("a.exr,0,1,0\ninvalid.exr,0,0,1\n", "invalid.exr: pixel 1, 2 has values");
   std::ofstream(folder_ / "d.csv") << "a.exr,0,1,0\n";
+  expectError({"relight", "--images", folder_ / ".", "--directions", folder_ / "d.csv", "--probe",
+               folder_ / "probe.exr", "-o", folder_ / "a.exr"},
+              "would overwrite");
   const Strings good{"relight",
                      "--images",
                      folder_ / ".",

@@ -16,6 +16,7 @@ size_t Magnitudes::leastBin(double share) const {
   uint64_t kept = 0;
   size_t least = counts_.size();
   while (least > 0 && kept + counts_[least - 1] <= most) kept += counts_[--least];
+  while (least > 0 && kept == 0) kept += counts_[--least];  // never nothing
   return least;
 }
 

@@ -25,7 +25,7 @@ class Magnitudes {
   }
   void add(const Magnitudes& other);
 
-  // The bin from which on the numbers are together at most `share` of all.
+  // The bin from which on the numbers are together at most `share` of all, and not none.
   size_t leastBin(double share) const;
 
  private:

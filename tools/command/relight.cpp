@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "image/io/write_image.h"
@@ -42,7 +43,10 @@ struct Arguments {
   std::optional<double> memory;  // GB
 
   bool isOfPhotographs() const { return !images.empty() || !directions.empty(); }
-  bool isOfModel() const { return stage.ends_with(".glb") || stage.ends_with(".gltf"); }
+  bool isOfModel() const {
+    const std::string extension = lowerExtension(stage);
+    return extension == ".glb" || extension == ".gltf";
+  }
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
 };
 
@@ -67,7 +71,12 @@ double memoryOf(const Arguments& a) {
 LightStage readPhotographsOf(const Arguments& a) {
   const double irradiance = parseNumbers(a.irradiance, 1, "--irradiance")[0];
   if (!isPositiveFloat(irradiance)) throwInput("--irradiance: should be {}", kPositiveFloats);
-  return stageOf(a.images, readPhotographs(a.directions), float(irradiance), memoryOf(a));
+  const std::vector<StagePhotograph> photographs = readPhotographs(a.directions);
+  std::vector<std::string> inputs;
+  for (const StagePhotograph& photograph : photographs)
+    inputs.push_back((std::filesystem::path(a.images) / photograph.file).string());
+  if (!a.out.empty()) checkDistinct({a.out}, inputs);
+  return stageOf(a.images, photographs, float(irradiance), memoryOf(a));
 }
 
 StageBands openStage(const Arguments& a) {
@@ -173,7 +182,33 @@ void runPreview(const Arguments& a) {
   server.run();
 }
 
+// Options that are given, or other than by default.
+using GivenOptions = std::vector<std::pair<bool, const char*>>;
+
+void refuse(const GivenOptions& options, const char* why) {
+  for (const auto& [given, option] : options)
+    if (given) throwInput("{}: {}", option, why);
+}
+
+GivenOptions optionsOfSum(const Arguments& a) {
+  return {{a.domain != "auto", "--domain"},
+          {a.keep != "100%", "--keep"},
+          {a.keepLight != "100%", "--keep-light"},
+          {a.rotation != Rotation(), "--rotation"}};
+}
+
+GivenOptions optionsOfDisplay(const Arguments& a) {
+  return {{a.exposure != 0, "--exposure"}, {a.tone != "none", "--tonemap"}};
+}
+
 void checkOutput(const Arguments& a) {
+  if (lowerExtension(a.out) != ".png")
+    refuse(optionsOfDisplay(a), "is for a .png; other images are linear");
+  if (!a.pixel.empty()) {
+    constexpr const char* kWhy = "has no effect with --reflectance-function; leave it out";
+    refuse(optionsOfSum(a), kWhy);
+    refuse({{a.scale != "1", "--scale"}, {a.mapping != "auto", "--mapping"}}, kWhy);
+  }
   if (a.probes.size() > 1) throwInput("--probe: give one; --preview takes several");
   if (a.out.empty()) throwInput("--output: needs a name; or give --preview");
   checkWritable(a.out);
@@ -183,24 +218,23 @@ void checkOutput(const Arguments& a) {
 }
 
 void checkPreview(const Arguments& a) {
-  for (const auto& [given, option] :
-       {std::pair(!a.out.empty(), "--output"),
-        std::pair(!a.pixel.empty(), "--reflectance-function"),
-        std::pair(a.domain != "auto", "--domain"), std::pair(a.keep != "100%", "--keep"),
-        std::pair(a.keepLight != "100%", "--keep-light"),
-        std::pair(a.rotation != Rotation(), "--rotation"), std::pair(a.exposure != 0, "--exposure"),
-        std::pair(a.tone != "none", "--tonemap")})
-    if (given) throwInput("{}: has no effect with --preview; leave it out", option);
+  constexpr const char* kWhy = "has no effect with --preview; leave it out";
+  refuse({{!a.out.empty(), "--output"}, {!a.pixel.empty(), "--reflectance-function"}}, kWhy);
+  refuse(optionsOfSum(a), kWhy);
+  refuse(optionsOfDisplay(a), kWhy);
 }
 
 void runModel(const Arguments& a) {
-  for (const auto& [given, option] :
-       {std::pair(!a.preview.empty(), "--preview"), std::pair(a.isOfPhotographs(), "--images"),
-        std::pair(!a.pixel.empty(), "--reflectance-function"),
-        std::pair(a.memory.has_value(), "--memory"), std::pair(a.domain != "auto", "--domain"),
-        std::pair(a.keepLight != "100%", "--keep-light"), std::pair(a.exposure != 0, "--exposure"),
-        std::pair(a.tone != "none", "--tonemap")})
-    if (given) throwInput("{}: has no effect on a model; leave it out", option);
+  constexpr const char* kWhy = "has no effect on a model; leave it out";
+  refuse({{!a.preview.empty(), "--preview"},
+          {a.isOfPhotographs(), "--images"},
+          {a.irradiance != "1", "--irradiance"},
+          {!a.pixel.empty(), "--reflectance-function"},
+          {a.memory.has_value(), "--memory"},
+          {a.domain != "auto", "--domain"},
+          {a.keepLight != "100%", "--keep-light"}},
+         kWhy);
+  refuse(optionsOfDisplay(a), kWhy);
   if (a.probes.size() != 1) throwInput("--probe: give one");
   if (a.out.empty()) throwInput("--output: needs a name");
   runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation, a.view,
@@ -208,10 +242,11 @@ void runModel(const Arguments& a) {
 }
 
 void check(const Arguments& a) {
-  for (const auto& [given, option] :
-       {std::pair(a.white.has_value(), "--white"), std::pair(!a.view.empty(), "--view"),
-        std::pair(a.allowsExternal, "--allow-external")})
-    if (given) throwInput("{}: needs a model with transfer, .glb or .gltf", option);
+  refuse({{a.white.has_value(), "--white"},
+          {!a.view.empty(), "--view"},
+          {a.allowsExternal, "--allow-external"}},
+         "needs a model with transfer, .glb or .gltf");
+  if (!a.isOfPhotographs()) refuse({{a.irradiance != "1", "--irradiance"}}, "is for --images");
   if (a.isOfPhotographs() != a.stage.empty())
     throwInput("{}", a.stage.empty()
                          ? "STAGE: give a light stage, or photographs by --images and --directions"
