@@ -22,7 +22,7 @@ _chromeball() {
     'basis')
       options='--help --at --directions --basis --glossy --clusters --vectors --half --output --animation --animation-time --variant --camera --camera-file --mis --light-units --size --samples --glass-shadows --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --transparent --allow-external --memory --texture-memory --threads --progress --quiet' ;;
     'relight')
-      options='--help --images --directions --irradiance --probe --mapping --rotation --scale --domain --keep --keep-light --reflectance-function --output --preview --white --view --allow-external --exposure --tonemap --quiet' ;;
+      options='--help --images --directions --irradiance --probe --mapping --rotation --scale --domain --keep --keep-light --reflectance-function --output --preview --white --view --allow-external --memory --exposure --tonemap --quiet' ;;
     'probe')
       words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
       options='--help' ;;

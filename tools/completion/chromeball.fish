@@ -213,6 +213,7 @@ complete -c chromeball -n '__fish_seen_subcommand_from relight' -l preview -d 'I
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l white -r -d 'Of a model: the light that its white stands for; without it, the brightest'
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l view -r -d 'X,Y,Z: the eye, of a model with glossy transfer'
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l allow-external -d 'Of a model: read files outside of its folder'
+complete -c chromeball -n '__fish_seen_subcommand_from relight' -l memory -r -d 'GB: a stage that takes more is read in bands; else 0.8 times the machine'\''s'
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l exposure -r -d 'Of a .png, in stops'
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l tonemap -r -d 'Of a .png: none, reinhard, aces, neutral, filmic'
 complete -c chromeball -n '__fish_seen_subcommand_from relight' -l quiet -d 'Print nothing but warnings and errors'
