@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/develop_text.h"
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <set>
 
@@ -15,11 +17,6 @@ namespace {
 constexpr size_t kMaxGaussians = 32;
 constexpr std::array<std::string_view, 6> kNames = {"clip",  "depth-blur", "motion",
                                                     "bloom", "glare",      "vignette"};
-
-[[noreturn]] void throwUnknown(std::string_view name, std::string_view location) {
-  throwInput("{}: `{}` is not known; {}", location, name,
-             didYouMean(name, {kNames.begin(), kNames.end()}));
-}
 
 double numberIn(std::string_view text, double min, double max, std::string_view what,
                 std::string_view location) {
@@ -98,10 +95,9 @@ void setDevelop(DevelopSettings& settings, std::string_view name, std::string_vi
     if (text != "spencer")
       throwInput("{}: `{}` is not known; {}", location, text, didYouMean(text, {"spencer"}));
     settings.glare = true;
-  } else if (name == "vignette") {
-    settings.vignette = numberIn(text, 0, 1, "strength", location);
   } else {
-    throwUnknown(name, location);
+    assert(name == "vignette");
+    settings.vignette = numberIn(text, 0, 1, "strength", location);
   }
 }
 
@@ -115,7 +111,9 @@ DevelopSettings parseDevelop(std::string_view text, std::string_view location) {
         split(text.substr(begin, end - begin), '=',
               "NAME=VALUE, as in vignette=.4 or bloom=.75:1,.25:32", location);
     if (!names.insert(name).second) throwInput("{}: `{}` is there twice", location, name);
-    if (std::ranges::find(kNames, name) == kNames.end()) throwUnknown(name, location);
+    if (std::ranges::find(kNames, name) == kNames.end())
+      throwInput("{}: `{}` is not known; {}", location, name,
+                 didYouMean(name, {kNames.begin(), kNames.end()}));
     setDevelop(settings, name, value, fmt::format("{}: {}", location, name));
     begin = text.find_first_not_of(kSpaces, end);
   }

@@ -12,8 +12,8 @@ namespace chromeball {
 // Sets one of
 //   clip=X, depth-blur=FOCUS:APERTURE, motion=LENGTH@ANGLE, bloom=WEIGHT:SIGMA,...,
 //   glare=spencer, vignette=STRENGTH.
-// The weights of a bloom must sum to 1 within 1%, and are made to sum to 1. Throws InputError,
-// begun by `location`.
+// Precondition: `name` is one of these. The weights of a bloom must sum to 1 within 1%, and are
+// made to sum to 1. Throws InputError, begun by `location`.
 void setDevelop(DevelopSettings& settings, std::string_view name, std::string_view text,
                 std::string_view location);
 

@@ -51,6 +51,17 @@ void checkMotionMemory(const RenderJob& job, const Scene& scene) {
 
 const std::string& modelOf(const RenderJob& job) { return job.file.models.front().file; }
 
+// `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
+void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Camera& camera,
+                MotionError& error) {
+  std::vector<Camera> keys;
+  for (size_t i = 0; i < halfSteps.size(); i += 2) keys.push_back(halfSteps[i]);
+  setMotion(std::move(keys), camera);
+  error.addTurn(shutter.turn, shutter.steps);
+  for (size_t i = 1; i < halfSteps.size(); i += 2)
+    error.add(camera, halfSteps[i], float(i) / float(halfSteps.size() - 1));
+}
+
 }  // namespace
 
 void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) {
@@ -61,52 +72,40 @@ void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) 
     return warn(turnCamera(job, placed.scene, placed.view, placed.origin, placed.camera));
   checkMotionMemory(job, placed.scene);
   const int steps = job.shutter->steps;
-  const auto cameraAt = [&](const Scene& scene, double fraction) {
-    return cameraOf(job, scene, placed.view, placed.origin, fraction * job.shutter->turn);
+  std::vector<Camera> cameras(2 * size_t(steps) + 1, placed.camera);  // at half steps
+  const auto modelsAtHalfStep = [&](int i) {
+    const double fraction = double(i) / (2 * steps);
+    Scene scene = modelsAt(job, fraction, placed.origin, cache);
+    cameras[size_t(i)] =
+        cameraOf(job, scene, placed.view, placed.origin, fraction * job.shutter->turn);
+    return scene;
   };
   std::vector<Scene> later;
-  std::vector<Camera> cameras{placed.camera};
-  for (int k = 1; k <= steps; ++k) {
-    const double fraction = double(k) / steps;
-    later.push_back(modelsAt(job, fraction, placed.origin, cache));
-    cameras.push_back(cameraAt(later.back(), fraction));
-  }
-  setMotion(std::move(cameras), placed.camera);
+  for (int k = 1; k <= steps; ++k) later.push_back(modelsAtHalfStep(2 * k));
   for (const std::string& node : addMotion(placed.scene, later))
     placed.warnings.push_back(fmt::format(
         "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
         "rendered as it was before",
         modelOf(job), node));
+  // Also where no key differs: what turns by whole turns between keys seems to stand still.
   MotionError error;
-  error.addTurn(job.shutter->turn, steps);
-  for (int k = 0; k < steps; ++k) {
-    const double fraction = (k + 0.5) / steps;
-    const Scene then = modelsAt(job, fraction, placed.origin, cache);
-    error.add(placed.scene, then, float(fraction));
-    error.add(placed.camera, cameraAt(then, fraction), float(fraction));
-  }
+  for (int k = 0; k < steps; ++k)
+    error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
+  moveCamera(*job.shutter, cameras, placed.camera, error);
   warn(error.warnings(modelOf(job), steps));
 }
 
 std::vector<std::string> turnCamera(const RenderJob& job, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera) {
-  const int steps = job.shutter->steps;
-  const double turn = job.shutter->turn;
-  if (turn == 0) return {};
-  const auto cameraAt = [&](double fraction) {
-    return cameraOf(job, scene, view, origin, fraction * turn);
-  };
-  std::vector<Camera> keys{camera};
-  for (int k = 1; k <= steps; ++k) keys.push_back(cameraAt(double(k) / steps));
-  setMotion(std::move(keys), camera);
+  const Shutter& shutter = *job.shutter;
+  if (shutter.turn == 0) return {};
+  std::vector<Camera> cameras;
+  for (int i = 0; i <= 2 * shutter.steps; ++i)
+    cameras.push_back(cameraOf(job, scene, view, origin, shutter.turn * i / (2 * shutter.steps)));
   MotionError error;
-  error.addTurn(turn, steps);
-  for (int k = 0; k < steps; ++k) {
-    const double fraction = (k + 0.5) / steps;
-    error.add(camera, cameraAt(fraction), float(fraction));
-  }
-  return error.warnings(modelOf(job), steps);
+  moveCamera(shutter, cameras, camera, error);
+  return error.warnings(modelOf(job), shutter.steps);
 }
 
 }  // namespace chromeball

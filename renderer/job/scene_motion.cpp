@@ -2,6 +2,7 @@
 #include "job/scene_motion.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "job/match_scenes.h"
@@ -18,57 +19,61 @@ bool areEqual(const std::vector<Key>& keys) {
   return std::ranges::all_of(keys, [&](const Key& key) { return key == keys.front(); });
 }
 
-// Nodes of `scene` with parts or lamps that `other` lacks.
-void addLacking(const Scene& scene, const Scene& other, std::set<int>& nodes) {
-  const auto parts = partsIn(other, scene);
-  for (size_t i = 0; i < parts.size(); ++i)
-    if (!parts[i]) nodes.insert(scene.instances[i].node);
-  const auto lamps = lampsIn(other, scene);
-  for (size_t i = 0; i < lamps.size(); ++i)
-    if (!lamps[i]) nodes.insert(scene.lights[i].node);
-}
+// The keys of parts and lamps of a scene, the first those of the scene itself.
+struct Keys {
+  std::vector<InstanceMotion> instances;
+  std::vector<std::vector<LampPose>> lamps;
 
-void moveInstances(Scene& scene, const std::vector<Scene>& later) {
-  std::vector<InstanceMotion> motions;
-  for (const Instance& instance : scene.instances) motions.push_back({{keyOf(scene, instance)}});
-  for (const Scene& then : later) {
+  explicit Keys(const Scene& scene) {
+    for (const Instance& instance : scene.instances)
+      instances.push_back({{keyOf(scene, instance)}});
+    for (const PunctualLight& lamp : scene.lights) lamps.push_back({lamp.poseAt(0)});
+  }
+
+  // Those at a later time. What the scene lacks then keeps its last, and its node is `incomplete`.
+  void add(const Scene& scene, const Scene& then, std::set<int>& incomplete) {
     const auto parts = partsIn(then, scene);
-    for (size_t i = 0; i < parts.size(); ++i)
+    for (size_t i = 0; i < parts.size(); ++i) {
+      if (!parts[i]) incomplete.insert(scene.instances[i].node);
       if (scene.instances[i].moves)
-        motions[i].keys.push_back(parts[i] ? keyOf(then, *parts[i]) : motions[i].keys.back());
+        instances[i].keys.push_back(parts[i] ? keyOf(then, *parts[i]) : instances[i].keys.back());
+    }
+    const auto there = lampsIn(then, scene);
+    for (size_t i = 0; i < there.size(); ++i) {
+      if (!there[i]) incomplete.insert(scene.lights[i].node);
+      lamps[i].push_back(there[i] ? there[i]->poseAt(0) : lamps[i].back());
+    }
   }
-  for (size_t i = 0; i < motions.size(); ++i) {
-    if (areEqual(motions[i].keys)) continue;
-    scene.instances[i].motion = std::make_shared<const InstanceMotion>(std::move(motions[i]));
-    scene.moves = true;
-  }
-}
+};
 
-void moveLamps(Scene& scene, const std::vector<Scene>& later) {
-  std::vector<std::vector<LampPose>> motions;
-  for (const PunctualLight& lamp : scene.lights) motions.push_back({lamp.poseAt(0)});
-  for (const Scene& then : later) {
-    const auto lamps = lampsIn(then, scene);
-    for (size_t i = 0; i < lamps.size(); ++i)
-      motions[i].push_back(lamps[i] ? lamps[i]->poseAt(0) : motions[i].back());
-  }
-  for (size_t i = 0; i < motions.size(); ++i) {
-    if (areEqual(motions[i])) continue;
-    scene.lights[i].motion = std::make_shared<const std::vector<LampPose>>(std::move(motions[i]));
-    scene.moves = true;
-  }
+// The nodes with parts or lamps.
+std::set<int> nodesOf(const Scene& scene) {
+  std::set<int> nodes;
+  for (const Instance& instance : scene.instances) nodes.insert(instance.node);
+  for (const PunctualLight& lamp : scene.lights) nodes.insert(lamp.node);
+  return nodes;
 }
 
 }  // namespace
 
 std::vector<std::string> addMotion(Scene& scene, const std::vector<Scene>& later) {
+  const std::set<int> known = nodesOf(scene);
   std::set<int> incomplete;
+  Keys keys(scene);
   for (const Scene& then : later) {
-    addLacking(scene, then, incomplete);
-    addLacking(then, scene, incomplete);
+    keys.add(scene, then, incomplete);
+    std::ranges::set_difference(nodesOf(then), known, std::inserter(incomplete, incomplete.end()));
   }
-  moveInstances(scene, later);
-  moveLamps(scene, later);
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    if (InstanceMotion& motion = keys.instances[i]; !areEqual(motion.keys)) {
+      scene.instances[i].motion = std::make_shared<const InstanceMotion>(std::move(motion));
+      scene.moves = true;
+    }
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    if (std::vector<LampPose>& poses = keys.lamps[i]; !areEqual(poses)) {
+      scene.lights[i].motion = std::make_shared<const std::vector<LampPose>>(std::move(poses));
+      scene.moves = true;
+    }
   std::vector<std::string> names;
   for (const int node : incomplete) names.push_back(scene.nodeNames[size_t(node)]);
   return names;

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "bake/vertex_geometry.h"
 #include "base/error.h"
+#include "math/unit_direction.h"
 
 namespace chromeball {
 namespace {
@@ -15,12 +15,6 @@ namespace {
 constexpr const char* kNormal = "_PRT_NORMAL";
 constexpr const char* kMean = "mean";
 constexpr float kBuried = -1;
-
-// Of any finite length.
-glm::dvec3 unitOrZero(const glm::dvec3& v) {
-  const double longest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  return longest > 0 ? glm::normalize(v / longest) : glm::dvec3(0);
-}
 
 std::string vectorName(size_t m) { return fmt::format("vector{}", m); }
 

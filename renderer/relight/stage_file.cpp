@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/stage_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <unordered_map>
 
 #include "base/error.h"
@@ -24,16 +26,10 @@ std::vector<std::string> channelNames(const DirectionBasis& basis) {
   return names;
 }
 
-std::vector<std::string> ownNames() {
-  std::vector<std::string> names;
-  addChannels(names, kOwn);
-  return names;
-}
-
 ExrLayout layoutOf(const LightStage& like, int height, Metadata metadata, bool halves) {
   metadata[kBasisName] = like.basis.name();
   std::vector<std::string> channels{"R", "G", "B"};
-  for (int i = 0; i < like.basis.size(); ++i) addChannels(channels, layerName(i));
+  std::ranges::move(channelNames(like.basis), std::back_inserter(channels));
   if (!like.own.empty()) addChannels(channels, kOwn);
   return {.width = like.width(),
           .height = height,
@@ -118,7 +114,9 @@ StageReader::StageReader(const std::filesystem::path& path)
     throwInput("{}: lacks elements of its basis {}, which has {}", path.string(), basis_.name(),
                basis_.size());
   elements_ = *elements;
-  own_ = positions(file_.channels(), ownNames()).value_or(std::vector<size_t>());
+  std::vector<std::string> own;
+  addChannels(own, kOwn);
+  own_ = positions(file_.channels(), own).value_or(std::vector<size_t>());
 }
 
 LightStage StageReader::read(int top, int count) {

@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/for_ranges.h"
 #include "image/io/read_image.h"
+#include "math/unit_direction.h"
 
 namespace chromeball {
 namespace {
@@ -87,10 +88,9 @@ class PhotographList {
       if (std::fabs(numbers[1]) > 90) fail(line, "the elevation is not from -90 to 90 degrees");
       return directionAt(numbers[0], numbers[1]);
     }
-    const double longest =
-        std::max({std::fabs(numbers[0]), std::fabs(numbers[1]), std::fabs(numbers[2])});
-    if (longest == 0) fail(line, "the direction has no length");
-    return glm::normalize(dvec3(numbers[0], numbers[1], numbers[2]) / longest);
+    const dvec3 direction = unitOrZero({numbers[0], numbers[1], numbers[2]});
+    if (direction == dvec3(0)) fail(line, "the direction has no length");
+    return direction;
   }
 
   fs::path csv_;

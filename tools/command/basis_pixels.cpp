@@ -2,14 +2,13 @@
 #include "basis_pixels.h"
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <optional>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "basis_job.h"
 #include "integrate/tile_grid.h"
+#include "interrupt.h"
 #include "job/memory_estimate.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -20,8 +19,6 @@
 
 namespace chromeball {
 namespace {
-
-std::atomic<bool> interrupted = false;
 
 int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
@@ -96,8 +93,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
   print(loaded.messages, options.quiet());  // after the last error that input can cause
   const BasisRenderer renderer(world, loaded.camera, basis, s);
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  catchInterrupts();
   const Written written = [&] {
     ProgressBar bar(options.showsProgress());
     return writeStage(renderer, s, rows, own, metadataOf(options, job),

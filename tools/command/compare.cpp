@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 
 #include "base/error.h"
 #include "commands.h"
+#include "interrupt.h"
 #include "job/job.h"
 #include "job/job_description.h"
 #include "job/json_text.h"
@@ -29,8 +29,6 @@ namespace chromeball {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> interrupted = false;
 
 struct Arguments {
   SceneOptions scene;
@@ -215,8 +213,7 @@ void compare(const Arguments& a) {
     writeText(files.seconds, secondsPlot(r));
     writeText(files.page, reportHtml(study, store, r, about, machine));
   };
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  catchInterrupts();
   const bool whole = [&] {
     ProgressBar bar(a.scene.showsProgress());
     return run.run([&](double fraction) { bar.update(fraction); }, [&] { write(results()); },

@@ -17,8 +17,14 @@
 namespace chromeball {
 namespace {
 
+bool isNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == 0;
+}
+
 struct OpticsOption {
-  const char* name;
+  std::string_view name;
   std::optional<std::string> value = {};
 };
 
@@ -32,19 +38,11 @@ struct Arguments {
   bool exact = false;
 
   // A file in place of the strength of the vignette; empty: none.
-  std::string falloff() const;
+  std::string falloff() const {
+    const auto& vignette = optics.back().value;
+    return vignette && !isNumber(*vignette) ? *vignette : "";
+  }
 };
-
-bool isNumber(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == 0;
-}
-
-std::string Arguments::falloff() const {
-  const auto& vignette = optics.back().value;
-  return vignette && !vignette->empty() && !isNumber(*vignette) ? *vignette : "";
-}
 
 Image readFalloff(const std::string& path) {
   Image falloff = readImage(path);
@@ -58,9 +56,10 @@ Image readFalloff(const std::string& path) {
 DevelopSettings settingsOf(const Arguments& arguments) {
   DevelopSettings settings;
   for (const auto& [name, value] : arguments.optics)
-    if (value && (arguments.falloff().empty() || *value != arguments.falloff()))
+    if (name == "vignette" && !arguments.falloff().empty())
+      settings.falloff = readFalloff(arguments.falloff());
+    else if (value)
       setDevelop(settings, name, *value, fmt::format("--{}", name));
-  if (!arguments.falloff().empty()) settings.falloff = readFalloff(arguments.falloff());
   if (arguments.exact) settings.method = GaussianMethod::Exact;
   if (settings.clip) *settings.clip *= std::exp2(-arguments.exposure);
   return settings;
@@ -173,8 +172,7 @@ void addImageDevelopCommand(CLI::App& image) {
                    "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)")
       ->required();
   const auto add = [&](const char* name, const char* type, const char* help) {
-    const auto found =
-        std::ranges::find(arguments->optics, std::string_view(name), &OpticsOption::name);
+    const auto found = std::ranges::find(arguments->optics, name, &OpticsOption::name);
     command->add_option(std::string("--") + name, found->value, help)->type_name(type);
   };
   add("clip", "X",

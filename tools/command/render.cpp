@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -11,6 +9,7 @@
 #include "commands.h"
 #include "image_noise_text.h"
 #include "image_render.h"
+#include "interrupt.h"
 #include "job/develop_image.h"
 #include "job/frame_scene.h"
 #include "job/job.h"
@@ -29,8 +28,6 @@
 
 namespace chromeball {
 namespace {
-
-std::atomic<bool> interrupted = false;
 
 // An image without samples in some pixels must not overwrite one that may be complete.
 void nameAsPartial(std::vector<std::string>& outputs) {
@@ -65,11 +62,6 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
                inWords(result.denoised), fmt::join(job.outputs, ", "));
-}
-
-void stopOnSignals() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
 }
 
 void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
@@ -117,7 +109,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
-    stopOnSignals();
+    catchInterrupts();
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
@@ -146,7 +138,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   const std::vector<int>& frames = sequence.numbers();
   const ThreadLimit threads(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
-  stopOnSignals();
+  catchInterrupts();
   FrameScene scene;
   std::set<std::string> printed;
   size_t kept = 0;
