@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-constexpr int kVarianceReach = 1;  // of the windows over which squared halves are averaged
+constexpr int kNoiseReach = 1;  // of the windows over which squared halves are averaged
 
 // A power of two that brings the mean of the images close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
@@ -37,7 +37,7 @@ Plane varianceOf(const Plane& a, const Plane& b) {
     const float half = (a.at(x, y) - b.at(x, y)) / 2;
     return half * half;
   });
-  return boxMean(squared, kVarianceReach);
+  return boxMean(squared, kNoiseReach);
 }
 
 HalfPlanes halvesOf(const HalvedImage& image, float scale) {
@@ -68,7 +68,7 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
   HalfGuides halves;
   for (int c = 0; c < image.mean.channels; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
-    const Plane noise = boxMean(squares(half), kVarianceReach);
+    const Plane noise = boxMean(squares(half), kNoiseReach);
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
       halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {

@@ -7,8 +7,8 @@ namespace chromeball {
 namespace {
 
 constexpr int kReach = TileWeights::kReach;
-constexpr int kBiasReach = 3 * kReach;
-constexpr float kWindow = (2 * kReach + 1) * (2 * kReach + 1);
+constexpr int kFireflyBiasReach = 3 * kReach;
+constexpr float kFireflyWindow = (2 * kReach + 1) * (2 * kReach + 1);
 
 Plane energyOf(const RgbPlanes& image) {
   return makePlane(image[0].width(), image[0].height(), [&](int x, int y) {
@@ -22,7 +22,7 @@ Plane energyOf(const RgbPlanes& image) {
 Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
   const Plane support = boxMean(otherEnergy, kReach);
   return makePlane(energy.width(), energy.height(), [&](int x, int y) {
-    const float limit = kWindow * support.at(x, y);
+    const float limit = kFireflyWindow * support.at(x, y);
     return energy.at(x, y) > limit ? std::sqrt(limit / energy.at(x, y)) : 1.0f;
   });
 }
@@ -38,7 +38,7 @@ Plane limit(RgbPlanes& half, const Plane& factors) {
   for (Plane& channel : half)
     channel =
         makePlane(width, height, [&](int x, int y) { return factors.at(x, y) * channel.at(x, y); });
-  return boxMean(removed, kBiasReach);
+  return boxMean(removed, kFireflyBiasReach);
 }
 
 }  // namespace

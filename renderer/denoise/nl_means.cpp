@@ -6,12 +6,12 @@
 namespace chromeball {
 namespace {
 
-constexpr int kWidth = TileWeights::kWidth, kHeight = TileWeights::kHeight;
+constexpr int kTileWidth = TileWeights::kWidth, kTileHeight = TileWeights::kHeight;
 constexpr int kPatch = TileWeights::kPatch;
 
 // A tile and the patches around its pixels.
-constexpr int kPaddedHeight = kHeight + 2 * kPatch;
-constexpr int kPaddedWidth = kWidth + kLanes;
+constexpr int kPaddedHeight = kTileHeight + 2 * kPatch;
+constexpr int kPaddedWidth = kTileWidth + kLanes;
 static_assert(2 * kPatch <= kLanes);
 static_assert(kPaddedWidth + kPatch + TileWeights::kReach <= Plane::kMargin);
 using Padded = std::array<std::array<float, kPaddedWidth>, kPaddedHeight>;
@@ -42,16 +42,16 @@ void pixelDistances(const NoisyPlanes& guide, int left, int top, int dx, int dy,
 void patchMeans(Padded& distances, TileWeights::Tile& means) {
   constexpr int kSide = 2 * kPatch + 1;
   for (auto& row : distances)
-    for (int x = 0; x < kWidth; x += kLanes) {
+    for (int x = 0; x < kTileWidth; x += kLanes) {
       Float8 sum{};
       for (int i = 0; i < kSide; ++i) sum += load8(&row[size_t(x + i)]);
       store8(&row[size_t(x)], sum);
     }
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; x += kLanes) {
+  for (int y = 0; y < kTileHeight; ++y)
+    for (int x = 0; x < kTileWidth; x += kLanes) {
       Float8 sum{};
       for (int i = 0; i < kSide; ++i) sum += load8(&distances[size_t(y + i)][size_t(x)]);
-      store8(&means[size_t(y * kWidth + x)], sum * (1 / float(kSide * kSide)));
+      store8(&means[size_t(y * kTileWidth + x)], sum * (1 / float(kSide * kSide)));
     }
 }
 
@@ -76,12 +76,13 @@ void TileWeights::compute(const NoisyPlanes& guide, int left, int top) {
     for (size_t i = 0; i < tile.size(); i += kLanes)
       store8(&tile[i], expOfMinus(max8(load8(&tile[i]), Float8{})));
 
-    const Range columns(left, kWidth, dx, plane.width()), rows(top, kHeight, dy, plane.height());
-    for (int y = 0; y < kHeight; ++y) {
-      float* row = &tile[size_t(y * kWidth)];
+    const Range columns(left, kTileWidth, dx, plane.width()),
+        rows(top, kTileHeight, dy, plane.height());
+    for (int y = 0; y < kTileHeight; ++y) {
+      float* row = &tile[size_t(y * kTileWidth)];
       const bool inside = y >= rows.begin && y < rows.end && columns.begin < columns.end;
-      std::fill(row, row + (inside ? columns.begin : kWidth), 0.0f);
-      if (inside) std::fill(row + columns.end, row + kWidth, 0.0f);
+      std::fill(row, row + (inside ? columns.begin : kTileWidth), 0.0f);
+      if (inside) std::fill(row + columns.end, row + kTileWidth, 0.0f);
     }
   });
 }

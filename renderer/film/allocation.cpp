@@ -11,20 +11,20 @@
 namespace chromeball {
 namespace {
 
-constexpr int kReach = 2;          // windows are 5 x 5 pixels, without the one in the middle
-constexpr float kMaxRate = 64;     // keeps the work of a tile bounded
-constexpr double kMaxCount = 4e9;  // of a pixel
+constexpr int kAllocationReach = 2;  // windows are 5 x 5 pixels, without the one in the middle
+constexpr float kMaxRate = 64;       // keeps the work of a tile bounded
+constexpr double kMaxCount = 4e9;    // of a pixel
 constexpr uint64_t kPixelsPerMeter = 256;  // one of them measures the exposure
 
 // Gaussian with a standard deviation of one pixel.
 double windowWeight(int dx, int dy) {
-  constexpr double kWeights[kReach + 1] = {1, 0.606531, 0.135335};
+  constexpr double kWeights[kAllocationReach + 1] = {1, 0.606531, 0.135335};
   return kWeights[std::abs(dx)] * kWeights[std::abs(dy)];
 }
 
 template <class Visit>
 void forNeighbors(const PixelErrors& image, int x, int y, const Visit& visit) {
-  forWindow(image.width, image.height, x, y, kReach, [&](size_t j, int dx, int dy) {
+  forWindow(image.width, image.height, x, y, kAllocationReach, [&](size_t j, int dx, int dy) {
     if (dx != 0 || dy != 0) visit(j, dx, dy);
   });
 }

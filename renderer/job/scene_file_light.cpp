@@ -95,7 +95,7 @@ SunLamp readSun(const Section& light) {
   return lamp;
 }
 
-Rotation readRotation(const Entry& entry) {
+Rotation readProbeRotation(const Entry& entry) {
   if (!entry) return {};
   Entry rotation = entry;
   rotation.setting = findSetting("probe", "rotation");
@@ -105,7 +105,7 @@ Rotation readRotation(const Entry& entry) {
 // Lights with an angle become suns; those without, directional lamps.
 std::vector<Lamp> readList(const Section& light, const std::string& name,
                            std::vector<std::string>& files) {
-  const Rotation rotation = readRotation(light["rotation"]);
+  const Rotation rotation = readProbeRotation(light["rotation"]);
   const std::string path = existingFile(light.required("file"));
   const Entry visible = light["visible"];
   const bool isVisible = !visible || visible.flag();

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-constexpr uint64_t kSet = uint64_t(2) << 32;  // apart from the discs of sky_discs.h
+constexpr uint64_t kPolygonSet = uint64_t(2) << 32;  // apart from the discs of sky_discs.h
 
 SphericalPolygon turned(const SphericalPolygon& polygon, const Rotation& rotation) {
   std::vector<dvec3> corners;
@@ -36,8 +36,8 @@ PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Imag
 void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
                            std::vector<DirectionSample>& out) const {
   if (choice_.row(0).back() == 0) return;  // all are black
-  double u = toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kSet)));
-  const float v = toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kSet + 1)));
+  double u = toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kPolygonSet)));
+  const float v = toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kPolygonSet + 1)));
   const int chosen = choice_.sample(0, u);
   const Light& light = lights_[size_t(chosen)];
   const vec3 wi(light.polygon.sample(u, v));

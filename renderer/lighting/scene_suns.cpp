@@ -4,7 +4,7 @@
 namespace chromeball {
 namespace {
 
-constexpr uint64_t kSet = uint64_t(1) << 32;  // apart from the suns of the strategy `suns`
+constexpr uint64_t kSceneSunSet = uint64_t(1) << 32;  // apart from the suns of the strategy `suns`
 
 std::vector<Sun> discsOf(const std::vector<SunLamp>& lamps, bool onlyVisible) {
   std::vector<Sun> suns;
@@ -26,7 +26,7 @@ SceneSuns::SceneSuns(const std::vector<SunLamp>& suns)
 void SceneSuns::sample(const LightPoint&, const PixelSampler& sampler,
                        std::vector<DirectionSample>& out) const {
   const uint32_t u = sampler.bits(dimension::kLight), v = sampler.bits(dimension::kLight + 1);
-  all_.sample(u, v, kSet, [&](const vec3& wi) {
+  all_.sample(u, v, kSceneSunSet, [&](const vec3& wi) {
     const SkyDiscs::Light light = all_.at(wi);
     if (light.pdf > 0) out.push_back({wi, light.radiance / light.pdf, light.pdf});
   });

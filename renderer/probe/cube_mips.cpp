@@ -23,7 +23,7 @@ glm::ivec2 stripTexel(int size, int face, int x, int y) {
 
 // Calls `visit` with the texel of the strip for each texel of the faces, row by row.
 template <class Visit>
-void forTexels(int size, const Visit& visit) {
+void forFaceTexels(int size, const Visit& visit) {
   for (int face = 0; face < 6; ++face)
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) visit(stripTexel(size, face, x, y));
@@ -33,14 +33,14 @@ Image faces(const Image& latLong, int size) {
   const ImageSize strip{size, 6 * size};
   const Image upright = convert(latLong, Mapping::LatLong, Mapping::VerticalStrip, strip);
   std::vector<dvec3> colors;
-  forTexels(size, [&](const glm::ivec2& t) { colors.emplace_back(upright.rgb(t.x, t.y)); });
+  forFaceTexels(size, [&](const glm::ivec2& t) { colors.emplace_back(upright.rgb(t.x, t.y)); });
   return imageOf(strip, colors);
 }
 
 Image convolvedFaces(const Image& latLong, int size, const ZonalKernel& kernel) {
   const ImageSize strip{size, 6 * size};
   std::vector<vec3> directions;
-  forTexels(size, [&](const glm::ivec2& t) {
+  forFaceTexels(size, [&](const glm::ivec2& t) {
     directions.emplace_back(*uvToDirection(Mapping::VerticalStrip,
                                            (dvec2(t) + 0.5) / dvec2(strip.width, strip.height)));
   });

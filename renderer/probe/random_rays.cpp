@@ -11,12 +11,12 @@ namespace chromeball {
 namespace {
 
 // Of 1, the luminance L and L^2: the same arcs for all, so that a constant probe has no variance.
-using Row = RowIntegrals<dvec3, 5>;
+using RaysRow = RowIntegrals<dvec3, 5>;
 
 // Rows of coarser maps are divided (probe/irradiance.cpp).
-constexpr int kMinRows = 256;
+constexpr int kMinRowsOfRays = 256;
 
-Row rowOf(const Image& latLong, int y, const AzimuthTable<5>& table) {
+RaysRow raysRowOf(const Image& latLong, int y, const AzimuthTable<5>& table) {
   std::vector<dvec3> texels;
   texels.reserve(size_t(latLong.width));
   for (int x = 0; x < latLong.width; ++x) {
@@ -44,7 +44,8 @@ struct SquareMoments {
 struct Sums {
   dvec3 cosine{0}, cosine2{0};
 
-  void add(const Row& row, const PolarMoments& m, const SquareMoments& m2, const Horizon& horizon) {
+  void add(const RaysRow& row, const PolarMoments& m, const SquareMoments& m2,
+           const Horizon& horizon) {
     const auto [one, c, s, cc, sc] = row.over(horizon.above(m.sine2, m.sineCosine));
     const dvec3& n = horizon.normal();
     const dvec3 across = n.z * c - n.x * s;
@@ -57,12 +58,12 @@ struct Sums {
 };
 
 std::vector<Sums> integrate(const Image& latLong, std::span<const vec3> normals) {
-  const int height = latLong.height, parts = (kMinRows + height - 1) / height;
+  const int height = latLong.height, parts = (kMinRowsOfRays + height - 1) / height;
   const AzimuthTable<5> table = azimuthTable<5>(latLong.width);
   const std::vector<Horizon> horizons(normals.begin(), normals.end());
   std::vector<Sums> sums(normals.size());
   for (int y = 0; y < height; ++y) {
-    const Row row = rowOf(latLong, y, table);
+    const RaysRow row = raysRowOf(latLong, y, table);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, normals.size(), 64), [&](const auto& range) {
       for (int part = 0; part < parts; ++part) {
         const double step = kPiD / (double(height) * parts), theta = step * (y * parts + part);

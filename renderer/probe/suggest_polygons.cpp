@@ -61,7 +61,7 @@ std::optional<SphericalPolygon> hullOf(const Image& map, const std::vector<Texel
 }
 
 // A bright region and the polygon around it.
-struct Candidate {
+struct PolygonCandidate {
   std::vector<Texel> region;
   SphericalPolygon polygon;
   double flux;    // of luminance
@@ -73,13 +73,13 @@ struct Candidate {
   }
 };
 
-std::optional<Candidate> candidateOf(const Image& map, std::vector<Texel> region) {
+std::optional<PolygonCandidate> candidateOf(const Image& map, std::vector<Texel> region) {
   double flux;
   const dvec3 centre = centreOf(map, region, flux);
   auto polygon = hullOf(map, region, centre);
   if (!polygon) return {};
   const PolygonSource source = sourceOf(map, *polygon);
-  return Candidate{std::move(region), *std::move(polygon), flux, unevenness({&source, 1})};
+  return PolygonCandidate{std::move(region), *std::move(polygon), flux, unevenness({&source, 1})};
 }
 
 // By the plane through the centre of the flux, across the direction in which the flux is spread
@@ -110,13 +110,13 @@ std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>
 }
 
 // Where a cut of a candidate changes most light.
-std::vector<Candidate>::iterator worstOf(std::vector<Candidate>& candidates) {
-  return std::ranges::max_element(candidates, {}, &Candidate::unevenFlux);
+std::vector<PolygonCandidate>::iterator worstOf(std::vector<PolygonCandidate>& candidates) {
+  return std::ranges::max_element(candidates, {}, &PolygonCandidate::unevenFlux);
 }
 
 // Replaces a candidate by its two parts, or notes that it has none.
-void divide(const Image& map, std::vector<Candidate>& candidates,
-            std::vector<Candidate>::iterator worst) {
+void divide(const Image& map, std::vector<PolygonCandidate>& candidates,
+            std::vector<PolygonCandidate>::iterator worst) {
   auto parts = cut(map, worst->region);
   if (parts[0].empty() || parts[1].empty()) {
     worst->uneven = 0;
@@ -151,7 +151,7 @@ std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
       regions.push_back(std::move(region));
     }
   std::ranges::stable_sort(regions, std::greater(), &Region::flux);
-  std::vector<Candidate> candidates;
+  std::vector<PolygonCandidate> candidates;
   auto region = regions.begin();
   while (candidates.size() < size_t(count)) {
     const auto worst = worstOf(candidates);
@@ -165,9 +165,9 @@ std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
       break;
     }
   }
-  std::ranges::stable_sort(candidates, std::greater(), &Candidate::flux);
+  std::ranges::stable_sort(candidates, std::greater(), &PolygonCandidate::flux);
   std::vector<SphericalPolygon> best;
-  for (Candidate& candidate : candidates) best.push_back(std::move(candidate.polygon));
+  for (PolygonCandidate& candidate : candidates) best.push_back(std::move(candidate.polygon));
   return best;
 }
 

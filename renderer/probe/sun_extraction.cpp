@@ -22,7 +22,7 @@ dvec3 centreDirection(const Image& image, Texel t) {
 }
 
 // The angle between unit vectors; accurate for small angles.
-double angleBetween(const dvec3& a, const dvec3& b) {
+double angleBetweenUnit(const dvec3& a, const dvec3& b) {
   return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
 
@@ -49,7 +49,7 @@ Core coreOf(const Image& image, const std::vector<Texel>& region) {
   }
   core.centre = glm::normalize(core.centre);
   for (const Texel t : region)
-    core.radius = std::max(core.radius, angleBetween(core.centre, centreDirection(image, t)));
+    core.radius = std::max(core.radius, angleBetweenUnit(core.centre, centreDirection(image, t)));
   return core;
 }
 
@@ -86,7 +86,7 @@ std::vector<Texel> texelsAround(const Image& image, const dvec3& centre, double 
   for (int y = top; y <= bottom; ++y)
     for (int i = 0; i < count; ++i) {
       const Texel t{((first + i) % w + w) % w, y};
-      const double angle = angleBetween(centre, centreDirection(image, t));
+      const double angle = angleBetweenUnit(centre, centreDirection(image, t));
       if (angle > inner && angle <= outer) texels.push_back(t);
     }
   return texels;
@@ -179,7 +179,7 @@ Sun discOf(const std::vector<Removed>& removed, int w, int h) {
   forEachPart(removed, w, h, [&](const dvec3& d, const dvec3& radiance, double solidAngle) {
     const double part = luminance(Rgb(radiance)) * solidAngle;
     flux += part;
-    distance += part * angleBetween(sun.direction, d);
+    distance += part * angleBetweenUnit(sun.direction, d);
   });
   sun.angle = 2 * 1.5 * distance / flux / kDegree;  // the mean over a disc is 2/3 of its radius
   return sun;

@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-constexpr const char* kOwn = "_PRT_OWN";
+constexpr const char* kOwnAttribute = "_PRT_OWN";
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::vector<BakedGeometry> transferGeometry(const std::vector<PlacedMesh>& meshe
     };
     for (size_t k = 0; k < transfer.count; ++k)
       add(TransferFile::nameOf(k), [&](size_t i) { return transfer.of(i)[k]; });
-    if (!transfer.own.empty()) add(kOwn, [&](size_t i) { return transfer.own[i]; });
+    if (!transfer.own.empty()) add(kOwnAttribute, [&](size_t i) { return transfer.own[i]; });
     first += count;
   }
   return all;
@@ -47,7 +47,7 @@ TransferLight lightOf(const TransferFile& file, const std::vector<BakePoint>& po
       const std::vector<vec3>& transfer = file.attribute(i, TransferFile::nameOf(k));
       if (k == 0 || light[k] != Rgb(0)) add(transfer, dvec3(light[k]));
     }
-    if (const std::vector<vec3>* own = file.find(i, kOwn)) add(*own, dvec3(1));
+    if (const std::vector<vec3>* own = file.find(i, kOwnAttribute)) add(*own, dvec3(1));
   }
   TransferLight all;
   for (const BakePoint& point : points) addPoint(all, kPiD * sums[size_t(point.instance)][point.x]);

@@ -12,12 +12,12 @@ double encodeSrgb(double c) {  // IEC 61966-2-1
 
 // 8-bit sRGB codes of linear light. The steps are finer than the distance between codes, even where
 // the curve is steepest.
-constexpr int kSteps = 1 << 14;
+constexpr int kCodeSteps = 1 << 14;
 const std::vector<uint8_t>& srgbCodes() {
   static const std::vector<uint8_t> kCodes = [] {
-    std::vector<uint8_t> codes(kSteps + 1);
-    for (int i = 0; i <= kSteps; ++i)
-      codes[size_t(i)] = uint8_t(std::lround(255 * encodeSrgb(double(i) / kSteps)));
+    std::vector<uint8_t> codes(kCodeSteps + 1);
+    for (int i = 0; i <= kCodeSteps; ++i)
+      codes[size_t(i)] = uint8_t(std::lround(255 * encodeSrgb(double(i) / kCodeSteps)));
     return codes;
   }();
   return kCodes;
@@ -25,7 +25,7 @@ const std::vector<uint8_t>& srgbCodes() {
 
 uint8_t code8(float c, bool srgb) {
   c = std::min(c, 1.0f);
-  return srgb ? srgbCodes()[size_t(c * kSteps + 0.5f)] : uint8_t(c * 255 + 0.5f);
+  return srgb ? srgbCodes()[size_t(c * kCodeSteps + 0.5f)] : uint8_t(c * 255 + 0.5f);
 }
 
 // The texels of a row that one texel of the halved row covers, with the weight of each: two texels,

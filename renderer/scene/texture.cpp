@@ -17,17 +17,17 @@ const std::array<float, 256> kSrgb8 = [] {
   return table;
 }();
 
-// The curve at kSteps + 1 equidistant points, for sources of more than 8 bits. Linear interpolation
-// between them has an error below 5e-7.
-constexpr int kSteps = 1024;
-const std::array<float, kSteps + 2> kSrgbCurve = [] {
-  std::array<float, kSteps + 2> table;
-  for (int i = 0; i <= kSteps + 1; ++i) table[i] = float(decodeSrgb(double(i) / kSteps));
+// The curve at kCurveSteps + 1 equidistant points, for sources of more than 8 bits. Linear
+// interpolation between them has an error below 5e-7.
+constexpr int kCurveSteps = 1024;
+const std::array<float, kCurveSteps + 2> kSrgbCurve = [] {
+  std::array<float, kCurveSteps + 2> table;
+  for (int i = 0; i <= kCurveSteps + 1; ++i) table[i] = float(decodeSrgb(double(i) / kCurveSteps));
   return table;
 }();
 
 float decodeSrgbFast(float c) {
-  const float x = std::fmin(std::fmax(c, 0.0f), 1.0f) * kSteps;
+  const float x = std::fmin(std::fmax(c, 0.0f), 1.0f) * kCurveSteps;
   const int i = int(x);
   return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
 }

@@ -27,7 +27,7 @@ float etaCoordinate(float eta) {
 //   a: 1 for reflection, -1 for refraction, below the critical angle
 //   b: as a, times Fresnel's reflectance
 template <size_t kEtas>
-std::array<GlassAlbedo, kEtas> integrate(float mu, float alpha, std::span<const vec2> points) {
+std::array<GlassAlbedo, kEtas> integrateGlass(float mu, float alpha, std::span<const vec2> points) {
   std::array<float, kEtas> etas;
   for (size_t e = 0; e < kEtas; ++e) etas[e] = etaNode(int(e), int(kEtas));
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
@@ -59,7 +59,8 @@ GlassTable::GlassTable() {
   tbb::parallel_for(0, kRoughnesses * kAngles, [&](int location) {
     const int r = location / kAngles, i = location % kAngles;
     const float roughness = roughnessNode(r, kRoughnesses);
-    const auto albedos = integrate<kEtas>(angleNode(i, kAngles), roughness * roughness, points);
+    const auto albedos =
+        integrateGlass<kEtas>(angleNode(i, kAngles), roughness * roughness, points);
     for (int e = 0; e < kEtas; ++e) grid_.node({e, r, i}) = albedos[size_t(e)];
   });
 }

@@ -12,7 +12,7 @@ namespace {
 
 using charlie::kMinRoughness;
 
-float integrate(float mu, float alpha, std::span<const vec2> points) {
+float integrateSheen(float mu, float alpha, std::span<const vec2> points) {
   const vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
   double sum = 0;
   for (const vec2& u : points)
@@ -27,7 +27,7 @@ SheenTable::SheenTable() {
   tbb::parallel_for(0, kRoughnesses, [&](int r) {
     const float roughness = kMinRoughness + (1 - kMinRoughness) * float(r) / (kRoughnesses - 1);
     for (int i = 0; i < kAngles; ++i)
-      grid_.node({r, i}) = integrate(angleNode(i, kAngles), roughness * roughness, points);
+      grid_.node({r, i}) = integrateSheen(angleNode(i, kAngles), roughness * roughness, points);
   });
 }
 

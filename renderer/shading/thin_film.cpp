@@ -7,7 +7,7 @@ namespace chromeball {
 namespace {
 
 // Fresnel's reflectance at normal incidence between media of these indices.
-float normalReflectance(float a, float b) {
+float normalFilmReflectance(float a, float b) {
   const float r = (a - b) / (a + b);
   return r * r;
 }
@@ -47,7 +47,7 @@ Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float
   for (int c = 0; c < 3; ++c) {
     const float root = std::sqrt(glm::clamp(baseF0[c], 0.0f, 0.9999f));
     const float base = (1 + root) / (1 - root);
-    const float r23 = fresnelSchlick(normalReflectance(base, film), 1.0f, inside);
+    const float r23 = fresnelSchlick(normalFilmReflectance(base, film), 1.0f, inside);
     const float shift = shift21 + (base < film ? kPi : 0);
     const float r123 = glm::clamp(r12 * r23, 1e-5f, 0.9999f);
     const float rs = passed * passed * r23 / (1 - r123);

@@ -33,6 +33,7 @@ file(READ renderer/study/report/report.html report_html)
 file(READ renderer/study/report/report.js report_script)
 configure_file(renderer/study/report/embedded.cpp.in report_embedded.cpp @ONLY)
 target_sources(chromeball_renderer PRIVATE ${PROJECT_BINARY_DIR}/report_embedded.cpp)
+chromeball_unity(chromeball_renderer 48)
 # What nearly every file includes, parsed once: saves a fifth of a build's time.
 target_precompile_headers(chromeball_renderer PRIVATE
   <algorithm> <functional> <memory> <string> <vector> <fmt/format.h>

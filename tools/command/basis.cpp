@@ -11,14 +11,14 @@
 namespace chromeball {
 namespace {
 
-struct Arguments : SceneOptions {
+struct BasisArguments : SceneOptions {
   std::string at = "pixels", out;
   std::string directions, functions;  // at pixels; at vertices
   bool halves = false, isGlossy = false;
   std::optional<uint64_t> clusters, vectors;
 };
 
-void run(const Arguments& a) {
+void run(const BasisArguments& a) {
   if (!a.isGlossy && (a.clusters || a.vectors)) throwInput("--clusters, --vectors: need --glossy");
   if (a.at == "pixels") {
     if (!a.functions.empty()) throwInput("--basis: needs --at vertices; see --directions");
@@ -37,7 +37,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addBasisCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BasisArguments>();
   CLI::App* command = app.add_subcommand(
       "basis",
       "Render a light stage, a scene under light from each of many directions; or the same "

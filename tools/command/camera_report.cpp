@@ -5,6 +5,7 @@
 
 #include "job/camera_file.h"
 #include "job/json_text.h"
+#include "json_values.h"
 
 namespace chromeball {
 namespace {
@@ -15,8 +16,6 @@ std::string withError(const std::string& value, std::optional<double> error) {
   if (!error) return value;
   return std::isfinite(*error) ? fmt::format("{} +- {:.2g}", value, *error) : value + " +- unknown";
 }
-
-Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -60,17 +59,17 @@ std::string reportJson(const CameraReport& report) {
   const SolvedCamera& camera = report.camera;
   Json json = {{"method", report.method},
                {"size", {camera.size.width, camera.size.height}},
-               {"position", toJson(camera.position)},
-               {"look_at", toJson(lookAt(camera))},
-               {"up", toJson(camera.axes[1])},
+               {"position", vectorToJson(camera.position)},
+               {"look_at", vectorToJson(lookAt(camera))},
+               {"up", vectorToJson(camera.axes[1])},
                {"fov", glm::degrees(camera.fov())},
                {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
                {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
                {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
   const CameraFit* fit = report.fit;
   if (!fit) return jsonText(json, 2);
-  Json errors = {{"rotation", toJson(glm::degrees(fit->errors.rotation))}};
-  if (const auto& e = fit->errors.position) errors["position"] = toJson(*e);
+  Json errors = {{"rotation", vectorToJson(glm::degrees(fit->errors.rotation))}};
+  if (const auto& e = fit->errors.position) errors["position"] = vectorToJson(*e);
   if (const auto& e = fit->errors.fov) errors["fov"] = glm::degrees(*e);
   if (const auto& e = fit->errors.k1) errors["k1"] = *e;
   json["errors"] = errors;

@@ -23,14 +23,14 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct CameraSolveArguments {
   std::string model, plate, points, lines, fspy, output, preview;
   std::string principalPoint, origin, up = "y";
   std::optional<double> fov, focal35, height;
   bool distortion = false, json = false;
 };
 
-void check(const Arguments& a) {
+void check(const CameraSolveArguments& a) {
   const auto isGiven = [](const std::string& name) { return !name.empty(); };
   if (isGiven(a.points) + isGiven(a.lines) + isGiven(a.fspy) != 1)
     throwInput("give one of --points, --lines and --fspy");
@@ -72,7 +72,7 @@ dvec2 pairOf(const std::string& text, const char* option) {
   return {numbers[0], numbers[1]};
 }
 
-CameraKnowledge knowledgeOf(const Arguments& a, const ImageSize& size) {
+CameraKnowledge knowledgeOf(const CameraSolveArguments& a, const ImageSize& size) {
   CameraKnowledge known{.size = size, .findsDistortion = a.distortion};
   if (!a.principalPoint.empty())
     known.principalPoint = pairOf(a.principalPoint, "--principal-point");
@@ -100,7 +100,7 @@ struct Solution {
   CameraReport report() const { return {method, camera, fit ? &*fit : nullptr, names}; }
 };
 
-Solution solve(const Arguments& a, const ImageSize& size) {
+Solution solve(const CameraSolveArguments& a, const ImageSize& size) {
   Solution s;
   CameraKnowledge known = knowledgeOf(a, size);
   if (!a.fspy.empty()) {
@@ -147,7 +147,7 @@ void writePreview(const std::string& path, const Scene& scene, const Solution& s
   writeImage(path, picture);
 }
 
-void run(const Arguments& a) {
+void run(const CameraSolveArguments& a) {
   check(a);
   Image plate = readPlate(a.plate);
   const Scene scene = loadModels(a.model);
@@ -174,7 +174,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addCameraSolveCommand(CLI::App& camera) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<CameraSolveArguments>();
   CLI::App* command = camera.add_subcommand(
       "solve",
       "Find where a photograph was taken from, and its field of view: by points of known "

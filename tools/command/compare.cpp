@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CompareArguments {
   SceneOptions scene;
   std::vector<std::string> strategies{"all"}, integrators;
   std::vector<int> samples;
@@ -78,7 +78,7 @@ void sortUnique(std::vector<Budget>& budgets) {
   budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
 }
 
-std::vector<Budget> planBudgets(const Arguments& a) {
+std::vector<Budget> planBudgets(const CompareArguments& a) {
   std::vector<Budget> budgets;
   for (const int samples : a.samples) {
     if (samples < 1) throwInput("--samples: {} is not 1 or more", samples);
@@ -97,7 +97,7 @@ std::vector<Budget> planBudgets(const Arguments& a) {
 // 16 times the largest budget, so that the reference's variance is small compared with that of each
 // strategy unless the reference's own strategy is less than half as efficient. The number of
 // samples in a budget of seconds is unknown.
-int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets) {
+int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& budgets) {
   constexpr int kFactor = 16, kMin = 1024;
   if (a.referenceSamples && *a.referenceSamples < Study::kReferenceParts)
     throwInput("--reference-samples: {} is not {} or more", *a.referenceSamples,
@@ -108,7 +108,7 @@ int planReferenceSamples(const Arguments& a, const std::vector<Budget>& budgets)
   return a.referenceSamples.value_or(std::max(kMin, int(std::min(kFactor * maximum, 1e6))));
 }
 
-Study planStudy(const Arguments& a) {
+Study planStudy(const CompareArguments& a) {
   Study study;
   study.folder = a.folder;
   study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
@@ -160,14 +160,14 @@ struct ReportFiles {
   std::string csv, json, samples, seconds, page;
 };
 
-void checkOutputs(const ReportFiles& files, const Arguments& a, const LoadedScene& loaded) {
+void checkOutputs(const ReportFiles& files, const CompareArguments& a, const LoadedScene& loaded) {
   std::vector<std::string> inputs = loaded.files;
   inputs.push_back(a.scene.scene);
   inputs.push_back(a.reference);
   checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
 }
 
-void compare(const Arguments& a) {
+void compare(const CompareArguments& a) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
@@ -235,8 +235,8 @@ void compare(const Arguments& a) {
 }  // namespace
 
 void addCompareCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
-  Arguments& a = *arguments;
+  const auto arguments = std::make_shared<CompareArguments>();
+  CompareArguments& a = *arguments;
   CLI::App* command =
       app.add_subcommand("compare", "Compare lighting strategies on a scene: error, bias and time");
   addSceneOptions(*command, a.scene, SceneCommand::Compare);

@@ -17,7 +17,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ImageDenoiseArguments {
   std::string input, output;
   bool quiet = false;
 };
@@ -69,7 +69,7 @@ void checkMemory(const std::string& path, const Image& color) {
                color.height, needed * 1e-9);
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageDenoiseArguments& arguments) {
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, {arguments.input});
   ImageFile file = readImageFile(arguments.input);
@@ -102,7 +102,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageDenoiseCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageDenoiseArguments>();
   CLI::App* command = image.add_subcommand(
       "denoise", "Remove noise from a render (biased), and estimate the error that remains.");
   command->add_option("IN", arguments->input, "A render with --aov denoise, .exr")->required();

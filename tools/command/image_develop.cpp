@@ -28,7 +28,7 @@ struct OpticsOption {
   std::optional<std::string> value = {};
 };
 
-struct Arguments {
+struct ImageDevelopArguments {
   std::string in, out, tone = "none";
   // In the order in which they are applied; the last also takes a file.
   std::vector<OpticsOption> optics = {{"clip"},  {"depth-blur"}, {"motion"},
@@ -53,7 +53,7 @@ Image readFalloff(const std::string& path) {
   return falloff;
 }
 
-DevelopSettings settingsOf(const Arguments& arguments) {
+DevelopSettings settingsOf(const ImageDevelopArguments& arguments) {
   DevelopSettings settings;
   for (const auto& [name, value] : arguments.optics)
     if (name == "vignette" && !arguments.falloff().empty())
@@ -65,7 +65,7 @@ DevelopSettings settingsOf(const Arguments& arguments) {
   return settings;
 }
 
-void checkDisplay(const Arguments& arguments, const DevelopSettings& settings) {
+void checkDisplay(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
   if (!std::isfinite(arguments.exposure) || std::fabs(arguments.exposure) > 100)
     throwInput("--exposure: {} should be -100 to 100 stops", arguments.exposure);
   if (lowerExtension(arguments.out) == ".png") return;
@@ -75,14 +75,14 @@ void checkDisplay(const Arguments& arguments, const DevelopSettings& settings) {
     throwInput("--exposure: {} is linear, and nothing is clipped; leave it out", arguments.out);
 }
 
-void checkEffects(const Arguments& arguments, const DevelopSettings& settings) {
+void checkEffects(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
   if (arguments.exact && settings.bloom.empty() && !settings.glare)
     throwInput("--exact: has no effect without --bloom or --glare");
   if (arguments.fov && !settings.needsFov())
     throwInput("--fov: has no effect without --vignette STRENGTH, --glare or --depth-blur");
 }
 
-ViewFrame frameOf(const Arguments& arguments, const ImageFile& file, const Image& color,
+ViewFrame frameOf(const ImageDevelopArguments& arguments, const ImageFile& file, const Image& color,
                   const DevelopSettings& settings) {
   ViewFrame frame = viewFrame(color, file.placement, file.metadata);
   if (arguments.fov) {
@@ -105,13 +105,13 @@ Image depthOf(const ImageFile& file, const std::string& path) {
   return *std::move(depth);
 }
 
-Image colorOf(const ImageFile& file, const std::string& path) {
+Image colorToDevelop(const ImageFile& file, const std::string& path) {
   if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
   throwInput("{}: has no color", path);
 }
 
 // "bloom=.75:1,.25:32 vignette=.4", after what was done to the image before.
-std::string historyOf(const Arguments& arguments, const Metadata& metadata) {
+std::string historyOf(const ImageDevelopArguments& arguments, const Metadata& metadata) {
   std::string history;
   if (const auto earlier = metadata.find("developed"); earlier != metadata.end())
     if (const auto* text = std::get_if<std::string>(&earlier->second)) history = *text + "; then";
@@ -128,9 +128,9 @@ struct Input {
   ViewFrame frame;
 };
 
-Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
+Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
   const ImageFile file = readImageFile(arguments.in);
-  Image color = colorOf(file, arguments.in);
+  Image color = colorToDevelop(file, arguments.in);
   Input input;
   input.frame = frameOf(arguments, file, color, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
@@ -142,7 +142,7 @@ Input readInput(const Arguments& arguments, const DevelopSettings& settings) {
   return input;
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageDevelopArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.falloff()});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
@@ -161,7 +161,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageDevelopCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageDevelopArguments>();
   CLI::App* command = image.add_subcommand(
       "develop",
       "Show an HDR image through the optics of a camera: blur, streaks and vignetting before tone "

@@ -14,11 +14,11 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ImageDivideArguments {
   std::string a, b, output;
 };
 
-void run(const Arguments& arguments) {
+void run(const ImageDivideArguments& arguments) {
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
   ImageFile file = readImageFile(arguments.a);
@@ -46,7 +46,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageDivideCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageDivideArguments>();
   CLI::App* command = image.add_subcommand(
       "divide",
       "Divide the colour of an image by that of another, in linear light: a photograph by its flat "

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ImageErrorArguments {
   std::string a, b, output, map = "relative";
   bool json = false, flip = false;
 };
@@ -86,14 +86,14 @@ bool isDisplayReferred(const std::string& path) {
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
-Image flipOf(const Arguments& arguments, const Side& a, const Side& b) {
+Image flipOf(const ImageErrorArguments& arguments, const Side& a, const Side& b) {
   return isDisplayReferred(arguments.a) && isDisplayReferred(arguments.b)
              ? flip(b.color, a.color)
              : hdrFlip(b.color, a.color);
 }
 
 // A false-color image; prints its scale.
-void writeMap(const Arguments& arguments, const Image& map) {
+void writeMap(const ImageErrorArguments& arguments, const Image& map) {
   constexpr double kDecades = 3, kMaxZ = 5;
   const bool logarithmic = arguments.map == "relative";
   const double maximum = arguments.map == "flip" ? 1
@@ -114,7 +114,7 @@ void writeMap(const Arguments& arguments, const Image& map) {
                logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageErrorArguments& arguments) {
   static constexpr std::array<std::string_view, 3> kMaps = {"relative", "z", "flip"};
   if (std::find(kMaps.begin(), kMaps.end(), arguments.map) == kMaps.end())
     throwInput("--map: `{}` is not known; {}", arguments.map,
@@ -152,7 +152,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageErrorCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageErrorArguments>();
   CLI::App* command =
       image.add_subcommand("error", "The error of image A against the reference B.");
   command->add_option("A", arguments->a, "The image")->required();

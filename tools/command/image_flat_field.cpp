@@ -9,6 +9,7 @@
 #include "image_commands.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "json_values.h"
 #include "messages.h"
 
 namespace chromeball {
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ImageFlatFieldArguments {
   std::vector<std::string> files, positions;
   std::string output, centre;
   double radius = 3;
@@ -33,7 +34,7 @@ struct Series {
   ImageSize size{};
 };
 
-Series measure(const Arguments& arguments) {
+Series measure(const ImageFlatFieldArguments& arguments) {
   constexpr float kSaturated = 0.98f;
   Series series;
   for (size_t i = 0; i < arguments.files.size(); ++i) {
@@ -56,20 +57,18 @@ Series measure(const Arguments& arguments) {
   return series;
 }
 
-Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
-
 Json toJson(const FlatField& field, const Series& series) {
   Json samples = Json::array();
   for (const SourceSample& sample : series.samples)
     samples.push_back({{"position", {sample.position.x, sample.position.y}},
-                       {"radiance", toJson(sample.radiance)}});
+                       {"radiance", vectorToJson(sample.radiance)}});
   return {{"centre", {field.centre.x, field.centre.y}},
           {"unit", field.unit},
-          {"a2", toJson(field.a2)},
-          {"a4", toJson(field.a4)},
-          {"a6", toJson(field.a6)},
+          {"a2", vectorToJson(field.a2)},
+          {"a4", vectorToJson(field.a4)},
+          {"a6", vectorToJson(field.a6)},
           {"largest_r", field.largest},
-          {"rms_error", toJson(field.rmsError)},
+          {"rms_error", vectorToJson(field.rmsError)},
           {"samples", samples}};
 }
 
@@ -85,7 +84,7 @@ void print(const FlatField& field, const Series& series) {
              error.z);
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageFlatFieldArguments& arguments) {
   constexpr double kReaches = 0.9, kPoorFit = 0.02;
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, arguments.files);
@@ -125,7 +124,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageFlatFieldCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageFlatFieldArguments>();
   CLI::App* command = image.add_subcommand(
       "flat-field",
       "Fit how a lens darkens the image towards the corners, 1 + a2 r^2 + a4 r^4 + a6 r^6, to "

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::string_view kPrefix = "light.";
 
-struct Arguments {
+struct ImageRelightArguments {
   std::string in, out, gains, tone = "none";
   float exposure = 0;
   // With a probe:
@@ -118,7 +118,7 @@ Image neededLayer(const ImageFile& file, const std::string& path, const std::str
   return *layer;
 }
 
-Image lightMap(const Arguments& arguments) {
+Image lightMap(const ImageRelightArguments& arguments) {
   Image map = loadProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
   map = Probe(map, {}, parseColor(arguments.scale, "--scale")).latLong();
   return arguments.leavesSunsOut ? extractSuns(map).remainder : map;
@@ -130,7 +130,7 @@ void checkFinite(const Image& color, const std::string& path) {
       throwInput("{}: the picture exceeds the largest float, 3.4e38, or has such texels", path);
 }
 
-void runProbe(const Arguments& arguments, const DisplayTransform& transform) {
+void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
   const ImageFile file = readImageFile(arguments.in);
   const OcclusionLayers layers{
       neededLayer(file, arguments.in, "albedo", 3),
@@ -152,7 +152,7 @@ void runProbe(const Arguments& arguments, const DisplayTransform& transform) {
   writeImage(arguments.out, output, transform);
 }
 
-void runGains(const Arguments& arguments, const DisplayTransform& transform) {
+void runGains(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
   const std::map<std::string, Rgb> given = parseGains(arguments.gains);
   const ImageFile file = readImageFile(arguments.in);
   Groups groups = readGroups(file, arguments.in);
@@ -169,7 +169,7 @@ void runGains(const Arguments& arguments, const DisplayTransform& transform) {
   writeImage(arguments.out, output, transform);
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageRelightArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.probe, arguments.added});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
@@ -183,7 +183,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageRelightCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageRelightArguments>();
   CLI::App* command = image.add_subcommand(
       "relight",
       "Mix the light groups of a render anew (`render --aov light_groups`), or light its surfaces "

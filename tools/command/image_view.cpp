@@ -15,7 +15,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ImageViewArguments {
   std::string in, out, layer, tone = "none";
   float exposure = 0;
 };
@@ -63,7 +63,7 @@ Image viewOf(const std::string& path, const std::string& layer) {
   return layerView(layer, *std::move(image));
 }
 
-void run(const Arguments& arguments) {
+void run(const ImageViewArguments& arguments) {
   checkOutputFile(arguments.out, {".png"});
   checkDistinct({arguments.out}, {arguments.in});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
@@ -78,7 +78,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addImageViewCommand(CLI::App& image) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImageViewArguments>();
   CLI::App* command = image.add_subcommand("view", "Convert an image for display.");
   command->add_option("IN", arguments->in, "The image")->required();
   command->add_option("OUT", arguments->out, "The image to write, .png")->required();

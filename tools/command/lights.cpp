@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kMaxAngle = 10;  // degrees; more is no longer a light from one direction
 
-struct Arguments {
+struct LightsArguments {
   LightsProbe probe;
   std::string method, output, format, preview, sphere, maxError, polygons, units, seed = "0";
   std::optional<int> suggest;  // so many polygons
@@ -63,7 +63,7 @@ void checkOptions(const LightingMethod& method, const LightRequest& request) {
 }
 
 // Also of options that say nothing without another.
-void checkPictures(const LightingMethod& method, const Arguments& arguments) {
+void checkPictures(const LightingMethod& method, const LightsArguments& arguments) {
   if (arguments.regions && arguments.preview.empty())
     throwInput("--regions: are drawn in the image of --preview, which is missing");
   if (arguments.regions && !method.lights.regions)
@@ -76,7 +76,7 @@ void checkPictures(const LightingMethod& method, const Arguments& arguments) {
 }
 
 // Of what is asked for, or was found, and is not in the file where other programs look for it.
-void warnOfLosses(const Arguments& arguments, const MadeLights& made, LightFormat format) {
+void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, LightFormat format) {
   const bool isGltf = format == LightFormat::Gltf, isJson = format == LightFormat::Json;
   constexpr const char* kUnread = "is only in `extras`, which other programs do not read";
   if (made.ambient && (isGltf || format == LightFormat::Csv))
@@ -122,13 +122,13 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
       differenceGain(spheres), made.ambient ? ", ambient light" : "");
 }
 
-LightUnits unitsOf(const Arguments& arguments) {
+LightUnits unitsOf(const LightsArguments& arguments) {
   return arguments.units.empty() ? LightUnits::Photometric
                                  : parseLightUnits({arguments.units, "--light-units"});
 }
 
 // Polygons in place of a method.
-void runPolygonsOf(const Arguments& arguments) {
+void runPolygonsOf(const LightsArguments& arguments) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");
   const LightRequest& request = arguments.request;
@@ -155,7 +155,7 @@ void runPolygonsOf(const Arguments& arguments) {
                .rotation = arguments.rotation});
 }
 
-void run(Arguments arguments) {
+void run(LightsArguments arguments) {
   if (arguments.suggest || !arguments.polygons.empty()) return runPolygonsOf(arguments);
   if (arguments.method.empty())
     throwInput("--method: is missing; or give --suggest N or --polygons FILE");
@@ -205,7 +205,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void addLightsCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LightsArguments>();
   CLI::App* command =
       app.add_subcommand("lights", "Replace a probe by directional lights, for other programs.");
   command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();

@@ -21,7 +21,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct LightsErrorArguments {
   LightsProbe probe;
   std::string csv, plot;
   std::vector<std::string> methods;
@@ -56,7 +56,7 @@ std::string formatCsv(const std::vector<Row>& rows) {
   return text;
 }
 
-std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows) {
+std::string formatPlot(const LightsErrorArguments& arguments, const std::vector<Row>& rows) {
   PlotPanel mean{"mean over the normals", {}}, max{"maximum over the normals", {}};
   for (const std::string& method : arguments.methods) {
     PlotSeries& means = mean.series.emplace_back(PlotSeries{method, {}});
@@ -75,7 +75,7 @@ std::string formatPlot(const Arguments& arguments, const std::vector<Row>& rows)
                     {mean, max});
 }
 
-std::vector<LightRequest> requestsOf(const Arguments& arguments) {
+std::vector<LightRequest> requestsOf(const LightsErrorArguments& arguments) {
   if (arguments.counts.empty() && arguments.levels.empty())
     throwInput("--counts: the numbers of lights are missing; give either --counts or --recursion");
   if (!arguments.counts.empty() && !arguments.levels.empty())
@@ -96,7 +96,7 @@ void removeRepeats(std::vector<T>& all) {
   all = std::move(once);
 }
 
-void run(Arguments arguments) {
+void run(LightsErrorArguments arguments) {
   removeRepeats(arguments.methods);
   removeRepeats(arguments.counts);
   removeRepeats(arguments.levels);
@@ -133,7 +133,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void addLightsErrorCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LightsErrorArguments>();
   CLI::App* command = app.add_subcommand(
       "lights-error", "The error of the irradiance of directional lights against their probe.");
   command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();

@@ -18,7 +18,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct MergeArguments {
   std::vector<std::string> parts, outputs;
   bool quiet = false;
 };
@@ -42,7 +42,7 @@ Metadata wholeMetadata(const PartSet& parts) {
   return metadata;
 }
 
-void run(const Arguments& arguments) {
+void run(const MergeArguments& arguments) {
   for (const std::string& output : arguments.outputs) checkWritable(output);
   checkDistinct(arguments.outputs, arguments.parts);
   const PartSet parts(arguments.parts);
@@ -66,7 +66,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addMergeCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MergeArguments>();
   CLI::App* command = app.add_subcommand(
       "merge", "Put the parts of a render together, of `render --shard` and `--crop`");
   command

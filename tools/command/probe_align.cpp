@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ProbeAlignArguments {
   std::string first, second, out, firstMapping = "auto", secondMapping = "auto";
   bool json = false;
 };
@@ -37,7 +37,7 @@ Json toJson(const ProbeFit& fit) {
           {"correlation", fit.correlation}};
 }
 
-Json toJson(const Arguments& arguments, const ProbeAlignment& alignment) {
+Json toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& alignment) {
   Json json = {{"a", arguments.first}, {"b", arguments.second}};
   json.update(toJson(static_cast<const ProbeFit&>(alignment)));
   const dvec3& errors = alignment.standardErrors;
@@ -81,19 +81,19 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
                      alignment.correlation));
 }
 
-Image load(const std::string& file, const std::string& mapping, const char* option) {
+Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {
   LoadedProbe probe = loadProbe(file, mapping, option);
   for (const std::string& warning : warnings(probe, file)) warn(warning);
   return std::move(probe.latLong);
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeAlignArguments& arguments) {
   if (!arguments.out.empty()) {
     checkWritable(arguments.out);
     checkDistinct({arguments.out}, {arguments.first, arguments.second});
   }
-  const Image first = load(arguments.first, arguments.firstMapping, "--mapping-a");
-  const Image second = load(arguments.second, arguments.secondMapping, "--mapping-b");
+  const Image first = loadAligned(arguments.first, arguments.firstMapping, "--mapping-a");
+  const Image second = loadAligned(arguments.second, arguments.secondMapping, "--mapping-b");
   std::optional<BusyLine> busy("aligning");
   const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
   busy.reset();
@@ -112,7 +112,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeAlignCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeAlignArguments>();
   CLI::App* command = probe.add_subcommand(
       "align", "Find the rotation that makes one probe of a place agree with another.");
   command->add_option("A", arguments->first, "a probe")->required();

@@ -19,14 +19,14 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeConvertArguments {
   std::string in, out, to, from = "auto", size, scale;
   Rotation rotation;
   bool flip = false;
 };
 
 // The mapping and size of the output. Without a size, crosses and strips are vertical.
-std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& latLong) {
+std::pair<Mapping, ImageSize> target(const ProbeConvertArguments& arguments, const Image& latLong) {
   if (!arguments.size.empty()) {
     const ImageSize size = parseSize(arguments.size, "--size");
     if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
@@ -36,7 +36,7 @@ std::pair<Mapping, ImageSize> target(const Arguments& arguments, const Image& la
   return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
 }
 
-void warnOfSource(const LoadedProbe& probe, const Arguments& arguments) {
+void warnOfSource(const LoadedProbe& probe, const ProbeConvertArguments& arguments) {
   if (probe.mapping == Mapping::MirrorBall && !arguments.flip)
     warn(fmt::format(
         "{}: read as an ideal mirror ball; a photograph of a ball is mirrored and shows "
@@ -50,7 +50,7 @@ void warnOfSource(const LoadedProbe& probe, const Arguments& arguments) {
                      100 * share));
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeConvertArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
   const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
@@ -72,7 +72,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeConvertCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeConvertArguments>();
   CLI::App* command =
       probe.add_subcommand("convert", "Resample a probe into another mapping or size.");
   command->add_option("IN", arguments->in, "the probe's image")->required();

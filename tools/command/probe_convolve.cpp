@@ -23,7 +23,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeConvolveArguments {
   std::string in, out, kernel, size, fromSize, method = "exact", mips, mapping = "auto";
   Rotation rotation;
 };
@@ -43,9 +43,9 @@ ZonalKernel parseKernel(const std::string& text) {
   return name == "phong" ? ZonalKernel::phong(number) : ZonalKernel::ggx(number);
 }
 
-bool isKtx(const Arguments& arguments) { return arguments.out.ends_with(".ktx2"); }
+bool isKtx(const ProbeConvolveArguments& arguments) { return arguments.out.ends_with(".ktx2"); }
 
-void check(const Arguments& arguments) {
+void check(const ProbeConvolveArguments& arguments) {
   if (isKtx(arguments)) {
     checkReplaceable(arguments.out);
     if (!arguments.kernel.empty() || arguments.method != "exact")
@@ -61,15 +61,15 @@ void check(const Arguments& arguments) {
                didYouMean(arguments.method, {"exact", "sh"}));
 }
 
-Image convolvedMap(const Arguments& arguments, const Image& latLong, const ZonalKernel& kernel,
-                   const ImageSize& size) {
+Image convolvedMap(const ProbeConvolveArguments& arguments, const Image& latLong,
+                   const ZonalKernel& kernel, const ImageSize& size) {
   const std::vector<vec3> directions = texelDirections(size, arguments.rotation);
   return imageOf(size, arguments.method == "exact" ? convolve(latLong, kernel, directions)
                                                    : shConvolve(latLong, kernel, directions));
 }
 
 // Each texel the mean over its solid angle.
-Image reduced(const Arguments& arguments, const Image& latLong) {
+Image reduced(const ProbeConvolveArguments& arguments, const Image& latLong) {
   const ImageSize size = parseSize(arguments.fromSize, "--from-size");
   if (size.width > latLong.width || size.height > latLong.height)
     throwInput("--from-size: {} is larger than the map, {}x{}", arguments.fromSize, latLong.width,
@@ -77,7 +77,7 @@ Image reduced(const Arguments& arguments, const Image& latLong) {
   return convert(latLong, Mapping::LatLong, Mapping::LatLong, size);
 }
 
-void writeLevels(const Arguments& arguments, const Image& latLong) {
+void writeLevels(const ProbeConvolveArguments& arguments, const Image& latLong) {
   const ImageSize face = parseSize(arguments.size.empty() ? "256x256" : arguments.size, "--size");
   if (face.width != face.height) throwInput("--size: a face of a cube is square");
   const std::string mips = arguments.mips.empty() ? "khronos" : arguments.mips;
@@ -97,7 +97,7 @@ void writeLevels(const Arguments& arguments, const Image& latLong) {
                      clipped));
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeConvolveArguments& arguments) {
   check(arguments);
   std::optional<ZonalKernel> kernel;
   if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
@@ -120,7 +120,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeConvolveCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeConvolveArguments>();
   CLI::App* command = probe.add_subcommand(
       "convolve", "Blur a probe by the lobe of a surface: a prefiltered environment map.");
   command->add_option("IN", arguments->in, "the probe's image")->required();

@@ -21,7 +21,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeEditArguments {
   std::string in, out, mapping = "auto", belowHorizon, scale, clip, clipStops, fillNadir;
   std::vector<std::string> regions, gains;
   Rotation rotation;
@@ -72,7 +72,7 @@ void parseGround(const std::string& text, Edits& edits) {
     throwInput("--below-horizon: `{}` should be black, mirror or a radiance R,G,B", text);
 }
 
-Edits parse(const Arguments& arguments) {
+Edits parse(const ProbeEditArguments& arguments) {
   Edits edits;
   edits.rotation = arguments.rotation;
   if (!arguments.fillNadir.empty()) {
@@ -138,7 +138,7 @@ void apply(const Edits& edits, const std::string& file, Image& latLong) {
   if (edits.clip || edits.clipStops) clip(latLong, clipLevel(edits, latLong));
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeEditArguments& arguments) {
   const Edits edits = parse(arguments);
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
@@ -151,7 +151,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeEditCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeEditArguments>();
   CLI::App* command = probe.add_subcommand(
       "edit",
       "Change the light of a probe, and write it as a lat-long map. Edits are done in the order of "

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "json_values.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
@@ -15,16 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class Vector>
-Json toJson(const Vector& v) {
-  return {v.x, v.y, v.z};
-}
-
 Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
   Json suns = Json::array(), shares = Json::array();
   for (const Sun& sun : info.suns)
-    suns.push_back({{"direction", toJson(sun.direction)},
-                    {"irradiance", toJson(sun.irradiance)},
+    suns.push_back({{"direction", vectorToJson(sun.direction)},
+                    {"irradiance", vectorToJson(sun.irradiance)},
                     {"angle", sun.angle}});
   for (const auto& [count, fraction] : info.brightestTexels)
     shares.push_back({{"texels", count}, {"share", fraction}});
@@ -36,9 +32,9 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"mapping_reason", probe.detected ? probe.reason : "given"},
           {"turned", probe.turned},
           {"lat_long", {{"width", probe.latLong.width}, {"height", probe.latLong.height}}},
-          {"min", toJson(info.min)},
-          {"mean", toJson(info.mean)},
-          {"max", toJson(info.max)},
+          {"min", vectorToJson(info.min)},
+          {"mean", vectorToJson(info.mean)},
+          {"max", vectorToJson(info.max)},
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"max_over_mean", info.maxOverMean},
@@ -54,9 +50,10 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
             {"negative", probe.repair.negative},
             {"first", probe.repair.total() > 0 ? Json{probe.repair.firstX, probe.repair.firstY}
                                                : Json(nullptr)}}},
-          {"mean_radiance", toJson(info.meanRadiance)},
+          {"mean_radiance", vectorToJson(info.meanRadiance)},
           {"brightest",
-           {{"direction", toJson(info.brightestDirection)}, {"radiance", toJson(info.brightest)}}},
+           {{"direction", vectorToJson(info.brightestDirection)},
+            {"radiance", vectorToJson(info.brightest)}}},
           {"suns", suns},
           {"brightest_shares", shares}};
 }

@@ -18,12 +18,12 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeIrradianceArguments {
   std::string in, out, size, method = "exact", mapping = "auto";
   Rotation rotation;
 };
 
-void run(const Arguments& arguments) {
+void run(const ProbeIrradianceArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
   const bool exact = arguments.method == "exact";
@@ -46,7 +46,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeIrradianceCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeIrradianceArguments>();
   CLI::App* command = probe.add_subcommand(
       "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.");
   command->add_option("IN", arguments->in, "the probe's image")->required();

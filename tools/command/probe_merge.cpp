@@ -7,6 +7,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "job/output_file.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/filter_transmission.h"
 #include "probe_commands.h"
@@ -17,7 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 Json orNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
@@ -28,7 +28,7 @@ Json toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
                          {"time", merged.settings[i].time},
                          {"aperture", orNull(merged.settings[i].aperture)},
                          {"iso", orNull(merged.settings[i].iso)},
-                         {"factor", toJson(merged.factors[i])},
+                         {"factor", vectorToJson(merged.factors[i])},
                          {"used_pixels", merged.image.uses[i].weighted},
                          {"saturated_pixels", merged.image.uses[i].saturated}});
   for (const ExposureAgreement& a : merged.agreements)
@@ -141,8 +141,8 @@ void calibrate(const MergeArguments& arguments) {
       break;
     }
   if (arguments.json)
-    fmt::print("{}\n", Json{{"transmission", toJson(t)},
-                            {"median", toJson(filter.median)},
+    fmt::print("{}\n", Json{{"transmission", vectorToJson(t)},
+                            {"median", vectorToJson(filter.median)},
                             {"pixels", filter.pixels}}
                            .dump(2));
   else

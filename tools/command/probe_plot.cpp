@@ -15,7 +15,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbePlotArguments {
   std::string file, out, mapping = "auto", azimuth;
   std::optional<int> row;
   std::optional<double> elevation;
@@ -23,7 +23,7 @@ struct Arguments {
   bool compensated = false;
 };
 
-AzimuthRange parseRange(const std::string& text) {
+AzimuthRange parseAzimuthRange(const std::string& text) {
   if (text.empty()) return {};
   const std::vector<double> ends = parseNumbers(text, 2, "--azimuth");
   const AzimuthRange range{std::max(ends[0], ends[1]), std::min(ends[0], ends[1])};
@@ -34,7 +34,8 @@ AzimuthRange parseRange(const std::string& text) {
   return range;
 }
 
-int chosenRow(const Arguments& arguments, const Probe& probe, const Importance& importance) {
+int chosenRow(const ProbePlotArguments& arguments, const Probe& probe,
+              const Importance& importance) {
   if (arguments.elevation) return texelRowAt(probe, *arguments.elevation);
   if (!arguments.row) return brightestRow(probe, importance);
   if (*arguments.row < 0 || *arguments.row >= probe.height())
@@ -43,7 +44,7 @@ int chosenRow(const Arguments& arguments, const Probe& probe, const Importance& 
   return *arguments.row;
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbePlotArguments& arguments) {
   checkOutputFile(arguments.out, {".svg"});
   checkDistinct({arguments.out}, {arguments.file});
   constexpr int kMaxSamples = 10000;
@@ -51,7 +52,7 @@ void run(const Arguments& arguments) {
     throwInput("--samples: {} should be 0 to {}", arguments.samples, kMaxSamples);
   if (arguments.elevation && !(std::fabs(*arguments.elevation) <= 90))
     throwInput("--elevation: {} should be -90 to 90 degrees", *arguments.elevation);
-  const AzimuthRange range = parseRange(arguments.azimuth);
+  const AzimuthRange range = parseAzimuthRange(arguments.azimuth);
   const LoadedProbe loaded = loadProbe(arguments.file, arguments.mapping, "--mapping");
   for (const std::string& warning : warnings(loaded, arguments.file)) warn(warning);
   const Probe probe(loaded.latLong);
@@ -69,7 +70,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbePlotCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbePlotArguments>();
   CLI::App* command = probe.add_subcommand(
       "plot", "Plot how importance sampling draws directions from one row of a probe.");
   command->add_option("PROBE", arguments->file, "the probe's image")->required();

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ProbeRaysArguments {
   std::string file, mapping = "auto", size;
   Rotation rotation;
   double error = 0.1;
@@ -70,7 +70,7 @@ Json countOf(double rays) {
   return rays < kLargest ? Json(uint64_t(rays)) : Json(rays);
 }
 
-Json toJson(const Arguments& arguments, const Normals& normals) {
+Json toJson(const ProbeRaysArguments& arguments, const Normals& normals) {
   Json rays, variances;
   for (const Sampling& sampling : kSamplings) {
     Json raysHere, variancesHere;
@@ -94,7 +94,7 @@ Json toJson(const Arguments& arguments, const Normals& normals) {
           {"relative_variance", variances}};
 }
 
-void print(const Arguments& arguments, const Normals& normals) {
+void print(const ProbeRaysArguments& arguments, const Normals& normals) {
   fmt::print("rays for an error of {:.4g}% of the irradiance, unoccluded\n", 100 * arguments.error);
   fmt::print("{:<10} {:>14} {:>14} {:>14}\n", "sampling", "upward", "median", "max");
   for (const Sampling& sampling : kSamplings) {
@@ -111,7 +111,7 @@ void print(const Arguments& arguments, const Normals& normals) {
     fmt::print("{} of {} normals receive no light and are left out\n", unlit, normals.count);
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeRaysArguments& arguments) {
   constexpr double kMinError = 1e-6;
   if (!(arguments.error >= kMinError && arguments.error <= 1))
     throwInput("--error: {} should be a fraction from {} to 1: 0.1 is 10%", arguments.error,
@@ -132,7 +132,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeRaysCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeRaysArguments>();
   CLI::App* command = probe.add_subcommand(
       "rays",
       "How many random rays the irradiance of an unoccluded point needs: facing up, and the "

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "image/io/read_image.h"
 #include "job/arguments.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/reflectivity.h"
 #include "probe_commands.h"
@@ -15,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using glm::dvec3;
 
-struct Arguments {
+struct ProbeReflectivityArguments {
   std::string photograph, direct, reflected, against, standard;
   std::optional<double> saturation;
   bool json = false;
@@ -27,7 +28,7 @@ struct Photograph {
 };
 
 // Integer files are clipped at white, half floats at 65504.
-Photograph load(const std::string& file, const std::optional<double>& saturation) {
+Photograph loadPhotograph(const std::string& file, const std::optional<double>& saturation) {
   constexpr double kWhite = 1, kLargestHalf = 65504;
   ImageFile read = readImageFile(file);
   const bool hasIntegers = read.integers;
@@ -53,7 +54,7 @@ bool isRectangle(const std::string& text) {
 }
 
 // The patch to compare with: in the photograph, or in another one.
-PatchMean denominator(const Arguments& arguments, const Photograph& photograph) {
+PatchMean denominator(const ProbeReflectivityArguments& arguments, const Photograph& photograph) {
   if (isRectangle(arguments.against)) {
     if (!arguments.direct.empty())
       throwInput("--against: a rectangle takes the place of --direct; give one of them");
@@ -65,24 +66,22 @@ PatchMean denominator(const Arguments& arguments, const Photograph& photograph) 
   const PixelRectangle rectangle = parseRectangle(arguments.direct, "--direct");
   if (arguments.against.empty())
     return patchMean(photograph.image, rectangle, photograph.saturation, "--direct");
-  const Photograph standard = load(arguments.against, arguments.saturation);
+  const Photograph standard = loadPhotograph(arguments.against, arguments.saturation);
   return patchMean(standard.image, rectangle, standard.saturation, "--direct");
 }
 
-Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
-
 Json toJson(const PatchMean& patch) {
-  return {{"mean", toJson(patch.mean)},
-          {"standard_error", toJson(patch.standardError)},
+  return {{"mean", vectorToJson(patch.mean)},
+          {"standard_error", vectorToJson(patch.standardError)},
           {"pixels", patch.pixels}};
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeReflectivityArguments& arguments) {
   const dvec3 standard = parseStandard(arguments.standard);
   if (arguments.saturation && !(*arguments.saturation > 0))
     throwInput("--saturation: {} should be above 0", *arguments.saturation);
   const PixelRectangle rectangle = parseRectangle(arguments.reflected, "--reflected");
-  const Photograph photograph = load(arguments.photograph, arguments.saturation);
+  const Photograph photograph = loadPhotograph(arguments.photograph, arguments.saturation);
   const PatchMean reflected =
       patchMean(photograph.image, rectangle, photograph.saturation, "--reflected");
   const PatchMean direct = denominator(arguments, photograph);
@@ -93,12 +92,12 @@ void run(const Arguments& arguments) {
     warn("a reflectivity above 1: are the rectangles exchanged, or lit differently?");
   if (arguments.json) {
     const Json json = {{"file", arguments.photograph},
-                       {"reflectivity", toJson(result.value)},
-                       {"standard_error", toJson(result.standardError)},
+                       {"reflectivity", vectorToJson(result.value)},
+                       {"standard_error", vectorToJson(result.standardError)},
                        {"percent", percent},
                        {"reflected", toJson(reflected)},
                        {"direct", toJson(direct)},
-                       {"standard_reflectance", toJson(standard)}};
+                       {"standard_reflectance", vectorToJson(standard)}};
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return;
   }
@@ -118,7 +117,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeReflectivityCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeReflectivityArguments>();
   CLI::App* command = probe.add_subcommand(
       "reflectivity",
       "Measure how much a mirror ball or a paint reflects, from a photograph that shows a surface "

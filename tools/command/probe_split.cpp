@@ -24,7 +24,7 @@ struct SplitArguments {
   std::optional<double> angle;
 };
 
-void split(const SplitArguments& arguments) {
+void splitProbe(const SplitArguments& arguments) {
   if (arguments.angle &&
       !(*arguments.angle >= kLeastListedAngle && *arguments.angle <= kMaxListedAngle))
     throwInput("--angle: should be {} to {} degrees", kLeastListedAngle, kMaxListedAngle);
@@ -93,7 +93,7 @@ void addProbeSplitCommand(CLI::App& probe) {
   command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
   command->add_option("--mapping", arguments->probe.mapping,
                       "the mapping of PROBE; auto detects it");
-  command->callback([arguments] { split(*arguments); });
+  command->callback([arguments] { splitProbe(*arguments); });
 }
 
 void addProbeAddSunCommand(CLI::App& probe) {

@@ -18,12 +18,12 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeStitchArguments {
   std::string list, out, poses, size;
   bool refine = false, sameExposure = false;
 };
 
-std::vector<Tile> load(const std::vector<TileEntry>& entries) {
+std::vector<Tile> loadTiles(const std::vector<TileEntry>& entries) {
   std::vector<Tile> tiles;
   for (const TileEntry& entry : entries) {
     tiles.push_back({entry.file, readImage(entry.file), Rotation::ofAngles(entry.pose), entry.fov});
@@ -48,7 +48,7 @@ void refine(std::vector<TileEntry>& entries, std::vector<Tile>& tiles) {
              100 * refinement.before, 100 * refinement.after);
 }
 
-std::vector<double> gainsOf(const Arguments& arguments, const std::vector<Tile>& tiles) {
+std::vector<double> gainsOf(const ProbeStitchArguments& arguments, const std::vector<Tile>& tiles) {
   if (arguments.sameExposure) return std::vector<double>(tiles.size(), 1.0);
   const std::vector<double> gains = tileGains(tiles);
   for (size_t i = 0; i < tiles.size(); ++i)
@@ -56,7 +56,7 @@ std::vector<double> gainsOf(const Arguments& arguments, const std::vector<Tile>&
   return gains;
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeStitchArguments& arguments) {
   checkWritable(arguments.out);
   if (!arguments.poses.empty()) checkOutputFile(arguments.poses, {".toml"});
   if (!arguments.poses.empty() && !arguments.refine)
@@ -69,7 +69,7 @@ void run(const Arguments& arguments) {
   std::vector<std::string> outputs{arguments.out};
   if (!arguments.poses.empty()) outputs.push_back(arguments.poses);
   checkDistinct(outputs, inputs);
-  std::vector<Tile> tiles = load(entries);
+  std::vector<Tile> tiles = loadTiles(entries);
   if (arguments.refine) refine(entries, tiles);
   const std::vector<double> gains = gainsOf(arguments, tiles);
   std::optional<BusyLine> busy("stitching");
@@ -86,7 +86,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeStitchCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeStitchArguments>();
   CLI::App* command = probe.add_subcommand(
       "stitch", "Stitch photographs of known direction (tiles) to a lat-long probe.");
   command->add_option("TILES", arguments->list, "the list of tiles (.toml); see below")->required();

@@ -8,6 +8,7 @@
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "json_values.h"
 #include "lighting/light_file.h"
 #include "lighting/light_list.h"
 #include "messages.h"
@@ -24,14 +25,14 @@ constexpr double kSeldomExplained = 0.2;  // of the mean: another direction, or 
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ProbeSunArguments {
   std::string probe, mapping = "auto", ball, circle, paint, camera, distance, direction, mask;
   std::string output, lights, residual;
   double angle = 0.53;
   bool json = false;
 };
 
-DiffuseBall parseBall(const Arguments& arguments) {
+DiffuseBall parseBall(const ProbeSunArguments& arguments) {
   const std::vector<double> circle = parseNumbers(arguments.circle, 3, "--circle");
   const bool isGrey = arguments.paint.find(',') == std::string::npos;
   std::vector<double> paint = parseNumbers(arguments.paint, isGrey ? 1 : 3, "--paint");
@@ -55,7 +56,8 @@ DiffuseBall parseBall(const Arguments& arguments) {
 }
 
 // 1 where a pixel of the ball does not count: outside the mask, or saturated.
-Image excludedPixels(const Arguments& arguments, const ImageFile& file, const Image& photograph) {
+Image excludedPixels(const ProbeSunArguments& arguments, const ImageFile& file,
+                     const Image& photograph) {
   constexpr float kSaturated = 0.98f;
   const std::optional<Image> clipped = findLayer(file, "clipped");
   Image mask;
@@ -75,7 +77,7 @@ Image excludedPixels(const Arguments& arguments, const ImageFile& file, const Im
   return excluded;
 }
 
-BallSamples readBall(const Arguments& arguments, const DiffuseBall& ball) {
+BallSamples readBall(const ProbeSunArguments& arguments, const DiffuseBall& ball) {
   const ImageFile file = readImageFile(arguments.ball);
   const Image photograph = colorOf(ImageFile(file), arguments.ball);
   if (file.integers)
@@ -95,7 +97,7 @@ struct Direction {
   std::optional<double> width;
 };
 
-Direction directionOf(const Arguments& arguments, const LoadedProbe& probe) {
+Direction directionOf(const ProbeSunArguments& arguments, const LoadedProbe& probe) {
   constexpr double kWide = 3;
   if (!arguments.direction.empty()) {
     const std::vector<double> d = parseNumbers(arguments.direction, 3, "--direction");
@@ -133,15 +135,13 @@ void writeResidual(const std::string& path, const SunFromBall& result, const Bal
   writeImage(path, image);
 }
 
-Json toJson(const dvec3& v) { return {v.x, v.y, v.z}; }
-
 Json toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
-  return {{"direction", toJson(result.sun.direction)},
+  return {{"direction", vectorToJson(result.sun.direction)},
           {"clipped_width", direction.width ? Json(*direction.width) : Json(nullptr)},
           {"angle", result.sun.angle},
-          {"alpha", toJson(result.alpha)},
-          {"irradiance", toJson(result.sun.irradiance)},
-          {"radiance", toJson(result.radiance())},
+          {"alpha", vectorToJson(result.alpha)},
+          {"irradiance", vectorToJson(result.sun.irradiance)},
+          {"radiance", vectorToJson(result.radiance())},
           {"samples", ball.samples.size()},
           {"pixels_per_sample", ball.block * ball.block},
           {"rms_clipped", result.rmsOfProbe},
@@ -168,7 +168,7 @@ void print(const SunFromBall& result, const Direction& direction, const BallSamp
              100 * result.explained, 100 * kExplained);
 }
 
-void run(const Arguments& arguments) {
+void run(const ProbeSunArguments& arguments) {
   const DiffuseBall ball = parseBall(arguments);
   if (!(arguments.angle >= kLeastListedAngle && arguments.angle <= kMaxListedAngle))
     throwInput("--angle: should be {} to {} degrees", kLeastListedAngle, kMaxListedAngle);
@@ -212,7 +212,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addProbeSunCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeSunArguments>();
   CLI::App* command =
       probe.add_subcommand("sun",
                            "Find the irradiance of a sun that a probe's photographs have clipped, "

@@ -16,7 +16,7 @@
 namespace chromeball {
 namespace {
 
-struct Arguments {
+struct ProbeSynthArguments {
   std::string kind, out, size = "1024x512", radiance = "1,1,1", texel, direction, slope = "0,1,0";
   ClearSky sky;
   bool withoutSun = false;
@@ -27,7 +27,7 @@ dvec3 parseVector(const std::string& text, std::string_view option) {
   return {v[0], v[1], v[2]};
 }
 
-Rgb parseRadiance(const Arguments& arguments) {
+Rgb parseRadiance(const ProbeSynthArguments& arguments) {
   const Rgb radiance = Rgb(parseVector(arguments.radiance, "--radiance"));
   if (!isFinite(radiance) || std::min({radiance.x, radiance.y, radiance.z}) < 0)
     throwInput("--radiance: {} should be finite and not negative", arguments.radiance);
@@ -39,7 +39,7 @@ void checkRange(std::string_view option, double number, double min, double max) 
     throwInput("{}: {} should be {} to {}", option, number, min, max);
 }
 
-Image oneHot(const Arguments& arguments, const ImageSize& size) {
+Image oneHot(const ProbeSynthArguments& arguments, const ImageSize& size) {
   int x = size.width / 2, y = size.height / 2;
   if (!arguments.texel.empty()) {
     const std::vector<double> texel = parseNumbers(arguments.texel, 2, "--texel");
@@ -60,7 +60,7 @@ Image oneHot(const Arguments& arguments, const ImageSize& size) {
   return oneHotProbe(size, x, y, parseRadiance(arguments));
 }
 
-Image gradient(const Arguments& arguments, const ImageSize& size) {
+Image gradient(const ProbeSynthArguments& arguments, const ImageSize& size) {
   const dvec3 slope = parseVector(arguments.slope, "--slope");
   if (glm::length(slope) > 1)
     throwInput("--slope: {} should be no longer than 1, so that radiance is not negative",
@@ -68,20 +68,21 @@ Image gradient(const Arguments& arguments, const ImageSize& size) {
   return gradientProbe(size, parseRadiance(arguments), slope);
 }
 
-using Maker = Image (*)(const Arguments&, const ImageSize&);
+using Maker = Image (*)(const ProbeSynthArguments&, const ImageSize&);
 
 const std::map<std::string_view, Maker> kMakers = {
-    {"constant", [](const Arguments& a,
+    {"constant", [](const ProbeSynthArguments& a,
                     const ImageSize& size) { return constantProbe(size, parseRadiance(a)); }},
     {"one-hot", oneHot},
     {"gradient", gradient},
-    {"sun-sky", [](const Arguments& a,
+    {"sun-sky", [](const ProbeSynthArguments& a,
                    const ImageSize& size) { return clearSkyProbe(size, a.sky, !a.withoutSun); }},
     {"overcast",
-     [](const Arguments& a, const ImageSize& size) {
+     [](const ProbeSynthArguments& a, const ImageSize& size) {
        return overcastProbe(size, parseRadiance(a), a.sky.groundAlbedo);
      }},
-    {"studio", [](const Arguments&, const ImageSize& size) { return studioProbe(size); }}};
+    {"studio",
+     [](const ProbeSynthArguments&, const ImageSize& size) { return studioProbe(size); }}};
 
 // The kinds of probe that each option is for; --size is for all.
 const std::map<std::string, std::vector<std::string_view>> kKindsOf = {
@@ -101,7 +102,7 @@ void checkOptions(const CLI::App& command, const std::string& kind) {
       throwInput("{}: not an option of {}; only of {}", option, kind, fmt::join(kinds, ", "));
 }
 
-void run(const Arguments& arguments, const CLI::App& command) {
+void run(const ProbeSynthArguments& arguments, const CLI::App& command) {
   const auto maker = kMakers.find(arguments.kind);
   if (maker == kMakers.end()) {
     std::vector<std::string_view> kinds;
@@ -119,7 +120,7 @@ void run(const Arguments& arguments, const CLI::App& command) {
 }  // namespace
 
 void addProbeSynthCommand(CLI::App& probe) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeSynthArguments>();
   CLI::App* command = probe.add_subcommand("synth", "Make a lat-long probe from a formula.");
   command
       ->add_option("KIND", arguments->kind,

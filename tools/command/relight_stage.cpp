@@ -83,7 +83,7 @@ Image loadLight(const RelightOptions& a, const std::string& path) {
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
 }
 
-void checkFinite(const Image& picture, const std::string& path) {
+void checkPictureFinite(const Image& picture, const std::string& path) {
   for (const float texel : picture.texels)
     if (!std::isfinite(texel))
       throwInput("{}: the picture exceeds the largest float, 3.4e38; give a smaller --scale", path);
@@ -125,7 +125,7 @@ void runRelitPicture(const RelightOptions& a) {
   const std::vector<Rgb> weights = lightWeights(stage.basis(), light, a.rotation);
   light = {};
   const RelitStage relit = relitStage(stage, weights, domain, kept);
-  checkFinite(relit.picture, a.source());
+  checkPictureFinite(relit.picture, a.source());
   writePicture(a, relit.picture, stage.basis());
   if (!a.quiet)
     fmt::print("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),

@@ -13,7 +13,7 @@ namespace chromeball::demo {
 namespace {
 
 constexpr int kFront = 8, kFlank = 17;
-constexpr float kSpacing = 4.3f, kTexture = 6;
+constexpr float kSpacing = 4.3f, kTempleTexture = 6;
 constexpr float kHalfWidth = kSpacing * (kFront - 1) / 2, kHalfLength = kSpacing * (kFlank - 1) / 2;
 constexpr float kStep = 0.52f, kFloor = 3 * kStep;  // the stylobate's height above the ground
 const DoricColumn kColumn;
@@ -26,15 +26,17 @@ constexpr Rgb kMarble(0.72f, 0.65f, 0.54f);
 // A box about the middle: half its width and length, its lower and upper height.
 void addLayer(Surface& s, float beyond, float low, float high) {
   addClosedBox(s, {-kHalfWidth - beyond, low, -kHalfLength - beyond},
-               {kHalfWidth + beyond, high, kHalfLength + beyond}, kTexture);
+               {kHalfWidth + beyond, high, kHalfLength + beyond}, kTempleTexture);
 }
 
 // A beam along the four rows of columns.
 void addRing(Surface& s, float half, float low, float high) {
   const float x = kHalfWidth, z = kHalfLength;
   for (const float side : {-1.0f, 1.0f}) {
-    addClosedBox(s, {side * x - half, low, -z - half}, {side * x + half, high, z + half}, kTexture);
-    addClosedBox(s, {-x + half, low, side * z - half}, {x - half, high, side * z + half}, kTexture);
+    addClosedBox(s, {side * x - half, low, -z - half}, {side * x + half, high, z + half},
+                 kTempleTexture);
+    addClosedBox(s, {-x + half, low, side * z - half}, {x - half, high, side * z + half},
+                 kTempleTexture);
   }
 }
 
@@ -57,16 +59,17 @@ Surface cella() {
   const float top = kTop + kCeiling;
   Surface s;
   addClosedBox(s, {-kWide - 0.4f, kFloor, -kLong - 5.4f},
-               {kWide + 0.4f, kFloor + 0.35f, kLong + 5.4f}, kTexture);
+               {kWide + 0.4f, kFloor + 0.35f, kLong + 5.4f}, kTempleTexture);
   for (const float z : {kLong - kThick, -kLong}) {
-    addClosedBox(s, {-kWide + kThick, kFloor, z}, {-kDoor, top, z + kThick}, kTexture);
-    addClosedBox(s, {kDoor, kFloor, z}, {kWide - kThick, top, z + kThick}, kTexture);
-    addClosedBox(s, {-kDoor, kLintel, z}, {kDoor, top, z + kThick}, kTexture);
+    addClosedBox(s, {-kWide + kThick, kFloor, z}, {-kDoor, top, z + kThick}, kTempleTexture);
+    addClosedBox(s, {kDoor, kFloor, z}, {kWide - kThick, top, z + kThick}, kTempleTexture);
+    addClosedBox(s, {-kDoor, kLintel, z}, {kDoor, top, z + kThick}, kTempleTexture);
   }
   for (const float x : {-kWide, kWide - kThick})
-    addClosedBox(s, {x, kFloor, -kLong - 0.9f}, {x + kThick, top, kLong + 0.9f}, kTexture);
+    addClosedBox(s, {x, kFloor, -kLong - 0.9f}, {x + kThick, top, kLong + 0.9f}, kTempleTexture);
   for (const float z : {-kPorch, kPorch})
-    addClosedBox(s, {-kWide - 0.8f, kTop, z - 0.75f}, {kWide + 0.8f, top, z + 0.75f}, kTexture);
+    addClosedBox(s, {-kWide - 0.8f, kTop, z - 0.75f}, {kWide + 0.8f, top, z + 0.75f},
+                 kTempleTexture);
   return s;
 }
 
@@ -77,9 +80,10 @@ Surface roof() {
   const float x = kHalfWidth + kBeam + 0.75f, z = kHalfLength + kBeam + 0.75f;
   const vec2 right(x, eaves), left(-x, eaves), ridge(0, eaves + kSlope * x), thick(0, kThick);
   Surface s;
-  addPrism(s, std::array{left, right, ridge}, vec2(-z, z) + vec2(kRecess, -kRecess), kTexture);
-  addPrism(s, std::array{right, right + thick, ridge + thick, ridge}, {-z, z}, kTexture);
-  addPrism(s, std::array{ridge, ridge + thick, left + thick, left}, {-z, z}, kTexture);
+  addPrism(s, std::array{left, right, ridge}, vec2(-z, z) + vec2(kRecess, -kRecess),
+           kTempleTexture);
+  addPrism(s, std::array{right, right + thick, ridge + thick, ridge}, {-z, z}, kTempleTexture);
+  addPrism(s, std::array{ridge, ridge + thick, left + thick, left}, {-z, z}, kTempleTexture);
   return s;
 }
 

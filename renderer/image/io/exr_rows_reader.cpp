@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReader = "openexr";
-constexpr int64_t kFloatsAtOnce = int64_t(1) << 24;
+constexpr int64_t kFloatsReadAtOnce = int64_t(1) << 24;
 
 void checkMagic(const fs::path& path) {
   checkReadable(path);
@@ -89,10 +89,10 @@ Image ExrRowsReader::read(int top, int count) {
   return rows;
 }
 
-// Whole blocks of compression, of about kFloatsAtOnce.
+// Whole blocks of compression, of about kFloatsReadAtOnce.
 int ExrRowsReader::rowsAtOnce() const {
   const int64_t block = int64_t(width_) * int64_t(channels_.size()) * rowsOfBlock_;
-  return rowsOfBlock_ * int(std::clamp<int64_t>(kFloatsAtOnce / block, 1, height_));
+  return rowsOfBlock_ * int(std::clamp<int64_t>(kFloatsReadAtOnce / block, 1, height_));
 }
 
 // The rows at once, as halves; and of OpenEXR two blocks a thread, with their compression.

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t kFloatsAtOnce = int64_t(1) << 24;
+constexpr int64_t kFloatsWrittenAtOnce = int64_t(1) << 24;
 
 OIIO::ImageSpec specOf(const ExrLayout& layout) {
   OIIO::ImageSpec spec(layout.width, layout.height, int(layout.channels.size()),
@@ -53,11 +53,13 @@ void interleave(std::span<const Image* const> images, int top, Image& rows) {
   assert(offset == rows.channels);
 }
 
-// Whole blocks of compression; else about kFloatsAtOnce, and no more than keeps all threads busy.
+// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads
+// busy.
 int rowsAtOnce(const OIIO::ImageSpec& spec, bool separateRows) {
   constexpr int kMost = 256;
   const auto floatsPerRow = int64_t(spec.width) * spec.nchannels;
-  return int(std::clamp<int64_t>(kFloatsAtOnce / floatsPerRow, separateRows ? 1 : 16, kMost));
+  return int(
+      std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, separateRows ? 1 : 16, kMost));
 }
 
 }  // namespace
@@ -120,7 +122,7 @@ void ExrRowsWriter::commit(const std::function<void(Archive&)>& state) { output_
 // The rows at once, also as halves; and of OpenEXR two rows a thread, with their compression.
 double ExrRowsWriter::bufferBytes(int width, size_t channels) {
   const double row = double(sizeof(float)) * width * double(channels);
-  const double atOnce = std::max(double(sizeof(float)) * double(kFloatsAtOnce), row);
+  const double atOnce = std::max(double(sizeof(float)) * double(kFloatsWrittenAtOnce), row);
   return 1.5 * atOnce + 2.0 * std::thread::hardware_concurrency() * 3 * row;
 }
 

@@ -8,8 +8,8 @@
 namespace chromeball {
 namespace {
 
-constexpr size_t kMinPhotons = 500;  // of a region that is the half of another
-constexpr size_t kMinToGuide = 20;   // of a region with lobes
+constexpr size_t kMinPhotons = 500;        // of a region that is the half of another
+constexpr size_t kMinPhotonsToGuide = 20;  // of a region with lobes
 
 }  // namespace
 
@@ -18,7 +18,7 @@ CausticGuide::CausticGuide(std::vector<Photon> photons) {
   tree_ = RegionTree(std::span(photons), kMinPhotons, regions);
   regions_.assign(regions.size(), {});
   tbb::parallel_for(size_t(0), regions.size(), [&](size_t i) {
-    if (regions[i].size() >= kMinToGuide) regions_[i] = CausticLobes(regions[i]);
+    if (regions[i].size() >= kMinPhotonsToGuide) regions_[i] = CausticLobes(regions[i]);
   });
   if (std::all_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.empty(); }))
     *this = CausticGuide();

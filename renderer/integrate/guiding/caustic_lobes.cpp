@@ -10,8 +10,9 @@
 namespace chromeball {
 namespace {
 
-constexpr double kLargestFraction = 0.03;  // of the flux, in a lobe of lights that can be divided
-constexpr size_t kMinPhotons = 8;          // of a lobe that is the part of another
+constexpr double kLargestLobeFraction =
+    0.03;                              // of the flux, in a lobe of lights that can be divided
+constexpr size_t kMinLobePhotons = 8;  // of a lobe that is the part of another
 constexpr float kSmallestSquare = 1.0f / 512;  // of the probe, as uniformSphereToSquare() maps it
 constexpr size_t kMinToFollow = 6;             // photons that determine a gradient
 constexpr double kRidge = 1e-4;                // of the variance of the positions
@@ -66,8 +67,8 @@ CausticLobes::CausticLobes(std::span<Photon> photons) {
 void CausticLobes::divide(std::span<Photon> photons, vec2 corner, float size, double total,
                           std::vector<Lobe>& lobes) const {
   if (photons.empty()) return;
-  if (photons.size() < 2 * kMinPhotons || size < kSmallestSquare ||
-      fluxOf(photons) < kLargestFraction * total) {
+  if (photons.size() < 2 * kMinLobePhotons || size < kSmallestSquare ||
+      fluxOf(photons) < kLargestLobeFraction * total) {
     lobes.push_back(fit(photons));
     return;
   }

@@ -13,13 +13,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Relative to the diagonal of A: keeps the matrix regular if two lights have the same direction.
-constexpr double kRidge = 1e-13;
+constexpr double kActiveSetRidge = 1e-13;
 constexpr double kTolerance = 1e-11;  // of the largest |b|
 
 // The minimum over the unknowns `free`, with the others at zero.
 VectorXd solveFree(const MatrixXd& A, const VectorXd& b, const std::vector<Index>& free) {
   MatrixXd block = A(free, free);
-  block.diagonal() *= 1 + kRidge;
+  block.diagonal() *= 1 + kActiveSetRidge;
   return block.llt().solve(b(free));
 }
 

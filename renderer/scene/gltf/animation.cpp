@@ -12,7 +12,7 @@ namespace {
 
 using tinygltf::Animation;
 
-std::string nameOf(const std::vector<Animation>& animations, size_t i) {
+std::string animationName(const std::vector<Animation>& animations, size_t i) {
   return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
 }
 
@@ -23,7 +23,7 @@ size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
   if (when.name.empty()) return 0;
   std::vector<std::string> names;
   for (size_t i = 0; i < animations.size(); ++i) {
-    names.push_back(nameOf(animations, i));
+    names.push_back(animationName(animations, i));
     if (names.back() == when.name) return i;
   }
   file.fail("has no animation `{}` ({}); {}", when.name, when.location,
@@ -139,7 +139,7 @@ std::string animationNames(const GltfFile& file) {
   const auto& animations = file.model.animations;
   std::string text;
   for (size_t i = 0; i < std::min(kMax, animations.size()); ++i)
-    text += fmt::format("{}`{}`", i ? ", " : "", oneLine(nameOf(animations, i)));
+    text += fmt::format("{}`{}`", i ? ", " : "", oneLine(animationName(animations, i)));
   if (animations.size() > kMax) text += fmt::format(" and {} more", animations.size() - kMax);
   return text;
 }

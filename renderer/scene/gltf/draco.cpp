@@ -14,7 +14,7 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr const char* kExtension = "KHR_draco_mesh_compression";
+constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
 // More than any encoder can achieve; a file that claims more is damaged.
 constexpr uint64_t kMaxTrianglesPerByte = 64;
@@ -203,11 +203,11 @@ void decodeDraco(GltfFile& file) {
   for (size_t m = 0; m < file.model.meshes.size(); ++m) {
     auto& primitives = file.model.meshes[m].primitives;
     for (size_t p = 0; p < primitives.size(); ++p) {
-      const auto found = primitives[p].extensions.find(kExtension);
+      const auto found = primitives[p].extensions.find(kDracoExtension);
       if (found == primitives[p].extensions.end() || !dependsOnExtension(file, primitives[p]))
         continue;
       reader.decode(primitives[p], found->second,
-                    fmt::format("meshes[{}].primitives[{}].{}", m, p, kExtension));
+                    fmt::format("meshes[{}].primitives[{}].{}", m, p, kDracoExtension));
     }
   }
 }

@@ -18,20 +18,20 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr const char* kExtension = "EXT_lights_image_based";
+constexpr const char* kEnvironmentExtension = "EXT_lights_image_based";
 constexpr int kFaces = 6, kMaxFace = 2048;
 
 // The light of the default scene; null if it has none. Sets `where` to its location in the file.
 const Value* findLight(const GltfFile& file, std::string& where) {
   if (file.model.scenes.empty()) return nullptr;
   const int scene = std::max(file.model.defaultScene, 0);
-  const Value* use =
-      findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions, kExtension);
+  const Value* use = findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions,
+                                   kEnvironmentExtension);
   if (!use) return nullptr;
   const Value& light = use->Get("light");
-  const Value* root = findExtension(file.model.extensions, kExtension);
+  const Value* root = findExtension(file.model.extensions, kEnvironmentExtension);
   const int index = light.IsInt() ? light.GetNumberAsInt() : -1;
-  where = fmt::format("{}.lights[{}]", kExtension, index);
+  where = fmt::format("{}.lights[{}]", kEnvironmentExtension, index);
   if (index < 0 || !root || !root->Get("lights").IsArray() ||
       size_t(index) >= root->Get("lights").ArrayLen())
     file.fail("scenes[{}]: {} does not exist", scene, where);

@@ -18,7 +18,7 @@ constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 
 constexpr int kMaxNesting = 128;
 
 template <class... Args>
-[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
+[[noreturn]] void failGlb(fmt::format_string<Args...> format, Args&&... args) {
   throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
 }
 
@@ -58,13 +58,13 @@ void makeIntegersWhole(json& value) {
 
 GltfChunks splitContainer(std::span<const uint8_t> file) {
   if (file.size() < 4 || word(file, 0) != kMagic) return {file, {}};
-  if (file.size() < 20) fail("is a truncated GLB: {} bytes", file.size());
+  if (file.size() < 20) failGlb("is a truncated GLB: {} bytes", file.size());
   if (const uint32_t version = word(file, 4); version != 2)
-    fail("is glTF {}.0; convert it to glTF 2.0 (gltf-pipeline can)", version);
+    failGlb("is glTF {}.0; convert it to glTF 2.0 (gltf-pipeline can)", version);
   const size_t length = word(file, 8);
   if (length > file.size() || length < 20)
-    fail("is a truncated GLB: its header claims {} bytes, but the file has {}", length,
-         file.size());
+    failGlb("is a truncated GLB: its header claims {} bytes, but the file has {}", length,
+            file.size());
 
   GltfChunks chunks;
   for (size_t at = 12; length - at >= 8;) {
@@ -72,25 +72,25 @@ GltfChunks splitContainer(std::span<const uint8_t> file) {
     const uint32_t type = word(file, at + 4);
     at += 8;
     if (size > length - at)
-      fail("is a damaged GLB: a chunk claims {} bytes, but only {} are left", size, length - at);
+      failGlb("is a damaged GLB: a chunk claims {} bytes, but only {} are left", size, length - at);
     if (type == kJsonChunk && chunks.json.empty()) chunks.json = file.subspan(at, size);
     if (type == kBinaryChunk && chunks.binary.empty()) chunks.binary = file.subspan(at, size);
     at = std::min(at + (size + 3) / 4 * 4, length);
   }
-  if (chunks.json.empty()) fail("is a damaged GLB: it has no JSON chunk");
+  if (chunks.json.empty()) failGlb("is a damaged GLB: it has no JSON chunk");
   return chunks;
 }
 
 json parseJson(std::span<const uint8_t> text) {
-  if (nesting(text) > kMaxNesting) fail("nests deeper than {} levels", kMaxNesting);
+  if (nesting(text) > kMaxNesting) failGlb("nests deeper than {} levels", kMaxNesting);
   json root;
   try {
     root = json::parse(text.begin(), text.end());
   } catch (const json::exception& e) {  // "[json.exception.KIND.NUMBER] reason"
     const char* reason = std::strchr(e.what(), ']');
-    fail("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());
+    failGlb("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());
   }
-  if (!root.is_object()) fail("is not a JSON object");
+  if (!root.is_object()) failGlb("is not a JSON object");
   makeIntegersWhole(root);
   return root;
 }

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-constexpr const char* kExtension = "EXT_mesh_gpu_instancing";
+constexpr const char* kInstancingExtension = "EXT_mesh_gpu_instancing";
 
 // The attribute of each instance; empty if the node does not have it.
 template <int N>
@@ -29,9 +29,9 @@ std::vector<glm::vec<N, float>> readAttribute(GltfFile& file, const tinygltf::Va
 
 std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
                                                const std::string& where) {
-  const auto found = node.extensions.find(kExtension);
+  const auto found = node.extensions.find(kInstancingExtension);
   if (found == node.extensions.end()) return {glm::dmat4(1)};
-  const std::string at = where + "." + kExtension;
+  const std::string at = where + "." + kInstancingExtension;
   const tinygltf::Value& attributes = found->second.Get("attributes");
   size_t count = 0;
   const auto translations = readAttribute<3>(file, attributes, "TRANSLATION", count, at);

@@ -7,7 +7,7 @@ namespace {
 using Kind = PunctualLight::Kind;
 using tinygltf::Value;
 
-constexpr const char* kExtension = "KHR_lights_punctual";
+constexpr const char* kLightsExtension = "KHR_lights_punctual";
 
 double number(const GltfFile& file, const Value& object, const char* key, double fallback,
               double low, double high, const std::string& where) {
@@ -61,14 +61,14 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
   std::vector<PunctualLight> lights;
   for (int index : tree.inScene) {
     const auto& extensions = file.model.nodes[size_t(index)].extensions;
-    const auto found = extensions.find(kExtension);
+    const auto found = extensions.find(kLightsExtension);
     if (found == extensions.end() || !found->second.Get("light").IsInt()) continue;
     const int id = found->second.Get("light").GetNumberAsInt();
-    const auto root = file.model.extensions.find(kExtension);
+    const auto root = file.model.extensions.find(kLightsExtension);
     const Value& sources =
         root == file.model.extensions.end() ? found->second : root->second.Get("lights");
     if (id < 0 || !sources.IsArray() || size_t(id) >= sources.ArrayLen())
-      file.fail("nodes[{}].{}: lights[{}] does not exist", index, kExtension, id);
+      file.fail("nodes[{}].{}: lights[{}] does not exist", index, kLightsExtension, id);
     PunctualLight light = readLight(file, sources.Get(id), units, fmt::format("lights[{}]", id));
 
     const glm::dmat4& toWorld = tree.toWorld[size_t(index)];

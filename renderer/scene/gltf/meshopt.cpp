@@ -8,7 +8,7 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr const char* kExtension = "EXT_meshopt_compression";
+constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 
 // The extension's description of a buffer view.
 struct Compressed {
@@ -83,9 +83,9 @@ void decodeMeshopt(GltfFile& file) {
   const size_t viewCount = file.model.bufferViews.size();
   for (size_t i = 0; i < viewCount; ++i) {
     const auto& extensions = file.model.bufferViews[i].extensions;
-    const auto found = extensions.find(kExtension);
+    const auto found = extensions.find(kMeshoptExtension);
     if (found == extensions.end()) continue;
-    const std::string where = fmt::format("bufferViews[{}].{}", i, kExtension);
+    const std::string where = fmt::format("bufferViews[{}].{}", i, kMeshoptExtension);
     const Compressed compressed = readExtension(file, found->second, where);
     check(file, compressed, where);
     file.spend(compressed.count * compressed.stride);

@@ -86,7 +86,7 @@ std::vector<int> sceneRoots(const GltfFile& file, const std::vector<int>& treeRo
   return roots;
 }
 
-std::string nameOf(const tinygltf::Model& model, size_t i) {
+std::string nodeName(const tinygltf::Model& model, size_t i) {
   const tinygltf::Node& node = model.nodes[i];
   if (!node.name.empty()) return node.name;
   const bool hasMesh = node.mesh >= 0 && size_t(node.mesh) < model.meshes.size();
@@ -125,7 +125,7 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
     file.fail("nodes[{}]: is its own ancestor; nodes must form trees", first);
   }
   tree.inScene = descend(file, sceneRoots(file, treeRoots));
-  for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nameOf(file.model, i));
+  for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nodeName(file.model, i));
   tree.parents = parents;
   return tree;
 }

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 template <class... Args>
-[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
+[[noreturn]] void failUri(fmt::format_string<Args...> format, Args&&... args) {
   throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
 }
 
@@ -64,25 +64,25 @@ std::string decodePercent(const std::string& uri) {
 }
 
 void checkFileName(const std::string& name) {
-  if (name.empty()) fail("is not a file name");
+  if (name.empty()) failUri("is not a file name");
   const size_t colon = name.find(':');
   if (colon != std::string::npos && colon < name.find('/'))
-    fail("has the scheme {}; it must be a relative path", name.substr(0, colon + 1));
+    failUri("has the scheme {}; it must be a relative path", name.substr(0, colon + 1));
   const auto isForbidden = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '\\'; };
   if (std::any_of(name.begin(), name.end(), isForbidden))
-    fail("has a backslash or a control character; it must be a relative path with /");
+    failUri("has a backslash or a control character; it must be a relative path with /");
 }
 
 void checkInside(const fs::path& folder, const std::string& name) {
   constexpr const char* kRemedy = "--allow-external permits that";
   const fs::path path(name);
-  if (path.is_absolute()) fail("is an absolute path; {}", kRemedy);
+  if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
   if (std::find(path.begin(), path.end(), "..") != path.end())
-    fail("is outside of the model's folder by \"..\"; {}", kRemedy);
+    failUri("is outside of the model's folder by \"..\"; {}", kRemedy);
   const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
   const fs::path target = fs::weakly_canonical(root / path);
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-  if (end != root.end()) fail("is outside of the model's folder through a link; {}", kRemedy);
+  if (end != root.end()) failUri("is outside of the model's folder through a link; {}", kRemedy);
 }
 
 }  // namespace chromeball

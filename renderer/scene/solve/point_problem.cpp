@@ -9,16 +9,16 @@ using glm::dmat3, glm::dvec2, glm::dvec3;
 
 namespace {
 
-using Row = Eigen::RowVectorXd;
+using ErrorRow = Eigen::RowVectorXd;
 
 // The derivatives of one coordinate (0 right, 1 up) of c.
-Row slopeOf(int axis, double c, const dvec3& q, double weight, double nearness, double zoom,
-            const std::optional<double>& focalLength, int unknowns) {
+ErrorRow slopeOf(int axis, double c, const dvec3& q, double weight, double nearness, double zoom,
+                 const std::optional<double>& focalLength, int unknowns) {
   dvec3 byPoint(0);
   byPoint[axis] = zoom;
   byPoint.z = c * nearness;
   const dvec3 byRotation = glm::cross(q, byPoint);
-  Row row = Row::Zero(unknowns);
+  ErrorRow row = ErrorRow::Zero(unknowns);
   for (int i = 0; i < 3; ++i) row[i] = byRotation[i];
   row[3 + axis] = 1;
   row[5] = c * q.z + (focalLength ? *focalLength * q[axis] : 0);
@@ -45,7 +45,7 @@ bool PointProblem::residuals(const PointView& v, Eigen::VectorXd& residual,
     const Eigen::Index row = Eigen::Index(2 * i);
     residual[row] = error.x, residual[row + 1] = error.y;
     if (!jacobian) continue;
-    Row slopes[2];
+    ErrorRow slopes[2];
     for (int axis = 0; axis < 2; ++axis)
       slopes[axis] = slopeOf(axis, c[axis], q, weight, v.nearness, zoom, focalLength_, unknowns());
     for (int axis = 0; axis < 2; ++axis) {

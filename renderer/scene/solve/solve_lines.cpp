@@ -13,7 +13,7 @@ namespace chromeball {
 namespace {
 
 using glm::dmat3;
-using Found = Minimum<LineView>;
+using FoundByLines = Minimum<LineView>;
 
 constexpr char kAxes[] = "xyz";
 
@@ -56,22 +56,22 @@ dmat3 directed(const LineView& view, const std::vector<ObservedLine>& observed,
   return rotation;
 }
 
-Found search(const std::vector<CentredLine>& lines, const CameraKnowledge& known) {
+FoundByLines search(const std::vector<CentredLine>& lines, const CameraKnowledge& known) {
   constexpr int kStarts = 128, kMostSteps = 100;
   const double guess = focalLengthOfFov(known.size, glm::radians(45.0));
   const LineProblem problem(lines, !known.focalLength);
-  std::optional<Found> best;
+  std::optional<FoundByLines> best;
   for (const dmat3& rotation : spreadRotations(kStarts)) {
     const LineView start{rotation, known.focalLength.value_or(guess)};
     Eigen::VectorXd residual;
     if (!problem.residuals(start, residual, nullptr)) continue;
-    Found found = minimise(problem, start, kMostSteps);
+    FoundByLines found = minimise(problem, start, kMostSteps);
     if (!best || found.squares < best->squares) best = std::move(found);
   }
   return *best;
 }
 
-CameraErrors errorsOf(const Found& found, const CameraKnowledge& known, size_t count,
+CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, size_t count,
                       const std::string& file) {
   constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: of f / h, either way
   const double f = found.state.focalLength, h = 0.5 * known.size.height;
@@ -149,7 +149,7 @@ CameraFit solveByLines(const std::vector<ObservedLine>& observed, const CameraKn
                 half = 0.5 * (line.to - line.from);
     lines.push_back({line.axis, {middle.x, -middle.y}, {half.x, -half.y}});
   }
-  const Found found = search(lines, known);
+  const FoundByLines found = search(lines, known);
   CameraFit fit;
   fit.errors = errorsOf(found, known, lines.size(), file);
   fit.camera.size = known.size;

@@ -12,7 +12,7 @@ namespace chromeball {
 namespace {
 
 using glm::dmat3;
-using Found = Minimum<PointView>;
+using FoundByPoints = Minimum<PointView>;
 
 void checkCount(size_t count, const CameraKnowledge& known, const std::string& file) {
   if (count >= fewestPoints(known)) return;
@@ -70,44 +70,44 @@ PointView reversed(const PointView& view, const dvec3& normal) {
 }
 
 // Whether it fits as well but for rounding.
-bool isAsGood(const Found& found, const Found& best, size_t points) {
+bool isAsGood(const FoundByPoints& found, const FoundByPoints& best, size_t points) {
   constexpr double kRounding = 1e-6;  // also pixels
   return found.squares <= (1 + kRounding) * best.squares + kRounding * kRounding * double(points);
 }
 
 // Minima of different rotations, the best first; of equal ones, those in front of the camera.
-std::vector<Found> search(const std::vector<CentredPoint>& points, const dvec3& normal,
-                          const CameraKnowledge& known) {
+std::vector<FoundByPoints> search(const std::vector<CentredPoint>& points, const dvec3& normal,
+                                  const CameraKnowledge& known) {
   constexpr int kStarts = 128, kFirstSteps = 10, kMostSteps = 300;
   constexpr size_t kKept = 12;
   const double kDifferent = glm::radians(3.0);
-  const auto distinct = [&](std::vector<Found> all) {
-    std::ranges::stable_sort(all, {}, &Found::squares);
-    std::vector<Found> kept;
-    for (Found& one : all)
-      if (kept.size() < kKept && std::ranges::none_of(kept, [&](const Found& other) {
+  const auto distinct = [&](std::vector<FoundByPoints> all) {
+    std::ranges::stable_sort(all, {}, &FoundByPoints::squares);
+    std::vector<FoundByPoints> kept;
+    for (FoundByPoints& one : all)
+      if (kept.size() < kKept && std::ranges::none_of(kept, [&](const FoundByPoints& other) {
             return angleBetween(one.state.rotation, other.state.rotation) < kDifferent;
           }))
         kept.push_back(std::move(one));
     return kept;
   };
   const PointProblem simple(points, known.focalLength, false);
-  std::vector<Found> first, last;
+  std::vector<FoundByPoints> first, last;
   for (const dmat3& rotation : spreadRotations(kStarts))
     if (const auto start = simple.viewWith(rotation))
       first.push_back(minimise(simple, *start, kFirstSteps));
   const PointProblem whole(points, known.focalLength, known.findsDistortion);
   Eigen::VectorXd residual;
-  for (const Found& start : distinct(std::move(first))) {
+  for (const FoundByPoints& start : distinct(std::move(first))) {
     last.push_back(minimise(whole, start.state, kMostSteps));
     if (last.back().state.nearness > 0) continue;
     const PointView other = reversed(last.back().state, normal);
     if (whole.residuals(other, residual, nullptr))
       last.push_back(minimise(whole, other, kMostSteps));
   }
-  std::vector<Found> found = distinct(std::move(last));
-  const Found best = found.empty() ? Found{} : found.front();
-  std::stable_partition(found.begin(), found.end(), [&](const Found& one) {
+  std::vector<FoundByPoints> found = distinct(std::move(last));
+  const FoundByPoints best = found.empty() ? FoundByPoints{} : found.front();
+  std::stable_partition(found.begin(), found.end(), [&](const FoundByPoints& one) {
     return one.state.nearness > 0 && isAsGood(one, best, points.size());
   });
   return found;
@@ -162,8 +162,9 @@ Eigen::MatrixXd cameraSlopes(const PointView& view, const PointProblem& problem,
   return slopes;
 }
 
-CameraErrors errorsOf(const Found& found, const PointProblem& problem, const CameraKnowledge& known,
-                      const SolvedCamera& camera, size_t count, const std::string& file) {
+CameraErrors errorsOf(const FoundByPoints& found, const PointProblem& problem,
+                      const CameraKnowledge& known, const SolvedCamera& camera, size_t count,
+                      const std::string& file) {
   constexpr double kLeastPivot = 1e-13;
   // Scaled to a unit diagonal, so that the eigenvalues tell whether an unknown depends on others.
   const Eigen::VectorXd scale = found.normal.diagonal().cwiseSqrt().cwiseInverse();
@@ -194,7 +195,7 @@ CameraErrors errorsOf(const Found& found, const PointProblem& problem, const Cam
 
 // How far, in pixels, the points are from where a camera without perspective sees them, to first
 // order. Of a plane that faces the camera it is 0 whatever the distance.
-double perspectiveOf(const Found& found) {
+double perspectiveOf(const FoundByPoints& found) {
   return found.state.nearness * std::sqrt(found.normal(5, 5));
 }
 
@@ -216,10 +217,10 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   const Extents extents(points);
   checkSpread(observed, extents, file);
 
-  const std::vector<Found> found = search(points, extents.normal, known);
+  const std::vector<FoundByPoints> found = search(points, extents.normal, known);
   if (found.empty())
     throwInput("{}: no camera sees all points in front of it; check their positions", file);
-  const Found& best = found.front();
+  const FoundByPoints& best = found.front();
   if (!(best.state.nearness > 0) || !(perspectiveOf(best) > kLeastPerspective))
     throwInput(
         "{}: the points show no perspective, which leaves the field of view open; give it, "
@@ -239,7 +240,7 @@ CameraFit solveByPoints(const std::vector<ObservedPoint>& observed, const Camera
   for (size_t i = 0; i < points.size(); ++i)
     fit.distances.push_back(residual.segment<2>(Eigen::Index(2 * i)).norm());
   const auto rival = std::find_if(found.begin() + 1, found.end(),
-                                  [](const Found& f) { return f.state.nearness > 0; });
+                                  [](const FoundByPoints& f) { return f.state.nearness > 0; });
   if (rival != found.end()) fit.rivalRms = std::sqrt(rival->squares / double(points.size()));
   return fit;
 }

@@ -15,16 +15,17 @@ namespace chromeball {
 namespace {
 
 // In pixels.
-constexpr double kLeft = 72, kWidth = 864, kRight = 24, kTop = 46, kPanel = 190, kGap = 26;
-constexpr double kCdfTop = kTop + kPanel + kGap, kCdfBottom = kCdfTop + kPanel;
+constexpr double kPlotLeft = 72, kWidth = 864, kRight = 24, kPlotTop = 46, kPanel = 190,
+                 kPanelGap = 26;
+constexpr double kCdfTop = kPlotTop + kPanel + kPanelGap, kCdfBottom = kCdfTop + kPanel;
 constexpr double kZero = 18;  // from the black texels to the least luminance of the axis
-constexpr double kStripTop = kCdfBottom + 50, kStrip = 96, kBottom = 34;
+constexpr double kStripTop = kCdfBottom + 50, kStrip = 96, kPlotBottom = 34;
 constexpr const char *kLine = "#27a", *kFill = "#dbe7f3", *kArrow = "#c33";
 
 struct AzimuthAxis {
   double left, right;  // degrees, left > right
   double operator()(double azimuth) const {
-    return kLeft + kWidth * (left - azimuth) / (left - right);
+    return kPlotLeft + kWidth * (left - azimuth) / (left - right);
   }
   // Multiples of a round step; also just outside, as cells of a whole row begin before its left.
   std::vector<double> ticks() const {
@@ -61,9 +62,9 @@ struct LuminanceAxis {
   }
   bool hasZero() const { return height < kPanel; }
   double operator()(double luminance) const {
-    if (!(luminance > 0)) return kTop + kPanel;
+    if (!(luminance > 0)) return kPlotTop + kPanel;
     const double power = std::log10(luminance);
-    return kTop + height * (1 - std::clamp((power - first) / (last - first), 0., 1.));
+    return kPlotTop + height * (1 - std::clamp((power - first) / (last - first), 0., 1.));
   }
   // Powers of ten, not all of many; with twice and five times as much between two or three.
   std::vector<double> ticks() const {
@@ -84,7 +85,7 @@ std::string frame(const AzimuthAxis& azimuth, double top) {
   return svg + fmt::format(
                    "</g>\n<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" "
                    "stroke=\"#333\"/>\n",
-                   kLeft, top, kWidth, kPanel);
+                   kPlotLeft, top, kWidth, kPanel);
 }
 
 std::string verticalLabel(double top, const std::string& text) {
@@ -107,21 +108,22 @@ std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimut
                         azimuth(row.azimuths[end]));
   }
   std::string svg = fmt::format("<path d=\"{}V{:.1f}H{:.1f}z\" fill=\"{}\"/>\n", path,
-                                kTop + kPanel, kLeft, kFill);
-  svg += frame(azimuth, kTop);
+                                kPlotTop + kPanel, kPlotLeft, kFill);
+  svg += frame(azimuth, kPlotTop);
   for (const double tick : axis.ticks()) {
-    svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#e4e4e4\"/>", kLeft, axis(tick), kWidth);
-    svg += svgText(kLeft - 8, axis(tick) + 4, "end", fmt::format("{:.6g}", tick));
+    svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#e4e4e4\"/>", kPlotLeft, axis(tick),
+                       kWidth);
+    svg += svgText(kPlotLeft - 8, axis(tick) + 4, "end", fmt::format("{:.6g}", tick));
   }
   if (axis.hasZero()) {
-    svg += svgText(kLeft - 8, axis(0) + 4, "end", "0");
+    svg += svgText(kPlotLeft - 8, axis(0) + 4, "end", "0");
     svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#999\" stroke-dasharray=\"2 3\"/>",
-                       kLeft, kTop + axis.height, kWidth);
+                       kPlotLeft, kPlotTop + axis.height, kWidth);
   }
   svg += fmt::format(
       "<path class=\"luminance\" d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>\n",
       path, kLine);
-  return svg + verticalLabel(kTop, fmt::format("luminance of row {}", row.row));
+  return svg + verticalLabel(kPlotTop, fmt::format("luminance of row {}", row.row));
 }
 
 double cdfY(double number) { return kCdfBottom - kPanel * number; }
@@ -134,7 +136,7 @@ std::string arrows(const RowDistribution& row, const AzimuthAxis& azimuth) {
   std::string lines, heads;
   for (const RowDistribution::Sample& sample : row.samples) {
     const double x = azimuth(sample.azimuth), size = crowd > 100 ? 2 : 3.5;
-    lines += fmt::format("M{} {:.1f}H{:.1f}V{:.1f}", kLeft, cdfY(sample.number), x,
+    lines += fmt::format("M{} {:.1f}H{:.1f}V{:.1f}", kPlotLeft, cdfY(sample.number), x,
                          kCdfBottom - 2 * size);
     heads += fmt::format("M{:.1f} {:.1f}l{} {}h{}z", x, kCdfBottom, -size, -2 * size, 2 * size);
   }
@@ -154,8 +156,8 @@ std::string cdfPanel(const RowDistribution& row, const AzimuthAxis& azimuth) {
                         cdfY(row.cdf[edge]));
   }
   for (const double tick : {0., 0.25, 0.5, 0.75, 1.}) {
-    svg += fmt::format("<path d=\"M{} {:.1f}h-5\" stroke=\"#333\"/>", kLeft, cdfY(tick));
-    svg += svgText(kLeft - 8, cdfY(tick) + 4, "end", fmt::format("{:g}", tick));
+    svg += fmt::format("<path d=\"M{} {:.1f}h-5\" stroke=\"#333\"/>", kPlotLeft, cdfY(tick));
+    svg += svgText(kPlotLeft - 8, cdfY(tick) + 4, "end", fmt::format("{:g}", tick));
   }
   svg += arrows(row, azimuth);
   svg += fmt::format(
@@ -164,7 +166,7 @@ std::string cdfPanel(const RowDistribution& row, const AzimuthAxis& azimuth) {
       path);
   for (const double tick : azimuth.ticks())
     svg += svgText(azimuth(tick), kCdfBottom + 18, "middle", fmt::format("{:.6g}", tick));
-  svg += svgText(kLeft + kWidth / 2, kCdfBottom + 36, "middle",
+  svg += svgText(kPlotLeft + kWidth / 2, kCdfBottom + 36, "middle",
                  "azimuth (degrees from -Z, counter-clockwise seen from above)");
   return svg + verticalLabel(kCdfTop, "cdf");
 }
@@ -191,12 +193,12 @@ std::string strip(const Probe& probe, const RowDistribution& row, const AzimuthA
   std::string svg = fmt::format(
       "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
       "href=\"{}\"/>\n",
-      kLeft, kStripTop, kWidth, kStrip, pngUri(width, height, 3, bytes));
-  svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#fff\" stroke-width=\"0.7\"/>", kLeft,
+      kPlotLeft, kStripTop, kWidth, kStrip, pngUri(width, height, 3, bytes));
+  svg += fmt::format("<path d=\"M{} {:.1f}h{}\" stroke=\"#fff\" stroke-width=\"0.7\"/>", kPlotLeft,
                      rowY, kWidth);
   svg += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"1.4\"/>\n", marks, kArrow);
-  svg += svgText(kLeft - 8, kStripTop + 11, "end", fmt::format("{:.1f}", top));
-  svg += svgText(kLeft - 8, kStripTop + kStrip, "end", fmt::format("{:.1f}", top - degrees));
+  svg += svgText(kPlotLeft - 8, kStripTop + 11, "end", fmt::format("{:.1f}", top));
+  svg += svgText(kPlotLeft - 8, kStripTop + kStrip, "end", fmt::format("{:.1f}", top - degrees));
   return svg + fmt::format("<g transform=\"translate(18 {}) rotate(-90)\">{}</g>\n",
                            kStripTop + kStrip / 2, svgText(0, 0, "middle", "elevation"));
 }
@@ -209,9 +211,9 @@ std::string rowPlot(const Probe& probe, const RowDistribution& row, const std::s
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\">\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      kLeft + kWidth + kRight, kStripTop + kStrip + kBottom);
-  svg +=
-      fmt::format("<g font-size=\"14\">{}</g>\n", svgText(kLeft + kWidth / 2, 26, "middle", title));
+      kPlotLeft + kWidth + kRight, kStripTop + kStrip + kPlotBottom);
+  svg += fmt::format("<g font-size=\"14\">{}</g>\n",
+                     svgText(kPlotLeft + kWidth / 2, 26, "middle", title));
   svg += luminancePanel(row, azimuth) + cdfPanel(row, azimuth) + strip(probe, row, azimuth);
   return svg + "</svg>\n";
 }
