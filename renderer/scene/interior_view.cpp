@@ -32,9 +32,9 @@ class Section {
 
   // Whether no surface is near: within 8 of 256 cells, 3% of the room's length.
   bool isFree(int x, int z) const {
-    constexpr int kMargin = 8;
-    for (int dz = -kMargin; dz <= kMargin; ++dz)
-      for (int dx = -kMargin; dx <= kMargin; ++dx)
+    constexpr int kFreeMargin = 8;
+    for (int dz = -kFreeMargin; dz <= kFreeMargin; ++dz)
+      for (int dx = -kFreeMargin; dx <= kFreeMargin; ++dx)
         if (inside(x + dx, z + dz) && at(x + dx, z + dz) != 0) return false;
     return true;
   }

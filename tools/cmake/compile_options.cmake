@@ -35,11 +35,23 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   list(APPEND chromeball_compile_options -Wno-restrict -Wno-stringop-overflow)
 endif()
 
+# GCC collects garbage while it compiles from 128 MB on; without, a group of files takes a tenth less
+# time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND chromeball_compile_options --param=ggc-min-heapsize=1048576)
+endif()
+
 function(chromeball_compile target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${chromeball_compile_options})
   target_link_options(${target} PRIVATE ${chromeball_link_options})
+endfunction()
+
+# Code that takes no part in a render's time (options, reports, tests): more optimisation than -O1 would
+# cost a third more of the time to compile, and gain nothing.
+function(chromeball_optimize_less target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # A target of this project that uses the library's sources by their paths from renderer/.
