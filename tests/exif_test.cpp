@@ -42,12 +42,11 @@ TEST(Exif, OfEachFormatAndByteOrder) {
     expectSettings(exifOf(block, folder));  // a TIFF without an image
   }
   Image image(2, 2, 3);
-  writeImage(
-      folder / "a.exr",
-      OutputImage{{{"", "RGB", image}},
-                  {{"ExposureTime", 0.025f}, {"FNumber", 1.8f}, {"Exif:ISOSpeedRatings", 100.f}},
-                  {},
-                  {}});
+  writeImage(folder / "a.exr",
+             OutputImage{{{"", "RGB", image}},
+                         {{"expTime", 0.025f}, {"aperture", 1.8f}, {"isoSpeed", 100.f}},
+                         {},
+                         {}});
   const Exif exif = readExif(folder / "a.exr");
   EXPECT_FLOAT_EQ(float(exif.exposureTime.value_or(0)), 0.025f);
   EXPECT_FLOAT_EQ(float(exif.aperture.value_or(0)), 1.8f);

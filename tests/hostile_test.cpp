@@ -242,7 +242,6 @@ TEST(SlowHostile, ExrHeadersAreChecked) {
   expectHeaderError(exr({{std::string(300, 'n'), "string", ""}}), "does not end");
 }
 
-// OpenImageIO would try its readers of film, camera and medical formats on unknown formats.
 TEST(SlowHostile, OtherFormatsAreRejectedByTheirFirstBytes) {
   const TemporaryFolder folder;
   for (const std::string& bytes : {std::string("GIF89a\1\0\1\0", 10), std::string("BM\x46"),

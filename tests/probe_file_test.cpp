@@ -77,8 +77,8 @@ TEST(ProbeFile, InvalidTexelsAreRepairedAndReported) {
   EXPECT_NE(lines[0].find("(4, 3)"), std::string::npos) << lines[0];
 }
 
-void writeEnvironment(const std::string& path, const Image& image, const char* format) {
-  writeImage(path, OutputImage{{{"", "RGB", image}}, {{"textureformat", format}}});
+void writeEnvironment(const std::string& path, const Image& image, const char* envmap) {
+  writeImage(path, OutputImage{{{"", "RGB", image}}, {{kEnvmapAttribute, std::string(envmap)}}});
 }
 
 // The same environment as a cube and as a lat-long map, both in OpenEXR's convention. Its radiance
@@ -89,12 +89,11 @@ TEST(ProbeFile, OpenExrCubeAndLatLongMapsAgree) {
   const Image ours = gradientProbe({64, 32}, Rgb(1), slope);
   // In OpenEXR's lat-long maps, the centre is +Z and +X is a quarter of the width from the left.
   writeEnvironment(folder / "even.exr", gradientProbe({64, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
-                   "LatLong Environment");
+                   kEnvmapLatLong);
   writeEnvironment(folder / "odd.exr", gradientProbe({63, 32}, Rgb(1), {-0.3, 0.2, 0.4}),
-                   "LatLong Environment");
+                   kEnvmapLatLong);
   writeEnvironment(folder / "cube.exr",
-                   convert(ours, Mapping::LatLong, Mapping::VerticalStrip, {32, 192}),
-                   "CubeFace Environment");
+                   convert(ours, Mapping::LatLong, Mapping::VerticalStrip, {32, 192}), kEnvmapCube);
   writeImage(folder / "plain.exr", ours);
   for (const char* name : {"even.exr", "odd.exr", "cube.exr", "plain.exr"}) {
     const LoadedProbe loaded = loadProbe(folder / name);

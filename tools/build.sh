@@ -16,7 +16,7 @@ elif [[ ${1:-} == --packages-only ]]; then
 fi
 
 packages=(build-essential cmake pkg-config
-  libembree-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev
+  libembree-dev libpng-dev libjpeg-dev libopenexr-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev
   libtomlplusplus-dev libcli11-dev libcpp-httplib-dev libglm-dev libtbb-dev libfmt-dev
   nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
 

@@ -20,13 +20,13 @@ const std::string* textOf(const ImageFile& file, const char* attribute) {
   return found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
-// The mapping in OpenEXR's `envmap` attribute, which OpenImageIO calls `textureformat`.
+// The mapping in OpenEXR's `envmap` attribute.
 std::optional<Mapping> openExrMapping(const ImageFile& file) {
-  const std::string* format = textOf(file, "textureformat");
-  if (!format) return std::nullopt;
-  if (*format == "LatLong Environment") return Mapping::LatLong;
+  const std::string* envmap = textOf(file, kEnvmapAttribute);
+  if (!envmap) return std::nullopt;
+  if (*envmap == kEnvmapLatLong) return Mapping::LatLong;
   const bool isStrip = file.image.height == 6 * file.image.width;
-  if (*format == "CubeFace Environment" && isStrip) return Mapping::VerticalStrip;
+  if (*envmap == kEnvmapCube && isStrip) return Mapping::VerticalStrip;
   return std::nullopt;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the command line in forks of itself for the tests: a start of the command takes a third of a
-// second, most of it for the libraries of OpenImageIO, and the tests start it more than a thousand
-// times. Its argument is the name of a socket. Each connection is one run: it sends strings that
+// Runs the command line in forks of itself for the tests, which start it more than a thousand times. Its argument is the name of a socket. Each connection is one run: it sends strings that
 // end with 0 (the files for standard output and standard error, the working folder, the number of
 // arguments, the arguments, and the environment), then nothing more, and gets the status of
 // waitpid(). Ends when standard input does, that is, with the process that started it.
@@ -46,7 +44,7 @@ void runCommand(const std::vector<char*>& strings) {
   argv.push_back(nullptr);
   const int status = chromeball::runCommandLine(int(argv.size()) - 1, argv.data());
   std::fflush(nullptr);
-  // Not exit(): liblog4cplus, of OpenImageIO, would join threads that only the server has.
+  // Not exit(): libraries would join threads that only the server has.
   _exit(status);
 }
 

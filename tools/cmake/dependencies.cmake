@@ -7,9 +7,12 @@ find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3.13 CONFIG REQUIRED)
 endif()
-# Debian's CMake package of OpenImageIO also requires its programs and Python module; the file for
-# pkg-config requires the library alone.
+find_package(OpenEXR CONFIG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(PkgConfig REQUIRED)
+# For the module that reads TIFF alone. Debian's CMake package of OpenImageIO also requires its
+# programs and Python module; the file for pkg-config requires the library alone.
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(Draco REQUIRED IMPORTED_TARGET draco)

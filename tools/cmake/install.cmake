@@ -5,6 +5,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/chromeball)
 install(TARGETS chromeball_renderer EXPORT chromeball-targets
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS chromeball_imageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${chromeball_include_dir}/chromeball TYPE INCLUDE)
 install(EXPORT chromeball-targets NAMESPACE chromeball:: DESTINATION ${package_dir})
 
@@ -20,8 +21,6 @@ install(FILES ${PROJECT_BINARY_DIR}/chromeball-config.cmake
 
 if(TARGET chromeball)
   # Where the command finds a shared libchromeball, relative to itself.
-  cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
-             OUTPUT_VARIABLE bin_to_lib)
   set_target_properties(chromeball PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
   install(TARGETS chromeball)
   install(FILES docs/chromeball.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

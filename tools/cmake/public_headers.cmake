@@ -4,7 +4,7 @@
 # A header is public unless it includes, itself or through another of ours, a library that only the
 # renderer's own sources use, or has vector types, which need the renderer's instruction set.
 cmake_minimum_required(VERSION 3.22)
-set(private_libraries "<(embree|OpenImageIO/|tiny_gltf|toml\\+\\+/|nlohmann/|webp/|draco/|meshoptimizer|Eigen/|boost/|tbb/)")
+set(private_libraries "<(embree|OpenImageIO/|OpenEXR/|png\\.h|jpeglib\\.h|tiny_gltf|toml\\+\\+/|nlohmann/|webp/|draco/|meshoptimizer|Eigen/|boost/|tbb/)")
 
 file(GLOB_RECURSE headers RELATIVE ${SOURCE} ${SOURCE}/*.h)
 foreach(header ${headers})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library: chromeball_renderer here, chromeball::renderer for others.
 file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
+list(FILTER renderer_sources EXCLUDE REGEX "/image/imageio/")  # the module
 add_library(chromeball_renderer ${renderer_sources})
 add_library(chromeball::renderer ALIAS chromeball_renderer)
 chromeball_compile(chromeball_renderer)
@@ -9,6 +10,23 @@ set_target_properties(chromeball_renderer PROPERTIES
   OUTPUT_NAME chromeball
   VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+# The formats that only OpenImageIO reads, which load 250 libraries: a module, loaded for the first
+# such file. It is found beside the library or the command, or where the former is installed, seen
+# from the latter.
+include(GNUInstallDirs)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
+           OUTPUT_VARIABLE bin_to_lib)
+file(GLOB imageio_sources CONFIGURE_DEPENDS renderer/image/imageio/*.cpp)
+add_library(chromeball_imageio MODULE ${imageio_sources})
+chromeball_compile(chromeball_imageio)
+set_target_properties(chromeball_imageio PROPERTIES CXX_VISIBILITY_PRESET hidden)
+target_compile_definitions(chromeball_imageio PRIVATE CHROMEBALL_VERSION="${PROJECT_VERSION}")
+target_include_directories(chromeball_imageio PRIVATE renderer)
+target_link_libraries(chromeball_imageio PRIVATE PkgConfig::OpenImageIO)
+add_dependencies(chromeball_renderer chromeball_imageio)
+set_property(SOURCE renderer/image/io/imageio_module.cpp PROPERTY COMPILE_DEFINITIONS
+             CHROMEBALL_BIN_TO_LIB="${bin_to_lib}")
 
 # GLM's definitions decide what its vectors declare, so consumers need the same.
 target_compile_definitions(chromeball_renderer
@@ -20,8 +38,8 @@ target_link_libraries(chromeball_renderer
   PUBLIC fmt::fmt glm::glm
   # tinygltf before Draco: Debian's libdraco exports a tinygltf of another version, whose functions
   # would take the place of those that our calls were compiled for.
-  PRIVATE TBB::tbb embree PkgConfig::OpenImageIO PkgConfig::WebP TinyGLTF::TinyGLTF PkgConfig::Draco
-          meshoptimizer::meshoptimizer
+  PRIVATE TBB::tbb embree OpenEXR::OpenEXR PNG::PNG JPEG::JPEG PkgConfig::WebP
+          TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer
           # Headers only: a static library's consumers need not find them.
           $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
           $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)

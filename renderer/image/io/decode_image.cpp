@@ -2,40 +2,24 @@
 #include "image/io/decode_image.h"
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 
 #include "base/error.h"
 #include "image/io/decode_webp.h"
-#include "image/io/oiio_reader.h"
-#include "image/io/silenced_stderr.h"
-#include "image/io/strip_metadata.h"
+#include "image/io/image_format.h"
+#include "image/io/sample_reader.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
 namespace {
 
-using OIIO::ImageInput;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-bool startsWith(std::span<const uint8_t> file, std::string_view magic, size_t at = 0) {
-  return file.size() >= at + magic.size() &&
-         std::equal(magic.begin(), magic.end(), file.begin() + at,
+bool startsWith(std::span<const uint8_t> file, std::string_view magic) {
+  return file.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), file.begin(),
                     [](char a, uint8_t b) { return uint8_t(a) == b; });
 }
 
-bool isWebp(std::span<const uint8_t> file) {
-  return startsWith(file, "RIFF") && startsWith(file, "WEBP", 8);
-}
-
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-// Decides by the content, since many models label their images wrongly.
-const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
-  const char* reader = readerFor(file);
-  if (reader && (reader == std::string_view("png") || reader == std::string_view("jpeg")))
-    return reader;
+[[noreturn]] void refuseFormat(std::span<const uint8_t> file, const std::string& name) {
   const char* found = startsWith(file, "\xabKTX 20")                ? "KTX2"
                       : startsWith(file, "DDS ")                    ? "DDS"
                       : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
@@ -44,95 +28,76 @@ const char* readerOf(std::span<const uint8_t> file, const std::string& name) {
   throwInput("{}: is not a PNG, JPEG or WebP file", name);
 }
 
-// stripJpeg() checks whether the bytes of a JPEG can hold as many texels.
-void checkSize(int width, int height, int channels, const char* reader, size_t fileBytes,
-               const std::string& name) {
-  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide || channels < 1)
-    throwInput("{}: {} x {} texels with {} channels; the limit is {} x {}", name, width, height,
-               channels, kMaxImageSide, kMaxImageSide);
-  // A texel of a PNG takes at least one bit.
-  if (reader == std::string_view("png") &&
-      uint64_t(width) * uint64_t(height) > fileBytes * 8 * kMaxDeflateRatio)
-    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, width, height,
-               fileBytes);
+// Decides by the content, since many models label their images wrongly.
+std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const std::string& name) {
+  const ImageFormat format = imageFormat(file);
+  if (format != ImageFormat::Png && format != ImageFormat::Jpeg) refuseFormat(file, name);
+  const auto check = [&](const SampleLayout& image) {
+    if (image.width > kMaxImageSide || image.height > kMaxImageSide)
+      throwInput("{}: {} x {} texels with {} channels; the limit is {} x {}", name, image.width,
+                 image.height, image.channels, kMaxImageSide, kMaxImageSide);
+    // A texel of a PNG takes at least one bit.
+    if (format == ImageFormat::Png &&
+        uint64_t(image.width) * uint64_t(image.height) > file.size() * 8 * kMaxDeflateRatio)
+      throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
+                 image.height, file.size());
+  };
+  return format == ImageFormat::Png ? openPng(file, check) : openJpeg(file, check);
 }
 
-// Reads the image as RGBA texels of type T. It reads a few rows at a time, so that each page of the
-// result is touched once and no other buffer is large: page faults cost about as much as decoding.
-// `type` is the type to convert to. It is UNKNOWN if the file holds T, because OpenImageIO
-// allocates a buffer of 64 MB on every call that requests T itself.
+// Widens rows to RGBA texels, of samples of type T that are multiplied by `unit`. A row at a time,
+// so that each page of the result is touched once and no other buffer is large: page faults cost
+// about as much as decoding.
 template <class T, class Texel>
-std::vector<Texel> readTexels(ImageInput& input, TypeDesc type, T opaque, const std::string& name) {
-  constexpr int kRows = 32;
-  const ImageSpec& spec = input.spec();
-  const int channels = std::min(spec.nchannels, 4);
-  std::vector<T> rows(size_t(spec.width) * kRows * size_t(channels));
-  std::vector<Texel> wide(size_t(spec.width) * kRows), texels;
-  texels.reserve(size_t(spec.width) * size_t(spec.height));
-  for (int y = 0; y < spec.height; y += kRows) {
-    const int end = std::min(y + kRows, spec.height);
-    if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, channels, type, rows.data()))
-      throwInput("{}: damaged image: {}", name, firstLine(input.geterror()));
-    const size_t count = size_t(end - y) * size_t(spec.width);
-    const T* from = rows.data();
-    for (size_t i = 0; i < count; ++i, from += channels) {
+std::vector<Texel> readTexels(SampleReader& reader, typename Texel::value_type unit,
+                              typename Texel::value_type opaque) {
+  const auto [width, height, channels, bits] = reader.layout();
+  std::vector<Texel> wide(static_cast<size_t>(width)), texels;
+  texels.reserve(wide.size() * size_t(height));
+  reader.read([&, channels = channels](int, const void* samples) {
+    const T* from = static_cast<const T*>(samples);
+    const auto at = [&](int channel) { return typename Texel::value_type(from[channel] * unit); };
+    for (Texel& texel : wide) {
       if (channels >= 3)
-        wide[i] = {from[0], from[1], from[2], channels == 4 ? from[3] : opaque};
+        texel = {at(0), at(1), at(2), channels == 4 ? at(3) : opaque};
       else
-        wide[i] = {from[0], from[0], from[0], channels == 2 ? from[1] : opaque};
+        texel = {at(0), at(0), at(0), channels == 2 ? at(1) : opaque};
+      from += channels;
     }
-    texels.insert(texels.end(), wide.begin(), wide.begin() + std::ptrdiff_t(count));
-  }
+    texels.insert(texels.end(), wide.begin(), wide.end());
+  });
   return texels;
 }
 
 }  // namespace
 
 uint64_t decodedBytes(std::span<const uint8_t> file) {
-  const auto bytes = [&](const HeaderSize& size, uint64_t perTexel, uint64_t texelsPerByte) {
-    const uint64_t texels = uint64_t(size.width) * uint64_t(size.height);
-    const bool isPossible = size.width <= kMaxImageSide && size.height <= kMaxImageSide &&
-                            texels <= file.size() * texelsPerByte;
-    return isPossible ? texels * perTexel : 0;
-  };
-  if (isWebp(file)) return bytes(webpSize(file), 4, 1 << 15);
-  const char* reader = readerFor(file);
-  if (reader && reader == std::string_view("jpeg"))
-    return bytes(jpegSize(file), 4, kMaxTexelsPerJpegByte);
-  constexpr size_t kDepthAt = 24;
-  if (reader && reader == std::string_view("png") && file.size() > kDepthAt)
-    return bytes(pngSize(file), file[kDepthAt] > 8 ? sizeof(vec4) : 4, 8 * kMaxDeflateRatio);
-  return 0;
+  if (imageFormat(file) == ImageFormat::Webp) return webpBytes(file);
+  try {
+    const SampleLayout image = openTexture(file, "")->layout();
+    return uint64_t(image.width) * uint64_t(image.height) * (image.bits > 8 ? sizeof(vec4) : 4);
+  } catch (const std::runtime_error&) {
+    return 0;
+  }
 }
 
 DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
-  if (isWebp(file)) return decodeWebp(file, name);
-  const char* reader = readerOf(file, name);
-  const SilencedStderr silenced;
-  ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;
-  const auto check = [&](int width, int height, int channels) {
-    checkSize(width, height, channels, reader, file.size(), name);
-  };
-  std::optional<MemoryInput> memory;
+  if (imageFormat(file) == ImageFormat::Webp) return decodeWebp(file, name);
   try {
-    memory.emplace(reader, file, name, check, config);
+    const std::unique_ptr<SampleReader> reader = openTexture(file, name);
+    DecodedImage image;
+    image.width = reader->layout().width;
+    image.height = reader->layout().height;
+    if (reader->layout().bits == 8)
+      image.texels8 = readTexels<uint8_t, std::array<uint8_t, 4>>(*reader, 1, 255);
+    else
+      image.texelsFloat = readTexels<uint16_t, vec4>(*reader, 1.0f / 65535, 1.0f);
+    return image;
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    throwInput("{}: damaged image: {}", name, firstLine(error.what()));
+    throwInput("{}: damaged image: {}", name, error.what());
   }
-  ImageInput& input = memory->input();
-
-  DecodedImage image;
-  image.width = input.spec().width;
-  image.height = input.spec().height;
-  if (input.spec().format == TypeDesc::UINT8)
-    image.texels8 =
-        readTexels<uint8_t, std::array<uint8_t, 4>>(input, TypeDesc::UNKNOWN, 255, name);
-  else
-    image.texelsFloat = readTexels<float, vec4>(input, TypeDesc::FLOAT, 1.0f, name);
-  return image;
 }
 
 }  // namespace chromeball

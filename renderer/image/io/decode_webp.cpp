@@ -6,6 +6,14 @@
 #include "base/error.h"
 
 namespace chromeball {
+namespace {
+
+// An image of one colour compresses 25000 : 1. Small images may have any ratio.
+bool fitsInto(uint64_t texels, size_t fileBytes) {
+  return texels <= (uint64_t(1) << 24) || texels <= fileBytes * 32768;
+}
+
+}  // namespace
 
 DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) {
   WebPBitstreamFeatures features;
@@ -15,9 +23,8 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) 
   DecodedImage image;  // the format allows at most 16383 texels per side
   image.width = features.width;
   image.height = features.height;
-  // An image of one colour compresses 25000 : 1. Small images may have any ratio.
   const uint64_t texels = uint64_t(image.width) * uint64_t(image.height);
-  if (texels > (uint64_t(1) << 24) && texels > file.size() * 32768)
+  if (!fitsInto(texels, file.size()))
     throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
                image.height, file.size());
   image.texels8.resize(texels);
@@ -28,10 +35,11 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) 
   return image;
 }
 
-HeaderSize webpSize(std::span<const uint8_t> file) {
+uint64_t webpBytes(std::span<const uint8_t> file) {
   WebPBitstreamFeatures features;
-  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) return {};
-  return {features.width, features.height};
+  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) return 0;
+  const uint64_t texels = uint64_t(features.width) * uint64_t(features.height);
+  return fitsInto(texels, file.size()) ? texels * 4 : 0;
 }
 
 }  // namespace chromeball

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodes a PNG in memory: for images embedded in documents, and for files, because OpenImageIO's
-// writer does not detect a full disk.
+// Encodes a PNG in memory: for images embedded in documents, and for files.
 #pragma once
 
 #include <cstdint>

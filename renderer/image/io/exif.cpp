@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "base/file.h"
-#include "image/io/oiio_reader.h"
+#include "image/io/image_format.h"
+#include "image/io/metadata_blocks.h"
 #include "image/io/read_image.h"
-#include "image/io/strip_metadata.h"
 
 namespace chromeball {
 namespace {
@@ -85,7 +85,6 @@ Exif parse(const Block& block) {
           find(kFocalLengthIn35mmFilm)};
 }
 
-// OpenImageIO renames the attributes.
 Exif fromAttributes(const Metadata& metadata) {
   const auto find = [&](const char* name) -> std::optional<double> {
     const auto found = metadata.find(name);
@@ -93,7 +92,7 @@ Exif fromAttributes(const Metadata& metadata) {
     const auto* number = std::get_if<float>(&found->second);
     return number ? positive(*number) : std::nullopt;
   };
-  return {find("ExposureTime"), find("FNumber"), find("Exif:ISOSpeedRatings"), {}};
+  return {find("expTime"), find("aperture"), find("isoSpeed"), {}};
 }
 
 }  // namespace
@@ -101,13 +100,18 @@ Exif fromAttributes(const Metadata& metadata) {
 Exif readExif(const std::filesystem::path& path) {
   const FileBytes file(path);
   const std::span<const uint8_t> bytes = file.bytes();
-  const char* reader = readerFor(bytes.first(std::min<size_t>(bytes.size(), 4)));
-  const std::string_view format = reader ? reader : "";
-  if (format == "openexr") return fromAttributes(readExrMetadata(path));
-  if (format == "jpeg") return parse(Block(jpegExif(bytes)));
-  if (format == "png") return parse(Block(pngExif(bytes)));
-  if (format == "tiff") return parse(Block(bytes));
-  return {};
+  switch (imageFormat(bytes)) {
+    case ImageFormat::Exr:
+      return fromAttributes(readExrMetadata(path));
+    case ImageFormat::Jpeg:
+      return parse(Block(jpegExif(bytes)));
+    case ImageFormat::Png:
+      return parse(Block(pngExif(bytes)));
+    case ImageFormat::Tiff:
+      return parse(Block(bytes));
+    default:
+      return {};
+  }
 }
 
 }  // namespace chromeball

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a photograph was taken, by its EXIF block (CIPA DC-008, section 4.6.5): a TIFF directory with
-// a pointer to another one. It is read here and not by OpenImageIO, whose version 2.4 reads beyond
-// the end of damaged blocks.
+// a pointer to another one.
 #pragma once
 
 #include <filesystem>

@@ -13,6 +13,8 @@
 
 namespace chromeball {
 
+class ExrInput;
+
 // A file of scanlines with channels of one type, float32 or 16 bits. Functions throw InputError
 // ("FILE: reason").
 class ExrRowsReader {
@@ -22,10 +24,10 @@ class ExrRowsReader {
   ExrRowsReader(ExrRowsReader&&) noexcept;
   ~ExrRowsReader();
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  const std::vector<std::string>& channels() const { return channels_; }
-  const Metadata& metadata() const { return metadata_; }
+  int width() const;
+  int height() const;
+  const std::vector<std::string>& channels() const;
+  const Metadata& metadata() const;
 
   // All channels of `count` rows from `top` on.
   Image read(int top, int count);
@@ -34,14 +36,7 @@ class ExrRowsReader {
   double bufferBytes() const;
 
  private:
-  int rowsAtOnce() const;
-
-  class Input;
-  std::filesystem::path path_;
-  std::unique_ptr<Input> input_;
-  int width_ = 0, height_ = 0, rowsOfBlock_ = 1;
-  std::vector<std::string> channels_;
-  Metadata metadata_;
+  std::unique_ptr<ExrInput> input_;
 };
 
 }  // namespace chromeball

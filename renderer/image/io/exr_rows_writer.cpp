@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exr_rows_writer.h"
 
-#include <OpenImageIO/imageio.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
+#include <fstream>
 #include <thread>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "image/io/exr_metadata.h"
 #include "image/io/exr_state.h"
+#include "image/io/exr_threads.h"
 
 namespace chromeball {
 namespace {
@@ -20,25 +29,59 @@ namespace fs = std::filesystem;
 
 constexpr int64_t kFloatsWrittenAtOnce = int64_t(1) << 24;
 
-OIIO::ImageSpec specOf(const ExrLayout& layout) {
-  OIIO::ImageSpec spec(layout.width, layout.height, int(layout.channels.size()),
-                       layout.halves ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-  spec.channelnames = layout.channels;
-  spec.attribute("compression", layout.separateRows ? "zips" : "zip");
-  for (const auto& [name, contents] : layout.metadata)
-    if (const auto* matrix = std::get_if<Matrix44>(&contents))
-      spec.attribute(name, OIIO::TypeMatrix, matrix->data());
-    else if (const auto* text = std::get_if<std::string>(&contents))
-      spec.attribute(name, *text);
-    else if (const auto* number = std::get_if<float>(&contents))
-      spec.attribute(name, *number);
-    else
-      spec.attribute(name, std::get<int>(contents));
-  if (const auto& placement = layout.placement) {
-    spec.x = placement->x, spec.y = placement->y;
-    spec.full_width = placement->width, spec.full_height = placement->height;
+// Remembers that a write failed: OpenEXR ignores what its destructor could not write.
+class ExrStream : public Imf::OStream {
+ public:
+  explicit ExrStream(const fs::path& path) : OStream(path.c_str()), out_(path, std::ios::binary) {
+    check();
   }
-  return spec;
+
+  void write(const char bytes[], int count) override {
+    out_.write(bytes, count);
+    check();
+  }
+  uint64_t tellp() override { return uint64_t(out_.tellp()); }
+  void seekp(uint64_t at) override {
+    out_.seekp(std::streamoff(at));
+    check();
+  }
+  void close() {
+    if (out_) out_.close();
+    check();
+  }
+
+ private:
+  void check() {
+    if (!out_ && reason_ == 0) reason_ = errno;
+    if (!out_) throw std::runtime_error(std::strerror(reason_));
+  }
+
+  std::ofstream out_;
+  int reason_ = 0;
+};
+
+std::string localTime() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  char text[32];
+  std::strftime(text, sizeof text, "%Y:%m:%d %H:%M:%S", localtime_r(&now, &parts));
+  return text;
+}
+
+Imf::Header headerOf(const ExrLayout& layout) {
+  const Placement whole{0, 0, layout.width, layout.height};
+  const Placement& p = layout.placement ? *layout.placement : whole;
+  using Imath::V2i;
+  Imf::Header header(
+      Imath::Box2i(V2i(0, 0), V2i(p.width - 1, p.height - 1)),
+      Imath::Box2i(V2i(p.x, p.y), V2i(p.x + layout.width - 1, p.y + layout.height - 1)));
+  header.compression() = layout.separateRows ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 4;
+  header.insert("capDate", Imf::StringAttribute(localTime()));
+  setMetadata(layout.metadata, header);
+  for (const std::string& channel : layout.channels)
+    header.channels().insert(channel, Imf::Channel(layout.halves ? Imf::HALF : Imf::FLOAT));
+  return header;
 }
 
 // All channels of the rows from `top` on, as many as `rows` has.
@@ -53,13 +96,12 @@ void interleave(std::span<const Image* const> images, int top, Image& rows) {
   assert(offset == rows.channels);
 }
 
-// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads
-// busy.
-int rowsAtOnce(const OIIO::ImageSpec& spec, bool separateRows) {
+// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads busy.
+int rowsAtOnce(const ExrLayout& layout) {
   constexpr int kMost = 256;
-  const auto floatsPerRow = int64_t(spec.width) * spec.nchannels;
+  const auto floatsPerRow = int64_t(layout.width) * int64_t(layout.channels.size());
   return int(
-      std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, separateRows ? 1 : 16, kMost));
+      std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, layout.separateRows ? 1 : 16, kMost));
 }
 
 }  // namespace
@@ -67,47 +109,70 @@ int rowsAtOnce(const OIIO::ImageSpec& spec, bool separateRows) {
 class ExrRowsWriter::Output {
  public:
   Output(const fs::path& path, const ExrLayout& layout)
-      : path_(path),
-        file_(path),
-        spec_(specOf(layout)),
-        most_(rowsAtOnce(spec_, layout.separateRows)),
-        out_(OIIO::ImageOutput::create("openexr")) {
-    if (!out_) throwRun("{}: this build of OpenImageIO does not write OpenEXR", path.string());
-    check(out_->open(file_.temporary().string(), spec_));
+      : path_(path), file_(path), layout_(layout), most_(rowsAtOnce(layout)) {
+    useExrThreads();
+    guarded([&] {
+      stream_ = std::make_unique<ExrStream>(file_.temporary());
+      out_ = std::make_unique<Imf::OutputFile>(*stream_, headerOf(layout));
+    });
   }
 
   void write(std::span<const Image* const> images) {
     const int count = images.front()->height;
     for (int top = 0; top < count; top += most_) {
-      Image rows(spec_.width, std::min(most_, count - top), spec_.nchannels);
+      Image rows(layout_.width, std::min(most_, count - top), int(layout_.channels.size()));
       interleave(images, top, rows);
-      const int y = spec_.y + written_;
-      check(
-          out_->write_scanlines(y, y + rows.height, 0, OIIO::TypeDesc::FLOAT, rows.texels.data()));
-      written_ += rows.height;
+      guarded([&] { writeRows(rows); });
     }
   }
 
   void commit(const std::function<void(Archive&)>& state) {
-    assert(written_ == spec_.height);
-    check(out_->close());
+    assert(written_ == layout_.height);
+    guarded([&] {
+      out_.reset();
+      stream_->close();
+    });
     if (state) appendExrState(file_.temporary(), path_, state);
     file_.commit();
   }
 
  private:
-  void check(bool ok) const {
-    if (ok) return;
-    const std::string reason = out_->geterror();
-    throwRun("{}: cannot be written: {}", path_.string(),
-             reason.empty() ? std::strerror(errno) : reason);
+  void writeRows(Image& rows) {
+    const size_t channels = layout_.channels.size();
+    std::vector<half> halves;
+    if (layout_.halves) halves.assign(rows.texels.begin(), rows.texels.end());
+    const size_t number = layout_.halves ? sizeof(half) : sizeof(float);
+    char* texels = layout_.halves ? reinterpret_cast<char*>(halves.data())
+                                  : reinterpret_cast<char*>(rows.texels.data());
+    const Imath::Box2i window = out_->header().dataWindow();
+    // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row.
+    const size_t stride = channels * number, row = stride * size_t(layout_.width);
+    const ptrdiff_t offset =
+        ptrdiff_t(row) * (window.min.y + written_) + ptrdiff_t(stride) * window.min.x;
+    Imf::FrameBuffer buffer;
+    for (size_t c = 0; c < channels; ++c)
+      buffer.insert(layout_.channels[c], Imf::Slice(layout_.halves ? Imf::HALF : Imf::FLOAT,
+                                                    texels + c * number - offset, stride, row));
+    out_->setFrameBuffer(buffer);
+    out_->writePixels(rows.height);
+    written_ += rows.height;
+  }
+
+  template <class Call>
+  void guarded(const Call& call) const {
+    try {
+      call();
+    } catch (const std::exception& error) {
+      throwRun("{}: cannot be written: {}", path_.string(), error.what());
+    }
   }
 
   fs::path path_;
   AtomicFile file_;
-  OIIO::ImageSpec spec_;
+  ExrLayout layout_;
   int most_, written_ = 0;  // rows
-  std::unique_ptr<OIIO::ImageOutput> out_;
+  std::unique_ptr<ExrStream> stream_;
+  std::unique_ptr<Imf::OutputFile> out_;
 };
 
 ExrRowsWriter::ExrRowsWriter(const fs::path& path, const ExrLayout& layout)

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <limits>
 
 #include "base/file.h"
-#include "image/io/exr_header.h"
-#include "image/io/oiio_file.h"
-#include "image/io/oiio_reader.h"
+#include "image/io/exr_input.h"
+#include "image/io/image_format.h"
+#include "image/io/imageio_module.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
+#include "image/io/sample_reader.h"
+#include "image/io/unreadable.h"
 #include "image/size_limits.h"
 #include "image/tonemap.h"
 
@@ -19,20 +22,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string firstBytes(const fs::path& path) {
+ImageFormat formatOf(const fs::path& path) {
   checkReadable(path);
-  std::string bytes(4, '\0');
-  std::ifstream(path, std::ios::binary).read(bytes.data(), std::streamsize(bytes.size()));
-  return bytes;
+  std::array<uint8_t, kFormatBytes> bytes{};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
 }
 
-// Of an .exr whose data window lies within its display window and is not all of it.
-std::optional<Placement> placementOf(const OIIO::ImageSpec& spec) {
-  const Placement p{spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width, spec.full_height};
-  const bool isWithin =
-      p.x >= 0 && p.y >= 0 && p.width - p.x >= spec.width && p.height - p.y >= spec.height;
-  if (!isWithin || (p.width == spec.width && p.height == spec.height)) return {};
-  return p;
+ImageFile readExr(const fs::path& path) {
+  ExrInput input(path, kMaxImageFloats);
+  ImageFile file;
+  file.channels = input.channels();
+  file.metadata = input.metadata();
+  file.placement = input.placement();
+  file.image = Image(input.width(), input.height(), int(input.channels().size()));
+  input.read(0, input.height(), file.image.texels.data());
+  return file;
 }
 
 // Multiplies the colour by alpha; the texels are linear.
@@ -45,47 +51,71 @@ void associate(Image& image, int alphaChannel) {
     }
 }
 
-ImageFile readTexels(const fs::path& path, OIIO::ImageInput& input, IntegerTexels integers) {
-  const OIIO::ImageSpec& spec = input.spec();
-  if (spec.deep || spec.depth > 1)
-    throwUnreadable(path, "deep and volume images are not supported");
-  ImageFile file;
-  file.channels = spec.channelnames;
-  file.metadata = metadataOf(spec);
-  if (input.format_name() == std::string_view("openexr")) file.placement = placementOf(spec);
-  file.integers = !spec.format.is_floating_point();
-  file.bits = file.integers ? int(8 * spec.format.basesize()) : 0;
-  file.image = Image(spec.width, spec.height, spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.texels.data()))
-    throwUnreadable(path, input.geterror());
+// Fractions of the largest sample, decoded to linear if that is asked for.
+template <class Sample>
+void readSamples(SampleReader& reader, IntegerTexels integers, Image& image) {
+  constexpr float kUnit = 1.0f / std::numeric_limits<Sample>::max();
+  const int alpha = reader.layout().hasAlpha() ? image.channels - 1 : -1;
+  std::vector<float> linear(integers == IntegerTexels::Srgb && sizeof(Sample) == 1 ? 256 : 0);
+  for (size_t i = 0; i < linear.size(); ++i) linear[i] = srgbToLinear(float(i) * kUnit);
+  const auto decode = [&](Sample sample) {
+    if (!linear.empty()) return linear[sample];
+    const float fraction = float(sample) * kUnit;
+    return integers == IntegerTexels::Srgb ? srgbToLinear(fraction) : fraction;
+  };
+  reader.read([&](int y, const void* samples) {
+    const auto* from = static_cast<const Sample*>(samples);
+    float* to = image.at(0, y);
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < image.channels; ++c, ++from)
+        *to++ = c == alpha ? float(*from) * kUnit : decode(*from);
+  });
+}
 
-  if (file.integers && integers == IntegerTexels::Srgb)
-    for (size_t i = 0; i < file.image.texels.size(); ++i)
-      if (int(i % spec.nchannels) != spec.alpha_channel)
-        file.image.texels[i] = srgbToLinear(file.image.texels[i]);
-  if (spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha"))
-    associate(file.image, spec.alpha_channel);
+ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels integers) {
+  const std::vector<uint8_t> bytes = readFile(path);
+  const auto check = [&](const SampleLayout& layout) {
+    checkImageSize(path, layout.width, layout.height, layout.channels);
+    // Small images may have any ratio.
+    constexpr uint64_t kAlwaysAllowed = 64 << 20;
+    const uint64_t decoded =
+        uint64_t(layout.width) * layout.height * layout.channels * (layout.bits / 8);
+    if (decoded > std::max(kAlwaysAllowed, bytes.size() * kMaxDeflateRatio))
+      throwInput("{}: too short for {} x {} texels", path.string(), layout.width, layout.height);
+  };
+  const auto reader = format == ImageFormat::Png ? openPng(bytes, check) : openJpeg(bytes, check);
+  constexpr const char* kChannels[] = {"Y", "YA", "RGB", "RGBA"};
+  const SampleLayout& layout = reader->layout();
+  ImageFile file;
+  for (const char* name = kChannels[layout.channels - 1]; *name; ++name)
+    file.channels.emplace_back(1, *name);
+  file.integers = true;
+  file.bits = layout.bits;
+  file.image = Image(layout.width, layout.height, layout.channels);
+  if (layout.bits == 8)
+    readSamples<uint8_t>(*reader, integers, file.image);
+  else
+    readSamples<uint16_t>(*reader, integers, file.image);
+  if (layout.hasAlpha()) associate(file.image, layout.channels - 1);
   return file;
 }
 
-ImageFile readByLibrary(const fs::path& path, const char* reader, IntegerTexels integers) {
-  const auto checkSize = [&](int width, int height, int channels) {
-    checkImageSize(path, width, height, channels);
-  };
-  if (reader != std::string_view("openexr")) {
-    // readTexels() associates alpha; the library would do so before the texels are decoded.
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    MemoryInput memory(reader, readFile(path), path.string(), checkSize, config);
-    checkFileLength(path, reader, memory.input().spec());
-    return readTexels(path, memory.input(), integers);
-  }
-  checkExrHeaders(path);
-  const auto input = openImage(reader, path.string());
-  const OIIO::ImageSpec& spec = input->spec();
-  checkSize(spec.width, spec.height, spec.nchannels);
-  checkFileLength(path, reader, spec);
-  return readTexels(path, *input, integers);
+ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
+  const std::vector<uint8_t> bytes = readFile(path);
+  const std::unique_ptr<ModuleImage> image = openModuleImage("tiff", bytes, path);
+  const ModuleImageHeader& header = image->header();
+  ImageFile file;
+  file.channels = header.channels;
+  file.integers = header.integerBits > 0;
+  file.bits = header.integerBits;
+  file.image = Image(header.width, header.height, int(header.channels.size()));
+  image->read(file.image.texels.data());
+  if (file.integers && integers == IntegerTexels::Srgb)
+    for (size_t i = 0; i < file.image.texels.size(); ++i)
+      if (int(i % header.channels.size()) != header.alphaChannel)
+        file.image.texels[i] = srgbToLinear(file.image.texels[i]);
+  if (header.unassociatedAlpha) associate(file.image, header.alphaChannel);
+  return file;
 }
 
 Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
@@ -111,21 +141,33 @@ std::optional<Image> findChannels(const ImageFile& file, const std::string& pref
 }  // namespace
 
 Metadata readExrMetadata(const fs::path& path) {
-  checkReadable(path);
-  checkExrHeaders(path);
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) throwUnreadable(path, OIIO::geterror());
-  return metadataOf(input->spec());
+  return ExrInput(path, kMaxImageFloats).metadata();
 }
 
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
-  const std::string magic = firstBytes(path);
-  if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
-  if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
-  if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
-  const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});
-  if (!reader) throwUnreadable(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
-  return readByOiio(path, [&] { return readByLibrary(path, reader, integers); });
+  const ImageFormat format = formatOf(path);
+  return readByLibrary(path, [&]() -> ImageFile {
+    switch (format) {
+      case ImageFormat::Exr:
+        return readExr(path);
+      case ImageFormat::RadianceHdr:
+        return {readRadianceHdr(path), {"R", "G", "B"}, {}};
+      case ImageFormat::Pfm: {
+        Image image = readPfm(path);
+        const bool isGrey = image.channels == 1;
+        return {std::move(image),
+                isGrey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"},
+                {}};
+      }
+      case ImageFormat::Png:
+      case ImageFormat::Jpeg:
+        return readSampleFile(path, format, integers);
+      case ImageFormat::Tiff:
+        return readByModule(path, integers);
+      default:
+        throwUnreadable(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
+    }
+  });
 }
 
 std::optional<Image> findColor(const ImageFile& file) {

@@ -19,6 +19,11 @@ namespace chromeball {
 using Matrix44 = std::array<float, 16>;
 using Metadata = std::map<std::string, std::variant<std::string, int, float, Matrix44>>;
 
+// OpenEXR's attribute of probes in Metadata, and its values (ImfEnvmap.h).
+inline constexpr const char* kEnvmapAttribute = "envmap";
+inline constexpr const char* kEnvmapLatLong = "latlong";
+inline constexpr const char* kEnvmapCube = "cube";
+
 // The encoding of integer files (8 or 16 bits). Float files are always linear.
 enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear, except alpha
 

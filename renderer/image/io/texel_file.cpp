@@ -17,45 +17,47 @@ constexpr int kTileShift = sizeof(Texel) == 4 ? 6 : 5;
 template <class Texel>
 constexpr int kTileSide = 1 << kTileShift<Texel>;
 
+struct StoredImage {
+  uint64_t firstTile, tilesPerRow;
+  bool has8Bits;
+};
+
 // The tiles that a thread has read last: a look-up in the cache locks, and takes as long as ten
 // texels. Tiles have fixed places, by which 8 x 8 neighbours never displace one another.
 class RecentTiles {
  public:
   static constexpr int kSide = 8, kCount = kSide * kSide;
 
-  explicit RecentTiles(TileCache* cache) : cache_(*cache), reader_(cache->makeReader()) {}
+  explicit RecentTiles(TileCache* cache) : cache_(*cache) {}
   RecentTiles(const RecentTiles&) = delete;
   RecentTiles& operator=(const RecentTiles&) = delete;
-  ~RecentTiles() {
-    for (Entry& entry : entries_)
-      if (entry.tile.handle) cache_.release(entry.tile);
-    cache_.release(reader_);
-  }
 
-  // The texels of tile (x, y), counted in tiles; null if it cannot be read.
-  const void* find(int image, int x, int y) {
-    const int spread = image * 29 % kCount;
+  // The texels of tile (x, y) of an image, counted in tiles; null if it cannot be read.
+  const void* find(const StoredImage& image, int index, int x, int y) {
+    const int spread = index * 29 % kCount;
     Entry& entry = entries_[size_t((x % kSide + kSide * (y % kSide)) ^ spread)];
-    if (entry.image == image && entry.x == x && entry.y == y) [[likely]]
-      return entry.tile.texels;
-    return replace(entry, image, x, y);
+    if (entry.image == index && entry.x == x && entry.y == y) [[likely]]
+      return entry.tile->bytes.data();
+    return replace(entry, image, index, x, y);
   }
 
  private:
   struct Entry {
-    CachedTile tile = {};
+    TileCache::Tile tile;
     int image = -1, x = 0, y = 0;
   };
 
-  [[gnu::noinline]] const void* replace(Entry& entry, int image, int x, int y) {
-    if (entry.tile.handle) cache_.release(entry.tile);
-    entry = {cache_.get(reader_, image, x, y), image, x, y};
-    if (!entry.tile.handle) entry.image = -1;
-    return entry.tile.texels;
+  [[gnu::noinline]] const void* replace(Entry& entry, const StoredImage& image, int index, int x,
+                                        int y) {
+    entry = {};
+    TileCache::Tile tile =
+        cache_.get(image.firstTile + uint64_t(y) * image.tilesPerRow + uint64_t(x));
+    if (!tile) return nullptr;
+    entry = {std::move(tile), index, x, y};
+    return entry.tile->bytes.data();
   }
 
   TileCache& cache_;
-  TileCache::Reader* reader_;
   std::array<Entry, kCount> entries_ = {};
 };
 
@@ -86,7 +88,7 @@ struct TexelFile::State {
 
   const uint64_t id = nextId();
   TileCache cache;
-  std::vector<uint8_t> has8Bits;  // by image
+  std::vector<StoredImage> images;
   tbb::enumerable_thread_specific<RecentTiles> threads{&cache};
 };
 
@@ -99,13 +101,8 @@ template <class Texel>
 int TexelFile::append(int width, int height, const std::vector<Texel>& texels) {
   constexpr int kSide = kTileSide<Texel>;
   TileCache& cache = state_->cache;
-  const TileCache::Image image{.owner = nullptr,
-                               .width = width,
-                               .height = height,
-                               .tileSide = kSide,
-                               .type = sizeof(Texel) == 4 ? OIIO::TypeUInt8 : OIIO::TypeFloat,
-                               .offset = cache.byteCount()};
   const size_t tilesPerRow = (size_t(width) + kSide - 1) / kSide;
+  const StoredImage image{cache.byteCount() / kTileBytes, tilesPerRow, sizeof(Texel) == 4};
   std::vector<uint8_t> row(tilesPerRow * kTileBytes);  // of tiles
   for (int y0 = 0; y0 < height; y0 += kSide) {
     for (int y = y0; y < std::min(y0 + kSide, height); ++y)
@@ -116,9 +113,8 @@ int TexelFile::append(int width, int height, const std::vector<Texel>& texels) {
       }
     cache.append(row);
   }
-  cache.add(image);
-  state_->has8Bits.push_back(sizeof(Texel) == 4);
-  return int(state_->has8Bits.size()) - 1;
+  state_->images.push_back(image);
+  return int(state_->images.size()) - 1;
 }
 
 int TexelFile::add(int width, int height, const std::vector<Texel8>& texels) {
@@ -132,7 +128,8 @@ int TexelFile::add(int width, int height, const std::vector<vec4>& texels) {
 template <class Texel>
 Texel TexelFile::fetch(int image, int x, int y) const {
   constexpr int kShift = kTileShift<Texel>, kMask = kTileSide<Texel> - 1;
-  const void* tile = state_->recentTiles().find(image, x >> kShift, y >> kShift);
+  const void* tile =
+      state_->recentTiles().find(state_->images[size_t(image)], image, x >> kShift, y >> kShift);
   if (!tile) return Texel{};
   const size_t index = size_t(y & kMask) << kShift | size_t(x & kMask);
   return static_cast<const Texel*>(tile)[index];
@@ -144,7 +141,7 @@ TexelFile::Texel8 TexelFile::texel8(int image, int x, int y) const {
 
 vec4 TexelFile::texelFloat(int image, int x, int y) const { return fetch<vec4>(image, x, y); }
 
-bool TexelFile::has8Bits(int image) const { return state_->has8Bits[size_t(image)] != 0; }
+bool TexelFile::has8Bits(int image) const { return state_->images[size_t(image)].has8Bits; }
 
 void TexelFile::check() const { state_->cache.check(); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels beyond memory: kept in a temporary file, read through OpenImageIO's cache of tiles.
+// Texels beyond memory: kept in a temporary file, read through a cache of tiles.
 #pragma once
 
 #include <array>
@@ -18,9 +18,8 @@ class TexelFile {
  public:
   using Texel8 = std::array<uint8_t, 4>;
 
-  // The cache holds about `cacheBytes` of tiles, and never less than kMinCacheBytes, OpenImageIO's
-  // limit. Besides, each thread that reads holds on to at most kBytesPerThread. Throws RunError if
-  // the file cannot be created.
+  // The cache holds `cacheBytes` of tiles, and never less than kMinCacheBytes. Besides, each thread
+  // that reads holds on to at most kBytesPerThread. Throws RunError if the file cannot be created.
   explicit TexelFile(size_t cacheBytes);
   ~TexelFile();
   TexelFile(const TexelFile&) = delete;

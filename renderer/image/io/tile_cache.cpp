@@ -13,39 +13,6 @@
 namespace chromeball {
 namespace {
 
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-constexpr const char* kImage = "chromeball:image";
-
-// An image of the file, as a reader of OpenImageIO.
-class TileInput : public OIIO::ImageInput {
- public:
-  const char* format_name() const override { return "tiles"; }
-  bool valid_file(const std::string&) const override { return false; }
-
-  bool open(const std::string&, ImageSpec&) override { return false; }
-  bool open(const std::string&, ImageSpec& spec, const ImageSpec& config) override {
-    if (!config.getattribute(kImage, TypeDesc::PTR, &image_)) return false;
-    m_spec = ImageSpec(image_->width, image_->height, 4, image_->type);
-    m_spec.tile_width = m_spec.tile_height = image_->tileSide;
-    m_spec.tile_depth = 1;
-    spec = m_spec;
-    return true;
-  }
-  bool close() override { return true; }
-
-  bool read_native_scanline(int, int, int, int, void*) override { return false; }
-  bool read_native_tile(int, int, int x, int y, int, void* texels) override {
-    return image_->owner->readTile(*image_, x / image_->tileSide, y / image_->tileSide, texels);
-  }
-
- private:
-  const TileCache::Image* image_ = nullptr;
-};
-
-OIIO::ImageInput* makeTileInput() { return new TileInput; }
-
 std::string temporaryFolder() {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
@@ -68,15 +35,9 @@ TileCache::TileCache(size_t bytes) : folder_(temporaryFolder()), cacheBytes_(byt
   if (file_ < 0)
     throwRun("{}: no temporary file for textures can be created: {}", folder_,
              std::strerror(errno));
-  cache_ = OIIO::ImageCache::create(false);
-  cache_->attribute("max_memory_MB", float(double(bytes) / (1 << 20)));
-  cache_->attribute("max_open_files", 1 << 30);  // our readers share one
 }
 
-TileCache::~TileCache() {
-  OIIO::ImageCache::destroy(cache_);
-  close(file_);
-}
+TileCache::~TileCache() { close(file_); }
 
 void TileCache::append(std::span<const uint8_t> bytes) {
   while (!bytes.empty()) {
@@ -90,46 +51,45 @@ void TileCache::append(std::span<const uint8_t> bytes) {
   }
 }
 
-void TileCache::add(Image image) {
-  image.owner = this;
-  images_.push_back(image);
-  const Image* added = &images_.back();
-  ImageSpec config;
-  config.attribute(kImage, TypeDesc::PTR, &added);
-  const OIIO::ustring name(std::to_string(images_.size()));
-  cache_->add_file(name, makeTileInput, &config);
-  images_.back().handle = cache_->get_image_handle(name);
-}
-
-CachedTile TileCache::get(Reader* reader, int image, int x, int y) {
-  if (hasFailed_) return {};
-  const Image& from = images_[size_t(image)];
-  CachedTile tile;
-  tile.handle =
-      cache_->get_tile(from.handle, reader, 0, 0, x * from.tileSide, y * from.tileSide, 0);
-  if (!tile.handle) {
-    fail(cache_->geterror());
-    return {};
+TileCache::Tile TileCache::get(uint64_t index) {
+  if (hasFailed_) return nullptr;
+  Shard& shard = shards_[index % kShards];
+  const auto find = [&]() -> Tile {
+    const auto found = shard.places.find(index);
+    if (found == shard.places.end()) return nullptr;
+    shard.entries.splice(shard.entries.begin(), shard.entries, found->second);
+    return found->second->tile;
+  };
+  {
+    const std::lock_guard lock(shard.mutex);
+    if (Tile tile = find()) return tile;
   }
-  TypeDesc type;
-  tile.texels = cache_->tile_pixels(tile.handle, type);
+  Tile tile = read(index);  // others use the shard meanwhile
+  if (!tile) return nullptr;
+  const std::lock_guard lock(shard.mutex);
+  if (Tile other = find()) return other;
+  shard.entries.push_front({index, tile});
+  shard.places[index] = shard.entries.begin();
+  if (shard.entries.size() * kShards * kTileBytes > cacheBytes_) {
+    shard.places.erase(shard.entries.back().index);
+    shard.entries.pop_back();
+  }
   return tile;
 }
 
-bool TileCache::readTile(const Image& image, int x, int y, void* texels) {
-  const int tilesPerRow = (image.width + image.tileSide - 1) / image.tileSide;
-  const uint64_t offset = image.offset + uint64_t(y * tilesPerRow + x) * kTileBytes;
+TileCache::Tile TileCache::read(uint64_t index) {
+  const auto tile = std::make_shared<TileContents>();
   for (size_t done = 0; done < kTileBytes;) {
-    const ssize_t count =
-        pread(file_, static_cast<uint8_t*>(texels) + done, kTileBytes - done, off_t(offset + done));
+    const ssize_t count = pread(file_, tile->bytes.data() + done, kTileBytes - done,
+                                off_t(index * kTileBytes + done));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       fail(count < 0 ? std::strerror(errno) : "it has become shorter");
-      return false;
+      return nullptr;
     }
     done += size_t(count);
   }
-  return true;
+  return tile;
 }
 
 void TileCache::fail(const std::string& reason) {
@@ -139,8 +99,9 @@ void TileCache::fail(const std::string& reason) {
 }
 
 void TileCache::check() const {
-  if (hasFailed_)
-    throwRun("{}: the temporary file for textures cannot be read: {}", folder_, failure_);
+  if (!hasFailed_) return;
+  const std::lock_guard lock(failing_);
+  throwRun("{}: the temporary file for textures cannot be read: {}", folder_, failure_);
 }
 
 }  // namespace chromeball

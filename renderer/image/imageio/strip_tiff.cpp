@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "image/io/strip_metadata.h"
+#include "image/imageio/strip_tiff.h"
 
 namespace chromeball {
 namespace {
@@ -23,7 +23,7 @@ uint64_t number(std::span<const uint8_t> bytes, bool bigEndian) {
 
 std::vector<uint8_t> stripTiff(std::span<const uint8_t> file) {
   std::vector<uint8_t> stripped(file.begin(), file.end());
-  if (file.size() < 16) return stripped;
+  if (file.size() < 16 || file[0] != file[1] || (file[0] != 'I' && file[0] != 'M')) return stripped;
   const bool bigEndian = file[0] == 'M';
   const bool isBig = number(file.subspan(2, 2), bigEndian) == 43;
   const size_t offsetBytes = isBig ? 8 : 4, countBytes = isBig ? 8 : 2,

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Removes metadata from TIFF files: colour profiles, EXIF, comments. We do not use them, and
+// OpenImageIO 2.4 does not parse damaged ones safely: it follows the tag table of an ICC profile
+// beyond the end of the profile.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+// Removes the metadata entries from the first directory; other directories are not read. Files of
+// other formats stay as they are.
+std::vector<uint8_t> stripTiff(std::span<const uint8_t> file);
+
+}  // namespace chromeball

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/exr_input.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include "base/file.h"
+#include "image/io/exr_header.h"
+#include "image/io/exr_metadata.h"
+#include "image/io/exr_threads.h"
+#include "image/io/unreadable.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of a data window that lies within the display window and is not all of it.
+std::optional<Placement> placementOf(const Imath::Box2i& data, const Imath::Box2i& display) {
+  const Placement p{data.min.x - display.min.x, data.min.y - display.min.y,
+                    display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};
+  const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
+  const bool isWithin = p.x >= 0 && p.y >= 0 && p.width - p.x >= width && p.height - p.y >= height;
+  if (!isWithin || (p.width == width && p.height == height)) return {};
+  return p;
+}
+
+// Layer by layer; of each, R, G, B and A first, then the others by their names.
+void sortChannels(std::vector<std::string>& channels) {
+  const auto key = [](std::string_view channel) {
+    const size_t dot = channel.rfind('.') + 1;  // 0: none
+    const std::string_view letter = channel.substr(dot);
+    const size_t rank = letter.size() == 1 ? std::string_view("RGBA").find(letter) : letter.npos;
+    return std::tuple(channel.substr(0, dot), rank, letter);
+  };
+  std::sort(channels.begin(), channels.end(),
+            [&](const auto& a, const auto& b) { return key(a) < key(b); });
+}
+
+// Luminance and chroma, whose chroma has half the resolution (ImfRgba.h).
+bool isLuminanceChroma(const Imf::ChannelList& channels) {
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+  int count = 0;
+  for (auto at = channels.begin(); at != channels.end(); ++at) ++count;
+  return has("Y") && has("RY") && has("BY") && (count == 3 || (count == 4 && has("A")));
+}
+
+ExrInput::Numbers numbersOf(const Imf::ChannelList& channels) {
+  std::set<Imf::PixelType> types;
+  for (auto at = channels.begin(); at != channels.end(); ++at) types.insert(at.channel().type);
+  if (types.size() != 1) return ExrInput::Numbers::Mixed;
+  return *types.begin() == Imf::HALF    ? ExrInput::Numbers::Half
+         : *types.begin() == Imf::FLOAT ? ExrInput::Numbers::Float
+                                        : ExrInput::Numbers::Integer;
+}
+
+uint64_t bytesPerTexel(const Imf::ChannelList& channels) {
+  uint64_t bytes = 0;
+  for (auto at = channels.begin(); at != channels.end(); ++at)
+    bytes += at.channel().type == Imf::HALF ? 2 : 4;
+  return bytes;
+}
+
+// The compression ratio of OpenEXR has no known bound; kMaxRatio is an estimate, which small images
+// may exceed.
+void checkExrLength(const fs::path& path, int width, int height, uint64_t texelBytes) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
+  const uint64_t bytes = uint64_t(width) * uint64_t(height) * texelBytes;
+  if (bytes > std::max(kAlwaysAllowed, uint64_t(fs::file_size(path)) * kMaxRatio))
+    throwInput("{}: too short for {} x {} texels", path.string(), width, height);
+}
+
+}  // namespace
+
+class ExrInput::Part {
+ public:
+  explicit Part(const fs::path& path) : path_(path), file_(path.c_str()) {}
+
+  const Imf::Header& header() const { return file_.header(0); }
+
+  void read(int top, int count, const std::vector<std::string>& channels, float* texels) {
+    const Imath::Box2i window = header().dataWindow();
+    const int first = window.min.y + top, last = first + count - 1;
+    if (isLuminanceChroma(header().channels())) return readColor(first, last, channels, texels);
+    const size_t width = size_t(window.max.x) - size_t(window.min.x) + 1;
+    std::vector<std::vector<uint32_t>> integers(channels.size());
+    Imf::FrameBuffer buffer;
+    for (size_t c = 0; c < channels.size(); ++c) {
+      const bool isInteger = header().channels()[channels[c].c_str()].type == Imf::UINT;
+      if (isInteger) integers[c].resize(width * size_t(count));
+      const size_t stride = isInteger ? sizeof(uint32_t) : channels.size() * sizeof(float);
+      // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row.
+      const ptrdiff_t offset = (ptrdiff_t(width) * first + window.min.x) * ptrdiff_t(stride);
+      char* begin = isInteger ? reinterpret_cast<char*>(integers[c].data())
+                              : reinterpret_cast<char*>(texels + c);
+      buffer.insert(channels[c], Imf::Slice(isInteger ? Imf::UINT : Imf::FLOAT, begin - offset,
+                                            stride, stride * width));
+    }
+    if (!part_) part_.emplace(file_, 0);
+    part_->setFrameBuffer(buffer);
+    part_->readPixels(first, last);
+    for (size_t c = 0; c < channels.size(); ++c)
+      for (size_t i = 0; i < integers[c].size(); ++i)
+        texels[i * channels.size() + c] =
+            float(integers[c][i]) * (1.0f / float(std::numeric_limits<uint32_t>::max()));
+  }
+
+ private:
+  void readColor(int first, int last, const std::vector<std::string>& channels, float* texels) {
+    if (!rgba_) rgba_.emplace(path_.c_str());
+    const Imath::Box2i window = rgba_->dataWindow();
+    const size_t width = size_t(window.max.x) - size_t(window.min.x) + 1;
+    std::vector<Imf::Rgba> rows(width * size_t(last - first + 1));
+    rgba_->setFrameBuffer(rows.data() - (ptrdiff_t(width) * first + window.min.x), 1, width);
+    rgba_->readPixels(first, last);
+    for (const Imf::Rgba& texel : rows) {
+      const float rgba[] = {texel.r, texel.g, texel.b, texel.a};
+      texels = std::copy_n(rgba, channels.size(), texels);
+    }
+  }
+
+  fs::path path_;
+  Imf::MultiPartInputFile file_;
+  std::optional<Imf::InputPart> part_;
+  std::optional<Imf::RgbaInputFile> rgba_;
+};
+
+ExrInput::ExrInput(const fs::path& path, uint64_t maxNumbers) : path_(path) {
+  checkReadable(path);
+  rowsOfBlock_ = checkExrHeaders(path, maxNumbers);
+  useExrThreads();
+  readByLibrary(path, [&] {
+    part_ = std::make_unique<Part>(path);
+    readHeader();
+  });
+}
+
+ExrInput::~ExrInput() = default;
+
+void ExrInput::readHeader() {
+  const Imf::Header& header = part_->header();
+  if (header.hasType() && Imf::isDeepData(header.type()))
+    throwUnreadable(path_, "deep and volume images are not supported");
+  const Imath::Box2i window = header.dataWindow();
+  width_ = window.max.x - window.min.x + 1;
+  height_ = window.max.y - window.min.y + 1;
+  isTiled_ = header.hasTileDescription();
+  numbers_ = numbersOf(header.channels());
+  metadata_ = metadataOf(header);
+  placement_ = placementOf(window, header.displayWindow());
+  checkExrLength(path_, width_, height_, bytesPerTexel(header.channels()));
+  if (isLuminanceChroma(header.channels())) {
+    channels_ = {"R", "G", "B"};
+    if (header.channels().findChannel("A")) channels_.push_back("A");
+    return;
+  }
+  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+    if (at.channel().xSampling != 1 || at.channel().ySampling != 1)
+      throwUnreadable(path_, fmt::format("the channel {} does not have all texels", at.name()));
+    channels_.emplace_back(at.name());
+  }
+  sortChannels(channels_);
+}
+
+void ExrInput::read(int top, int count, float* texels) {
+  readByLibrary(path_, [&] { part_->read(top, count, channels_, texels); });
+}
+
+}  // namespace chromeball

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// An open OpenEXR file: what the readers of whole images and of bands of rows share.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/io/read_image.h"
+
+namespace chromeball {
+
+// The first part of a file; of levels the largest. Functions throw InputError.
+class ExrInput {
+ public:
+  enum class Numbers { Half, Float, Integer, Mixed };  // of the channels
+
+  // `maxNumbers`: that the image may have.
+  ExrInput(const std::filesystem::path& path, uint64_t maxNumbers);
+  ~ExrInput();
+
+  int width() const { return width_; }  // of the data window
+  int height() const { return height_; }
+  const std::vector<std::string>& channels() const { return channels_; }
+  const Metadata& metadata() const { return metadata_; }
+  const std::optional<Placement>& placement() const { return placement_; }
+  Numbers numbers() const { return numbers_; }
+  bool isTiled() const { return isTiled_; }
+  int rowsOfBlock() const { return rowsOfBlock_; }  // rows that are compressed together
+
+  // All channels, interleaved, of `count` rows from `top` on. Integers become fractions of the
+  // largest one.
+  void read(int top, int count, float* texels);
+
+ private:
+  class Part;
+  void readHeader();
+
+  std::filesystem::path path_;
+  int rowsOfBlock_ = 1, width_ = 0, height_ = 0;
+  std::vector<std::string> channels_;
+  Metadata metadata_;
+  std::optional<Placement> placement_;
+  Numbers numbers_ = Numbers::Half;
+  bool isTiled_ = false;
+  std::unique_ptr<Part> part_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/imageio_module.h"
+
+#include <dlfcn.h>
+#include <link.h>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+
+#include "base/error.h"
+#include "image/size_limits.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kModuleName = "libchromeball_imageio.so";
+
+// The folder of the shared library or of the executable that this code is in. (A link map has no
+// name for the executable.)
+fs::path ownFolder() {
+  Dl_info info{};
+  link_map* map = nullptr;
+  const bool found = dladdr1(reinterpret_cast<const void*>(&ownFolder), &info,
+                             reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP);
+  const bool isLibrary = found && map && map->l_name && map->l_name[0];
+  std::error_code error;
+  const fs::path self = fs::canonical(isLibrary ? map->l_name : "/proc/self/exe", error);
+  return error ? fs::path() : self.parent_path();
+}
+
+struct ImageioModule {
+  ModuleOpen* open = nullptr;
+  std::string problem;  // why there is none
+};
+
+ImageioModule loadImageioModule() {
+  const fs::path folder = ownFolder();
+  std::string problem;
+  // Beside this code; where the installed library is, seen from the installed command; by the
+  // system's search.
+  for (const fs::path& path : {folder / kModuleName, folder / CHROMEBALL_BIN_TO_LIB / kModuleName,
+                               fs::path(kModuleName)}) {
+    if (path.has_parent_path() && !fs::exists(path)) continue;
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+      problem = dlerror();
+      if (path.has_parent_path()) break;
+      continue;
+    }
+    const auto version = reinterpret_cast<ModuleVersion*>(dlsym(library, kModuleVersion));
+    const auto open = reinterpret_cast<ModuleOpen*>(dlsym(library, kModuleOpen));
+    if (version && open && std::string_view(version()) == CHROMEBALL_VERSION) return {open, ""};
+    return {nullptr, path.string() + " is of another version"};
+  }
+  return {nullptr, problem};
+}
+
+}  // namespace
+
+std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const uint8_t> file,
+                                             const fs::path& path) {
+  static const ImageioModule module = loadImageioModule();
+  if (!module.open)
+    throwInput(
+        "{}: is a {} file, which needs the module {} beside the command or the library ({}); "
+        "convert "
+        "the image to .exr or .png",
+        path.string(), format, kModuleName, module.problem);
+  std::unique_ptr<ModuleImage> image(module.open(format, file.data(), file.size(), path.c_str()));
+  const ModuleImageHeader& header = image->header();
+  checkImageSize(path, header.width, header.height, int64_t(header.channels.size()));
+  // The compression ratio of TIFF has no known bound; kMaxRatio is an estimate, which small images
+  // may exceed.
+  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
+  if (header.bytes > std::max(kAlwaysAllowed, file.size() * kMaxRatio))
+    throwInput("{}: too short for {} x {} texels", path.string(), header.width, header.height);
+  return image;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// JPEG (ITU-T T.81, annex B): markers, most of them followed by a segment of a stated length, up to
+// the first start of scan.
+#include <algorithm>
+
+#include "image/io/metadata_blocks.h"
+
+namespace chromeball {
+namespace {
+
+enum JpegMarker : uint8_t {
+  kTem = 0x01,
+  kRst0 = 0xd0,
+  kSoi = 0xd8,
+  kEoi = 0xd9,
+  kSos = 0xda,
+  kApp1 = 0xe1  // EXIF, XMP
+};
+
+bool standsAlone(uint8_t marker) { return marker == kTem || (marker >= kRst0 && marker <= kSoi); }
+
+// The second byte of the next marker; 0 at the end of the file. Skips anything between segments, as
+// libjpeg does, and moves `at` to the byte after the marker.
+uint8_t nextMarker(std::span<const uint8_t> file, size_t& at) {
+  for (; at + 1 < file.size(); ++at)
+    if (file[at] == 0xff && file[at + 1] != 0xff && file[at + 1] != 0) {
+      at += 2;
+      return file[at - 1];
+    }
+  return 0;
+}
+
+// The end of the segment whose marker ends at `at`.
+size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
+  if (standsAlone(marker)) return at;
+  if (file.size() - at < 2) return file.size();
+  return std::min(at + size_t(std::max(file[at] << 8 | file[at + 1], 2)), file.size());
+}
+
+}  // namespace
+
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
+  constexpr std::string_view kName("Exif\0\0", 6);
+  constexpr size_t kLengthBytes = 2, kBlockAt = kLengthBytes + kName.size();
+  size_t at = 0;
+  while (const uint8_t marker = nextMarker(file, at)) {
+    if (marker == kSos || marker == kEoi) break;
+    const size_t begin = at;
+    at = endOfSegment(file, at, marker);
+    const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
+    if (marker == kApp1 && segment.size() > kBlockAt &&
+        std::equal(kName.begin(), kName.end(), segment.begin() + kLengthBytes))
+      return segment.subspan(kBlockAt);
+  }
+  return {};
+}
+
+}  // namespace chromeball

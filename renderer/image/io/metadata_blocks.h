@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where JPEG and PNG files keep metadata, which their readers skip.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace chromeball {
+
+// The EXIF block (exif.h), a part of `file`; empty if there is none.
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
+std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
+
+// The data of the first chunk of this type, such as "gAMA"; empty if there is none.
+std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_view type);
+
+}  // namespace chromeball

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What readers' libraries throw about a damaged file becomes an InputError of one line.
+#pragma once
+
+#include <filesystem>
+#include <new>
+#include <string>
+
+#include "base/error.h"
+
+namespace chromeball {
+
+// Throws a library's message about `path` as an InputError of one line.
+[[noreturn]] void throwUnreadable(const std::filesystem::path& path, std::string reason);
+
+// Calls read(), which calls a library.
+template <class Read>
+auto readByLibrary(const std::filesystem::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError&) {
+    throw;
+  } catch (const RunError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throwUnreadable(path, "its header claims more texels than fit into memory");
+  } catch (const std::exception& error) {
+    throwUnreadable(path, error.what());
+  }
+}
+
+}  // namespace chromeball
