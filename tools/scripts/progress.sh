@@ -28,7 +28,7 @@ show() {
   minutes passed $((clock - start))
   line="$((share / 10)) % built, $passed min"
   # Early guesses are far off.
-  if ((firstShare >= 0 && share - firstShare >= 20 && clock - firstTime >= 500)); then
+  if ((share < 1000 && firstShare >= 0 && share - firstShare >= 20 && clock - firstTime >= 500)); then
     minutes left $(((clock - firstTime) * (1000 - share) / (share - firstShare)))
     line+=", about $left min left"
   fi
