@@ -9,6 +9,8 @@
 
 #include "run_command.h"
 
+constexpr const char* kNoChromium = "no Chromium; see tools/scripts/test_needs.sh";
+
 inline std::string findChromium() {
   for (const char* path :
        {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})

@@ -8,6 +8,7 @@
 #include "browser.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "npm_packages.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
@@ -152,13 +153,10 @@ TEST(SlowBake, BakedPillarsLookLikeTheRender) {
   EXPECT_LT(differenceOfBaked(folder, {"--size", "512", "--what", "radiance"}, model, probe), 0.06);
 }
 
-// Needs Chromium, and in $CHROMEBALL_THREE a folder where `npm install three` was called.
 TEST(SlowBake, ThreeJsShowsTheRender) {
-  const char* three = std::getenv("CHROMEBALL_THREE");
-  if (!three || findChromium().empty()) GTEST_SKIP() << "without Chromium or $CHROMEBALL_THREE";
+  if (findChromium().empty()) GTEST_SKIP() << kNoChromium;
   const TemporaryFolder folder;
-  std::filesystem::create_directory_symlink(std::filesystem::path(three) / "node_modules",
-                                            folder / "node_modules");
+  if (!linkNpmPackages(folder / "")) GTEST_SKIP() << kNoNpmPackages;
   const std::string command = "cd '" + std::string(kSourceDir) + "' && SAMPLES=32 CHROMEBALL='" +
                               kCommand + "' tools/scripts/bake_viewer.sh '" + folder / "" +
                               "' > '" + folder / "found" + "' 2>&1";

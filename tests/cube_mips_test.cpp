@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "image/io/write_image.h"
+#include "npm_packages.h"
 #include "probe/irradiance.h"
 #include "probe/synth.h"
 #include "probe/zonal_kernel.h"
@@ -122,6 +125,65 @@ TEST_F(SlowCommandConvolve, WritesKtx2) {
   EXPECT_NEAR(top(0), 3, 0.01);
   EXPECT_NEAR(top(2), 2 * (1 + 0.5 * 2 / 3), 0.01);
   EXPECT_EQ(at<uint64_t>(file, 80) + at<uint64_t>(file, 88), file.size());  // the largest is last
+}
+
+// Prints what ktx-parse finds in a file, as JSON; of each level, the texel right below the middle
+// of each face.
+constexpr const char* kParse = R"(
+  import { readFileSync } from 'node:fs';
+  import { read } from 'ktx-parse';
+  const half = bits => {  // IEEE 754 binary16
+    const exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const value = exponent ? 2 ** (exponent - 25) * (1024 + fraction) : 2 ** -24 * fraction;
+    return bits >> 15 ? -value : value;
+  };
+  const ktx = read(readFileSync(process.argv[2]));
+  ktx.levels = ktx.levels.map(({ levelData }, level) => {
+    const size = ktx.pixelWidth >> level;
+    const data = new DataView(levelData.buffer, levelData.byteOffset, levelData.byteLength);
+    const texel = at => [0, 2, 4, 6].map(channel => half(data.getUint16(8 * at + channel, true)));
+    return [0, 1, 2, 3, 4, 5].map(face => texel((face + 0.5) * size * size + size / 2));
+  });
+  console.log(JSON.stringify(ktx));
+)";
+
+// The parser is the one of three.js. The gradient differs in all six directions and three channels.
+TEST_F(SlowCommandConvolve, KtxParseReadsTheKtx2) {
+  if (!linkNpmPackages(folder_ / "")) GTEST_SKIP() << kNoNpmPackages;
+  const dvec3 slope(0.5, -0.3, 0.2);
+  const Rgb color(0.5f, 1, 2);
+  writeImage(in_, gradientProbe({256, 128}, color, slope));
+  ASSERT_EQ(run("o.ktx2", {"--size", "64x64"}).status, 0);
+  std::ofstream(folder_ / "parse.mjs") << kParse;
+  const std::string command = "node " + folder_ / "parse.mjs" + " " + folder_ / "o.ktx2" + " > " +
+                              folder_ / "json" + " 2> " + folder_ / "log";
+  ASSERT_EQ(std::system(command.c_str()), 0) << fileContents(folder_ / "log");
+  const auto ktx = nlohmann::json::parse(fileContents(folder_ / "json"));
+  EXPECT_EQ(ktx["vkFormat"], 97);  // VK_FORMAT_R16G16B16A16_SFLOAT
+  EXPECT_EQ(ktx["faceCount"], 6);
+  EXPECT_EQ(ktx["keyValue"]["KTXorientation"], "rd");
+  const auto& format = ktx["dataFormatDescriptor"][0];
+  EXPECT_EQ(format["colorModel"], 1);        // RGBSDA
+  EXPECT_EQ(format["colorPrimaries"], 1);    // of BT.709
+  EXPECT_EQ(format["transferFunction"], 1);  // linear
+  ASSERT_EQ(format["samples"].size(), 4u);
+  ASSERT_EQ(ktx["levels"].size(), 3u);
+  for (size_t level = 0; level < 3; ++level) {
+    double factor = 1;
+    if (level > 0) {
+      const auto moments = ZonalKernel::ggx(double(level) / 2).legendreMoments();
+      factor = moments[1] / moments[0];
+    }
+    const double middle = std::ldexp(1, int(level)) / 64;
+    for (int face = 0; face < 6; ++face) {
+      const dvec3 d = glm::normalize(openGlDirection(face, middle, middle));
+      const auto& texel = ktx["levels"][level][size_t(face)];
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(double(texel[size_t(c)]) / color[c], 1 + factor * glm::dot(slope, d), 3e-3)
+            << level << ' ' << face << ' ' << c;
+      EXPECT_EQ(texel[3], 1);
+    }
+  }
 }
 
 // All three are exact for a gradient, up to its texels: 5.6 degrees, 11 in the reduced map.

@@ -11,9 +11,16 @@
 namespace chromeball {
 namespace {
 
-int shell(const std::string& line) { return std::system((line + " > /dev/null 2>&1").c_str()); }
+int shell(const std::string& line) {
+  return std::system(("{ " + line + "; } > /dev/null 2>&1").c_str());
+}
 
-bool hasCluster() { return shell("sinfo -h -o %T | grep -E 'idle|mix|alloc'") == 0; }
+// Asks three times: a busy machine may answer too late.
+bool hasCluster() {
+  return shell(
+             "for i in 1 2 3; do sinfo -h -o %T | grep -E 'idle|mix|alloc' && exit; done; false") ==
+         0;
+}
 
 constexpr const char* kNoCluster = "no Slurm cluster; see tools/scripts/one_machine_slurm.sh";
 

@@ -74,7 +74,7 @@ constexpr const char* kUse = R"(
 
 TEST(SlowPreview, worksInABrowser) {
   const std::string chromium = findChromium();
-  if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
+  if (chromium.empty()) GTEST_SKIP() << kNoChromium;
   PreviewRender preview;
   preview.start({"--samples", "1000000", "--aov", "node"});
   preview.waitForImage();

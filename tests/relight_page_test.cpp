@@ -83,7 +83,7 @@ void expectNear(const std::string& found, const std::string& expected) {
 
 TEST(SlowRelightPage, turnsAndSwapsProbesInABrowser) {
   const std::string chromium = findChromium();
-  if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
+  if (chromium.empty()) GTEST_SKIP() << kNoChromium;
   const TemporaryFolder folder;
   writeSmallModel(folder / "m.gltf");
   writeImage(folder / "a.exr", gradientProbe({64, 32}, Rgb(0.3f), {0.9, 0, 0.3}));

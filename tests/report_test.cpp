@@ -67,7 +67,7 @@ constexpr const char* kUse = R"(<script>
 
 TEST(SlowReport, worksInABrowser) {
   const std::string chromium = findChromium();
-  if (chromium.empty()) GTEST_SKIP() << "no Chromium (Debian's package chromium) to open it in";
+  if (chromium.empty()) GTEST_SKIP() << kNoChromium;
   const TemporaryFolder folder;
   writeSmallModel(folder / "plate.gltf");
   writeImage(folder / "probe.exr", gradientProbe({32, 16}, Rgb(0.5f), {0.3, 0.6, 0.6}));

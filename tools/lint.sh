@@ -1,49 +1,53 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks the format of all C++ files (clang-format 14, .clang-format) and runs the checks of
-# .clang-tidy (clang-tidy 14) on renderer/ and tools/, after installing both where they are missing
-# (Debian and Ubuntu, as root or with sudo). --fix formats the files instead; --format leaves out
-# clang-tidy, which takes minutes.
+# Checks the format of all C++ files (clang-format 14, .clang-format), and runs the checks of .clang-tidy
+# (clang-tidy 14) on files of renderer/ and tools/: those that the changes since the commit in
+# tools/linted_commit, whose files all passed, may have made faulty (see tools/scripts/lint_selection.sh).
+# Installs both tools where they are missing (Debian and Ubuntu, as root or with sudo).
+#   --all      clang-tidy looks at all files, which takes about ten minutes on two cores; if all pass,
+#              the current commit is written to tools/linted_commit
+#   --format   the format only
+#   --fix      formats the files instead
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-tidy=1 fix=0
+tidy=1 fix=0 all=0
 for argument in "$@"; do
   case $argument in
+    --all) all=1 ;;
     --format) tidy=0 ;;
     --fix) fix=1 tidy=0 ;;
     *)
-      sed -n '3,6s/^# \{0,1\}//p' "$0" >&2
+      sed -n '3,10s/^# \{0,1\}//p' "$0" >&2
       exit 2
       ;;
   esac
 done
+fail() {
+  echo "lint: $*" >&2
+  exit 1
+}
 
 tools=(clang-format-14)
-((!tidy)) || tools+=(clang-tidy-14 run-clang-tidy-14)
+((!tidy)) || tools+=(clang-tidy-14)
 missing() {
   local tool
   for tool in "${tools[@]}"; do command -v "$tool" >/dev/null || echo "$tool"; done
 }
 if [[ -n $(missing) ]]; then
-  asRoot=()
-  ((EUID == 0)) || asRoot=(sudo -n)
-  packages=(clang-format-14)
-  ((!tidy)) || packages+=(clang-tidy-14)
-  echo "Installing ${packages[*]}"
-  "${asRoot[@]}" apt-get update -q || true
-  "${asRoot[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -qy --no-install-recommends "${packages[@]}" || true
-fi
-if [[ -n $(missing) ]]; then
-  echo "lint: cannot run and cannot install: $(missing | xargs)" >&2
-  exit 1
+  source tools/scripts/packages.sh
+  installPackages "${tools[@]}" || true
+  [[ -z $(missing) ]] || fail "cannot run without $(missing | xargs)"
 fi
 
 # Without Git (an unpacked archive): all but generated folders.
+hasGit() { git rev-parse --git-dir >/dev/null 2>&1; }
 sources() {
-  git ls-files --cached --others --exclude-standard -- '*.h' '*.cpp' 2>/dev/null ||
+  if hasGit; then
+    git ls-files --cached --others --exclude-standard -- '*.h' '*.cpp'
+  else
     find renderer tools tests -name '*.h' -o -name '*.cpp'
+  fi
 }
 mapfile -t files < <(sources)
 if ((fix)); then
@@ -52,22 +56,39 @@ if ((fix)); then
 fi
 
 echo "Checking the format of ${#files[@]} files"
-if ! clang-format-14 --dry-run --Werror "${files[@]}"; then
-  echo "lint: the format differs from .clang-format; run tools/lint.sh --fix" >&2
-  exit 1
+printf '%s\0' "${files[@]}" | xargs -0 -n 50 -P "$(nproc)" clang-format-14 --dry-run --Werror ||
+  fail "the format differs from .clang-format; run tools/lint.sh --fix"
+((tidy)) || exit 0
+
+selection() {
+  if ((all)) || ! hasGit; then
+    find renderer tools -name '*.cpp'
+  else
+    tools/scripts/lint_selection.sh
+  fi
+}
+selected=$(selection | sort -r)  # those of tools/command, which take longest, first
+[[ -n $selected ]] || { echo "lint: no faults"; exit; }
+
+echo "Running clang-tidy on $(wc -l <<<"$selected") files"
+# Configured only. One file at a time, and no precompiled headers, since GCC's are of no use to clang-tidy.
+cmake -S . -B build/lint --no-warn-unused-cli -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_UNITY_BUILD=OFF \
+  -DCHROMEBALL_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCHROMEBALL_TESTS=OFF >/dev/null
+log=build/lint/clang-tidy.log
+# Each process writes at its end, so that the lines of two do not mix.
+if ! xargs -d '\n' -n 1 -P "$(nproc)" sh -c \
+  'found=$(clang-tidy-14 -quiet -p build/lint "$1" 2>&1) || { echo "$found"; exit 1; }' - \
+  <<<"$selected" >"$log"; then
+  grep -E -A4 '(error|warning): ' "$log" | sort -u >&2 || tail -n 20 "$log" >&2
+  fail "clang-tidy found faults (all of it: $log)"
 fi
 
-if ((tidy)); then
-  echo "Running clang-tidy"
-  # Configured only. No precompiled headers, since GCC's are of no use to clang-tidy.
-  cmake -S . -B build/lint -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
-    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCHROMEBALL_TESTS=OFF >/dev/null
-  log=build/lint/clang-tidy.log
-  if ! run-clang-tidy-14 -quiet -p build/lint -j "$(nproc)" '/(renderer|tools)/.*\.cpp$' \
-    >"$log" 2>&1; then
-    grep -E -A4 '(error|warning): ' "$log" | sort -u >&2 || tail -n 20 "$log" >&2
-    echo "lint: clang-tidy found faults (all of it: $log)" >&2
-    exit 1
+if ((all)) && hasGit; then
+  if [[ -z $(git status --porcelain -- '*.h' '*.cpp' '*.clang-tidy') ]]; then
+    git rev-parse HEAD >tools/linted_commit
+    echo "Wrote tools/linted_commit: commit it"
+  else
+    echo "tools/linted_commit is as it was, since there are changes that are not committed"
   fi
 fi
 echo "lint: no faults"

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds and runs the tests. --quick leaves out the slow suites, which are those named Slow*. Other
-# arguments go to GoogleTest (--gtest_filter=PATTERN). The last line is "N passed, N failed".
+# Builds and runs the tests. --quick leaves out the slow suites, which are those named Slow*. Tests that
+# lack something (a browser, a Slurm cluster, $CHROMEBALL_DATA) are skipped; with --no-skips they have
+# failed. Other arguments go to GoogleTest (--gtest_filter=PATTERN). The last line is "N passed, N failed".
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-arguments=()
+arguments=() maySkip=1
 for argument in "$@"; do
-  if [[ $argument == --quick ]]; then
-    arguments+=('--gtest_filter=-Slow*:*/Slow*')
-  else
-    arguments+=("$argument")
-  fi
+  case $argument in
+    --quick) arguments+=('--gtest_filter=-Slow*:*/Slow*') ;;
+    --no-skips) maySkip=0 ;;
+    *) arguments+=("$argument") ;;
+  esac
 done
 
 tools/build.sh
@@ -22,6 +23,7 @@ processes=$(nproc 2>/dev/null || echo 1)
 run() { GTEST_TOTAL_SHARDS=$processes GTEST_SHARD_INDEX=$1 build/tests "${arguments[@]}"; }
 
 rm -f build/tests-*.log
+begin=$SECONDS
 running=()
 for ((part = 0; part < processes; ++part)); do
   (run "$part" | tee "build/tests-$part.log") &
@@ -41,5 +43,15 @@ if (($(grep -l '^\[  PASSED  \]' build/tests-*.log | wc -l) < processes)); then
   passed=$(cat build/tests-*.log | grep -c '^\[       OK \]' || true)
   ((failed)) || failed=1
 fi
+skipped=$(tools/scripts/skipped_tests.sh build/tests-*.log)
+if [[ -n $skipped ]]; then
+  echo "Skipped (tools/scripts/test_needs.sh installs what most tests need):"
+  echo "$skipped"
+  if ((!maySkip)); then
+    failed=$((failed + $(wc -l <<<"$skipped")))
+    status=1
+  fi
+fi
+echo "The tests took $((SECONDS - begin)) s."
 echo "$passed passed, $failed failed"
 exit "$status"

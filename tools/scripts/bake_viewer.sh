@@ -6,7 +6,8 @@
 #
 #   tools/scripts/bake_viewer.sh [FOLDER]     FOLDER keeps the files, and screenshots
 #
-# Needs chromium, npm and python3; installs three (npm) in the folder, unless it is there.
+# Needs chromium, npm and python3; installs the packages of tests/npm, three among them, in the folder,
+# unless they are there.
 # CHROMEBALL is the command (default build/chromeball); MODEL, CAMERA and PROBE another scene;
 # SAMPLES those of each texel, vertex and pixel (256).
 set -euo pipefail
@@ -28,7 +29,10 @@ cleanUp() {
 }
 trap cleanUp EXIT
 
-[ -d "$folder/node_modules/three" ] || npm install --silent --no-fund --prefix "$folder" three
+if [ ! -d "$folder/node_modules/three" ]; then
+  cp tests/npm/package*.json "$folder"
+  npm ci --prefix "$folder" --silent --no-audit --no-fund
+fi
 cp tools/scripts/bake_viewer.html "$folder"
 
 light=(--probe "$probe" --quiet)
@@ -72,8 +76,9 @@ show() {
   [ -e "$folder/render-$3.png" ] || render "$3"
   local page="$address?model=$1.glb&render=render-$3.png&scale=$3&width=$width&height=$height$4"
   local options=(--headless --no-sandbox --use-gl=angle --use-angle=swiftshader
-    --enable-unsafe-swiftshader --ignore-gpu-blocklist --no-first-run --virtual-time-budget=30000
-    --user-data-dir="$folder/profile" --window-size=$width,$height --hide-scrollbars)
+    --enable-unsafe-swiftshader --ignore-gpu-blocklist --no-first-run
+    --disable-quic --disable-background-networking --disable-component-update --disable-sync
+    --virtual-time-budget=30000 --user-data-dir="$folder/profile" --window-size=$width,$height --hide-scrollbars)
   local found
   found=$("$chromium" "${options[@]}" --dump-dom "$page" 2> "$folder/log" |
     sed -n 's/.*<pre id="result">\(.*\)<\/pre>.*/\1/p')

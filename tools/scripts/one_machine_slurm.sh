@@ -4,7 +4,9 @@
 #
 #   tools/scripts/one_machine_slurm.sh start FOLDER   installs slurm-wlm and munge if missing, starts them
 #   export SLURM_CONF=FOLDER/slurm.conf               then sbatch, squeue ... use it
-#   tools/scripts/one_machine_slurm.sh stop FOLDER
+#   tools/scripts/one_machine_slurm.sh stop FOLDER    ends what start has started, and waits for it
+#
+# All its files, also the key and the socket of its own munged, are in the folder.
 set -euo pipefail
 
 (($# == 2)) || { sed -n '5,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
@@ -16,14 +18,17 @@ start() {
     DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends slurm-wlm munge
   fi
   mkdir -p "$folder/state" "$folder/spool"
-  install -d -o munge -g munge /run/munge /var/lib/munge /var/log/munge
-  [[ -e /etc/munge/munge.key ]] || mungekey
-  pgrep -x munged >/dev/null || runuser -u munge -- /usr/sbin/munged
+  [[ -e $folder/munge.key ]] || mungekey --create --keyfile="$folder/munge.key"
+  # --force: the folder may be below one that not everybody may enter.
+  munged --force --key-file="$folder/munge.key" --socket="$folder/munge.socket" \
+    --pid-file="$folder/munged.pid" --log-file="$folder/munged.log" --seed-file="$folder/munge.seed"
   cat > "$folder/slurm.conf" <<CONF
 ClusterName=local
 SlurmctldHost=$(hostname -s)(127.0.0.1)
 NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
 PartitionName=local Nodes=ALL Default=YES State=UP
+AuthType=auth/munge
+AuthInfo=socket=$folder/munge.socket
 SlurmUser=root
 SlurmdUser=root
 ProctrackType=proctrack/linuxproc
@@ -50,8 +55,14 @@ CONF
 }
 
 stop() {
-  for daemon in slurmd slurmctld; do
-    [[ -s $folder/$daemon.pid ]] && kill "$(cat "$folder/$daemon.pid")" || true
+  local daemon pid
+  for daemon in slurmd slurmctld munged; do
+    pid=$(cat "$folder/$daemon.pid" 2>/dev/null) || continue
+    kill "$pid" 2>/dev/null || true
+    for _ in {1..100}; do
+      kill -0 "$pid" 2>/dev/null || break
+      sleep 0.1
+    done
   done
 }
 
