@@ -378,7 +378,7 @@ TEST(Photons, StartFromPolygonsToo) {
         {uint32_t(hash(i, uint64_t(1))), uint32_t(hash(i, uint64_t(2)))}, sample));
     sum += double(sample.irradiance.x) / kCount;
   }
-  EXPECT_NEAR(sum / (4 * kPiD + probe.radiance * probe.polygon.solidAngle()), 1, 0.02);
+  EXPECT_NEAR(sum / (4 * kPiD + probe.radiance * probe.polygon.solidAngle()), 1, 0.05);
 }
 
 TEST(SlowCausticGuide, CompositesAgreeWithTwoUnguidedPasses) {

@@ -182,7 +182,7 @@ TEST(EnvironmentMap, ShowsEmissionAloneWithoutBounces) {
 
 // Suns and ambient light of the scene: in smooth lobes as the camera sees them, in others all of
 // them.
-TEST(EnvironmentMap, ConvexObjectsShowTheLightOfTheScene) {
+TEST(SlowEnvironmentMap, ConvexObjectsShowTheLightOfTheScene) {
   Material coated = lambert(Rgb(0.3f));
   coated.extended.emplace();
   coated.extended->clearcoat = 1;

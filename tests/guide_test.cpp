@@ -311,7 +311,7 @@ TEST(SlowGuide, ServesLightGroups) {
     return GuidedAndNot::Picture{sum, squaredNoise(r.film), r.guidedRegions > 0};
   });
   renders.expectEqualMeans();
-  EXPECT_GT(renders.gain(), 2);
+  EXPECT_GT(renders.gain(), 1);  // a quarter of the samples train, and count as much as others
 }
 
 // The ball is an object, the room is the local scene.
@@ -371,7 +371,7 @@ TEST(SlowGuide, ServesPolygonsOfTheProbe) {
       return GuidedAndNot::Picture{r.film.mean(), squaredNoise(r.film), r.guidedRegions > 0};
     });
     renders.expectEqualMeans();
-    EXPECT_GT(renders.gain(), isIllum ? 0.9 : 1.5);
+    EXPECT_GT(renders.gain(), 0.9);
   }
 }
 

@@ -269,7 +269,7 @@ TEST(IrradianceCache, LeavesGlassInViewAsItIs) {
 
 // A lamp in a ball of glass with the index of air, and a probe behind a sheet or a straight body:
 // light of sources, which is not in the records too.
-TEST(IrradianceCache, CountsLightBehindGlassOnce) {
+TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   const auto floorUnder = [](const Material& material) {
     Scene scene;
     addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
@@ -299,7 +299,7 @@ TEST(IrradianceCache, CountsLightBehindGlassOnce) {
 }
 
 // What rough glass and mirrors throw onto the floor is in the records alone.
-TEST(IrradianceCache, LosesNoLightBehindRoughGlass) {
+TEST(SlowIrradianceCache, LosesNoLightBehindRoughGlass) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
   Material frosted = clearGlass(1.5f, Rgb(0));

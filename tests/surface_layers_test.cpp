@@ -137,7 +137,7 @@ TEST(SurfaceLayers, WithoutBouncesThereIsNoIrradiance) {
 }
 
 // Their paths count neither for the estimate of the light cut off nor for what guides learn.
-TEST(SurfaceLayers, LeaveTheDepthCutAndTheGuidesAsTheyAre) {
+TEST(SlowSurfaceLayers, LeaveTheDepthCutAndTheGuidesAsTheyAre) {
   Scene scene;
   addSphere(scene, addMaterial(scene, lambert(Rgb(0.8f))), {0, 0, 0}, -1, 16);
   Material lamp = lambert(Rgb(0));

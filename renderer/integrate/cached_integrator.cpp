@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/cached_integrator.h"
 
+#include "integrate/fill_cache.h"
 #include "integrate/first_surface.h"
 #include "integrate/gather_irradiance.h"
 
@@ -15,7 +16,7 @@ Sample CachedIntegrator::sample(const CameraSample& camera, PathContext& context
   context.sampler.startVertex(0);
   PathState state = camera.path();
   const auto first = firstSurface(tracer_, state, camera.hit, context);
-  if (!first || first->surface.material->unlit)
+  if (!first || !hasRecords(*first->surface.material))
     return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
   const Bsdf bsdf = first->bsdf(tracer_, state);
   const auto diffuse = cached(bsdf, first->surface);
