@@ -71,6 +71,19 @@ TEST(Bake, EnergyInAClosedSphere) {
   EXPECT_NEAR(sum / double(baked.points.size()), kPiD * 1.75, 0.02 * kPiD);
 }
 
+TEST(Bake, NothingIsReflectedWithoutBounces) {
+  Scene scene;
+  Material lamp = lambert(Rgb(0.5f));
+  lamp.emission = Rgb(0.25f);
+  addSphere(scene, addMaterial(scene, lamp), {0, 0, 0}, -1, 8, false);
+  const auto lightAt = [&](BakedLight what) {
+    const Baked baked(scene, white(), "bsdf", 32, {.what = what, .samples = 4, .maxDepth = 0});
+    return baked.result.points[0].mean();
+  };
+  EXPECT_EQ(lightAt(BakedLight::Irradiance), Rgb(0));
+  EXPECT_EQ(lightAt(BakedLight::Radiance), Rgb(0.25f));
+}
+
 TEST(Bake, OcclusionAtTheFootOfAWall) {
   Scene scene;
   const int matte = addMaterial(scene, lambert(Rgb(0.5f)));

@@ -10,6 +10,9 @@
 #include "composite/render_composite.h"
 #include "integrate/guide_gain.h"
 #include "integrate/trace_photons.h"
+#include "lighting/combined_light.h"
+#include "lighting/polygon_lights.h"
+#include "lighting/split_probe.h"
 #include "measure/statistics.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
@@ -315,7 +318,67 @@ TEST(CausticGuide, BearsProbesOfAnyScale) {
     return double(luminance(meanColor(r.film.mean()))) / double(scale);
   };
   const double usual = mean(1);
-  for (const float scale : {1e-8f, 1e10f}) EXPECT_NEAR(mean(scale) / usual, 1, 1e-3) << scale;
+  for (const float scale : {0x1p-60f, 1e-8f, 1e10f, 0x1p60f})
+    EXPECT_NEAR(mean(scale) / usual, 1, 1e-3) << scale;
+}
+
+// A probe of radiance 1 with a polygon of 20, as sources of their own.
+struct DividedProbe {
+  SphericalPolygon polygon{{glm::normalize(dvec3(1, 2, 0)), glm::normalize(dvec3(1, 2, 1)),
+                            glm::normalize(dvec3(0, 2, 1))},
+                           "test"};
+  std::unique_ptr<const Probe> rest;
+  std::unique_ptr<const LightSource> lighting;
+  double radiance;
+
+  DividedProbe() {
+    const ImageSize size{64, 32};
+    Image map = constantProbe(size, Rgb(1));
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        if (polygon.contains(texelDirection(size, x, y))) map.setRgb(x, y, Rgb(20));
+    const PolygonExtraction extraction = extractPolygons(map, {polygon});
+    radiance = extraction.sources[0].radiance.x;
+    rest = std::make_unique<const Probe>(extraction.remainder);
+    std::vector<std::unique_ptr<LightSource>> parts;
+    parts.push_back(makeStrategy("importance", *rest, Mis::Off, "test"));
+    parts.push_back(std::make_unique<PolygonLights>(
+        std::vector<PolygonLight>{{extraction.sources[0], true, "source"}},
+        constantProbe({2, 1}, Rgb(0)), Rotation()));
+    lighting = std::make_unique<CombinedLight>(std::move(parts));
+  }
+};
+
+// Bounces of light groups, and of sources that are polygons of the probe, follow photons too.
+TEST(CausticGuide, ServesLightGroupsAndPolygons) {
+  const Scene scene = balls();
+  const World world(scene, {}, allTables());
+  const std::atomic<bool> stop = false;
+  const auto fractionUnder = [&](const LightSource& lighting, bool groups) {
+    RenderSettings settings = guidedRender(40, 30, 32, Guiding::On);
+    settings.lightGroups = groups;
+    return render(
+               world, above(), lighting, settings, [](double) {}, stop)
+        .causticFraction;
+  };
+  const Probe probe = lamp();
+  const SplitProbe split(makeStrategy("importance", probe, Mis::Balance, "test"), probe);
+  EXPECT_GT(fractionUnder(split, true), 0);
+  EXPECT_GT(fractionUnder(*DividedProbe().lighting, false), 0);
+}
+
+// All light, of all parts.
+TEST(Photons, StartFromPolygonsToo) {
+  const DividedProbe probe;
+  double sum = 0;
+  constexpr uint32_t kCount = 200'000;
+  for (uint32_t i = 0; i < kCount; ++i) {
+    DirectionSample sample{};
+    ASSERT_TRUE(probe.lighting->sampleDistant(
+        {uint32_t(hash(i, uint64_t(1))), uint32_t(hash(i, uint64_t(2)))}, sample));
+    sum += double(sample.irradiance.x) / kCount;
+  }
+  EXPECT_NEAR(sum / (4 * kPiD + probe.radiance * probe.polygon.solidAngle()), 1, 0.05);
 }
 
 TEST(SlowCausticGuide, CompositesAgreeWithTwoUnguidedPasses) {

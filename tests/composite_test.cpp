@@ -240,6 +240,91 @@ TEST(SlowComposite, OnePassAgreesWithTwo) {
   }
 }
 
+// Adaptive passes take different numbers of samples of a pixel, and the layers are means all the
+// same: the ratio of a surface that the objects do not change is 1 on average, and L_noobj is that
+// of a render without objects.
+TEST(Composite, TwoAdaptivePassesAddMeans) {
+  Worlds w;
+  addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+  w.markRestLocal();
+  Material mirror;  // with noisy caustics, which attract the samples of the first pass
+  mirror.roughness = 0.1f;
+  addSphere(w.scene, addMaterial(w.scene, mirror), {0, 0.5f, 0.6f}, 0.5f, 24);
+  w.markRestObjects();
+  constexpr int kSize = 32;
+  const Image plate = noisyPlate(kSize, kSize);
+  RenderSettings settings = smallRender(kSize, kSize, 128, 4);
+  const auto layers = [&](bool adaptive, Passes passes) {
+    settings.adaptive = adaptive;
+    return composite(w, Probe(sunnyProbe()), "importance", settings, plate, passes);
+  };
+  const CompositeRender adaptive = layers(true, Passes::Two), even = layers(false, Passes::One);
+  EXPECT_TRUE(adaptive.result.adaptive);
+  for (const CompositeLayer layer : {CompositeLayer::WithoutObjects, CompositeLayer::WithObjects}) {
+    const Image found = compositeLayer(adaptive.film(), layer);
+    const Image expected = compositeLayer(even.film(), layer);
+    EXPECT_NEAR(luminance(meanColor(found)) / luminance(meanColor(expected)), 1, 0.02);
+  }
+  // Pixel by pixel, up to the noise: no ratio of counts is in them.
+  const Image without = compositeLayer(adaptive.film(), CompositeLayer::WithoutObjects);
+  const Image expected = compositeLayer(even.film(), CompositeLayer::WithoutObjects);
+  int floor = 0, far = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      if (adaptive.film().at(x, y).covered > 0 || even.film().at(x, y).local.x == 0) continue;
+      ++floor;
+      far += std::fabs(luminance(without.rgb(x, y)) / luminance(expected.rgb(x, y)) - 1) > 0.35f;
+    }
+  EXPECT_GT(floor, 300);
+  EXPECT_LT(far, floor / 50);
+}
+
+// Where a pass was stopped before it reached a pixel, the composite is the plate.
+TEST(Composite, TwoInterruptedPassesLeaveThePlate) {
+  const Worlds w = stillLife();
+  const World world(w.scene, rayMasks(w.isObject), allTables());
+  const Probe probe(sunnyProbe());
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const Image plate = noisyPlate(96, 96);
+  for (const double stopAt : {0.0, 0.2, 0.5, 0.51, 0.55}) {
+    std::atomic<bool> stop = false;
+    const CompositeRender r = renderComposite(
+        world, w.camera, *lighting, plate, smallRender(96, 96, 16, 3), Passes::Two, true,
+        [&](double fraction) { stop = stop || fraction >= stopAt; }, stop);
+    EXPECT_TRUE(r.result.interrupted);
+    for (const CompositeMode mode : {CompositeMode::Difference, CompositeMode::Ratio}) {
+      const Composite c = compose(r.film(), r.mean, plate, mode);
+      int unsampled = 0;
+      for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 96; ++x) {
+          if (r.film().at(x, y).count > 0) continue;
+          ++unsampled;
+          EXPECT_EQ(c.color.rgb(x, y), plate.rgb(x, y));
+        }
+      if (stopAt < 0.5) {
+        EXPECT_EQ(unsampled, 96 * 96) << stopAt;
+      }
+      EXPECT_EQ(unsampled > 0, r.result.samples == 0) << stopAt;
+    }
+  }
+}
+
+// The layers of the first surface are those of a pass with the objects.
+TEST(Composite, TwoPassesHaveTheLayersOfSurfaces) {
+  const Worlds w = stillLife();
+  RenderSettings settings = smallRender(16, 16, 64, 3);
+  settings.aovs = {Aov::AmbientOcclusion, Aov::Irradiance};
+  const auto meanOf = [&](Passes passes, Aov aov) {
+    const CompositeRender r =
+        composite(w, Probe(sunnyProbe()), "importance", settings, noisyPlate(16, 16), passes);
+    double sum = 0;
+    for (const float texel : r.result.aovs.finished(aov).texels) sum += double(texel);
+    return sum;
+  };
+  for (const Aov aov : settings.aovs)
+    EXPECT_NEAR(meanOf(Passes::Two, aov) / meanOf(Passes::One, aov), 1, 0.03);
+}
+
 // A lamp among the objects lights a glossy floor even with strategies that replace the probe by
 // lights, which do not light glossy surfaces.
 TEST(Composite, LampsLightGlossySurfacesWithEveryStrategy) {

@@ -160,6 +160,51 @@ TEST(EnvironmentMap, ReflectionOcclusionShowsWhatBlocks) {
   EXPECT_EQ(green("importance+environment-map+reflection-occlusion"), 0);
 }
 
+TEST(EnvironmentMap, ShowsEmissionAloneWithoutBounces) {
+  Material glowing = metal(0.4f);
+  glowing.emission = Rgb(0.25f);
+  const Scene scene = sphereOf(glowing);
+  const Probe probe(constantProbe({16, 8}, Rgb(1)));
+  const EnvironmentLight environment(probe, scene, false);
+  const World world(scene, {}, allTables());
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const std::atomic<bool> never = false;
+  for (const auto kind : {IntegratorKind::EnvironmentMap, IntegratorKind::AmbientOcclusion}) {
+    RenderSettings settings = smallRender(8, 8, 4, 0);
+    settings.integrator = kind;
+    const Camera camera = Camera::lookAt({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.1f);
+    EXPECT_EQ(meanColor(render(world, camera, *lighting, settings, [](double) {}, never, nullptr,
+                               {&environment})
+                            .film.mean()),
+              Rgb(0.25f));
+  }
+}
+
+// Suns and ambient light of the scene: in smooth lobes as the camera sees them, in others all of
+// them.
+TEST(SlowEnvironmentMap, ConvexObjectsShowTheLightOfTheScene) {
+  Material coated = lambert(Rgb(0.3f));
+  coated.extended.emplace();
+  coated.extended->clearcoat = 1;
+  Material plastic = lambert(Rgb(0.5f));
+  plastic.specular = 1;
+  plastic.roughness = 0.5f;
+  const Probe probe(gradientProbe({32, 16}, Rgb(0.2f), {0.05, 0.1, 0.02}));
+  const vec3 towards = glm::normalize(vec3(0.5f, 0.6f, 0.6f));
+  for (const bool isVisible : {true, false})
+    for (const Material& material : {metal(0), coated, plastic, metal(0.1f)}) {
+      Scene scene = sphereOf(material);
+      scene.ambient.push_back({Rgb(0.4f, 0.5f, 0.6f), isVisible, "ambient"});
+      scene.suns.push_back({Sun{towards, glm::dvec3(0.8), 20}, isVisible, "sun"});
+      const auto mean = [&](const char* row, uint32_t samples) {
+        return meanColor(renderRow(row, scene, towardsOrigin(), probe, samples).film.mean());
+      };
+      const Rgb mapped = mean("importance+environment-map", 64), traced = mean("importance", 1024);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mapped[c] / traced[c], 1, 0.03) << material.roughness << isVisible;
+    }
+}
+
 // With `suns` the sun is a light with shadows: on open ground the picture is right, under a roof it
 // is dark.
 TEST(EnvironmentMap, SunsCastShadows) {

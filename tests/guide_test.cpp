@@ -5,8 +5,12 @@
 
 #include <tbb/global_control.h>
 
+#include "composite/render_composite.h"
 #include "integrate/guiding/light_guide.h"
+#include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
+#include "lighting/polygon_lights.h"
+#include "lighting/split_probe.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
 #include "small_scenes.h"
@@ -237,6 +241,138 @@ TEST(SlowGuide, NoiseIsThatOfGuidedRenders) {
     sum += estimated[i] / (m.mean * m.mean);
   }
   EXPECT_NEAR(sum / measured, 1, 0.15);
+}
+
+// Tile means and squared noise of renders with and without a guide, of independent seeds.
+class GuidedAndNot {
+ public:
+  static constexpr int kSize = 32, kTiles = 16, kSeeds = 12;
+
+  // render(settings): the image, the squared noise, and whether light samples were guided.
+  struct Picture {
+    Image mean;
+    double squaredNoise;
+    bool isGuided;
+  };
+  template <class Render>
+  explicit GuidedAndNot(const Render& render) {
+    for (auto& some : tiles_) some.resize(kTiles);
+    for (uint64_t seed = 0; seed < 2 * kSeeds; ++seed) {
+      const bool on = seed % 2;
+      const Picture picture =
+          render(guidedRender(kSize, kSize, 64, on ? Guiding::On : Guiding::Off, seed));
+      EXPECT_EQ(picture.isGuided, on);
+      squared_[on] += picture.squaredNoise;
+      for (int t = 0; t < kTiles; ++t) {
+        double sum = 0;
+        for (int i = 0; i < 64; ++i)
+          sum += luminance(picture.mean.rgb(t % 4 * 8 + i % 8, t / 4 * 8 + i / 8));
+        tiles_[on][size_t(t)].push_back(sum);
+      }
+    }
+  }
+
+  void expectEqualMeans() const {
+    for (size_t t = 0; t < kTiles; ++t)
+      EXPECT_GT(welchTest(Moments::of(tiles_[0][t]), Moments::of(tiles_[1][t])),
+                sidak(1e-3, kTiles))
+          << t;
+  }
+  double gain() const { return squared_[0] / squared_[1]; }
+
+ private:
+  std::vector<std::vector<double>> tiles_[2];
+  double squared_[2] = {0, 0};
+};
+
+double squaredNoise(const Film& film) { return film.noise().noise * film.noise().noise; }
+
+// Light groups are guided like the picture without them, and add up to it.
+TEST(SlowGuide, ServesLightGroups) {
+  const Scene scene = room();
+  const World world(scene, {}, allTables());
+  const Probe probe = sunBehind();
+  const SplitProbe lighting(makeStrategy("importance", probe, Mis::Balance, "test"), probe);
+  ASSERT_EQ(lighting.groups().size(), 2u);
+  const std::atomic<bool> stop = false;
+  const GuidedAndNot renders([&](RenderSettings settings) {
+    settings.lightGroups = true;
+    const RenderResult r = render(
+        world, inside(), lighting, settings, [](double) {}, stop);
+    Image sum(settings.width, settings.height, 3);
+    for (int y = 0; y < sum.height; ++y)
+      for (int x = 0; x < sum.width; ++x)
+        sum.setRgb(x, y,
+                   Rgb((r.layers.value(x, y, 0) + r.layers.value(x, y, 1)) /
+                       double(r.layers.count(x, y))));
+    const Image mean = r.film.mean();
+    for (size_t i = 0; i < sum.texels.size(); ++i)
+      EXPECT_NEAR(sum.texels[i], mean.texels[i], 1e-4f * mean.texels[i]);
+    return GuidedAndNot::Picture{sum, squaredNoise(r.film), r.guidedRegions > 0};
+  });
+  renders.expectEqualMeans();
+  EXPECT_GT(renders.gain(), 1);  // a quarter of the samples train, and count as much as others
+}
+
+// The ball is an object, the room is the local scene.
+TEST(SlowGuide, ServesComposites) {
+  const Scene scene = room();
+  ObjectMask isObject(scene.instances.size(), false);
+  isObject[9] = true;
+  const World world(scene, rayMasks(isObject), allTables());
+  const Probe probe = sunBehind();
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const Image plate = constantProbe({32, 32}, Rgb(0.5f));
+  const std::atomic<bool> stop = false;
+  const GuidedAndNot renders([&](const RenderSettings& settings) {
+    const CompositeRender r = renderComposite(
+        world, inside(), *lighting, plate, settings, Passes::One, false, [](double) {}, stop);
+    return GuidedAndNot::Picture{r.mean, squaredNoise(r.result.film), r.result.guidedRegions > 0};
+  });
+  renders.expectEqualMeans();
+}
+
+// Polygons of the probe as sources of their own: one that all rays see, and one that only its
+// samples find, in sight of the room's window and behind its wall.
+TEST(SlowGuide, ServesPolygonsOfTheProbe) {
+  const Scene scene = room();
+  const World world(scene, {}, allTables());
+  const auto aroundOf = [](const vec3& middle, const char* name) {
+    const Frame frame(glm::normalize(middle));
+    std::vector<dvec3> corners;
+    for (const vec2 at : {vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, 1)})
+      corners.push_back(glm::normalize(dvec3(frame.toWorld({0.2f * at.x, 0.2f * at.y, 1}))));
+    return SphericalPolygon(corners, name);
+  };
+  for (const bool isIllum : {false, true}) {
+    Image map = constantProbe({128, 64}, Rgb(0.2f));
+    const std::vector<SphericalPolygon> polygons{aroundOf({-1, 0.15f, 0}, "window"),
+                                                 aroundOf({1, 0.3f, 0}, "other")};
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 128; ++x) {
+        const dvec3 direction = texelDirection({128, 64}, x, y);
+        if (polygons[0].contains(direction)) map.setRgb(x, y, Rgb(3, 4, 5));
+        if (polygons[1].contains(direction)) map.setRgb(x, y, Rgb(90));
+      }
+    const PolygonExtraction extraction = extractPolygons(map, polygons);
+    std::vector<PolygonLight> lights;
+    for (size_t i = 0; i < 2; ++i)
+      lights.push_back({extraction.sources[i], isIllum && i == 0, "source"});
+    const Probe rest(extraction.remainder);
+    std::vector<std::unique_ptr<LightSource>> parts;
+    parts.push_back(makeStrategy("importance", rest, Mis::Balance, "test"));
+    parts.push_back(
+        std::make_unique<PolygonLights>(lights, constantProbe({2, 1}, Rgb(0)), Rotation()));
+    const CombinedLight lighting(std::move(parts));
+    const std::atomic<bool> stop = false;
+    const GuidedAndNot renders([&](const RenderSettings& settings) {
+      const RenderResult r = render(
+          world, inside(), lighting, settings, [](double) {}, stop);
+      return GuidedAndNot::Picture{r.film.mean(), squaredNoise(r.film), r.guidedRegions > 0};
+    });
+    renders.expectEqualMeans();
+    EXPECT_GT(renders.gain(), 0.9);
+  }
 }
 
 TEST(Guide, IsNotUsedInTheOpen) {

@@ -8,6 +8,7 @@
 #include "integrate/fill_cache.h"
 #include "integrate/gather_irradiance.h"
 #include "probe/synth.h"
+#include "scene/thin_wall.h"
 #include "small_scenes.h"
 #include "study/row.h"
 
@@ -224,6 +225,99 @@ TEST(IrradianceCache, DoesNotDependOnThreads) {
         .film.mean();
   };
   EXPECT_EQ(withThreads(1).texels, withThreads(3).texels);
+}
+
+Material clearGlass(float ior, const Rgb& attenuation) {
+  Material m;
+  m.metallic = 0;
+  m.roughness = 0;
+  m.ior = ior;
+  m.extended.emplace();
+  m.extended->transmission = 1;
+  m.extended->thinWalled = false;
+  m.extended->attenuation = attenuation;
+  return m;
+}
+
+Image renderTop(const Scene& scene, const Image& probe, RenderSettings settings, bool caches) {
+  if (caches) settings.cacheError = 0.2f;
+  return renderScene(scene, topCamera(2, 20), Probe(probe), "importance", settings).film.mean();
+}
+
+// Relative difference of the mean luminances.
+double changeByCache(const Scene& scene, const Image& probe, const RenderSettings& settings) {
+  const auto mean = [&](bool caches) {
+    return double(luminance(meanColor(renderTop(scene, probe, settings, caches))));
+  };
+  return mean(true) / mean(false) - 1;
+}
+
+// Absorbing bodies within one another, and a coated one that is half glass.
+TEST(IrradianceCache, LeavesGlassInViewAsItIs) {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, clearGlass(1.5f, {1, 2, 0.3f})), {0, 0, 0}, 0.6f);
+  addSphere(scene, addMaterial(scene, clearGlass(1.33f, {0.1f, 4, 2})), {0, 0, 0}, 0.3f);
+  const Image sky = gradientProbe({32, 16}, Rgb(0.5f), {0.2, 0.3, 0.1});
+  const RenderSettings settings = smallRender(24, 24, 16, 8);
+  const Image traced = renderTop(scene, sky, settings, false);
+  const Image cached = renderTop(scene, sky, settings, true);
+  for (size_t i = 0; i < traced.texels.size(); ++i)
+    EXPECT_NEAR(cached.texels[i], traced.texels[i], 1e-5f);
+  for (Material& m : scene.materials) m.extended->transmission = 0.5f;
+  EXPECT_NEAR(changeByCache(scene, sky, smallRender(24, 24, 64, 8)), 0, 0.02);
+}
+
+// A lamp in a ball of glass with the index of air, and a probe behind a sheet or a straight body:
+// light of sources, which is not in the records too.
+TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
+  const auto floorUnder = [](const Material& material) {
+    Scene scene;
+    addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+    addMaterial(scene, material);
+    return scene;
+  };
+  const Image black = constantProbe({16, 8}, Rgb(0));
+  Scene ball = floorUnder(clearGlass(1, Rgb(0.2f)));
+  addSphere(ball, 1, {1, 1, 0}, 0.8f, 16);
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = Rgb(5);
+  addQuad(ball, addMaterial(ball, lamp), {0.6f, 1, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f});
+  EXPECT_NEAR(changeByCache(ball, black, smallRender(24, 24, 512, 4)), 0, 0.03);
+
+  Image sky = constantProbe({32, 16}, Rgb(0.5f));
+  sky.setRgb(8, 3, Rgb(50));
+  Material pane = clearGlass(1.5f, Rgb(0));
+  pane.extended->thinWalled = true;
+  Scene sheet = floorUnder(pane);
+  addQuad(sheet, 1, {-9, 3, -9}, {0, 0, 18}, {18, 0, 0});
+  EXPECT_NEAR(changeByCache(sheet, sky, smallRender(24, 24, 128, 4)), 0, 0.03);
+
+  Scene straight = floorUnder(clearGlass(1.5f, Rgb(0)));
+  addSphere(straight, 1, {1.2f, 1, 0}, 0.9f, 16);
+  passShadowsStraight(straight.materials);
+  EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
+}
+
+// What rough glass and mirrors throw onto the floor is in the records alone.
+TEST(SlowIrradianceCache, LosesNoLightBehindRoughGlass) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  Material frosted = clearGlass(1.5f, Rgb(0));
+  frosted.roughness = 0.5f;
+  addSphere(scene, addMaterial(scene, frosted), {0.9f, 0.8f, 0}, 0.7f, 24);
+  const Image sky = gradientProbe({32, 16}, Rgb(0.5f), {0.2, 0.3, 0.1});
+  EXPECT_NEAR(changeByCache(scene, sky, smallRender(24, 24, 256, 6)), 0, 0.03);
+}
+
+TEST(IrradianceCache, HasNothingToAddWithoutASecondBounce) {
+  const Image sky = overcastProbe({32, 16}, Rgb(1), 0.3);
+  Scene scene = corner();
+  scene.materials[0].emission = Rgb(0.1f);
+  for (const int depth : {0, 1}) {
+    const RenderSettings settings = smallRender(16, 16, 8, depth);
+    EXPECT_EQ(renderTop(scene, sky, settings, true).texels,
+              renderTop(scene, sky, settings, false).texels);
+  }
 }
 
 // All kinds of materials and lights: emission, mirrors, veils, plastics.

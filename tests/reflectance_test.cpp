@@ -197,5 +197,26 @@ TEST(SlowReflectance, OfAGlossyFloorExcludesItsHighlights) {
   expectNear(meanOf(projection.colors(), true), expected, 0.012f);
 }
 
+// What coats, sheen and transmission add to a plate, and what they keep from the base, is not the
+// base colour's. A local scene with all of them is lit as its plate shows it.
+TEST(SlowReflectance, OfLayeredFloorsIsThatOfTheirBase) {
+  const Rgb expected(0.3f, 0.2f, 0.1f);
+  ExtendedMaterial coat, sheen, sheet;
+  coat.clearcoat = 1, coat.clearcoatRoughness = 0.3f;
+  sheen.sheenColor = {0.6f, 0.3f, 0.6f}, sheen.sheenRoughness = 0.4f;
+  sheet.transmission = 0.5f;
+  for (const ExtendedMaterial& layers : {coat, sheen, sheet}) {
+    Local local(expected, std::nullopt);
+    local.scene.materials[0].extended = layers;
+    EXPECT_TRUE(isLayered(local.scene, local.isObject));
+    const Image plate = local.photograph(1024);
+    Projection projection(local.camera, kSize, kSize);
+    local.solve(plate, 1, projection);
+    expectNear(meanOf(projection.colors(), true), expected, 0.012f);
+    const Rgb again = meanOf(local.photograph(1024, 9), true);
+    expectNear(again / meanOf(plate, true), Rgb(1), 0.03f);
+  }
+}
+
 }  // namespace
 }  // namespace chromeball

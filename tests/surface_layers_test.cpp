@@ -128,6 +128,47 @@ TEST(SurfaceLayers, IrradianceIncludesInterreflection) {
   EXPECT_NEAR(onFloor(0.8f), kPi / 2 * (1 + 0.8 * 0.5), 0.03);
 }
 
+TEST(SurfaceLayers, WithoutBouncesThereIsNoIrradiance) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+  const RenderResult result =
+      renderScene(scene, topCamera(1, 20), white(), "importance", withLayers(8, 0));
+  EXPECT_EQ(meanOf(result, Aov::Irradiance), Rgb(0));
+}
+
+// Their paths count neither for the estimate of the light cut off nor for what guides learn.
+TEST(SlowSurfaceLayers, LeaveTheDepthCutAndTheGuidesAsTheyAre) {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, lambert(Rgb(0.8f))), {0, 0, 0}, -1, 16);
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = Rgb(1);
+  addQuad(scene, addMaterial(scene, lamp), {-0.5f, 0.7f, -0.5f}, {1, 0, 0}, {0, 0, 1});
+  const Camera camera = Camera::lookAt({0, 0, 0.8f}, {0, -0.2f, 0}, {0, 1, 0}, 1);
+  const auto cutOf = [&](const RenderSettings& settings) {
+    return renderScene(scene, camera, white(), "importance", settings).depthCut;
+  };
+  const DepthCut with = cutOf(withLayers(256)), without = cutOf(smallRender(8, 8, 256, 3));
+  EXPECT_GT(without.byDepth, 0);
+  EXPECT_NEAR(with.byDepth, without.byDepth, 1e-6 * without.byDepth);
+  EXPECT_NEAR(with.found, without.found, 1e-6 * without.found);
+
+  Scene room;  // with a window, which a guide finds
+  const int grey = addMaterial(room, lambert(Rgb(0.5f)));
+  addQuad(room, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  addQuad(room, grey, {-2, 0, -2}, {0, 0, 4}, {0, 3, 0});
+  addQuad(room, grey, {-2, 3, -2}, {3, 0, 0}, {0, 0, 4});
+  Image sky = constantProbe({32, 16}, Rgb(0.1f));
+  sky.setRgb(24, 7, Rgb(300));
+  const auto guided = [&](RenderSettings settings) {
+    settings.width = settings.height = 32;
+    settings.guiding = Guiding::On;
+    return renderScene(room, topCamera(2.5f, 60), Probe(sky), "importance", settings);
+  };
+  const RenderResult alone = guided(smallRender(8, 8, 32, 3));
+  EXPECT_GT(alone.guidedRegions, 0u);
+  EXPECT_EQ(guided(withLayers(32)).film.mean().texels, alone.film.mean().texels);
+}
+
 TEST(SurfaceLayers, LeaveThePictureAsItIs) {
   Scene scene;
   addSphere(scene, addMaterial(scene, lambert(Rgb(0.5f))), {0, 0, 0}, 1);

@@ -27,6 +27,17 @@ void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change
   }
 }
 
+// Without metal, and the extensions that only colour or stretch its highlights.
+void makeDielectric(Material& m) {
+  m.metallic = 0;
+  if (m.extended) m.extended->anisotropy = m.extended->iridescence = 0;
+}
+
+bool hasLayers(const Material& m) {
+  return m.extended && (m.extended->clearcoat > 0 || !isBlack(m.extended->sheenColor) ||
+                        m.extended->transmission > 0);
+}
+
 }  // namespace
 
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
@@ -58,22 +69,27 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
 void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection) {
   changeLocalMaterials(scene, isObject, [&](Material& m) {
     m.projection = &projection;
-    m.extended.reset();
-    m.metallic = 0;
+    makeDielectric(m);
     m.specular = 0;
   });
 }
 
 void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness) {
   changeLocalMaterials(scene, isObject, [&](Material& m) {
-    m.extended.reset();
-    m.metallic = 0;
+    makeDielectric(m);
     m.specular = strength;
     m.specularColor = Rgb(1);
     m.ior = 1.5f;
     m.roughness = roughness;
     m.metallicRoughnessTexture = m.specularTexture = m.specularColorTexture = {};
   });
+}
+
+bool isLayered(const Scene& scene, const ObjectMask& isObject) {
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    if (!isObject[i] && hasLayers(scene.materials[size_t(scene.instances[i].material)]))
+      return true;
+  return false;
 }
 
 std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject) {

@@ -19,14 +19,18 @@ namespace chromeball {
 ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& names,
                        const std::string& location);
 
-// Makes the materials of the local scene matte, with the base colour of `projection` where the
-// camera sees them and the model's base colour elsewhere. The projection must outlive the scene;
-// solveReflectance() fills it.
+// Makes the base of the local scene's materials matte, with the base colour of `projection` where
+// the camera sees them and the model's base colour elsewhere. Coats, sheen and transmission stay.
+// The projection must outlive the scene; solveReflectance() fills it.
 void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection);
 
-// Adds a dielectric specular lobe to the local scene (section 9.7.2): `strength` times that of
-// refractive index 1.5; `roughness` as in glTF.
+// Gives the base of the local scene's materials a dielectric specular lobe (section 9.7.2):
+// `strength` times that of refractive index 1.5; `roughness` as in glTF. Coats, sheen and
+// transmission stay.
 void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness);
+
+// Whether a material of the local scene has a coat, sheen or transmission.
+bool isLayered(const Scene& scene, const ObjectMask& isObject);
 
 // The unit normal of a flat local scene, with y >= 0; nullopt if it is not flat.
 std::optional<vec3> flatNormal(const Scene& scene, const ObjectMask& isObject);

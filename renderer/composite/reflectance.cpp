@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/reflectance.h"
 
+#include "integrate/first_surface.h"
+
 namespace chromeball {
 namespace {
 
@@ -67,21 +69,12 @@ class RepaintedIntegrator : public Integrator {
     ++context.counts.camera;
     context.sampler.startVertex(0);
     PathState state = camera.path();
-    const auto hit = tracer_.skipHiddenBacks(state, camera.hit, context);
-    if (!hit) return Rgb(0);
-    const Scene& scene = tracer_.world().scene;
-    const Instance& instance = scene.instances[hit->instance];
-    state.length += hit->distance;
-    const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
-                                      -state.ray.direction, 0, state.ray.time);
-    if (surface.material->emits())
-      state.radiance += tracer_.foundEmission(state, surface, instance);
-    MaterialPoint material = materialAt(scene, surface);
-    material.baseColor = baseColor_;
-    if (state.first) state.first->hit = true;
-    const Bsdf bsdf(material, surface, -state.ray.direction, tracer_.world().bsdfTables,
-                    tracer_.mirrorAlpha());
-    return tracer_.reflected(state, surface, bsdf, context);
+    auto first = firstSurface(tracer_, state, camera.hit, context);
+    if (!first) return Rgb(0);
+    if (first->surface.material->emits())
+      state.radiance += tracer_.foundEmission(state, first->surface, first->instance);
+    first->material.baseColor = baseColor_;
+    return tracer_.reflected(state, first->surface, first->bsdf(tracer_, state), context);
   }
 
  private:
@@ -196,7 +189,8 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
   bool blackIsLit = false;  // whether a black base colour has radiance: emission or a highlight
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Material& m = scene.materials[size_t(scene.instances[i].material)];
-    blackIsLit |= problem.world.accel.mask(i) == kLocalScene && (m.emits() || m.specular > 0);
+    blackIsLit |=
+        problem.world.accel.mask(i) == kLocalScene && (m.emits() || m.specular > 0 || m.extended);
   }
 
   ReflectanceSolution solution;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/render_composite.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "integrate/surface_layers.h"
 
 namespace chromeball {
@@ -50,6 +53,57 @@ Image sum(Image a, const Image& b) {
   return a;
 }
 
+// With the layers of SurfaceLayers, if they are wanted.
+RenderResult renderPicture(const Integrator& picture, const PathTracer& tracer,
+                           const Camera& camera, const RenderSettings& settings,
+                           const Progress& progress, const std::atomic<bool>& stop,
+                           GuideTraining* training = nullptr, RenderControl* control = nullptr) {
+  const World& world = tracer.world();
+  if (!settings.wantsSurfaceLayers())
+    return render(picture, world, camera, settings, progress, stop, training, control);
+  return render(SurfaceLayers(picture, tracer, settings), world, camera, settings, progress, stop,
+                training, control);
+}
+
+// Each pass gets half of the time, and half of the squared noise.
+RenderSettings firstPass(RenderSettings settings) {
+  if (settings.timeLimit) *settings.timeLimit /= 2;
+  if (settings.noiseLimit) *settings.noiseLimit /= std::sqrt(2.0);
+  return settings;
+}
+
+// As many samples as the first pass took before a limit ended it, and other random numbers.
+RenderSettings secondPass(RenderSettings settings, uint32_t samples) {
+  settings.seed = hash(settings.seed, 1);
+  settings.samples = std::max(samples, 1u);  // none if the first pass was stopped at once
+  settings.timeLimit.reset();
+  settings.noiseLimit.reset();
+  return settings;
+}
+
+CompositeRender renderTwice(const CompositeWorlds& worlds, const Camera& camera, const Image& plate,
+                            const RenderSettings& settings, bool behindObjects,
+                            const Progress& progress, const std::atomic<bool>& stop) {
+  const RenderSettings first = firstPass(settings);
+  RenderResult result = renderPicture(
+      OneWorld(worlds, true, plate, behindObjects), worlds.whole, camera, first,
+      [&](double fraction) { progress(fraction / 2); }, stop);
+  Image mean = result.film.mean();
+  PixelErrors errors = result.film.errors();
+  const RenderSettings second = secondPass(settings, result.samples);
+  const RenderResult without = render(
+      OneWorld(worlds, false, plate, behindObjects), worlds.local.world(), camera, second,
+      [&](double fraction) { progress((1 + fraction) / 2); }, stop);
+  result.samples = std::min(result.samples, without.samples);
+  result.rays.add(without.rays);
+  result.interrupted |= without.interrupted;
+  result.invalid.add(without.invalid);
+  result.layers.addMeans(without.layers);  // the passes may differ in a pixel's number of samples
+  errors.add(without.film.errors());
+  mean = sum(std::move(mean), without.film.mean());
+  return {std::move(result), std::move(mean), std::move(errors)};
+}
+
 }  // namespace
 
 CompositeRender renderComposite(const World& world, const Camera& camera,
@@ -58,42 +112,18 @@ CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const Progress& progress, const std::atomic<bool>& stop,
                                 RenderControl* control) {
   if (passes == Passes::One) {
-    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
+    GuideTraining training(world, lighting, settings);
     const CompositeWorlds worlds(world, lighting, training.guided(settings.path()));
     const DifferentialIntegrator picture(worlds, plate, behindObjects);
-    const SurfaceLayers layers(picture, worlds.whole, settings);
-    const Integrator& integrator =
-        settings.wantsSurfaceLayers() ? layers : static_cast<const Integrator&>(picture);
     RenderResult result =
-        render(integrator, world, camera, settings, progress, stop, &training, control);
+        renderPicture(picture, worlds.whole, camera, settings, progress, stop, &training, control);
     Image mean = result.film.mean();
     PixelErrors errors = result.film.errors();
     return {std::move(result), std::move(mean), std::move(errors)};
   }
 
-  const CompositeWorlds worlds(world, lighting, settings.path());
-  RenderResult result = render(
-      OneWorld(worlds, true, plate, behindObjects), world, camera, settings,
-      [&](double fraction) { progress(fraction / 2); }, stop);
-  Image mean = result.film.mean();
-  PixelErrors errors = result.film.errors();
-  if (result.samples == 0) return {std::move(result), std::move(mean), std::move(errors)};
-  RenderSettings second = settings;
-  second.seed = hash(settings.seed, 1);
-  second.samples = result.samples;  // a limit may have ended the first pass early
-  second.timeLimit.reset();
-  second.noiseLimit.reset();
-  const RenderResult without = render(
-      OneWorld(worlds, false, plate, behindObjects), world, camera, second,
-      [&](double fraction) { progress((1 + fraction) / 2); }, stop);
-  result.samples = std::min(result.samples, without.samples);
-  result.rays.add(without.rays);
-  result.interrupted |= without.interrupted;
-  result.invalid.add(without.invalid);
-  result.layers.addValues(without.layers);
-  errors.add(without.film.errors());
-  mean = sum(std::move(mean), without.film.mean());
-  return {std::move(result), std::move(mean), std::move(errors)};
+  return renderTwice(CompositeWorlds(world, lighting, settings.path()), camera, plate, settings,
+                     behindObjects, progress, stop);
 }
 
 }  // namespace chromeball

@@ -27,9 +27,15 @@ void LayerFilm::add(int x, int y, int half, std::span<const Rgb> sample) {
   }
 }
 
-void LayerFilm::addValues(const LayerFilm& other) {
+void LayerFilm::addMeans(const LayerFilm& other) {
   assert(values_.size() == other.values_.size());
-  for (size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+  for (size_t i = 0; i < counts_.size(); ++i) {
+    const bool isSampled = counts_[i] > 0 && other.counts_[i] > 0;
+    const double scale = isSampled ? double(counts_[i]) / other.counts_[i] : 0;
+    if (!isSampled) counts_[i] = 0;
+    for (size_t layer = i * layers_.size(); layer < (i + 1) * layers_.size(); ++layer)
+      values_[layer] = isSampled ? values_[layer] + scale * other.values_[layer] : glm::dvec3(0);
+  }
 }
 
 void LayerFilm::add(const LayerFilm& part, int left, int top) {

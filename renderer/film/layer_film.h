@@ -27,9 +27,10 @@ class LayerFilm {
 
   // Adds one sample: one value per layer. Thread-safe for different pixels.
   void add(int x, int y, int half, std::span<const Rgb> sample);
-  // Adds the values of another film of the same size and layers, all of them sums; leaves the
-  // counts unchanged.
-  void addValues(const LayerFilm& other);
+  // Adds the means of another film of the same size and layers, all of them sums: its values are
+  // scaled to this film's counts, which stay. What has no samples in one of the two films has none
+  // afterwards.
+  void addMeans(const LayerFilm& other);
 
   // As Film::add() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);

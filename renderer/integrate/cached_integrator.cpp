@@ -1,39 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/cached_integrator.h"
 
+#include "integrate/fill_cache.h"
 #include "integrate/first_surface.h"
+#include "integrate/gather_irradiance.h"
 
 namespace chromeball {
-namespace {
-
-PathSettings directOnly(PathSettings settings) {
-  settings.maxDepth = std::min(settings.maxDepth, 1);
-  return settings;
-}
-
-}  // namespace
 
 CachedIntegrator::CachedIntegrator(const PathTracer& tracer, const IrradianceCache& cache)
     : tracer_(tracer),
-      direct_(tracer.world(), tracer.lighting(), directOnly(tracer.settings())),
+      direct_(tracer.world(), tracer.lighting(), sourcesAlone(tracer.settings())),
       cache_(cache) {}
 
 Sample CachedIntegrator::sample(const CameraSample& camera, PathContext& context) const {
-  ++context.counts.camera;
+  context.sampler.startVertex(0);
   PathState state = camera.path();
-  Rgb radiance(0);
-  const auto first = firstReflector(tracer_, state, camera.hit, context, radiance);
-  if (!first) return context.clamp(radiance);
+  const auto first = firstSurface(tracer_, state, camera.hit, context);
+  if (!first || !hasRecords(*first->surface.material))
+    return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
   const Bsdf bsdf = first->bsdf(tracer_, state);
   const auto diffuse = cached(bsdf, first->surface);
-  if (!diffuse) {
-    radiance += tracer_.reflected(state, first->surface, bsdf, context);
-    return context.clamp(radiance);
-  }
+  if (!diffuse) return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
+  ++context.counts.camera;
+  Rgb radiance = *diffuse;
+  if (first->surface.material->emits())
+    radiance += tracer_.foundEmission(state, first->surface, first->instance);
   Bsdf diffuseLobes = bsdf, otherLobes = bsdf;
   diffuseLobes.keepOnly({.diffuse = true, .specular = false});
   otherLobes.keepOnly({.diffuse = false, .specular = true});
-  radiance += *diffuse + direct_.reflected(state, first->surface, diffuseLobes, context);
+  radiance += direct_.reflected(state, first->surface, diffuseLobes, context);
   context.sampler.startVertex(0);
   radiance += tracer_.reflected(state, first->surface, otherLobes, context);
   return context.clamp(radiance);

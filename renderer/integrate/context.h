@@ -80,9 +80,8 @@ struct PathContext {
   void addRecord(const GuidedBounce& bounce, const Rgb& radiance) const {
     if (!records || bounce.record.lobesPdf == 0) return;
     BounceRecord record = bounce.record;
-    const float found = luminance(radiance - bounce.before);
-    record.squared = found * found;
-    if (record.squared > 0 && std::isfinite(record.squared)) records->bounces.push_back(record);
+    record.found = std::fabs(luminance(radiance - bounce.before));
+    if (record.found > 0 && std::isfinite(record.found)) records->bounces.push_back(record);
   }
 };
 

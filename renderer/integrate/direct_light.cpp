@@ -107,17 +107,23 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     sum += scattered * light.direction.irradiance;
     if (context.groups) [[unlikely]]
       addToGroups({}, vertex, light.direction, scattered, context);
-    if (context.records) context.addRecord(record(vertex.point, light, bsdf), passed);
+    if (context.records && !light.direction.isDelta)
+      context.addRecord(record(vertex.point, light, bsdf), passed);
   };
-  if (guideChooses(vertex, context)) {
-    const auto guided = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
-    add(ofGuide(*vertex.region, guided, lighting_.escaped(vertex.point, guided.direction)));
-    return sum;
+  const bool guided = guideChooses(vertex, context);
+  if (guided) {
+    const auto chosen = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
+    add(ofGuide(*vertex.region, chosen, lighting_.escaped(vertex.point, chosen.direction)));
+    if (takesOneSample_) return sum;
   }
   std::vector<DirectionSample>& samples = context.lightSamples;
   samples.clear();
   lighting_.sample(vertex.point, context.sampler, samples);
-  for (const DirectionSample& own : samples) add(ofStrategy(vertex, own));
+  for (const DirectionSample& own : samples)
+    if (own.isDelta)  // the guide does not find it
+      add({own, own.pdf});
+    else if (!guided)
+      add(ofStrategy(vertex, own));
   return sum;
 }
 

@@ -47,7 +47,10 @@ class DirectLight {
  public:
   // `world` and `lighting` must outlive this.
   DirectLight(const World& world, const LightSource& lighting, const PathSettings& settings)
-      : world_(world), lighting_(lighting), settings_(settings) {}
+      : world_(world),
+        lighting_(lighting),
+        settings_(settings),
+        takesOneSample_(lighting.takesOneSample()) {}
 
   // From the probe, with the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
@@ -67,7 +70,7 @@ class DirectLight {
     DirectionSample direction;
     float strategyPdf;
   };
-  // Whether the sample of the vertex comes from the guide instead of the strategy.
+  // Whether a sample of the guide takes the place of the strategy's, except its delta samples.
   static bool guideChooses(const Vertex& vertex, const PathContext& context);
   // With the pdf of the mixture.
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
@@ -93,6 +96,7 @@ class DirectLight {
   const World& world_;
   const LightSource& lighting_;
   PathSettings settings_;
+  bool takesOneSample_;
 };
 
 }  // namespace chromeball

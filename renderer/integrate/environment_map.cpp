@@ -73,9 +73,30 @@ Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context
   return sum;
 }
 
+// Of the sources that light samples do not find: for a smooth lobe, all that is seen; else the
+// light that no light sample has a pdf for, which is the same from all directions
+// (ambient_light.h).
+Rgb EnvironmentMapIntegrator::unsampled(const Point& point, const MapLobe& lobe) const {
+  const bool isSmooth = !lobe.isDiffuse && lobe.roughness == 0;
+  Rgb sum(0);
+  const auto add = [&](const LightSource& source) {
+    if (isSmooth) {
+      sum += source.background(point.first.surface.position, lobe.direction);
+    } else if (const auto found = source.escaped(point.vertex.point, lobe.direction);
+               found.pdf == 0) {
+      sum += found.radiance;
+    }
+  };
+  const SceneSources& sources = tracer_.world().sources;
+  for (const size_t i : sources.distant) add(*sources.all[i]);
+  if (environment_.suns()) add(*environment_.suns());
+  return sum;
+}
+
 Rgb EnvironmentMapIntegrator::diffuse(const Point& point, const MapLobe& lobe,
                                       PathContext& context) const {
-  const Rgb radiance = environment_.maps().irradiance(lobe.direction) * kInvPi;
+  const Rgb radiance =
+      environment_.maps().irradiance(lobe.direction) * kInvPi + unsampled(point, lobe);
   if (!occlusion_.ambient) return radiance;
   return radiance * cosineSkyRay(tracer_.world(), point.first.surface, lobe.direction,
                                  occlusion_.distance, tracer_.settings().visible, context)
@@ -93,10 +114,9 @@ Rgb EnvironmentMapIntegrator::specular(const Point& point, const MapLobe& lobe,
   vec3 wi = lobe.direction;
   if (isSampled || isBlocked)
     wi = reflectedBy(lobe, -point.state.ray.direction, context.sampler.get2(dimension::kBsdf));
-  Rgb radiance = isSampled ? maps.radiance(wi, 0) : maps.radiance(lobe.direction, lobe.roughness);
-  // Light samples find the suns, except in smooth lobes.
-  if (environment_.suns() && lobe.roughness == 0)
-    radiance += environment_.suns()->background({}, lobe.direction);
+  const Rgb radiance =
+      (isSampled ? maps.radiance(wi, 0) : maps.radiance(lobe.direction, lobe.roughness)) +
+      unsampled(point, lobe);
   if (!isBlocked) return radiance;
   if (glm::dot(surface.geometricNormal, wi) <= 0) return Rgb(0);
   ++context.counts.shadow;

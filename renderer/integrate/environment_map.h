@@ -11,7 +11,8 @@
 namespace chromeball {
 
 // At the first surface: emission; the light of lamps, emitting surfaces and suns, by light samples
-// with shadows; and of the probe, lobe by lobe (shading/map_lobes.h),
+// with shadows, except that smooth lobes look suns up like the probe, as all lobes do ambient
+// light; and of the probe, lobe by lobe (shading/map_lobes.h),
 //   diffuse   albedo / pi E(n)
 //   specular  albedo L'(R, roughness), R the mirror direction, or L in a direction that GGX
 //             microfacets reflect if the lobe is narrow (PrefilteredProbe::kLeastRoughness); of
@@ -33,6 +34,7 @@ class EnvironmentMapIntegrator : public Integrator {
   struct Point;
   Rgb ofSources(const Point& point, PathContext& context) const;
   Rgb ofProbe(const Point& point, PathContext& context) const;
+  Rgb unsampled(const Point& point, const MapLobe& lobe) const;
   Rgb diffuse(const Point& point, const MapLobe& lobe, PathContext& context) const;
   Rgb specular(const Point& point, const MapLobe& lobe, PathContext& context) const;
 

@@ -80,7 +80,7 @@ class CacheFiller {
     state.ray = cameraRay(float(x) + 0.5f, float(y) + 0.5f);
     const auto first =
         firstSurface(tracer_, state, tracer_.closestHit(state.ray, context), context);
-    if (!first || first->surface.material->unlit) return;
+    if (!first || !hasRecords(*first->surface.material)) return;
     const Ray next = cameraRay(float(x) + 1.5f, float(y) + 0.5f);
     const float pixelWidth = glm::length(next.origin + state.length * next.direction -
                                          state.ray.origin - state.length * state.ray.direction);

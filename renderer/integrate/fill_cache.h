@@ -11,6 +11,10 @@
 
 namespace chromeball {
 
+// Whether records serve the diffuse lobes of a material. Those of a body of glass are path traced
+// together with what the glass transmits.
+inline bool hasRecords(const Material& material) { return !material.unlit && !material.isBody(); }
+
 // Adds records where the camera sees diffuse surfaces that the cache does not cover: at the centres
 // of every 64th pixel, then of those half as far apart, and so on to every 4th (progressive
 // refinement). They are taken in groups, the first ones small, whose records are added together and

@@ -47,26 +47,58 @@ vec3 cosineDirection(const Frame& frame, vec2 u) {
   return frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine});
 }
 
-// What light samples at the point do not find: the state's pdf of 0 gives all the light of sources
-// to them, and what the first vertex emits is taken off.
-Seen seenAlong(const PathTracer& tracer, const Surface& surface, const vec3& normal, const vec3& wi,
-               PathContext& context) {
+// Follows paths from a point that receives light, without what sourcesAlone() finds there.
+class GatheredPath {
+ public:
+  // Both tracers must outlive this.
+  GatheredPath(const PathTracer& tracer, const PathTracer& sources)
+      : tracer_(tracer), sources_(sources) {}
+
+  // `hit`: of the state's ray, the first one from the point.
+  Rgb follow(PathState state, std::optional<Hit> hit, PathContext& context) const {
+    const vec3 start = state.from.position;
+    while (hit) {
+      state.radiance -= emissionAt(state, *hit, context);
+      if (!tracer_.vertex(state, hit, context)) return state.radiance;
+      context.sampler.startVertex(state.depth);
+      hit = tracer_.closestHit(state.ray, context);
+      // Only smooth glass and what the path has passed straight is between it and the point.
+      const bool isClear = state.isDelta || state.from.position == start;
+      if (!isClear || state.bounces() != 1) return tracer_.follow(state, hit, context);
+    }
+    return state.radiance;
+  }
+
+ private:
+  // What the vertex adds to the path as the light of a source.
+  Rgb emissionAt(PathState state, const Hit& hit, PathContext& context) const {
+    const Scene& scene = tracer_.world().scene;
+    if (!scene.materials[size_t(scene.instances[hit.instance].material)].emits()) return Rgb(0);
+    const Rgb before = state.radiance;
+    sources_.vertex(state, hit, context);  // at its limit of depth: no light samples
+    return state.radiance - before;
+  }
+
+  const PathTracer& tracer_;
+  const PathTracer& sources_;
+};
+
+// The state's pdf of 0 leaves the light of sources to light samples.
+Seen seenAlong(const PathTracer& tracer, const GatheredPath& path, const Surface& surface,
+               const vec3& normal, const vec3& wi, PathContext& context) {
   if (glm::dot(wi, surface.geometricNormal) * glm::dot(normal, surface.geometricNormal) <= 0)
     return {};
-  FirstHit first;
-  PathState state{.ray = rayFrom(surface, wi),
-                  .from = {surface.position, normal, nullptr, 0},
-                  .isDelta = false,
-                  .pdf = 0,
-                  .lobes = Lobes::Broad,
-                  .depth = 1,
-                  .scattered = true,
-                  .first = &first};
+  const PathState state{.ray = rayFrom(surface, wi),
+                        .from = {surface.position, normal, nullptr, 0},
+                        .isDelta = false,
+                        .pdf = 0,
+                        .lobes = Lobes::Broad,
+                        .depth = 1,
+                        .scattered = true};
   context.sampler.startVertex(state.depth);
   const auto hit = tracer.closestHit(state.ray, context);
   if (!hit) return {};
-  const Rgb found = tracer.follow(state, hit, context);
-  return {first.direct ? found - *first.direct : Rgb(0), hit->distance};
+  return {path.follow(state, hit, context), hit->distance};
 }
 
 float distanceOf(const Seen& a, const Seen& b) { return std::min(a.distance, b.distance); }
@@ -126,6 +158,11 @@ float radiusOfGradient(const IrradianceRecord& record) {
 
 }  // namespace
 
+PathSettings sourcesAlone(PathSettings settings) {
+  settings.maxDepth = std::min(settings.maxDepth, 1);
+  return settings;
+}
+
 Strata strataOf(float samples) {
   const int elevations = std::max(int(std::lround(std::sqrt(samples / kPi))), 2);
   return {elevations, int(std::lround(kPi * float(elevations)))};
@@ -137,6 +174,8 @@ std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const
                                                  PathContexts& contexts) {
   Hemisphere hemisphere(strata);
   const Frame frame(normal);
+  const PathTracer sources(tracer.world(), tracer.lighting(), sourcesAlone(tracer.settings()));
+  const GatheredPath path(tracer, sources);
   std::atomic<bool> valid = true;
   tbb::parallel_for(tbb::blocked_range<int>(0, strata.elevations), [&](const auto& range) {
     PathContext& context = contexts.local();
@@ -148,7 +187,7 @@ std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const
         const vec2 u = (vec2(j, k) + context.sampler.get2(dimension::kBsdf)) /
                        vec2(strata.elevations, strata.azimuths);
         Seen& seen = hemisphere.at(j, k);
-        seen = seenAlong(tracer, surface, normal, cosineDirection(frame, u), context);
+        seen = seenAlong(tracer, path, surface, normal, cosineDirection(frame, u), context);
         if (defectOf(seen.radiance, true)) valid = false;
       }
   });

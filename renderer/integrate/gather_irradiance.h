@@ -22,8 +22,13 @@ Strata strataOf(float samples);
 
 using PathContexts = tbb::enumerable_thread_specific<PathContext>;
 
-// Of the light that surfaces reflect towards the point; not of the light of sources, which light
-// samples find better. One path a stratum, in parallel; the record does not depend on the threads.
+// The settings of paths from a camera that see a surface and the light of sources that it reflects:
+// all that records lack.
+PathSettings sourcesAlone(PathSettings settings);
+
+// Of the light that surfaces reflect towards the point; not of the light of sources, also through
+// clear sheets and bodies (sourcesAlone()), which light samples find better. One path a stratum, in
+// parallel; the record does not depend on the threads.
 // `pixel`, `block`: the randomness, as in PixelSampler. The gradients are those of Ward and
 // Heckbert 1992 (equations 4 and 5). radius is the harmonic mean distance, or less where the
 // irradiance changes faster than it tells. Nullopt if a path's radiance is not valid.

@@ -56,7 +56,7 @@ float bestFraction(std::span<const GuideRecords> records, double fractionOfPixel
     const double scale = 1 / (luminance * luminance * samples * recordedSamples);
     double sum = 0, count = 0;
     tiles.forPixels(tile, [&](int, int) { count += recordedSamples; });
-    for (const BounceRecord& r : records[tile].bounces) sum += std::sqrt(double(r.squared));
+    for (const BounceRecord& r : records[tile].bounces) sum += double(r.found);
     const double squaredMean = scale * sum * sum / count;
     recorded -= squaredMean;
     for (double& moment : moments) moment -= squaredMean;
@@ -64,10 +64,11 @@ float bestFraction(std::span<const GuideRecords> records, double fractionOfPixel
       const auto pdf = [&](float fraction) {
         return double(fraction) * double(r.lobesPdf) + (1 - double(fraction)) * double(r.bsdfPdf);
       };
-      recorded += scale * double(r.squared);
+      const double squared = scale * double(r.found) * double(r.found);
+      recorded += squared;
       for (size_t k = 0; k < kFractions.size(); ++k)
         if (const double other = pdf(kFractions[k]); other > 0)
-          moments[k] += scale * double(r.squared) * pdf(r.fraction) / other;
+          moments[k] += squared * pdf(r.fraction) / other;
     }
   }
   const double rest = std::max(now - recorded, 0.0);

@@ -10,7 +10,6 @@
 namespace chromeball {
 namespace {
 
-constexpr uint32_t kMinSamples = 8;  // per pixel of a render that is guided
 // Samples per pixel: a quarter of the render within these limits.
 constexpr uint32_t kMinTraining = 8, kTraining = 16;
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
@@ -32,13 +31,13 @@ uint32_t GuideTraining::samplesOf(const RenderSettings& settings) {
 }
 
 GuideTraining::GuideTraining(const World& world, const LightSource& lighting,
-                             const RenderSettings& settings, Guides guides)
+                             const RenderSettings& settings)
     : world_(world),
       lighting_(lighting),
       settings_(settings),
-      guiding_(settings.samples < kMinSamples || !lighting.takesOneSample() ? Guiding::Off
-                                                                            : settings.guiding),
-      lightGuiding_(guides == Guides::Both ? guiding_ : Guiding::Off),
+      guiding_(settings.samples < kMinSamples || !lighting.canBeGuided() ? Guiding::Off
+                                                                         : settings.guiding),
+      lightGuiding_(guiding_),
       lastSample_(samplesOf(settings)),
       tiles_{settings.window().width, settings.window().height},
       maxRecordsOfTile_(std::max<size_t>(2 * kMaxRecords / tiles_.count(), 8)),

@@ -22,16 +22,14 @@ namespace chromeball {
 class GuideTraining {
  public:
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
+  static constexpr uint32_t kMinSamples = 8;  // per pixel of a render that is guided
 
   // The samples per pixel from which the guides may learn; 0 for a render that has none.
   static uint32_t samplesOf(const RenderSettings& settings);
 
-  // Both guides; of bounces only for integrators with layers, whose film has no weights.
-  enum class Guides { Both, Bounces };
-  // All arguments must outlive this. Guides nothing if the strategy takes more than one sample
-  // (LightSource::takesOneSample()).
-  GuideTraining(const World& world, const LightSource& lighting, const RenderSettings& settings,
-                Guides guides);
+  // All arguments must outlive this. Guides nothing if the strategy cannot be guided
+  // (LightSource::canBeGuided()).
+  GuideTraining(const World& world, const LightSource& lighting, const RenderSettings& settings);
 
   // With the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;

@@ -141,7 +141,11 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
 
 bool PathTracer::scatter(PathState& state, const Surface& surface, const Bsdf& bsdf,
                          PathContext& context) const {
-  return scatterAs<false>(state, surface, bsdf, context);
+  Bsdf limited = bsdf;
+  const bool isBody = bsdf.isLayered() && surface.material->isBody();
+  if (limitsKinds_ && !limitKinds(state, limited) && !isBody) return false;
+  if (bsdf.isLayered()) return scatterAs<true>(state, surface, limited, context);
+  return state.bounces() < settings_.maxDepth && scatterAs<false>(state, surface, limited, context);
 }
 
 ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance& instance,

@@ -66,11 +66,13 @@ class PathTracer {
   // ray. Returns false where the path ends. Call estimateDepthCut() first.
   bool vertex(PathState& state, const std::optional<Hit>& hit, PathContext& context) const;
 
-  // Radiance that `surface`, where the ray of a camera path ends, reflects with a given BSDF.
+  // Radiance that `surface`, where the ray of a camera path ends, reflects with a given BSDF; 0 at
+  // the limit of depth, except what glass transmits.
   Rgb reflected(PathState state, const Surface& surface, const Bsdf& bsdf,
                 PathContext& context) const;
 
-  // The part of vertex() after emission, for a given BSDF: direct light and the next direction.
+  // The part of vertex() after emission, for a given BSDF: direct light and the next direction,
+  // within the limits of depth.
   bool scatter(PathState& state, const Surface& surface, const Bsdf& bsdf,
                PathContext& context) const;
 

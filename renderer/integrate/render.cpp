@@ -82,7 +82,8 @@ class Renderer {
   void endPass() {
     RenderResult& result = state_.result;
     if (trains_)
-      if (const auto weight = state_.training->learnLights()) {
+      if (const auto weight = state_.training->learnLights();
+          weight && result.layers.empty()) {  // layers have no weights, and must fit the film
         result.film.weigh(*weight);
         result.features.weigh(*weight);
       }

@@ -42,12 +42,13 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
     return render(SurfaceLayers(picture, tracer, settings), world, camera, limits, rest, stop,
                   training, control);
   };
-  if (usesEnvironment(settings.integrator)) {
+  // Without bounces there is nothing to approximate.
+  if (usesEnvironment(settings.integrator) && settings.maxDepth > 0) {
     assert(aids.environment);
     return withLayers(EnvironmentMapIntegrator(world, lighting, *aids.environment, settings),
                       nullptr, settings, progress);
   }
-  if (settings.cacheError) {
+  if (settings.cacheError && settings.path().maxDepth > 1) {  // else no surface lights another
     IrradianceCache own(*settings.cacheError);
     IrradianceCache& cache = aids.cache ? *aids.cache : own;
     const PathSettings paths = withoutDepthCut(settings.path());
@@ -55,18 +56,18 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
     fillCache(
         cache, PathTracer(world, lighting, paths), camera, settings,
         [&](double fraction) { progress(kFillShare * fraction); }, stop);
-    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
+    GuideTraining training(world, lighting, settings);
     const PathTracer tracer(world, lighting, training.guided(paths));
     return withLayers(CachedIntegrator(tracer, cache), &training, after(watch.seconds(), settings),
                       [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
   }
   if (settings.wantsGroups()) {
     const LightGroups groups(world, lighting);
-    GuideTraining training(world, lighting, settings, GuideTraining::Guides::Bounces);
+    GuideTraining training(world, lighting, settings);
     const PathTracer tracer(world, lighting, training.guided(settings.path()));
     return withLayers(GroupIntegrator(tracer, groups), &training, settings, progress);
   }
-  GuideTraining training(world, lighting, settings, GuideTraining::Guides::Both);
+  GuideTraining training(world, lighting, settings);
   return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
                     &training, settings, progress);
 }

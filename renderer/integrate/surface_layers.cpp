@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/surface_layers.h"
 
+#include <utility>
+
 #include "integrate/first_surface.h"
 
 namespace chromeball {
+namespace {
+
+PathSettings ofALayer(PathSettings settings) {
+  settings.estimateDepthCut = false;
+  return settings;
+}
+
+}  // namespace
 
 SurfaceLayers::SurfaceLayers(const Integrator& picture, const PathTracer& tracer,
                              const RenderSettings& settings)
     : picture_(picture),
-      tracer_(tracer),
+      tracer_(tracer.world(), tracer.lighting(), ofALayer(tracer.settings())),
       occlusion_(settings.occlusion),
       wantsOcclusion_(settings.wantsAov(Aov::AmbientOcclusion)),
       wantsBent_(settings.wantsAov(Aov::BentNormal)),
@@ -52,7 +62,9 @@ std::optional<Defect> SurfaceLayers::measure(const CameraSample& camera,
   if (!wantsIrradiance_) return {};
   const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
   const Bsdf bsdf(white, surface, -state.ray.direction, world.bsdfTables);
+  const auto records = std::exchange(context.records, nullptr);
   const Rgb irradiance = kPi * tracer_.reflected(state, surface, bsdf, context);
+  context.records = records;
   const auto defect = defectOf(irradiance, false);
   if (!defect) first.irradiance = irradiance;
   return defect;

@@ -9,14 +9,16 @@
 
 namespace chromeball {
 
-// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample:
+// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample. The
+// picture, its estimate of the light beyond the limits of depth, and what guides learn from it are
+// those without them.
 //   ambientOcclusion  an estimate of 1 / pi integral of V cos, V the visibility of the sky
 //   unoccluded        of the vector integral of V cos (or of V) times the direction
 //   irradiance        pi times the radiance of a white Lambertian surface in the place of the first
 //                     one, the rest of the scene as it is
 class SurfaceLayers : public Integrator {
  public:
-  // All arguments must outlive this.
+  // All arguments must outlive this, except `tracer`, which traces the picture.
   SurfaceLayers(const Integrator& picture, const PathTracer& tracer,
                 const RenderSettings& settings);
 
@@ -32,7 +34,7 @@ class SurfaceLayers : public Integrator {
   std::optional<Defect> measure(const CameraSample& camera, PathContext& context) const;
 
   const Integrator& picture_;
-  const PathTracer& tracer_;
+  PathTracer tracer_;
   Occlusion occlusion_;
   bool wantsOcclusion_, wantsBent_, wantsIrradiance_;
 };

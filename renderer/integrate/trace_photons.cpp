@@ -111,10 +111,8 @@ class PhotonTracer {
   void traceFromProbe(Random random, Traced& out) const {
     const Target& target = chooseTarget(random);
     const uint32_t first = random.bits(), second = random.bits();
-    const glm::uvec2 bits(first, second);
     DirectionSample light{};
-    lighting_.sampleMany(std::span(&bits, 1), std::span(&light, 1));
-    if (!(light.pdf > 0)) return;
+    if (!lighting_.sampleDistant({first, second}, light) || !(light.pdf > 0)) return;
     const float flux = luminance(light.irradiance) * kPi * target.sphere.radius *
                        target.sphere.radius / float(target.probability);
     follow({startTowards(target, light.wi, random.get2()), flux, light.wi, 0}, &target, random,
@@ -224,7 +222,9 @@ std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting
   const Scene& scene = world.scene;
   if (std::ranges::none_of(scene.materials, mayHaveNarrowLobes)) return {};  // before any bounds
   const PhotonTracer tracer(world, lighting);
-  const bool fromProbe = lighting.sampleMany({}, {}), fromLamps = world.sources.emitters != nullptr;
+  DirectionSample any{};
+  const bool fromProbe = lighting.sampleDistant({0, 0}, any);
+  const bool fromLamps = world.sources.emitters != nullptr;
   std::vector<Photon> photons;
   if (!tracer.hasTargets() || !(fromProbe || fromLamps)) return photons;
   const size_t tasks = (budget.paths + kPathsPerTask - 1) / kPathsPerTask;

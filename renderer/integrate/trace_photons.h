@@ -19,8 +19,9 @@ struct PhotonBudget {
 
 // Traces paths from light samples of the strategy towards instances with narrow lobes, and as many
 // from emissive triangles, up to the budget; none if there are no such instances, or if the first
-// leave no photons. Light samples must not depend on the point (LightSource::sampleMany());
-// else only lamps have photons. The result does not depend on the number of threads.
+// leave no photons. Where the light's directions depend on the point
+// (LightSource::sampleDistant()), only lamps have photons. The result does not depend on the number
+// of threads.
 std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting,
                                  const PhotonBudget& budget, uint64_t seed);
 

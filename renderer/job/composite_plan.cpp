@@ -151,6 +151,11 @@ void prepareLocalScene(RenderJob& job, LoadedScene& loaded) {
     if (!flatNormal(scene, loaded.isObject))
       throwInput("{}: the local scene is not flat; give \"plate\"",
                  settings.location("composite.reflectance"));
+    if (isLayered(scene, loaded.isObject))
+      throwInput(
+          "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
+          "\"plate\"",
+          settings.location("composite.reflectance"));
     if (job.file.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
                  settings.location("composite.reflectance"));

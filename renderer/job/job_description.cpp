@@ -11,6 +11,7 @@
 
 #include "base/hash.h"
 #include "job/file_hash.h"
+#include "job/job_changes.h"
 #include "job/json_text.h"
 
 namespace chromeball {
@@ -136,6 +137,7 @@ Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
   if (const auto noise = settings.getIfGiven<double>("render.noise")) d["noise-limit"] = *noise;
   if (const auto time = settings.getIfGiven<double>("render.time")) d["time-limit"] = *time;
   describeCamera(job.settings, loaded, d);
+  describeChanges(job, d);
   return d;
 }
 
@@ -166,7 +168,7 @@ std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
 
 std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
-  identity["layers"] = job.file.settings.get<std::vector<std::string>>("output.aovs");
+  identity["layers"] = layerNames(job);
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
     identity["samples"] = job.settings.samplesOfAll();
   return jsonText(identity);

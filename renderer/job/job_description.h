@@ -13,7 +13,10 @@
 namespace chromeball {
 
 // Every setting that determines the pixels, as resolved from command line, scene file and defaults,
-// under the name of its option: given to `render SCENE`, they reproduce the image. Also:
+// under the name of its option: given to `render SCENE`, they reproduce the image. What a program
+// has changed in the job since is there with its value in memory (job_changes.h): settings under
+// the same names, and models, scene-camera, lens, optics, lights, sources, surroundings,
+// local-scene and composite as a whole. Also:
 //   files                     all files read: models, their buffers and images, probe, plate
 //   probe-found               the mapping that `probe-mapping` resolved to
 //   noise-limit, time-limit   the limits of the samples (percent, seconds)

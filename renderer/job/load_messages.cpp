@@ -47,6 +47,20 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
                               count == 1 ? "" : "s"));
 }
 
+// `guide = "on"` where nothing can be guided.
+void addGuide(const RenderJob& job, Collector& messages) {
+  const Settings& settings = job.file.settings;
+  if (settings.get<std::string>("render.guide") != "on") return;
+  const std::string location = settings.location("render.guide");
+  if (job.settings.path().limitsKinds())
+    messages.note(fmt::format(
+        "{}: nothing is guided, since limits of depth by kind do not know guided bounces",
+        location));
+  else if (GuideTraining::samplesOf(job.settings) == 0)
+    messages.note(fmt::format("{}: nothing is guided with fewer than {} samples per pixel",
+                              location, GuideTraining::kMinSamples));
+}
+
 void addSources(const LoadedScene& loaded, Collector& messages) {
   constexpr double kMaxUnevenness = 0.02;
   if (!loaded.sources) return;
@@ -106,6 +120,7 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded) {
     addProbe(*probe, loaded.loadedProbe, messages);
   else
     addLights(job, scene, messages);
+  addGuide(job, messages);
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
     messages.note(plateScaleText(*job.file.composite, *scale));

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "job/job_changes.h"
 #include "job/memory_estimate.h"
 #include "job/open_shutter.h"
 #include "job/scene_lighting.h"
@@ -55,10 +56,13 @@ void chooseSize(RenderJob& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
-// Moves what the scene file places in the world to the scene's coordinates.
+// Moves what the scene file places in the world to the scene's coordinates, which changes nothing
+// of the job.
 void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
+  const bool isAsPlanned = job.plannedParts == partsOf(job);
   if (job.file.camera) job.file.camera->position -= vec3(origin);
   if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
+  if (isAsPlanned) job.plannedParts = partsOf(job);
 }
 
 PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {

@@ -11,6 +11,7 @@
 #include "job/arguments.h"
 #include "job/check_job.h"
 #include "job/develop_text.h"
+#include "job/job_changes.h"
 #include "job/scene_file_camera.h"
 
 namespace chromeball {
@@ -248,26 +249,34 @@ DevelopSettings plannedDevelop(const Settings& s, float exposure) {
 
 }  // namespace
 
-RenderJob planJob(SceneFile scene, const Settings& over) {
+RenderJob plannedSettings(SceneFile scene) {
   RenderJob job;
   job.file = std::move(scene);
-  merge(job.file, over);
-  applyShadowCatcher(job.file);
   const Settings& s = job.file.settings;
-  parseRotation(s.get<std::vector<double>>("probe.rotation"), s.location("probe.rotation"));
-  checkJob(job.file);
   job.settings = integratorSettings(job.file);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
   job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
   job.shutter = shutterOf(s);
   job.strategy = named(s, "lighting.strategy");
+  return job;
+}
+
+RenderJob planJob(SceneFile scene, const Settings& over) {
+  merge(scene, over);
+  applyShadowCatcher(scene);
+  parseRotation(scene.settings.get<std::vector<double>>("probe.rotation"),
+                scene.settings.location("probe.rotation"));
+  checkJob(scene);
+  RenderJob job = plannedSettings(std::move(scene));
+  const Settings& s = job.file.settings;
   job.outputs = s.get<std::vector<std::string>>("output.file");
   job.makesOutputFolders = !over.has("output.file");
   job.display = {parseToneOperator(s.get<std::string>("tonemap")),
                  float(s.get<double>("exposure"))};
   job.develop = plannedDevelop(s, job.display.exposure);
   if (job.file.composite) planComposite(job);
+  job.plannedParts = partsOf(job);
   return job;
 }
 

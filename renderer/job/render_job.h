@@ -33,6 +33,7 @@ struct RenderJob {
   NamedSetting strategy;
   std::optional<CompositePlan> composite;
   std::optional<AutomaticView> view;  // nullopt: to be found by loadScene()
+  std::string plannedParts;           // partsOf() (job_changes.h) as planJob() made them
 
   // For writing the image; no effect on rendering.
   std::vector<std::string> outputs;
@@ -40,6 +41,10 @@ struct RenderJob {
   DevelopSettings develop;          // of a .png, before `display`
   DisplayTransform display;         // of a .png
 };
+
+// The part of planJob() that takes the values of settings, for a scene file whose settings are
+// final. Throws InputError.
+RenderJob plannedSettings(SceneFile scene);
 
 // Overrides the scene file's settings by `over`, and reads the plate of a composite. Throws
 // InputError for settings that contradict each other, and for an unreadable plate.

@@ -42,6 +42,16 @@ LightSource::Escaped CombinedLight::escaped(const LightPoint& point, const vec3&
   return sum;
 }
 
+// Of one part, each with the same probability.
+bool CombinedLight::sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const {
+  const uint64_t scaled = uint64_t(numbers.x) * parts_.size();
+  const auto& part = parts_[size_t(scaled >> 32)];
+  if (!part->sampleDistant({uint32_t(scaled), numbers.y}, out)) return false;
+  out.irradiance *= float(parts_.size());
+  out.pdf /= float(parts_.size());
+  return true;
+}
+
 Rgb CombinedLight::background(const vec3& origin, const vec3& wi) const {
   Rgb sum(0);
   for (const auto& part : parts_) sum += part->background(origin, wi);

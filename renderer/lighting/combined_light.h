@@ -10,7 +10,8 @@
 namespace chromeball {
 
 // Takes the samples of every part. Radiances and pdfs of all parts are added in each direction, so
-// that all samples are combined by the balance heuristic (Veach 1997).
+// that all samples are combined by the balance heuristic (Veach 1997). It can be guided if the
+// first part can.
 class CombinedLight : public LightSource {
  public:
   // The first part is that of the probe.
@@ -20,6 +21,8 @@ class CombinedLight : public LightSource {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   Rgb background(const vec3& origin, const vec3& wi) const override;
+  bool canBeGuided() const override { return parts_.front()->canBeGuided(); }
+  bool sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const override;
   float mirrorAlpha() const override { return parts_.front()->mirrorAlpha(); }
   bool unbiased() const override { return parts_.front()->unbiased(); }
   std::vector<std::string> groups() const override;

@@ -39,6 +39,7 @@ class FiniteSurroundings : public LightSource {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   bool takesOneSample() const override { return strategy_->takesOneSample(); }
+  bool canBeGuided() const override { return strategy_->canBeGuided(); }
   Rgb background(const vec3& origin, const vec3& wi) const override;
   float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
   bool unbiased() const override { return strategy_->unbiased(); }

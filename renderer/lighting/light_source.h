@@ -92,6 +92,16 @@ class LightSource {
   // Whether sample() takes one sample at most, which is not a delta.
   virtual bool takesOneSample() const { return sampleMany({}, {}); }
 
+  // Whether a guide may choose a direction in place of the samples that are no deltas
+  // (integrate/guide_training.h).
+  virtual bool canBeGuided() const { return takesOneSample(); }
+
+  // One direction that light comes from, drawn from two numbers, whatever the point: for paths that
+  // start at the light. Its pdf is 0 if there is none. Returns false if there are no such paths.
+  virtual bool sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const {
+    return sampleMany(std::span(&numbers, 1), std::span(&out, 1));
+  }
+
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3&, const vec3&) const { return Rgb(0); }
 

@@ -35,18 +35,31 @@ PolygonLights::PolygonLights(const std::vector<PolygonLight>& lights, const Imag
 
 void PolygonLights::sample(const LightPoint& point, const PixelSampler& sampler,
                            std::vector<DirectionSample>& out) const {
-  if (choice_.row(0).back() == 0) return;  // all are black
-  double u = toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kPolygonSet)));
-  const float v = toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kPolygonSet + 1)));
-  const int chosen = choice_.sample(0, u);
-  const Light& light = lights_[size_t(chosen)];
-  const vec3 wi(light.polygon.sample(u, v));
+  if (areBlack()) return;
+  const auto [chosen, wi] =
+      choose(toUnit(sampler.bits(dimension::kLight) ^ uint32_t(hash(kPolygonSet))),
+             toUnit(sampler.bits(dimension::kLight + 1) ^ uint32_t(hash(kPolygonSet + 1))));
+  const Light& light = lights_[chosen];
   if (light.isIllum) {
-    out.push_back({wi, light.radiance / light.pdf, light.pdf, true, chosen});
+    out.push_back({wi, light.radiance / light.pdf, light.pdf, true, int(chosen)});
     return;
   }
   const Escaped found = escaped(point, wi);
   if (found.pdf > 0) out.push_back({wi, found.radiance / found.pdf, found.pdf});
+}
+
+PolygonLights::Chosen PolygonLights::choose(double u, float v) const {
+  const size_t light = size_t(choice_.sample(0, u));
+  return {light, vec3(lights_[light].polygon.sample(u, v))};
+}
+
+bool PolygonLights::sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const {
+  out.pdf = 0;
+  if (areBlack()) return true;
+  const Chosen chosen = choose(toUnit(numbers.x), toUnit(numbers.y));
+  const Light& light = lights_[chosen.light];
+  out = {chosen.wi, light.radiance / light.pdf, light.pdf};
+  return true;
 }
 
 LightSource::Escaped PolygonLights::escaped(const LightPoint&, const vec3& wi) const {

@@ -32,6 +32,7 @@ class PolygonLights : public LightSource {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   Rgb background(const vec3& origin, const vec3& wi) const override;
+  bool sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const override;
   bool unbiased() const override { return false; }
 
   std::vector<std::string> groups() const override;
@@ -40,6 +41,13 @@ class PolygonLights : public LightSource {
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
+  // Of a polygon, which is not black, from two numbers in [0, 1).
+  struct Chosen {
+    size_t light;
+    vec3 wi;
+  };
+  Chosen choose(double u, float v) const;
+  bool areBlack() const { return choice_.row(0).back() == 0; }
   size_t illumAt(const vec3& wi) const;
 
   struct Light {

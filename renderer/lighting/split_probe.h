@@ -23,6 +23,13 @@ class SplitProbe : public LightSource {
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return strategy_->escaped(point, wi);
   }
+  void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override {
+    strategy_->escapedMany(rays, out);
+  }
+  bool sampleMany(std::span<const glm::uvec2> numbers,
+                  std::span<DirectionSample> out) const override {
+    return strategy_->sampleMany(numbers, out);
+  }
   bool takesOneSample() const override { return strategy_->takesOneSample(); }
   Rgb background(const vec3& origin, const vec3& wi) const override {
     return strategy_->background(origin, wi);

@@ -23,7 +23,7 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     Built& built = built_[name];
     built.row = rowNamed(row, location);
     built.strategy = makeLighting({built.row.strategy, location}, settings.mis, loaded);
-    if (built.row.has(Mode::Guide) && !built.strategy->takesOneSample())
+    if (built.row.has(Mode::Guide) && !built.strategy->canBeGuided())
       throwInput("{}: {}: only renders with the strategy `importance` are guided", location, row);
     built.environment = makeEnvironment(built.row.integrator, built.row.strategy, loaded);
     if (usesEnvironment(built.row.integrator) && loaded.surroundings)
