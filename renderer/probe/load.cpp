@@ -99,7 +99,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   } else if (named) {
     probe.mapping = *named;
     probe.detected = true;
-    probe.reason = "its `mapping` attribute names it";
+    probe.reason = "the file names it";
   } else {
     DetectedMapping detected = detectMapping(image);
     probe.mapping = detected.mapping;

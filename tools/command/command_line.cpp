@@ -18,10 +18,9 @@ namespace {
 
 constexpr int kFailed = 1, kBadInput = 2, kInterrupted = 130;
 
-int report(int status, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
+int report(int status, const std::string& message) {
   std::fflush(stdout);
-  fmt::print(stderr, "chromeball: {}\n", message);
+  note(message);
   return status;
 }
 

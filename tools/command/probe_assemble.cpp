@@ -125,7 +125,7 @@ void run(const AssembleArguments& arguments) {
 
   const Report report{arguments, photographs, views, matches, assembly, target};
   warnOf(report);
-  writeProbe(arguments.out, probe);
+  writeProbe(arguments.out, probe, target.mapping);
   if (!arguments.preview.empty()) writeImage(arguments.preview, preview(report));
   if (arguments.json)
     fmt::print("{}\n", toJson(report).dump(2, ' ', false, Json::error_handler_t::replace));

@@ -120,7 +120,11 @@ Metadata readExrMetadata(const fs::path& path) {
 
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   const std::string magic = firstBytes(path);
-  if (magic.starts_with("#?")) return {readRadianceHdr(path), {"R", "G", "B"}, {}};
+  if (magic.starts_with("#?")) {
+    HdrComments comments;
+    Image image = readRadianceHdr(path, &comments);
+    return {std::move(image), {"R", "G", "B"}, Metadata(comments.begin(), comments.end())};
+  }
   if (magic.starts_with("PF")) return {readPfm(path), {"R", "G", "B"}, {}};
   if (magic.starts_with("Pf")) return {readPfm(path), {"Y"}, {}};
   const char* reader = readerFor({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()});

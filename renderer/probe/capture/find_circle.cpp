@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "probe/capture/edge_map.h"
+#include "probe/capture/outline.h"
 
 namespace chromeball {
 namespace {
@@ -200,7 +201,7 @@ std::optional<FoundCircle> best(const EdgeMap& edges) {
     if (here.rank <= bestRank || here.share < kLeastSupport || here.inside < kLeastInside ||
         !hasPossibleRadius(edges, circle))
       continue;
-    found = FoundCircle{circle, here.share};
+    found = FoundCircle{circle, here.share, 0};
     bestRank = here.rank;
   }
   return found;
@@ -212,7 +213,7 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   const int longest = std::max(image.width, image.height);
   const int scale = (longest + kLongestSide - 1) / kLongestSide;
   if (std::min(image.width, image.height) / scale < 8) return std::nullopt;
-  const Image small = logLuminance(image, scale);
+  const Image small = logarithm(meanLuminance(image, scale));
   const EdgeMap edges(small, kEdges);
   std::optional<FoundCircle> found = best(edges);
   if (!found) return std::nullopt;
@@ -220,10 +221,12 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   circle.centre *= scale, circle.radius *= scale;
   for (int finer = scale; finer >= 1; finer /= 2) {
     circle.centre /= finer, circle.radius /= finer;
-    circle = refined(finer == scale ? small : logLuminance(image, finer), circle);
+    circle = refined(finer == scale ? small : logarithm(meanLuminance(image, finer)), circle);
     circle.centre *= finer, circle.radius *= finer;
   }
-  return found;
+  const std::optional<Outline> outline = fitOutline(image, circle);
+  if (!outline) return std::nullopt;
+  return FoundCircle{outline->circle, outline->support, outline->standardError};
 }
 
 }  // namespace chromeball

@@ -11,7 +11,8 @@ namespace chromeball {
 
 struct FoundCircle {
   Circle circle;
-  double support;  // the share of the outline inside the picture that is an edge, from 0 to 1
+  double support;        // the share of the outline inside the picture that is an edge, 0 to 1
+  double standardError;  // of the centre's coordinates and the radius, in pixels
 };
 
 // The circle that most edges of the picture lie on: edges of the logarithm of luminance, in a copy
