@@ -13,8 +13,8 @@ constexpr size_t kLongestWord = 200, kLongest = 2000;
 size_t escapeLength(std::string_view text) {
   if (text.size() < 2 || text[0] != '\x1b') return 0;
   if (text[1] == '[') {
-    const size_t end = std::min(
-        text.find_first_not_of("0123456789:;<=>?!\"#$%&'()*+,-./ ", 2), text.size() - 1);
+    const size_t end =
+        std::min(text.find_first_not_of("0123456789:;<=>?!\"#$%&'()*+,-./ ", 2), text.size() - 1);
     return end + 1;
   }
   if (text[1] == ']') return std::min(text.find('\a', 2), text.size() - 1) + 1;

@@ -203,8 +203,7 @@ void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
                       const HdrComments& comments) {
   std::string header = "#?RADIANCE\n";
   for (const auto& [name, value] : comments) header += fmt::format("# {}={}\n", name, value);
-  header +=
-      fmt::format("FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+  header += fmt::format("FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   std::vector<uint8_t> out(header.begin(), header.end());
   const bool runs = image.width >= kMinRunWidth && image.width <= kMaxRunWidth;
   std::vector<Rgbe> row(image.width);

@@ -19,6 +19,8 @@ constexpr double kAligned = 0.95;      // cosine between an edge's normal and th
 constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
+// Of the arcs of the final fit: of random edges, a fifth would agree. And in pixels.
+constexpr double kLeastOutline = 0.4, kLargestError = 0.5;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
@@ -225,7 +227,8 @@ std::optional<FoundCircle> findCircle(const Image& image) {
     circle.centre *= finer, circle.radius *= finer;
   }
   const std::optional<Outline> outline = fitOutline(image, circle);
-  if (!outline) return std::nullopt;
+  if (!outline || outline->support < kLeastOutline || !(outline->standardError < kLargestError))
+    return std::nullopt;
   return FoundCircle{outline->circle, outline->support, outline->standardError};
 }
 

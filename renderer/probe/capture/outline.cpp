@@ -14,8 +14,8 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kUnknowns = 7;  // of the luminance around an arc
-constexpr int kSubsamples = 5;  // along the side of a pixel
+constexpr int kUnknowns = 7;                 // of the luminance around an arc
+constexpr int kSubsamples = 5;               // along the side of a pixel
 constexpr double kInside = 3, kOutside = 3;  // pixels from the outline that an arc's fit reads
 
 // A pixel near an arc: its value, and its subsamples as (distance from the circle, along the arc).
@@ -83,8 +83,7 @@ std::vector<ArcPixel> pixelsOfArc(const Image& image, const Circle& circle, doub
       if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
       const auto polar = [&](const dvec2& p) {
         const dvec2 v = p - circle.centre;
-        const double along =
-            std::atan2(normal.x * v.y - normal.y * v.x, glm::dot(normal, v));
+        const double along = std::atan2(normal.x * v.y - normal.y * v.x, glm::dot(normal, v));
         return dvec2(glm::length(v) - circle.radius, along * circle.radius);
       };
       const dvec2 centre = polar({x + 0.5, y + 0.5});
@@ -115,7 +114,8 @@ struct Arc {
     const double at = std::clamp(offset / kStep + half, 0.0, double(2 * half) - 1e-9);
     const size_t i = size_t(at);
     const double part = at - double(i);
-    return 0.5 * double(pixels) * ((1 - part) * std::log(errors[i]) + part * std::log(errors[i + 1]));
+    return 0.5 * double(pixels) *
+           ((1 - part) * std::log(errors[i]) + part * std::log(errors[i + 1]));
   }
 
   // The offset with the least error.
@@ -151,8 +151,8 @@ std::vector<Arc> arcsAround(const Image& image, const Circle& circle, double rea
   return arcs;
 }
 
-// The change of the circle (x, y, radius) that is likeliest by all arcs together, on a grid: one arc
-// alone may have a stronger edge beside the outline.
+// The change of the circle (x, y, radius) that is likeliest by all arcs together, on a grid: one
+// arc alone may have a stronger edge beside the outline.
 dvec3 likeliestChange(const std::vector<Arc>& arcs, double reach) {
   const int half = int(std::lround(reach / kStep));
   dvec3 best(0);
@@ -214,8 +214,7 @@ std::optional<CircleFit> fitPoints(const std::vector<Arc>& arcs) {
     const auto change = equations.solve(), variances = equations.variances();
     if (!change || !variances || count < 4) return std::nullopt;
     fit.change = {(*change)[0], (*change)[1], (*change)[2]};
-    fit.standardError =
-        std::sqrt(squares / (count - 3) * *std::ranges::max_element(*variances));
+    fit.standardError = std::sqrt(squares / (count - 3) * *std::ranges::max_element(*variances));
   }
   return fit;
 }
@@ -238,8 +237,7 @@ Circle changed(const Circle& circle, const dvec3& change) {
 
 std::optional<Outline> fitOutline(const Image& image, const Circle& start) {
   constexpr double kFar = 2.4, kNear = 1;
-  const Circle likeliest =
-      changed(start, likeliestChange(arcsAround(image, start, kFar), kFar));
+  const Circle likeliest = changed(start, likeliestChange(arcsAround(image, start, kFar), kFar));
   std::optional<Outline> outline = Outline{likeliest, 0, 0};
   for (int step = 0; step < 2; ++step) {
     const std::optional<CircleFit> fit = fitPoints(arcsAround(image, outline->circle, kNear));
