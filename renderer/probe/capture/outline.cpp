@@ -100,9 +100,9 @@ std::vector<ArcPixel> pixelsOfArc(const Image& image, const Circle& circle, doub
   return pixels;
 }
 
-constexpr double kStep = 0.2;  // between the offsets of an arc
+constexpr double kOffsetStep = 0.2;  // between the offsets of an arc
 
-// The errors of an arc at the offsets kStep (i - half).
+// The errors of an arc at the offsets kOffsetStep (i - half).
 struct Arc {
   dvec2 normal;
   size_t pixels;
@@ -111,7 +111,7 @@ struct Arc {
 
   // Minus the logarithm of the likelihood, with normal errors of unknown variance.
   double doubt(double offset) const {
-    const double at = std::clamp(offset / kStep + half, 0.0, double(2 * half) - 1e-9);
+    const double at = std::clamp(offset / kOffsetStep + half, 0.0, double(2 * half) - 1e-9);
     const size_t i = size_t(at);
     const double part = at - double(i);
     return 0.5 * double(pixels) *
@@ -125,9 +125,9 @@ struct Arc {
     const double a = errors[least - 1], b = errors[least], c = errors[least + 1];
     const double curvature = a - 2 * b + c;
     if (!(curvature > 0)) return std::nullopt;
-    const double offset = (double(least) - half + 0.5 * (a - c) / curvature) * kStep;
+    const double offset = (double(least) - half + 0.5 * (a - c) / curvature) * kOffsetStep;
     const double noise = b / double(3 * (pixels - kUnknowns) - 1);
-    return ArcPoint{normal, offset, kStep * std::sqrt(2 * noise / curvature)};
+    return ArcPoint{normal, offset, kOffsetStep * std::sqrt(2 * noise / curvature)};
   }
 };
 
@@ -143,9 +143,12 @@ std::vector<Arc> arcsAround(const Image& image, const Circle& circle, double rea
     const double angle = 2 * kPiD * (i + 0.5) / count;
     const auto pixels = pixelsOfArc(image, circle, angle, halfAngle, reach);
     if (double(pixels.size()) < std::max(kLeastShown * area, 2.0 * kUnknowns)) continue;
-    Arc arc{{std::cos(angle), std::sin(angle)}, pixels.size(), int(std::lround(reach / kStep)), {}};
+    Arc arc{{std::cos(angle), std::sin(angle)},
+            pixels.size(),
+            int(std::lround(reach / kOffsetStep)),
+            {}};
     for (int k = -arc.half; k <= arc.half; ++k)
-      arc.errors.push_back(std::max(errorAt(pixels, k * kStep), 1e-30));
+      arc.errors.push_back(std::max(errorAt(pixels, k * kOffsetStep), 1e-30));
     arcs.push_back(std::move(arc));
   }
   return arcs;
@@ -154,13 +157,13 @@ std::vector<Arc> arcsAround(const Image& image, const Circle& circle, double rea
 // The change of the circle (x, y, radius) that is likeliest by all arcs together, on a grid: one
 // arc alone may have a stronger edge beside the outline.
 dvec3 likeliestChange(const std::vector<Arc>& arcs, double reach) {
-  const int half = int(std::lround(reach / kStep));
+  const int half = int(std::lround(reach / kOffsetStep));
   dvec3 best(0);
   double least = std::numeric_limits<double>::infinity();
   for (int r = -half; r <= half; ++r)
     for (int y = -half; y <= half; ++y)
       for (int x = -half; x <= half; ++x) {
-        const dvec3 change = kStep * dvec3(x, y, r);
+        const dvec3 change = kOffsetStep * dvec3(x, y, r);
         double doubt = 0;
         for (const Arc& arc : arcs)
           doubt += arc.doubt(change.x * arc.normal.x + change.y * arc.normal.y + change.z);
