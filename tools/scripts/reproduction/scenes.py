@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Composites and rooms: HDRI's 9.2.3, figures 9.21 and 9.38."""
+import pixels
+from exr import Exr
 from page import Row, table
 from run import NOON, ROOT, SCENES
 
@@ -29,11 +31,24 @@ def few_rays(run):
         "light with those of the BSDF.")]
 
 
+def white_scene(run, image):
+    """Figure 9.38 (c): what a white local scene would show: its radiance over its reflectance."""
+    layers = Exr(image)
+    pixels.write_pfm(run.scratch / "white.pfm",
+                     [[tuple(a / max(b, 1e-3) for a, b in zip(p, q)) for p, q in zip(*rows)]
+                      for rows in zip(layers.color("l_noobj"), layers.color("reflectance"))])
+    return run.scratch / "white.pfm"
+
+
 def composite(run):
     common = ["--samples", 64, "--size", "360x240"]
     image = run.render(TERRACE, "terrace.exr", *common, "--aov", "l_obj,l_noobj,difference,alpha,reflectance",
                        "--denoise")
-    panels = [("composite-noobj.png", "The local scene without the objects", image, ["--layer", "l_noobj"]),
+    panels = [("composite-white.png", "Figure 9.38 (c): the irradiance of the white local scene, as radiance E / pi",
+               white_scene(run, image), []),
+              ("composite-reflectance.png", "Figure 9.38 (d): its reflectance, from the plate", image,
+               ["--layer", "reflectance"]),
+              ("composite-noobj.png", "The local scene without the objects", image, ["--layer", "l_noobj"]),
               ("composite-obj.png", "With the objects", image, ["--layer", "l_obj"]),
               ("composite-difference.png", "What the objects change", image, ["--layer", "difference"]),
               ("composite.png", "The composite", image, [])]
