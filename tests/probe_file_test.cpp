@@ -46,19 +46,41 @@ TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
   const TemporaryFolder folder;
   const Image sky = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.2, 0.3, 0.4});
   writeImage(folder / "sky.exr", sky);
-  for (const char* mapping : {"mirror-ball", "angular", "fisheye:360:equisolid", "cube-3x2",
-                              "cube-cross", "cube-strip", "lat-long"}) {
-    const std::string path = folder / "converted.exr";
-    ASSERT_EQ(runCommand({"probe", "convert", folder / "sky.exr", path, "--to", mapping}).status,
-              0);
-    const LoadedProbe probe = loadProbe(path);
-    EXPECT_EQ(mappingName(probe.mapping), mapping);
-    EXPECT_EQ(probe.reason, "its `mapping` attribute names it");
-  }
+  for (const char* name : {"converted.exr", "converted.hdr"})
+    for (const char* mapping : {"mirror-ball", "angular", "fisheye:360:equisolid", "cube-3x2",
+                                "cube-cross", "cube-strip", "lat-long"}) {
+      const std::string path = folder / name;
+      const CommandResult result =
+          runCommand({"probe", "convert", folder / "sky.exr", path, "--to", mapping});
+      ASSERT_EQ(result.status, 0);
+      EXPECT_EQ(result.error.find("has no place"), std::string::npos);
+      const LoadedProbe probe = loadProbe(path);
+      EXPECT_EQ(mappingName(probe.mapping), mapping);
+      EXPECT_EQ(probe.reason, "the file names it");
+    }
   // Of other programs, or of another image.
   for (const char* text : {"uv", "mirror-ball", ""}) {
     writeImage(folder / "other.exr", OutputImage{{{"", "RGB", sky}}, {{"mapping", text}}});
     EXPECT_EQ(loadProbe(folder / "other.exr").mapping, Mapping(Mapping::LatLong));
+  }
+}
+
+// What has no place for the mapping is read with the one that shape and corners suggest.
+TEST(ProbeFile, ConvertWarnsOfALostMapping) {
+  const TemporaryFolder folder;
+  writeImage(folder / "sky.exr", gradientProbe({64, 32}, Rgb(0.1f, 0.2f, 0.3f), {0.2, 0.3, 0.4}));
+  const auto warns = [&](const char* name, const char* mapping) {
+    const CommandResult result =
+        runCommand({"probe", "convert", folder / "sky.exr", folder / name, "--to", mapping});
+    EXPECT_EQ(result.status, 0);
+    return result.error.find("has no place for its mapping") != std::string::npos;
+  };
+  for (const char* name : {"p.pfm", "p.png"}) {
+    EXPECT_TRUE(warns(name, "mirror-ball"));
+    EXPECT_TRUE(warns(name, "fisheye"));
+    EXPECT_FALSE(warns(name, "angular"));
+    EXPECT_FALSE(warns(name, "lat-long"));
+    EXPECT_FALSE(warns(name, "cube-cross"));
   }
 }
 

@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 void checkReadable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throwInput("{}: no such file", path.string());
+  if (status.type() == fs::file_type::not_found) throwInput("{}: no such file", path.string());
+  // A loop of links, a name that is too long, or a folder that cannot be entered.
+  if (error) throwInput("{}: {}", path.string(), error.message());
   if (!fs::is_regular_file(status)) throwInput("{}: not a regular file", path.string());
   if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", path.string(), std::strerror(errno));
 }
@@ -65,9 +67,15 @@ FileBytes::FileBytes(const fs::path& path) {
 
 void checkReplaceable(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!fs::is_directory(folder))
-    throwInput("{}: there is no folder {}", path.string(), folder.string());
-  if (fs::is_directory(path)) throwRun("{}: cannot be written: it is a folder", path.string());
+  std::error_code error;
+  const bool isFolder = fs::is_directory(folder, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    throwInput("{}: {}", path.string(), error.message());
+  if (!isFolder) throwInput("{}: there is no folder {}", path.string(), folder.string());
+  const bool isTaken = fs::is_directory(path, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    throwInput("{}: {}", path.string(), error.message());
+  if (isTaken) throwRun("{}: cannot be written: it is a folder", path.string());
   if (access(folder.c_str(), W_OK) != 0)
     throwRun("{}: cannot write into {}: {}", path.string(), folder.string(), std::strerror(errno));
 }

@@ -22,6 +22,8 @@ json readJsonFile(const std::filesystem::path& path, size_t maxMegabytes, std::s
     const auto end = bytes.begin() + ptrdiff_t(std::min(error.byte, bytes.size()));
     throwInput("{}:{}: is not valid JSON here", path.string(),
                1 + std::count(bytes.begin(), end, '\n'));
+  } catch (const json::out_of_range&) {  // which the parser throws for nothing else
+    throwInput("{}: has a number beyond 1.8e308, the range of a double", path.string());
   }
 }
 

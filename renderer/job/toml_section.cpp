@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "job/setting_table.h"
+#include "job/toml_keys.h"
 
 namespace chromeball {
 namespace {
@@ -195,9 +196,10 @@ toml::table parseToml(const std::string& path) {
   if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
     throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
   const std::vector<uint8_t> bytes = readFile(path);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  checkKeyDepth(text, path);
   try {
-    return toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
-                       path);
+    return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
            error.description());

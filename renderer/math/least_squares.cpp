@@ -19,19 +19,47 @@ void LeastSquares::add(std::span<const Term> row, double target, double weight) 
   }
 }
 
+namespace {
+
+using NormalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 // Scaled to a unit diagonal, so that the pivots tell whether an unknown depends on the others.
+struct ScaledFactors {
+  Eigen::VectorXd scale;
+  Eigen::LDLT<NormalMatrix, Eigen::Lower> factors;
+  bool isDefinite = false;
+
+  ScaledFactors(const std::vector<double>& lower, int unknowns) {
+    constexpr double kLeastPivot = 1e-13;
+    const Eigen::Map<const NormalMatrix> matrix(lower.data(), unknowns, unknowns);
+    if (!(matrix.diagonal().minCoeff() > 0)) return;
+    scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+    factors.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
+    isDefinite = factors.vectorD().minCoeff() > kLeastPivot;
+  }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
+    return scale.cwiseProduct(factors.solve(scale.cwiseProduct(right)));
+  }
+};
+
+}  // namespace
+
 std::optional<std::vector<double>> LeastSquares::solve() const {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  constexpr double kLeastPivot = 1e-13;
-  const Eigen::Map<const Matrix> matrix(matrix_.data(), unknowns_, unknowns_);
-  const Eigen::Map<const Eigen::VectorXd> right(right_.data(), unknowns_);
-  if (!(matrix.diagonal().minCoeff() > 0)) return std::nullopt;
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-  const Matrix scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  const Eigen::LDLT<Matrix, Eigen::Lower> factors(scaled);
-  if (!(factors.vectorD().minCoeff() > kLeastPivot)) return std::nullopt;
-  const Eigen::VectorXd solution = scale.cwiseProduct(factors.solve(scale.cwiseProduct(right)));
+  const ScaledFactors scaled(matrix_, unknowns_);
+  if (!scaled.isDefinite) return std::nullopt;
+  const Eigen::VectorXd solution =
+      scaled.solve(Eigen::Map<const Eigen::VectorXd>(right_.data(), unknowns_));
   return std::vector<double>(solution.begin(), solution.end());
+}
+
+std::optional<std::vector<double>> LeastSquares::variances() const {
+  const ScaledFactors scaled(matrix_, unknowns_);
+  if (!scaled.isDefinite) return std::nullopt;
+  std::vector<double> diagonal;
+  for (int i = 0; i < unknowns_; ++i)
+    diagonal.push_back(scaled.solve(Eigen::VectorXd::Unit(unknowns_, i))[i]);
+  return diagonal;
 }
 
 }  // namespace chromeball

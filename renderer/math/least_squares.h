@@ -25,6 +25,10 @@ class LeastSquares {
   // determine all of them. The normal equations square the condition of the problem.
   std::optional<std::vector<double>> solve() const;
 
+  // The diagonal of the normal matrix's inverse: the variances of the unknowns where the targets of
+  // the equations have independent errors of variance 1 / weight. nullopt as of solve().
+  std::optional<std::vector<double>> variances() const;
+
  private:
   int unknowns_;
   std::vector<double> matrix_, right_;  // row by row, lower triangle; right-hand side

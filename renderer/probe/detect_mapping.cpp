@@ -41,7 +41,9 @@ DetectedMapping detectMapping(const Image& image) {
   constexpr int kMin = 12;
   if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)
-               ? DetectedMapping{Mapping::AngularMap, "it is square and black outside the disc",
+               ? DetectedMapping{Mapping::AngularMap,
+                                 "it is square and black outside the disc (so "
+                                 "may be a mirror ball, which only its maker can tell)",
                                  true}
                : DetectedMapping{Mapping::MirrorBall, "it is square and not black outside the disc",
                                  false};

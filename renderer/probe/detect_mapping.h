@@ -16,7 +16,8 @@ struct DetectedMapping {
 };
 
 // The shape decides; for squares and crosses, also whether the image is black where the mapping
-// shows no direction.
+// shows no direction. An angular map and an ideal mirror ball may both be black outside the same
+// disc: their texels do not tell which they are, and the angular map is the usual one.
 DetectedMapping detectMapping(const Image& image);
 
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 
 #include "base/error.h"
 #include "base/for_ranges.h"
@@ -79,11 +80,8 @@ void measureMaximum(const Image& image, LoadedProbe& probe) {
   if (equalToFirst < all) probe.fractionAtMaximum = double(atMaximum) / double(all);
 }
 
-}  // namespace
-
-LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
-                      std::string_view mappingLocation) {
-  ImageFile file = readImageFile(path);
+LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::string_view mapping,
+                    std::string_view mappingLocation) {
   const std::optional<Mapping> stated = openExrMapping(file), named = namedMapping(file);
   LoadedProbe probe;
   probe.hasIntegerTexels = file.integers;
@@ -99,7 +97,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   } else if (named) {
     probe.mapping = *named;
     probe.detected = true;
-    probe.reason = "its `mapping` attribute names it";
+    probe.reason = "the file names it";
   } else {
     DetectedMapping detected = detectMapping(image);
     probe.mapping = detected.mapping;
@@ -120,6 +118,22 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
     probe.latLong = convert(image, probe.mapping, Mapping::LatLong, size);
   }
   return probe;
+}
+
+}  // namespace
+
+LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
+                      std::string_view mappingLocation) {
+  ImageFile file = readImageFile(path);
+  const int width = file.image.width, height = file.image.height;
+  try {
+    return probeOf(std::move(file), path, mapping, mappingLocation);
+  } catch (const std::bad_alloc&) {
+    // The map as read, and as converted or turned.
+    const double bytes = 2 * sizeof(Rgb) * double(width) * height;
+    throwInput("{}: a probe of {} x {} texels takes {:.2g} GB to load, more than this process gets",
+               path.string(), width, height, 1e-9 * bytes);
+  }
 }
 
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path) {

@@ -27,11 +27,12 @@ struct LoadedProbe {
   double fractionAtMaximum = 0;   // of the texels; 0 if all are equal
 };
 
-// The attribute of an EXR with the name of its mapping.
+// The attribute of an EXR, or the comment of an HDR, with the name of its mapping.
 inline constexpr const char* kMappingAttribute = "mapping";
 
 // `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` or
-// `mapping` attribute of an EXR, else detects it (detect_mapping.h). A lat-long map with `envmap`
+// `mapping` attribute of an EXR, or the comment `mapping` of an HDR, else detects it
+// (detect_mapping.h). A lat-long map with `envmap`
 // has +Z in its centre and +X at its left quarter (OpenEXR's ImfEnvmap.h); it is turned by 180
 // degrees, to agree with the cube map of the same environment. A lat-long file of any shape keeps
 // its texels; others are converted at latLongSize() (convert.h). Throws InputError; it starts with

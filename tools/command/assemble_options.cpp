@@ -85,7 +85,8 @@ void addAssembleOptions(CLI::App& command, AssembleArguments& arguments) {
       .add_option(
           "--azimuth", arguments.azimuths,
           "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
-          "is +Z, 90 is +X. One photograph: 0 if left out")
+          "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, 0:-90 "
+          "straight up. One photograph: 0 if left out")
       ->allow_extra_args(false);
   command
       .add_option("--circle", arguments.circles,

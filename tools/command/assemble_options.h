@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "probe/capture/assemble.h"
+#include "probe/capture/find_circle.h"
 
 namespace chromeball {
 
@@ -25,7 +26,7 @@ struct AssemblyPhotograph {
   std::string file;
   Image image, mask;
   Circle circle;
-  std::optional<double> support;  // of a circle that was found
+  std::optional<FoundCircle> found;  // if the circle was not given
   CameraPosition camera;
 };
 

@@ -79,7 +79,7 @@ void setCircle(const std::string& given, bool isFisheye, AssemblyPhotograph& pho
       throwInput("{}: no {} found; give its circle in pixels: --circle X,Y,RADIUS", photograph.file,
                  isFisheye ? "image circle" : "ball");
     photograph.circle = found->circle;
-    photograph.support = found->support;
+    photograph.found = found;
   }
 }
 

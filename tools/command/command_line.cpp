@@ -6,10 +6,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "base/error.h"
 #include "base/suggest.h"
 #include "commands.h"
+#include "job/image_memory.h"
+#include "job/machine.h"
 #include "messages.h"
 #include "option_typos.h"
 
@@ -18,10 +21,9 @@ namespace {
 
 constexpr int kFailed = 1, kBadInput = 2, kInterrupted = 130;
 
-int report(int status, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
+int report(int status, const std::string& message) {
   std::fflush(stdout);
-  fmt::print(stderr, "chromeball: {}\n", message);
+  note(message);
   return status;
 }
 
@@ -133,8 +135,12 @@ int runCommandLine(int argc, char** argv) {
     return report(kBadInput, error.what() + inWords(error.remedy));
   } catch (const Interrupted& error) {
     return report(kInterrupted, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report(kBadInput, fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::bad_alloc&) {
-    return report(kFailed, "out of memory");
+    return report(kFailed, fmt::format("out of memory: had {:.2g} GB; see --memory, whose default "
+                                       "here is {:.2g} GB",
+                                       1e-9 * double(peakMemoryBytes()), 1e-9 * memoryBudget()));
   } catch (const std::exception& error) {
     return report(kFailed, error.what());
   }

@@ -5,13 +5,14 @@
 
 #include <cstdio>
 
+#include "base/printable.h"
 #include "scene_options.h"
 
 namespace chromeball {
 
-void warn(const std::string& text) { fmt::print(stderr, "chromeball: warning: {}\n", text); }
+void warn(const std::string& text) { note("warning: " + text); }
 
-void note(const std::string& text) { fmt::print(stderr, "chromeball: {}\n", text); }
+void note(const std::string& text) { fmt::print(stderr, "chromeball: {}\n", printable(text)); }
 
 void print(const Messages& messages, bool quiet) {
   for (const Message& message : messages) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe assemble PHOTO... -o OUT --azimuth 0,90
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "assemble_options.h"
@@ -9,6 +10,7 @@
 #include "probe/capture/assembly_preview.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
+#include "probe/solid_angle.h"
 #include "probe_commands.h"
 #include "write_probe.h"
 
@@ -33,7 +35,8 @@ Json toJson(const Report& report) {
     const ViewMatch& match = report.matches[i];
     views.push_back({{"file", p.file},
                      {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
-                     {"circle_support", p.support ? Json(*p.support) : Json()},
+                     {"circle_support", p.found ? Json(p.found->support) : Json()},
+                     {"circle_standard_error", p.found ? Json(p.found->standardError) : Json()},
                      {"azimuth", report.views[i].camera().azimuth},
                      {"elevation", report.views[i].camera().elevation},
                      {"overlap", match.overlap},
@@ -57,7 +60,9 @@ void print(const Report& report) {
     fmt::print("photograph   {}\n", p.file);
     fmt::print("circle       {:.2f},{:.2f},{:.2f}{}\n", p.circle.centre.x, p.circle.centre.y,
                p.circle.radius,
-               p.support ? fmt::format(", found: {:.0f}% of it are edges", 100 * *p.support) : "");
+               p.found ? fmt::format(", found: +- {:.2f} pixels, {:.0f}% of it are edges",
+                                     p.found->standardError, 100 * p.found->support)
+                       : "");
     fmt::print("camera       azimuth {:.6g}, elevation {:.6g}\n", report.views[i].camera().azimuth,
                report.views[i].camera().elevation);
     if (i == 0) continue;
@@ -73,7 +78,41 @@ void print(const Report& report) {
              mappingName(report.target.mapping));
 }
 
+constexpr double kLargestDoubt = 0.15;  // of a circle, in pixels
+
+// Luminance below the horizon over that above it.
+double brightnessBelow(const Image& latLong) {
+  double above = 0, below = 0;
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      (2 * y < latLong.height ? above : below) +=
+          double(luminance(latLong.rgb(x, y))) * texelSolidAngle(y, latLong.width, latLong.height);
+  return below / std::max(above, 1e-30);
+}
+
+// The sign of an elevation is easily mistaken: a lens looks away from where its camera is.
+void warnOfUpsideDown(const Report& report) {
+  constexpr double kSteep = 45, kBrightGround = 2;
+  const auto& photographs = report.photographs;
+  const bool isFisheye = report.arguments.isFisheye();
+  const char* meaning =
+      isFisheye ? "--azimuth A:E is where a lens looks from; one that looks up has 0:-90"
+                : "--azimuth A:E is where the camera is, seen from the ball";
+  const auto elevation = [](const AssemblyPhotograph& p) { return p.camera.elevation; };
+  const auto looksDown = [](double e) { return e > kSteep; };
+  const auto isSteep = [](double e) { return std::fabs(e) > kSteep; };
+  if (isFisheye && std::ranges::all_of(photographs, looksDown, elevation)) {
+    warn(fmt::format("{}: the lens looks below the horizon; {}", report.arguments.out, meaning));
+  } else if (std::ranges::any_of(photographs, isSteep, elevation)) {
+    const double ratio = brightnessBelow(report.assembly.latLong);
+    if (ratio > kBrightGround)
+      warn(fmt::format("{}: is {:.3g} times as bright below the horizon as above it; {}",
+                       report.arguments.out, ratio, meaning));
+  }
+}
+
 void warnOf(const Report& report) {
+  warnOfUpsideDown(report);
   for (size_t i = 0; i < report.views.size(); ++i) {
     const AssemblyPhotograph& p = report.photographs[i];
     const ViewMatch& match = report.matches[i];
@@ -81,6 +120,10 @@ void warnOf(const Report& report) {
     if (inside < 0.999)
       warn(fmt::format("{}: {:.2g}% of its circle is outside the picture, and blind", p.file,
                        100 * (1 - inside)));
+    if (p.found && p.found->standardError > kLargestDoubt)
+      warn(fmt::format(
+          "{}: its circle is found to {:.2g} pixels only; see --preview, or give --circle", p.file,
+          p.found->standardError));
     if (i == 0) continue;
     if (!report.arguments.keepAzimuth && !match.turned)
       warn(
@@ -95,6 +138,8 @@ void warnOf(const Report& report) {
     warn(
         "no --reflectivity: the probe is as dark as the ball, which reflects only a part of the "
         "light");
+  if (!report.arguments.isFisheye() && report.arguments.distance.empty())
+    warn("no --distance: the camera is taken to be infinitely far from the ball");
 }
 
 Image preview(const Report& report) {
@@ -125,7 +170,7 @@ void run(const AssembleArguments& arguments) {
 
   const Report report{arguments, photographs, views, matches, assembly, target};
   warnOf(report);
-  writeProbe(arguments.out, probe);
+  writeProbe(arguments.out, probe, target.mapping);
   if (!arguments.preview.empty()) writeImage(arguments.preview, preview(report));
   if (arguments.json)
     fmt::print("{}\n", toJson(report).dump(2, ' ', false, Json::error_handler_t::replace));

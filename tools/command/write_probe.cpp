@@ -6,20 +6,45 @@
 #include <algorithm>
 
 #include "base/file.h"
+#include "image/io/radiance_hdr.h"
 #include "image/io/write_image.h"
 #include "messages.h"
+#include "probe/detect_mapping.h"
 #include "probe/load.h"
 
 namespace chromeball {
+namespace {
 
-void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
-  writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, mappingName(mapping)}}});
-  if (lowerExtension(file) != ".png") return;
+// A .pfm or .png is read again with the mapping that its shape and its corners suggest.
+void warnOfLostMapping(const std::string& file, const Image& map, Mapping mapping) {
+  const DetectedMapping detected = detectMapping(map);
+  if (detected.mapping == mapping) return;
+  warn(fmt::format(
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from {}` or "
+      "`[probe] mapping` where it is read, or write an .exr or .hdr",
+      file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping)));
+}
+
+void warnOfClipping(const std::string& file, const Image& map) {
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });
   if (clipped > 0)
     warn(fmt::format("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them",
                      file, 100. * double(clipped) / double(map.texels.size())));
+}
+
+}  // namespace
+
+void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
+  const std::string kind = lowerExtension(file), name = mappingName(mapping);
+  if (kind == ".hdr") {
+    checkWritable(file);
+    return writeRadianceHdr(file, map, {{kMappingAttribute, name}});
+  }
+  writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}});
+  if (kind == ".exr") return;
+  warnOfLostMapping(file, map, mapping);
+  if (kind == ".png") warnOfClipping(file, map);
 }
 
 }  // namespace chromeball

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// As writeImage(); an .exr has the name of its mapping, which loadProbe() reads. Warns of the
-// channels above 1 that a .png clips.
+// As writeImage(); an .exr or .hdr has the name of its mapping, which loadProbe() reads. Warns of a
+// mapping that other files lose, and of the channels above 1 that a .png clips.
 void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball

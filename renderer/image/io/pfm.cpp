@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -44,7 +45,11 @@ Image readPfm(const std::filesystem::path& path) {
   if (magic != "PF" && magic != "Pf") throwInput("{}: not a PFM file", path.string());
   const int width = parse<int>(path, nextWord(text, position));
   const int height = parse<int>(path, nextWord(text, position));
-  const bool littleEndian = parse<float>(path, nextWord(text, position)) < 0;
+  const double scale = parse<double>(path, nextWord(text, position));
+  if (!(std::isfinite(scale) && scale != 0))
+    throwInput("{}: the scale of a PFM, {}, should be a number below or above 0", path.string(),
+               scale);
+  const bool littleEndian = scale < 0;
   const size_t begin = position + 1;
 
   const int channels = magic == "PF" ? 3 : 1;

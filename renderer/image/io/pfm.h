@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Portable float map: "PF" (RGB) or "Pf" (grey), rows from the bottom up, 32-bit floats. The sign
-// of the scale line gives the byte order. Its magnitude has no agreed meaning and is ignored; we
-// write -1 (little-endian).
+// of the scale line gives the byte order; 0 and NaN have none. Its magnitude has no agreed meaning
+// and is ignored; we write -1 (little-endian).
 #pragma once
 
 #include <filesystem>

@@ -38,6 +38,8 @@ class Reader {
     return image;
   }
 
+  HdrComments takeComments() { return std::move(comments_); }
+
  private:
   [[noreturn]] void fail(std::string_view what) const {
     throwInput("{}: {}", path_.string(), what);
@@ -58,6 +60,7 @@ class Reader {
     for (std::string_view text = line(); !text.empty() && text != "\r"; text = line()) {
       if (text.starts_with("FORMAT=") && text.find("32-bit_rle_rgbe") == std::string_view::npos)
         fail("unsupported FORMAT; it must be 32-bit_rle_rgbe");
+      if (text.starts_with("# ")) addComment(text.substr(2));
       if (text.starts_with("EXPOSURE=")) exposure *= std::atof(std::string(text.substr(9)).c_str());
     }
     if (!(exposure > 1e-20 && exposure < 1e20)) fail("EXPOSURE must be a positive number");
@@ -70,6 +73,13 @@ class Reader {
     bottomUp_ = ySign == '+';
     rightToLeft_ = xSign == '-';
     checkImageSize(path_, width_, height_, 3);
+  }
+
+  void addComment(std::string_view text) {
+    const size_t equals = text.find('=');
+    if (equals == std::string_view::npos) return;
+    const std::string_view value = text.substr(equals + 1);
+    comments_[std::string(text.substr(0, equals))] = value.substr(0, value.find('\r'));
   }
 
   bool atRunLengthRow() const {
@@ -140,6 +150,7 @@ class Reader {
   int width_ = 0, height_ = 0;
   bool bottomUp_ = false, rightToLeft_ = false;
   double scale_ = 1;
+  HdrComments comments_;
 };
 
 Rgbe encode(Rgb color) {
@@ -181,11 +192,18 @@ void appendRuns(std::vector<uint8_t>& out, const std::vector<Rgbe>& row, int cha
 
 }  // namespace
 
-Image readRadianceHdr(const std::filesystem::path& path) { return Reader(path).read(); }
+Image readRadianceHdr(const std::filesystem::path& path, HdrComments* comments) {
+  Reader reader(path);
+  Image image = reader.read();
+  if (comments) *comments = reader.takeComments();
+  return image;
+}
 
-void writeRadianceHdr(const std::filesystem::path& path, const Image& image) {
-  const std::string header =
-      fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
+                      const HdrComments& comments) {
+  std::string header = "#?RADIANCE\n";
+  for (const auto& [name, value] : comments) header += fmt::format("# {}={}\n", name, value);
+  header += fmt::format("FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   std::vector<uint8_t> out(header.begin(), header.end());
   const bool runs = image.width >= kMinRunWidth && image.width <= kMaxRunWidth;
   std::vector<Rgbe> row(image.width);

@@ -5,16 +5,22 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "image/image.h"
 
 namespace chromeball {
 
-// Three channels. Throws InputError.
-Image readRadianceHdr(const std::filesystem::path& path);
+// What comment lines of the header, "# NAME=VALUE", say.
+using HdrComments = std::map<std::string, std::string>;
+
+// Three channels; also the comments, if asked for. Throws InputError.
+Image readRadianceHdr(const std::filesystem::path& path, HdrComments* comments = nullptr);
 
 // Writes the first three channels, each rounded to the nearest mantissa for the texel's shared
 // exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0. Throws RunError.
-void writeRadianceHdr(const std::filesystem::path& path, const Image& image);
+void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
+                      const HdrComments& comments = {});
 
 }  // namespace chromeball

@@ -150,8 +150,11 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
     switch (format) {
       case ImageFormat::Exr:
         return readExr(path);
-      case ImageFormat::RadianceHdr:
-        return {readRadianceHdr(path), {"R", "G", "B"}, {}};
+      case ImageFormat::RadianceHdr: {
+        HdrComments comments;
+        Image image = readRadianceHdr(path, &comments);
+        return {std::move(image), {"R", "G", "B"}, Metadata(comments.begin(), comments.end())};
+      }
       case ImageFormat::Pfm: {
         Image image = readPfm(path);
         const bool isGrey = image.channels == 1;

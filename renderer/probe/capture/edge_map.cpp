@@ -5,23 +5,26 @@
 
 namespace chromeball {
 
-Image logLuminance(const Image& image, int scale) {
+Image meanLuminance(const Image& image, int scale) {
   Image small(image.width / scale, image.height / scale, 1);
-  double sum = 0;
   for (int y = 0; y < small.height; ++y)
     for (int x = 0; x < small.width; ++x) {
-      double mean = 0;
+      double sum = 0;
       for (int j = 0; j < scale; ++j)
         for (int i = 0; i < scale; ++i)
-          mean += double(luminance(image.rgb(x * scale + i, y * scale + j)));
-      mean /= scale * scale;
-      *small.at(x, y) = float(mean);
-      sum += mean;
+          sum += double(luminance(image.rgb(x * scale + i, y * scale + j)));
+      *small.at(x, y) = float(sum / (scale * scale));
     }
-  const double floor = 1e-3 * sum / double(small.texels.size());
-  for (float& texel : small.texels)
-    texel = float(std::log(std::max(double(texel), std::max(floor, 1e-30))));
   return small;
+}
+
+Image logarithm(Image luminance) {
+  double sum = 0;
+  for (const float texel : luminance.texels) sum += double(texel);
+  const double floor = 1e-3 * sum / double(luminance.texels.size());
+  for (float& texel : luminance.texels)
+    texel = float(std::log(std::max(double(texel), std::max(floor, 1e-30))));
+  return luminance;
 }
 
 double interpolate(const Image& channel, const glm::dvec2& position) {

@@ -8,10 +8,12 @@
 
 namespace chromeball {
 
-// One channel: the natural logarithm of luminance, above 1/1000 of the mean. Each pixel is the mean
-// luminance of `scale` x `scale` pixels of the image; what is left over on the right and below is
-// left out.
-Image logLuminance(const Image& image, int scale);
+// One channel: each pixel is the mean luminance of `scale` x `scale` pixels of the image; what is
+// left over on the right and below is left out.
+Image meanLuminance(const Image& image, int scale);
+
+// Its natural logarithm, above 1/1000 of the mean over the image.
+Image logarithm(Image luminance);
 
 // Bilinear interpolation of one channel, continued beyond the rim.
 double interpolate(const Image& channel, const glm::dvec2& position);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "probe/capture/edge_map.h"
+#include "probe/capture/outline.h"
 
 namespace chromeball {
 namespace {
@@ -18,6 +19,8 @@ constexpr double kAligned = 0.95;      // cosine between an edge's normal and th
 constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
+// Of the arcs of the final fit: of random edges, a fifth would agree. And in pixels.
+constexpr double kLeastOutline = 0.4, kLargestError = 0.5;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
@@ -200,7 +203,7 @@ std::optional<FoundCircle> best(const EdgeMap& edges) {
     if (here.rank <= bestRank || here.share < kLeastSupport || here.inside < kLeastInside ||
         !hasPossibleRadius(edges, circle))
       continue;
-    found = FoundCircle{circle, here.share};
+    found = FoundCircle{circle, here.share, 0};
     bestRank = here.rank;
   }
   return found;
@@ -212,7 +215,7 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   const int longest = std::max(image.width, image.height);
   const int scale = (longest + kLongestSide - 1) / kLongestSide;
   if (std::min(image.width, image.height) / scale < 8) return std::nullopt;
-  const Image small = logLuminance(image, scale);
+  const Image small = logarithm(meanLuminance(image, scale));
   const EdgeMap edges(small, kEdges);
   std::optional<FoundCircle> found = best(edges);
   if (!found) return std::nullopt;
@@ -220,10 +223,13 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   circle.centre *= scale, circle.radius *= scale;
   for (int finer = scale; finer >= 1; finer /= 2) {
     circle.centre /= finer, circle.radius /= finer;
-    circle = refined(finer == scale ? small : logLuminance(image, finer), circle);
+    circle = refined(finer == scale ? small : logarithm(meanLuminance(image, finer)), circle);
     circle.centre *= finer, circle.radius *= finer;
   }
-  return found;
+  const std::optional<Outline> outline = fitOutline(image, circle);
+  if (!outline || outline->support < kLeastOutline || !(outline->standardError < kLargestError))
+    return std::nullopt;
+  return FoundCircle{outline->circle, outline->support, outline->standardError};
 }
 
 }  // namespace chromeball

@@ -11,16 +11,19 @@ namespace chromeball {
 
 struct FoundCircle {
   Circle circle;
-  double support;  // the share of the outline inside the picture that is an edge, from 0 to 1
+  double support;        // the share of the outline inside the picture that is an edge, 0 to 1
+  double standardError;  // of the centre's coordinates and the radius, in pixels
 };
 
 // The circle that most edges of the picture lie on: edges of the logarithm of luminance, in a copy
 // of at most 400 pixels; pairs of them, chosen at random from a fixed seed, propose circles, of
 // which the best is fitted by least squares to edges across it, first in the copy and then in the
-// picture itself. Parts of the circle may be outside the picture. nullopt if no circle of at least
-// 5% of the picture's shorter side in radius has half of its outline on edges. A rendered ball in
-// front of a distant probe has no outline, as its rim, of reflectance 1, continues what is behind
-// it: there the circle may be several pixels too small.
+// picture itself; at last to a fraction of a pixel (outline.h). Parts of the circle may be outside
+// the picture. nullopt if no circle of at least 5% of the picture's shorter side in radius has half
+// of its outline on edges, or if fewer than 40% of the arcs of the final fit agree on it, or only
+// to more than half a pixel. Where the rim of a ball is as bright as what is behind it, as a
+// rendered ball's of reflectance 1 in front of a distant probe, the circle may be half a pixel too
+// small, of which the standard error does not tell.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 }  // namespace chromeball

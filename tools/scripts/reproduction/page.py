@@ -40,8 +40,8 @@ INTRODUCTION = """# Reproduction of the sources
 What three sources show, beside what this program computes:
 
 - HDRI: Reinhard et al., "High Dynamic Range Imaging", chapter 9, "Image-Based Lighting" (figures 9.x);
-- ML07: Madsen and Laursen, "A Scalable GPU-Based Approach to Shading and Shadowing for Photo-Realistic
-  Real-Time Augmented Reality" (2007);
+- ML07: Madsen and Laursen, "Performance Comparison of Techniques for Approximating Image-Based
+  Lighting by Directional Light Sources" (2007);
 - M03: Madsen et al., "Estimating Positions and Radiances of a Small Number of Light Sources for Real-Time
   Image-Based Lighting" (2003).
 

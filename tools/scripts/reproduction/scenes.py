@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Composites and rooms: HDRI's 9.3, figures 9.21 and 9.38."""
+"""Composites and rooms: HDRI's 9.2.3, figures 9.21 and 9.38."""
+import pixels
+from exr import Exr
 from page import Row, table
 from run import NOON, ROOT, SCENES
 
@@ -29,10 +31,24 @@ def few_rays(run):
         "light with those of the BSDF.")]
 
 
+def white_scene(run, image):
+    """Figure 9.38 (c): what a white local scene would show: its radiance over its reflectance."""
+    layers = Exr(image)
+    pixels.write_pfm(run.scratch / "white.pfm",
+                     [[tuple(a / max(b, 1e-3) for a, b in zip(p, q)) for p, q in zip(*rows)]
+                      for rows in zip(layers.color("l_noobj"), layers.color("reflectance"))])
+    return run.scratch / "white.pfm"
+
+
 def composite(run):
     common = ["--samples", 64, "--size", "360x240"]
-    image = run.render(TERRACE, "terrace.exr", *common, "--aov", "l_obj,l_noobj,difference,alpha", "--denoise")
-    panels = [("composite-noobj.png", "The local scene without the objects", image, ["--layer", "l_noobj"]),
+    image = run.render(TERRACE, "terrace.exr", *common, "--aov", "l_obj,l_noobj,difference,alpha,reflectance",
+                       "--denoise")
+    panels = [("composite-white.png", "Figure 9.38 (c): the irradiance of the white local scene, as radiance E / pi",
+               white_scene(run, image), []),
+              ("composite-reflectance.png", "Figure 9.38 (d): its reflectance, from the plate", image,
+               ["--layer", "reflectance"]),
+              ("composite-noobj.png", "The local scene without the objects", image, ["--layer", "l_noobj"]),
               ("composite-obj.png", "With the objects", image, ["--layer", "l_obj"]),
               ("composite-difference.png", "What the objects change", image, ["--layer", "difference"]),
               ("composite.png", "The composite", image, [])]
@@ -46,10 +62,11 @@ def composite(run):
         modes[mode] = run.render(scene, f"{mode}.exr", *common)
     disagreement = run.error(modes["ratio"], modes["difference"])
     return [Row(
-        "HDRI 9.7, figure 9.38: differential rendering",
-        "The plate, the local scene with and without the objects, their difference, and the composite. For shadows the "
-        "text prefers the ratio, for reflections the difference.",
-        ["chromeball render scenes/terrace.toml --aov l_obj,l_noobj,difference,alpha -o out/terrace.exr"],
+        "HDRI 9.7, figure 9.38, and 9.7.1: differential rendering",
+        "The figure: the plate L, a white local scene without objects (c), which gives the irradiance E, the reflectance "
+        "L / E (d), and the composite (e). Section 9.7.1 composites by the local scene with and without the objects, and "
+        "their difference; for shadows it prefers the ratio, for reflections the difference.",
+        ["chromeball render scenes/terrace.toml --aov l_obj,l_noobj,difference,alpha,reflectance -o out/terrace.exr"],
         "Between the composites of the two formulas, the relMSE is "
         f"{disagreement['relmse']:.2g}. [Measurements](../tools/RESULTS.md) have the errors of both where probe, "
         "reflectance or gloss are wrong.",
@@ -82,7 +99,7 @@ def rooms(run):
             pictures.append((run.picture(image, f"room-{name}-{place}.png", "--tonemap", "neutral"),
                              f"{name}, seen towards the {place}"))
     return [Row(
-        "HDRI 9.3: a probe on the walls of a box",
+        "HDRI 9.2.3: a probe on the walls of a box",
         "A probe mapped onto a box or a model of the place, so that its light depends on the position.",
         ["chromeball render room.toml -o room.exr"],
         "`[surroundings] shape = \"box\"`. The pillars in a box of 12 x 5.5 x 12 metres, in two lightings, from two directions of view.", "", pictures)]

@@ -27,8 +27,9 @@ def rows(run):
         return []
     return [Row(
         "HDRI figures 9.31 and 9.34: the shadows of few lights",
-        "Lights on a grid, about 600, cast shadows whose steps show; LightGen puts its lights where the light is, "
-        "and the shadow of a pillar consists of those of single lights.",
+        "The picture under the 600 lights of a cube's grid is \"free of noise and artifacts\", though shadows and "
+        "highlights are not exactly in place; a finite number of lights may show as stair-stepped shadows. LightGen "
+        "puts its lights where the light is, and the shadow of a pillar consists of those of single lights.",
         ["chromeball render scenes/models/pillars.gltf --probe PROBE --strategy METHOD:N"],
         table(["probe and lights", "FLIP", "relMSE"], rows),
         "Each light has a sharp shadow: six of them can be counted, 600 blend. In the lobby the grid's 600 are "

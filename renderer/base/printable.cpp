@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/printable.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace chromeball {
+namespace {
+
+constexpr size_t kLongestWord = 200, kLongest = 2000;
+
+// The length of the escape sequence at the begin of `text`; 0 if there is none.
+size_t escapeLength(std::string_view text) {
+  if (text.size() < 2 || text[0] != '\x1b') return 0;
+  if (text[1] == '[') {
+    const size_t end =
+        std::min(text.find_first_not_of("0123456789:;<=>?!\"#$%&'()*+,-./ ", 2), text.size() - 1);
+    return end + 1;
+  }
+  if (text[1] == ']') return std::min(text.find('\a', 2), text.size() - 1) + 1;
+  return 2;
+}
+
+// The length of the UTF-8 character at the begin of `text` (RFC 3629, section 4); 0 if it is
+// malformed, too long for its number, a surrogate, or a control character (U+0080 to U+009F).
+size_t characterLength(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : uint8_t(0); };
+  const auto continues = [&](size_t i) { return (byte(i) & 0xc0) == 0x80; };
+  const uint8_t a = byte(0), b = byte(1);
+  if (a < 0x80) return a < ' ' || a == 0x7f ? 0 : 1;
+  if (a >= 0xc2 && a <= 0xdf) return continues(1) && !(a == 0xc2 && b < 0xa0) ? 2 : 0;
+  if (a >= 0xe0 && a <= 0xef) {
+    const bool isValid = !(a == 0xe0 && b < 0xa0) && !(a == 0xed && b >= 0xa0);
+    return isValid && continues(1) && continues(2) ? 3 : 0;
+  }
+  if (a >= 0xf0 && a <= 0xf4) {
+    const bool isValid = !(a == 0xf0 && b < 0x90) && !(a == 0xf4 && b >= 0x90);
+    return isValid && continues(1) && continues(2) && continues(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+bool continuesCharacter(char c) { return (uint8_t(c) & 0xc0) == 0x80; }
+
+// The first and the last bytes of `text`, whole characters, at most `longest` in all.
+std::string shortened(std::string_view text, size_t longest) {
+  if (text.size() <= longest) return std::string(text);
+  constexpr std::string_view kGap = "...";
+  size_t head = (longest - kGap.size()) / 2, tail = text.size() - (longest - kGap.size() - head);
+  while (head > 0 && continuesCharacter(text[head])) --head;
+  while (tail < text.size() && continuesCharacter(text[tail])) ++tail;
+  return std::string(text.substr(0, head)).append(kGap).append(text.substr(tail));
+}
+
+std::string withoutControls(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    size_t length = escapeLength(text);
+    if (length == 0) {
+      length = characterLength(text);
+      if (length > 0)
+        result += text.substr(0, length);
+      else
+        result += text[0] == '\n' || text[0] == '\t' || text[0] == '\r' ? ' ' : '?';
+    }
+    text.remove_prefix(std::max<size_t>(length, 1));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  const std::string clean = withoutControls(text);
+  std::string result;
+  for (size_t begin = 0; begin < clean.size();) {
+    const size_t end = std::min(clean.find(' ', begin), clean.size());
+    result += shortened(std::string_view(clean).substr(begin, end - begin), kLongestWord);
+    if (end < clean.size()) result += ' ';
+    begin = end + 1;
+  }
+  return shortened(result, kLongest);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text that may hold anything, such as names in hostile files, as one line for a terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace chromeball {
+
+// Valid UTF-8 of one line without control characters: a line break becomes a space, an escape
+// sequence of a terminal (ECMA-48: CSI and OSC) nothing, another control character or a byte that
+// is not UTF-8 `?`. What is long is shortened in its middle, with `...` there: each word of more
+// than 200 bytes, and the whole to 2000 bytes.
+std::string printable(std::string_view text);
+
+}  // namespace chromeball

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of lights and of polygons in a probe; what is read must be usable.
+#include "fuzz.h"
+#include "job/polygon_file.h"
+#include "lighting/light_list.h"
+#include "math/vec.h"
+#include "probe/synth.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
+  using namespace chromeball;
+  const std::string path = fuzzFile(bytes, size, "list.json");
+  readOrReject([&] {
+    for (const DirectionalLight& light : readLights(path).lights)
+      if (!isFinite(light.direction) || !isFinite(light.irradiance)) std::abort();
+  });
+  static const LoadedProbe probe{.latLong = constantProbe({64, 32}, Rgb(1)),
+                                 .fileWidth = 64,
+                                 .fileHeight = 32};
+  return readOrReject([&] {
+    for (const PolygonCorners& corners : readPolygons(path))
+      if (!(polygonOf(corners, probe, "polygon").solidAngle() > 0)) std::abort();
+  });
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// What messages echo: names and values of hostile files.
+#include "base/printable.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+TEST(Printable, PlainTextStaysAsItIs) {
+  for (const char* text : {"", "a b  c", "scene.toml:3: `größe` – 東京 😀", "  two spaces "})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, ControlCharactersAndEscapesAreRemoved) {
+  EXPECT_EQ(printable("a\nb\tc\rd"), "a b c d");
+  EXPECT_EQ(printable(std::string_view("a\0b\x7f", 4)), "a?b?");
+  EXPECT_EQ(printable("\x1b[31mred\x1b[0m"), "red");
+  EXPECT_EQ(printable("\x1b]0;title\arest"), "rest");
+  EXPECT_EQ(printable("end\x1b"), "end?");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "??31m");  // U+009B begins escape sequences too
+}
+
+TEST(Printable, MalformedUtf8IsReplaced) {
+  EXPECT_EQ(printable("\xff\xfe"), "??");
+  EXPECT_EQ(printable("\xc0\xaf"), "??");            // too long for its number
+  EXPECT_EQ(printable("\xed\xa0\x80"), "???");       // a surrogate
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "????");  // beyond U+10FFFF
+  EXPECT_EQ(printable("\xe6\x9d"), "??");            // cut off
+}
+
+TEST(Printable, LongWordsAndLinesAreShortened) {
+  const std::string word = printable("model " + std::string(100000, 'a') + " is unknown");
+  EXPECT_EQ(word.size(), 6 + 200 + 11);
+  EXPECT_TRUE(word.starts_with("model aaa"));
+  EXPECT_TRUE(word.ends_with("aaa is unknown"));
+  std::string many;
+  for (int i = 0; i < 30000; ++i) many += "ab ";
+  EXPECT_LE(printable(many).size(), 2000);
+  std::string wide;
+  for (int i = 0; i < 1000; ++i) wide += "é";
+  const std::string cut = printable(wide);
+  EXPECT_LE(cut.size(), 200);
+  EXPECT_EQ(cut.find('?'), std::string::npos);
+  EXPECT_EQ(printable(cut), cut);
+}
+
+// Whatever the bytes, the result is printable text that is not changed again.
+TEST(Printable, OfAnyBytes) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 2000; ++i) {
+    std::string bytes(random() % 700, ' ');
+    for (char& c : bytes) c = char(random());
+    const std::string text = printable(bytes);
+    EXPECT_EQ(printable(text), text);
+    for (const char c : text) EXPECT_GE(uint8_t(c), uint8_t(' '));
+  }
+}
+
+class SlowHostileMessage : public testing::Test {
+ protected:
+  const TemporaryFolder folder;
+
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+
+  // One short line and status 2, which begin with `what`.
+  void expectRefusal(const std::vector<std::string>& arguments, const std::string& what) const {
+    const CommandResult result = runCommand(arguments);
+    EXPECT_EQ(result.status, 2) << what;
+    EXPECT_LE(result.error.size(), 700) << what;
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+    EXPECT_NE(result.error.find(what), std::string::npos) << result.error;
+  }
+};
+
+TEST_F(SlowHostileMessage, DeepKeys) {
+  std::string key = "a";
+  for (int i = 0; i < 200000; ++i) key += ".a";
+  expectRefusal({"render", file("header.toml", "[" + key + "]\nb=1\n")},
+                "header.toml:1: a key has more than 16 parts");
+  expectRefusal({"render", file("key.toml", "# a.b\n\"c.d\" = '...'\n" + key + " = 1\n")},
+                "key.toml:3: a key has more than 16 parts");
+  expectRefusal({"render", file("table.toml", "a = {" + key + " = 1}\n")},
+                "table.toml:1: a key has more than 16 parts");
+  // Dots that are not of keys.
+  std::string numbers =
+      "x = \"................................\" # ..............................\n"
+      "y = '''\n....................\n''' \nz = [";
+  for (int i = 0; i < 50; ++i) numbers += "0.5, ";
+  expectRefusal({"render", file("dots.toml", numbers + "1.5]\n")}, "unknown key `x`");
+}
+
+TEST_F(SlowHostileMessage, NumbersBeyondADouble) {
+  for (const std::string& number : {std::string("1e999"), std::string(100000, '9')}) {
+    const std::string lights = file("lights.json", R"({"lights":[{"direction":[)" + number +
+                                                       R"(,0,1],"irradiance":[1,1,1]}]})");
+    const std::string polygons =
+        file("polygons.json", R"({"polygons":[{"probe_polygon":[[)" + number + R"(,1]]}]})");
+    ASSERT_EQ(runCommand({"probe", "synth", "constant", folder / "p.exr"}).status, 0);
+    expectRefusal({"probe", "add-sun", folder / "p.exr", folder / "o.exr", "--lights", lights},
+                  "lights.json: has a number beyond");
+    expectRefusal({"lights", folder / "p.exr", "--polygons", polygons, "-o", folder / "l.json"},
+                  "polygons.json: has a number beyond");
+  }
+}
+
+TEST_F(SlowHostileMessage, LongAndLoopingPaths) {
+  const std::string name(100000, 'n');
+  expectRefusal({"render", name}, "too long");
+  expectRefusal({"render", file("long.toml", "model = \"" + name + "\"\n")}, "no such file");
+  expectRefusal({"probe", "info", folder / std::string(300, 'n')}, "too long");
+  std::filesystem::create_symlink("loop.exr", folder / "loop.exr");
+  expectRefusal({"probe", "info", folder / "loop.exr"}, "symbolic links");
+  ASSERT_EQ(runCommand({"probe", "synth", "constant", folder / "p.exr"}).status, 0);
+  expectRefusal(
+      {"probe", "convert", folder / "p.exr", folder / "loop.exr/x/o.exr", "--to", "angular"},
+      "symbolic links");
+}
+
+TEST_F(SlowHostileMessage, ScalesOfPfm) {
+  for (const char* scale : {"nan", "0", "-0.0", "inf", "-nan", "1e999"})
+    expectRefusal({"probe", "info",
+                   file("p.pfm", "PF\n2 1\n" + std::string(scale) + "\n" + std::string(24, '\0'))},
+                  "p.pfm: ");
+}
+
+}  // namespace
+}  // namespace chromeball
