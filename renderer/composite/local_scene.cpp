@@ -70,6 +70,7 @@ void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float 
     m.metallic = 0;
     m.specular = strength;
     m.specularColor = Rgb(1);
+    m.specularGlossiness = false;
     m.ior = 1.5f;
     m.roughness = roughness;
     m.metallicRoughnessTexture = m.specularTexture = m.specularColorTexture = {};
