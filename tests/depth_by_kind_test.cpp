@@ -56,6 +56,29 @@ TEST(DepthByKind, TheOtherLimitDoesNotMatter) {
             insideSphere(mirror, limited(INT_MAX, INT_MAX, 4)));
 }
 
+// A straight passage through a clear sheet is no bounce: the light of a floor below it does not
+// depend on how it is found. Without reflection by the sheet, at any limit the same.
+TEST(DepthByKind, PassingAClearSheetIsNoBounce) {
+  Material sheet;
+  sheet.metallic = sheet.roughness = 0;
+  sheet.specular = 0;
+  sheet.doubleSided = true;
+  sheet.extended.emplace();
+  sheet.extended->transmission = 1;
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
+  addQuad(scene, addMaterial(scene, sheet), {-99, 1, 99}, {198, 0, 0}, {0, 0, -198});
+  const Probe white(constantProbe({16, 8}, Rgb(1)));
+  for (const char* strategy : {"importance", "uniform", "bsdf"})
+    for (const int diffuse : {1, 8})
+      for (const int specular : {0, 1, 8}) {
+        RenderSettings settings = limited(diffuse, specular);
+        const Rgb found =
+            meanColor(renderScene(scene, topCamera(5, 10), white, strategy, settings).film.mean());
+        EXPECT_NEAR(found.x, 0.5, 0.01) << strategy << diffuse << specular;
+      }
+}
+
 // Of a plastic, the parts of one bounce by each kind add up to all of it.
 TEST(DepthByKind, OneBounceIsTheSumOfItsKinds) {
   for (const float roughness : {0.0f, 0.3f, 0.8f}) {

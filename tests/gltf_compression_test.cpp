@@ -47,7 +47,7 @@ constexpr size_t kEdgebreakerFaces = 13;
 
 // A buffer view of `count` elements of `stride` bytes in compressed form only.
 int meshoptView(GltfWriter& w, const Data& data, const char* mode, size_t count, size_t stride,
-                const json& more = json::object()) {
+                const json& more = json::object(), const char* name = "EXT_meshopt_compression") {
   const int view = w.view(data);
   json& v = w.root["bufferViews"][size_t(view)];
   json extension = {{"buffer", 0},
@@ -58,7 +58,7 @@ int meshoptView(GltfWriter& w, const Data& data, const char* mode, size_t count,
                     {"byteStride", stride}};
   extension.merge_patch(more);
   v = {{"buffer", 1}, {"byteLength", count * stride}};
-  v["extensions"]["EXT_meshopt_compression"] = extension;
+  v["extensions"][name] = extension;
   return view;
 }
 
@@ -87,6 +87,28 @@ TEST(GltfCompression, MeshoptDecodesToTheOriginal) {
       EXPECT_EQ(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]), vec3(0, 0, 1));
     }
   }
+}
+
+// KHR_meshopt_compression is the same but for a second version of the vertex stream and a filter,
+// which are refused by name.
+TEST(GltfCompression, MeshoptOfKhronosIsTheSame) {
+  const char* name = "KHR_meshopt_compression";
+  const auto write = [&](GltfWriter& w, const json& change, Data data) {
+    const int view = meshoptView(w, data, "ATTRIBUTES", 4, 12, change, name);
+    square(w, w.accessor(view, kFloat, "VEC3", 4), w.indices({0, 1, 2}));
+    w.root["extensionsRequired"] = {name};
+  };
+  GltfWriter w;
+  write(w, json::object(), kPositions);
+  EXPECT_EQ(w.load().meshes.at(0).positions.at(3), vec3(1, 1, 0));
+  GltfWriter coloured;
+  write(coloured, {{"filter", "COLOR"}}, kPositions);
+  EXPECT_NE(coloured.errorMessage().find("COLOR is not supported"), std::string::npos);
+  GltfWriter newer;
+  Data second = kPositions;
+  second[0] = 0xa1;
+  write(newer, json::object(), second);
+  EXPECT_NE(newer.errorMessage().find("version 1 of the vertex stream"), std::string::npos);
 }
 
 TEST(GltfCompression, MeshoptFilters) {

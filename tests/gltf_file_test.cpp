@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "gltf_writer.h"
+#include "temporary_folder.h"
 
 namespace chromeball {
 namespace {
@@ -12,12 +13,13 @@ namespace {
 using nlohmann::json;
 
 std::vector<uint8_t> glb(uint32_t version, const std::string& text,
-                         const std::vector<float>& binary, int lengthError = 0) {
+                         const std::vector<float>& binary, int lengthError = 0,
+                         bool isPadded = true) {
   std::vector<uint8_t> bytes;
   const auto word = [&](uint32_t w) {
     for (int i = 0; i < 4; ++i) bytes.push_back(uint8_t(w >> (8 * i)));
   };
-  const std::string padded = text + std::string((4 - text.size() % 4) % 4, ' ');
+  const std::string padded = text + std::string(isPadded ? (4 - text.size() % 4) % 4 : 0, ' ');
   const uint32_t binaryBytes = uint32_t(binary.size() * 4);
   bytes.insert(bytes.end(), {'g', 'l', 'T', 'F'});
   word(version);
@@ -40,6 +42,103 @@ std::string errorMessageOf(const std::filesystem::path& path,
     return std::string(e.what()).substr(path.string().size() + 2);
   }
   return "";
+}
+
+// Chunks must end at multiples of 4 bytes, but not all writers see to that.
+TEST(GltfFile, GlbWithoutPadding) {
+  GltfWriter w;
+  addTriangle(w);
+  w.save();
+  w.root["buffers"] = {{{"byteLength", 36}}};
+  for (int extra = 0; extra < 4; ++extra) {
+    w.root["asset"]["generator"] = std::string(size_t(extra), 'x');
+    w.write("model.glb", glb(2, w.root.dump(), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, /*isPadded=*/false));
+    const Scene scene = loadGltf((w.folder() / "model.glb").string(), {}, nullptr);
+    EXPECT_EQ(scene.meshes.at(0).positions[1], vec3(1, 0, 0)) << extra;
+  }
+}
+
+TEST(GltfFile, ModelsAreKnownByTheirContents) {
+  const TemporaryFolder folder;
+  const auto begins = [&](const std::string& text) {
+    std::ofstream(folder / "a.vrm") << text;
+    return beginsAsGltf(folder / "a.vrm");
+  };
+  EXPECT_TRUE(begins("glTF\2\0\0\0"));
+  EXPECT_TRUE(begins("\n {\"asset\": {}}"));
+  EXPECT_TRUE(begins("\xef\xbb\xbf{}"));
+  EXPECT_FALSE(begins("o cube\nv 0 0 0\n"));
+  EXPECT_FALSE(begins(""));
+  EXPECT_FALSE(beginsAsGltf(folder / "none.vrm"));
+  EXPECT_FALSE(beginsAsGltf(folder / ""));
+}
+
+// tinygltf drops empty objects and arrays, and aborts where one is expected.
+TEST(GltfFile, EmptyMembersOfExtensions) {
+  for (const json& empty : {json::object(), json::array(), json(nullptr), json(1), json("a")}) {
+    GltfWriter w;
+    w.root["materials"] = {{{"extensions",
+                             {{"KHR_materials_transmission", {{"transmissionTexture", empty}}},
+                              {"KHR_materials_clearcoat", {{"clearcoatNormalTexture", empty}}},
+                              {"KHR_materials_volume", empty},
+                              {"KHR_materials_sheen", empty},
+                              {"KHR_materials_pbrSpecularGlossiness", empty}}}}};
+    w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", empty}}};
+    w.root["extensions"]["KHR_materials_variants"] = {{"variants", empty}};
+    addTriangle(
+        w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", {{"mappings", empty}}}}}},
+        {{"extensions",
+          {{"KHR_lights_punctual", {{"light", 0}}},
+           {"KHR_node_visibility", empty},
+           {"EXT_mesh_gpu_instancing", {{"attributes", empty}}}}}});
+    addTriangle(
+        w, {},
+        {{"extensions", {{"KHR_lights_punctual", empty}, {"EXT_mesh_gpu_instancing", empty}}}});
+    const std::string message = w.errorMessage();  // no abort
+    if (empty.is_object()) EXPECT_EQ(message, "");
+  }
+  GltfWriter w;
+  addTriangle(w, {}, {{"extensions", {{"EXT_mesh_gpu_instancing", json::object()}}}});
+  EXPECT_EQ(w.load().instances.size(), 1u);
+}
+
+// Whole numbers beyond int, with and without a fraction.
+TEST(GltfFile, LargeNumbersInExtensions) {
+  for (const char* number : {"2147483647", "2147483648", "10000000000", "1e10", "10000000000.5"}) {
+    GltfWriter w;
+    const json value = json::parse(number);
+    w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "point"}, {"intensity", value}}};
+    w.root["materials"] = {
+        {{"emissiveFactor", {1, 1, 1}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", value}}}}}}};
+    addTriangle(w, {{"material", 0}}, {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const Scene scene = w.load();
+    EXPECT_FLOAT_EQ(scene.materials.at(0).emission.x, float(value.get<double>())) << number;
+    EXPECT_FLOAT_EQ(scene.lights.at(0).intensity.x, float(value.get<double>() / 683)) << number;
+  }
+}
+
+// KHR_node_visibility hides meshes and lamps of a node and of its descendants, but no cameras.
+TEST(GltfFile, HiddenNodes) {
+  GltfWriter w;
+  w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  w.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  const json lamp = {{"KHR_lights_punctual", {{"light", 0}}}};
+  const auto visible = [](bool is) { return json{{"visible", is}}; };
+  addTriangle(w, {}, {{"name", "shown"}, {"extensions", lamp}});
+  const int child =
+      addTriangle(w, {}, {{"camera", 0}, {"extensions", {{"KHR_node_visibility", visible(true)}}}});
+  json hidden = lamp;
+  hidden["KHR_node_visibility"] = visible(false);
+  const int parent = addTriangle(w, {}, {{"children", {child}}, {"extensions", hidden}});
+  w.root["scenes"] = {{{"nodes", {0, parent}}}};
+  w.root["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scene scene = w.load();
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.nodeNames[size_t(scene.instances[0].node)], "shown");
+  EXPECT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.cameras.size(), 1u);
 }
 
 TEST(GltfFile, GlbChunks) {

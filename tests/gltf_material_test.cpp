@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gltf_writer.h"
+#include "scene/surface.h"
 
 namespace chromeball {
 namespace {
@@ -26,6 +27,32 @@ Scene loadWith(GltfWriter& w, const json& material) {
                     {"TEXCOORD_1", w.vec2s({5, 5, 6, 5, 5, 6})},
                     {"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}});
   return w.load();
+}
+
+// KHR_materials_pbrSpecularGlossiness: c_diff = diffuse (1 - max(specular)), F0 = specular,
+// alpha = (1 - glossiness)^2; with the texture's colour (sRGB) and alpha at its first texel, red.
+TEST(GltfMaterial, SpecularGlossiness) {
+  for (const bool textured : {false, true}) {
+    GltfWriter w;
+    json e = {{"diffuseFactor", {0.8, 0.4, 0.2, 0.5}},
+              {"specularFactor", {0.5, 0.25, 0.125}},
+              {"glossinessFactor", 0.75}};
+    if (textured) e["diffuseTexture"] = e["specularGlossinessTexture"] = {{"index", 1}};
+    const Scene scene = loadWith(w, {{"alphaMode", "BLEND"},
+                                     {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 1}}}},
+                                     {"extensions", {{"KHR_materials_pbrSpecularGlossiness", e}}}});
+    EXPECT_EQ(scene.materials.at(0).baseColor.w, 0.5f);
+    const Instance& instance = scene.instances.at(0);
+    const MaterialPoint p =
+        materialAt(scene, surfaceAt(scene, instance, 0, {0.01f, 0.01f}, {0, 0, 1}));
+    EXPECT_NEAR(p.baseColor.x, 0.8 * (1 - 0.5), 1e-6);
+    EXPECT_NEAR(p.baseColor.y, textured ? 0 : 0.4 * (1 - 0.5), 1e-6);
+    EXPECT_NEAR(p.dielectricF0.x, 0.5, 1e-6);
+    EXPECT_NEAR(p.dielectricF0.y, textured ? 0 : 0.25, 1e-6);
+    EXPECT_EQ(p.dielectricF90, 1);
+    EXPECT_EQ(p.metallic, 0);
+    EXPECT_NEAR(p.roughness, 0.25, 1e-6);
+  }
 }
 
 TEST(GltfMaterial, DefaultMaterial) {

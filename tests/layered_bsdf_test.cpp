@@ -43,6 +43,15 @@ struct Case {
   }
 };
 
+// White sheen lets no negative light through to the base, however smooth it is.
+TEST(SheenLobe, ReflectsNoMoreThanAllLight) {
+  for (const float roughness : {0.0f, 0.05f, 0.1f, 0.11f, 0.2f, 0.5f, 1.0f})
+    for (float degrees = 0; degrees < 90; degrees += 0.25f) {
+      const Sheen sheen(Rgb(1), roughness, flatSurface(), directionAt(degrees), allTables());
+      EXPECT_LE(sheen.surfaceAlbedo(), 1) << roughness << " " << degrees;
+    }
+}
+
 ExtendedPoint transmissive(float fraction, bool thinWalled) {
   ExtendedPoint e;
   e.transmission = fraction;

@@ -105,8 +105,8 @@ TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
 TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
   const std::string location = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
   const SceneFile parallel = readWithModel(location + "orthographic = 3");
-  EXPECT_TRUE(parallel.camera->orthographic);
-  EXPECT_EQ(parallel.camera->halfHeight, 1.5f);
+  EXPECT_TRUE(parallel.camera->relativeTo({}).orthographic);
+  EXPECT_EQ(parallel.camera->relativeTo({}).halfHeight, 1.5f);
   EXPECT_FALSE(parallel.lens);
   const SceneFile lens = readWithModel("[camera]\naperture = 0.05\nfocus = 2");
   EXPECT_FALSE(lens.camera);
@@ -116,6 +116,32 @@ TEST_F(SceneFileTest, CamerasMayBeOrthographicOrHaveALens) {
   expectError("[camera]\naperture = 0\nfocus = 1", 3, {"`aperture`", "above 0"});
   expectError(location + "fov = 40\northographic = 3", 5, {"orthographic", "no `fov`"});
   expectError(location + "orthographic = -3", 5, {"`orthographic`", "above 0"});
+}
+
+// Places are rounded to float only relative to the scene's origin.
+TEST_F(SceneFileTest, PlacesFarFromTheOriginAreExact) {
+  const SceneFile scene = readWithModel(R"([camera]
+position = [3761603.3, 0, -3870317.7]
+look_at = [3761603.4, 0, -3870317.7]
+[[light]]
+type = "point"
+position = [3761603.1, 0, 0]
+intensity = 1
+[surroundings]
+shape = "box"
+min = [3761600.1, -1, -3870318]
+max = [3761604.7, 1, -3870316]
+)");
+  const glm::dvec3 origin(3761603, 0, -3870317);
+  const Camera camera = scene.camera->relativeTo(origin);
+  EXPECT_NEAR(camera.position.x, 0.3f, 1e-6);
+  EXPECT_NEAR(camera.position.z, -0.7f, 1e-6);
+  EXPECT_NEAR(camera.back.x, -1, 1e-6);
+  Scene lit;
+  addLamp(lit, scene.lamps.at(0), origin);
+  EXPECT_NEAR(lit.lights.at(0).position.x, 0.1f, 1e-6);
+  EXPECT_NEAR(scene.surroundings->relativeTo(origin).max.x, 1.7f, 1e-6);
+  EXPECT_NEAR(scene.surroundings->relativeTo(origin).capture.x, -0.6f, 1e-6);
 }
 
 TEST_F(SceneFileTest, EveryKeyIsRead) {
@@ -143,9 +169,10 @@ file = ["out/a.exr", "/b.png"]
 aovs = ["albedo", "depth"]
 )");
   ASSERT_TRUE(scene.camera);
-  EXPECT_EQ(scene.camera->position, vec3(0, 0, 5));
-  EXPECT_EQ(scene.camera->back, vec3(0, 0, 1));
-  EXPECT_FLOAT_EQ(scene.camera->fov, kPi / 2);
+  const Camera camera = scene.camera->relativeTo({});
+  EXPECT_EQ(camera.position, vec3(0, 0, 5));
+  EXPECT_EQ(camera.back, vec3(0, 0, 1));
+  EXPECT_FLOAT_EQ(camera.fov, kPi / 2);
   const Settings& s = scene.settings;
   const auto text = [&](const char* name) { return s.get<std::string>(name); };
   const auto number = [&](const char* name) { return s.get<double>(name); };

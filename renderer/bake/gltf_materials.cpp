@@ -146,6 +146,16 @@ Json GltfMaterials::lit(const Material& m) {
     if (strength > 1) extend("KHR_materials_emissive_strength", "emissiveStrength", strength);
     if (m.emissiveTexture) json["emissiveTexture"] = textureInfo(m.emissiveTexture);
   }
+  if (m.specularGlossiness) {
+    const char* name = "KHR_materials_pbrSpecularGlossiness";
+    extend(name, "diffuseFactor", pbr["baseColorFactor"]);
+    if (m.baseColorTexture) extend(name, "diffuseTexture", pbr["baseColorTexture"]);
+    extend(name, "specularFactor", toJson(m.specularColor));
+    extend(name, "glossinessFactor", 1 - m.roughness);
+    if (m.specularColorTexture)
+      extend(name, "specularGlossinessTexture", textureInfo(m.specularColorTexture));
+    return json;
+  }
   if (m.ior != 1.5f) extend("KHR_materials_ior", "ior", m.ior);
   if (m.specular != 1) extend("KHR_materials_specular", "specularFactor", m.specular);
   if (m.specularColor != Rgb(1))

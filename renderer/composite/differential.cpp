@@ -13,12 +13,15 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
   ++context.counts.camera;
   context.sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {
-    if (hit && worlds.isObject(*hit) && !whole.isHiddenBack(state, *hit)) {
+    const std::optional<Hit> met = hit ? whole.metAt(state, *hit, context) : std::nullopt;
+    if (met) hit = met;
+    if (met && worlds.isObject(*met)) {
       // The ray hits an object: from here on the paths of the two worlds differ.
       sample.objectFirst = state.depth == 0;
       sample.withObjects += whole.follow(state, hit, context);
       if (sample.objectFirst && !behindObjects) return sample;
       state.first = nullptr;
+      state.place = {};
       context.sampler.startVertex(state.depth);
       hit = local.closestHit(state.ray, context);
       const auto records = std::exchange(context.records, nullptr);  // those of `whole` suffice
@@ -43,7 +46,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
     if (!continues) return sample;
     context.sampler.startVertex(state.depth);
     state.guided.startRest(state.radiance);
-    hit = whole.closestHit(state.ray, context);
+    hit = whole.nextHit(state, context);
   }
 }
 

@@ -79,6 +79,7 @@ void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float 
     makeDielectric(m);
     m.specular = strength;
     m.specularColor = Rgb(1);
+    m.specularGlossiness = false;
     m.ior = 1.5f;
     m.roughness = roughness;
     m.metallicRoughnessTexture = m.specularTexture = m.specularColorTexture = {};

@@ -3,6 +3,7 @@
 
 #include "integrate/light_groups.h"
 #include "integrate/mis.h"
+#include "scene/thin_wall.h"
 #include "trace/surface_ray.h"
 
 namespace chromeball {
@@ -17,23 +18,22 @@ BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
 
 }  // namespace
 
-Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, RayMask mask,
-                            uint32_t lamp) const {
+Rgb DirectLight::visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t lamp) const {
   if (!exists(lamp, mask)) return Rgb(0);
-  return world_.accel.transmittance(ray, mask, attenuation);
+  return world_.accel.transmittance(ray, mask, media.attenuation(), media.bodies());
 }
 
-Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, PathContext& context,
+Rgb DirectLight::visibility(const Ray& ray, const Media& media, PathContext& context,
                             uint32_t lamp) const {
   ++context.counts.shadow;
   if (context.log) context.log->rays.push_back({ray, true});
-  const Rgb passed = visibility(ray, attenuation, settings_.visible, lamp);
+  const Rgb passed = visibility(ray, media, settings_.visible, lamp);
   const bool differs = settings_.compared != settings_.visible;
   // `compared` is a subset of `visible`: a ray unoccluded in `visible` is unoccluded there too.
   if (differs && (passed != Rgb(1) || !exists(lamp, settings_.compared))) [[unlikely]] {
     // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
-    const Rgb other = visibility(ray, attenuation, settings_.compared, lamp);
+    const Rgb other = visibility(ray, media, settings_.compared, lamp);
     context.shadowsDiffer |= maxComponent(absolute(other - passed)) > kRounding;
   }
   return passed;
@@ -41,10 +41,28 @@ Rgb DirectLight::visibility(const Ray& ray, const Rgb& attenuation, PathContext&
 
 Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                                uint32_t lamp) const {
-  Rgb attenuation(0);
-  if (vertex.media.inside() || vertex.surface.material->extended)
-    attenuation = Media(vertex.media).follow(vertex.surface, ray.direction).attenuation();
-  return visibility(ray, attenuation, context, lamp);
+  if (!vertex.media.inside() && !vertex.surface.material->extended)
+    return visibility(ray, {}, context, lamp);
+  Media media = vertex.media;
+  media.follow(vertex.surface, ray.direction);
+  Rgb passed(1);
+  if (vertex.place) passed = crossPlace(*vertex.place, ray.direction, ray.time, media);
+  if (isBlack(passed)) return passed;
+  return passed * visibility(ray, media, context, lamp);
+}
+
+Rgb DirectLight::crossPlace(Place place, const vec3& direction, float time, Media& media) const {
+  const Scene& scene = world_.scene;
+  Rgb passed(1);
+  for (place.leave(direction); place; place.leave(direction)) {
+    const Hit& hit = place.current();
+    const Instance& instance = scene.instances[hit.instance];
+    const Surface surface =
+        surfaceAt(scene, instance, hit.triangle, hit.barycentric, -direction, 0, time);
+    passed *= straightTransmittance(scene, instance, surface, direction);
+    media.follow(surface, direction);
+  }
+  return passed;
 }
 
 bool DirectLight::guideChooses(const Vertex& vertex, const PathContext& context) {

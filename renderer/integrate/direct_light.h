@@ -9,6 +9,7 @@
 #include "integrate/guided_bsdf.h"
 #include "integrate/media.h"
 #include "integrate/path_settings.h"
+#include "integrate/place.h"
 #include "integrate/world.h"
 #include "lighting/strategy.h"
 #include "scene/surface.h"
@@ -20,9 +21,10 @@ struct Vertex {
   const LightPoint& point;
   const Surface& surface;
   const GuidedBsdf& bsdf;
-  const Media& media;         // on the viewer's side
-  const GuideRegion* region;  // of the guide; null: light samples are not guided here
-  Rgb throughput{1};          // weight of its light at the camera, for light groups
+  const Media& media;            // on the viewer's side
+  const GuideRegion* region;     // of the guide; null: light samples are not guided here
+  Rgb throughput{1};             // weight of its light at the camera, for light groups
+  const Place* place = nullptr;  // of the path
 };
 
 // Light from the probe at a vertex, for paths that are traced together (path_batch.h).
@@ -86,8 +88,11 @@ class DirectLight {
   // instance at which the ray ends, or LightEnd::kNone.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
                     uint32_t lamp = LightEnd::kNone) const;
-  Rgb visibility(const Ray& ray, const Rgb& attenuation, PathContext& context, uint32_t lamp) const;
-  Rgb visibility(const Ray& ray, const Rgb& attenuation, RayMask mask, uint32_t lamp) const;
+  Rgb visibility(const Ray& ray, const Media& media, PathContext& context, uint32_t lamp) const;
+  Rgb visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t lamp) const;
+  // Transmittance of the other surfaces at the vertex's place in a direction, and the media behind
+  // them.
+  Rgb crossPlace(Place place, const vec3& direction, float time, Media& media) const;
   // False for an instance that is not in this part of the scene.
   bool exists(uint32_t lamp, RayMask mask) const {
     return lamp == LightEnd::kNone || world_.accel.mask(lamp) & mask;

@@ -28,8 +28,7 @@ std::vector<float> roughnessesOf(const Scene& scene) {
   std::set<float> all;
   for (const Material& m : scene.materials) {
     if (m.unlit) continue;
-    if (m.metallic > 0 || m.specular > 0)
-      addRoughness(m.roughness, bool(m.metallicRoughnessTexture), all);
+    if (m.metallic > 0 || m.specular > 0) addRoughness(m.roughness, m.hasRoughnessTexture(), all);
     if (m.extended && m.extended->clearcoat > 0)
       addRoughness(m.extended->clearcoatRoughness, bool(m.extended->clearcoatRoughnessTexture),
                    all);

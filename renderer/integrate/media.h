@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "scene/surface.h"
 #include "shading/glass.h"
@@ -14,6 +15,16 @@ namespace chromeball {
 class Media {
  public:
   bool inside() const { return count_ > 0; }
+  std::span<const Material* const> bodies() const {
+    return std::span(bodies_).first(size_t(count_));
+  }
+
+  // Whether the ray ignores the surface of a masked or blended body: its back, unless the ray is
+  // inside, because then the ray has passed a gap in the front.
+  bool ignores(const Material& material, bool frontFace) const {
+    return !frontFace && material.alphaMode != AlphaMode::Opaque && material.isBody() &&
+           find(&material) < 0;
+  }
 
   // Of the current medium, 1/m.
   Rgb attenuation() const {

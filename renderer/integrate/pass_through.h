@@ -8,10 +8,18 @@
 
 namespace chromeball {
 
-// Whether the ray ignores the surface: the back of a single-sided one, seen by the camera or in a
-// mirror.
-inline bool isHiddenFrom(const PathState& state, const Surface& surface) {
-  return state.isDelta && !surface.frontFace && surface.material->hidesBack();
+// Whether the path ignores the surface: the back of a single-sided one, seen by the camera or in a
+// mirror, or that of a body which the path has not entered.
+inline bool ignores(const PathState& state, const Material& material, bool frontFace) {
+  return (state.isDelta && !frontFace && material.hidesBack()) ||
+         state.media.ignores(material, frontFace);
+}
+
+// Whether the path may continue on the other side of the surface.
+inline bool mayPass(const PathState& state, const Surface& surface) {
+  const Material& m = *surface.material;
+  return m.transmits() || (state.isDelta ? !surface.frontFace && m.hidesBack()
+                                         : surface.frontFace && m.backLetsLightThrough());
 }
 
 // The front of a single-sided surface reflects light and also passes light that arrives at its
@@ -35,7 +43,7 @@ inline bool goesStraight(const PathState& state, const Material& material) {
 // Continues the path straight through the surface. `state.from` and its pdf stay, because shadow
 // rays from there pass the surface too.
 inline void passStraight(PathState& state, const Surface& surface) {
-  state.ray = rayFrom(surface, state.ray.direction);
+  state.leave(surface, state.ray.direction);
   if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
 }
 

@@ -16,7 +16,8 @@ namespace {
 // Whether the medium at the start of a shadow ray to the probe matters, so that it cannot wait for
 // those of other paths.
 bool needsMedium(const Accel& accel, const PathState& state, const Surface& surface) {
-  return accel.hasStraightBodies() && (state.media.inside() || surface.material->isBody());
+  return state.place ||
+         (accel.needsMedia() && (state.media.inside() || surface.material->isBody()));
 }
 
 // Whether maxTransmissionDepth limits the bounce: all bounces at a solid body, except reflection
@@ -49,6 +50,28 @@ std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) 
   if (!world_.accel.intersect(ray, context.sampler.sampleKey(), hit, settings_.visible))
     return std::nullopt;
   return hit;
+}
+
+std::optional<Hit> PathTracer::nextHit(const PathState& state, PathContext& context) const {
+  if (!state.place) return closestHit(state.ray, context);
+  Hit hit = state.place.current();
+  hit.distance = 0;
+  return hit;
+}
+
+Surface PathTracer::surfaceOf(const PathState& state, const Hit& hit) const {
+  // Rough reflection does not widen the beam; textures seen by reflection stay sharp.
+  const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
+  Surface surface = surfaceAt(world_.scene, world_.scene.instances[hit.instance], hit.triangle,
+                              hit.barycentric, -state.ray.direction, crossSection, state.ray.time);
+  if (state.place) [[unlikely]]
+    surface.rayOffset = std::max(surface.rayOffset, state.place.rayOffset);
+  return surface;
+}
+
+void PathState::leave(const Surface& surface, const vec3& wi) {
+  ray = rayFrom(surface, wi);
+  place.leave(wi);
 }
 
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
@@ -90,7 +113,8 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     const bool broad = bsdf.has(Lobes::Broad);
     if (settings_.guide && broad)
       state.region = settings_.guide->find(surface.position, bsdf.normal());
-    const Vertex vertex{state.from, surface, guided, state.media, state.region, state.throughput};
+    const Vertex vertex{state.from,   surface,          guided,      state.media,
+                        state.region, state.throughput, &state.place};
     if (broad && state.deferred && !needsMedium(world_.accel, state, surface))
       direct_.defer(vertex, state.throughput, *state.deferred, context);
     else if (broad)
@@ -127,7 +151,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
     }
   }
   state.scattered |= !next.isDelta;
-  if (limitsKinds_) [[unlikely]]
+  if (limitsKinds_ && next.wi != state.ray.direction) [[unlikely]]
     countKind(state, isTransmission(surface, next), next.isDiffuse);
   if (state.widening > 0 && !next.isDelta)
     state.minAlpha = std::max(state.minAlpha, state.widening * spreadOf(next.bsdfPdf));
@@ -135,7 +159,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   state.pdf = next.pdf;
   state.isDelta = next.isDelta;
   state.lobes = next.lobes;
-  state.ray = rayFrom(surface, next.wi);
+  state.leave(surface, next.wi);
   return true;
 }
 
@@ -163,7 +187,9 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
   Bsdf bsdf(material, extendedPointAt(state, instance, surface),
             state.media.refractiveIndex(surface, state.throughput), surface, -state.ray.direction,
             world_.bsdfTables, mirrorAlpha_);
-  if (limitsKinds_ && !limitKinds(state, bsdf) && !surface.material->isBody()) return false;
+  // Bodies have a limit of their own, and a straight passage through a sheet is no bounce.
+  if (limitsKinds_ && !limitKinds(state, bsdf) && surface.material->extended->transmission == 0)
+    return false;
   return scatterAs<true>(state, surface, bsdf, context);
 }
 
@@ -176,18 +202,19 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     state.radiance += escaped;
     return false;
   }
+  state.length += hit->distance;
+  if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
   const Scene& scene = world_.scene;
   const Instance& instance = scene.instances[hit->instance];
-  state.length += hit->distance;
-  // Rough reflection does not widen the beam; textures seen by reflection stay sharp.
-  const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
-  const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric,
-                                    -state.ray.direction, crossSection, state.ray.time);
-  if (state.media.inside()) state.throughput *= state.media.transmittance(hit->distance);
-  if (isHiddenFrom(state, surface) || choosesBehind(state, surface, *hit, context.sampler))
-      [[unlikely]] {
-    state.ray.origin = surface.rayOrigin(state.ray.direction);
-    return true;
+  const Surface surface = surfaceOf(state, *hit);
+  if (!state.place && mayPass(state, surface)) [[unlikely]] {
+    auto met = metAt(state, *hit, surface, context);
+    if (!met || (!state.place && choosesBehind(state, surface, *hit, context.sampler))) {
+      state.leave(surface, state.ray.direction);
+      return true;
+    }
+    met->distance = 0;  // the path has come to it
+    if (state.place) return vertex(state, met, context);
   }
   if (surface.material->emits()) {
     const Rgb found = foundEmission(state, surface, instance);
@@ -227,26 +254,6 @@ bool PathTracer::limitKinds(const PathState& state, Bsdf& bsdf) const {
   return kept.diffuse || kept.specular;
 }
 
-bool PathTracer::isHiddenBack(const PathState& state, const Hit& hit) const {
-  const Instance& instance = world_.scene.instances[hit.instance];
-  return world_.scene.materials[size_t(instance.material)].hidesBack() &&
-         isHiddenFrom(state, surfaceAt(world_.scene, instance, hit.triangle, hit.barycentric,
-                                       -state.ray.direction, 0, state.ray.time));
-}
-
-std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,
-                                               PathContext& context) const {
-  while (hit && isHiddenBack(state, *hit)) {
-    const Surface back =
-        surfaceAt(world_.scene, world_.scene.instances[hit->instance], hit->triangle,
-                  hit->barycentric, -state.ray.direction, 0, state.ray.time);
-    state.length += hit->distance;
-    state.ray.origin = back.rayOrigin(state.ray.direction);
-    hit = closestHit(state.ray, context);
-  }
-  return hit;
-}
-
 Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& context) const {
   context.sampler.startVertex(state.depth);
   for (;;) {
@@ -254,7 +261,7 @@ Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& con
     if (!vertex(state, hit, context)) break;
     context.sampler.startVertex(state.depth);
     state.guided.startRest(state.radiance);
-    hit = closestHit(state.ray, context);
+    hit = nextHit(state, context);
   }
   context.addRecord(state.guided, state.radiance);
   return state.radiance;
@@ -267,7 +274,7 @@ Rgb PathTracer::reflected(PathState state, const Surface& surface, const Bsdf& b
   if (!goesOn) return found;
   context.sampler.startVertex(state.depth);
   state.first = nullptr;
-  return found + follow(state, closestHit(state.ray, context), context);
+  return found + follow(state, nextHit(state, context), context);
 }
 
 Rgb PathTracer::radiance(const PathState& start, const std::optional<Hit>& hit,

@@ -8,6 +8,7 @@
 #include "integrate/direct_light.h"
 #include "integrate/media.h"
 #include "integrate/path_settings.h"
+#include "integrate/place.h"
 #include "integrate/seen_feature.h"
 #include "integrate/world.h"
 #include "scene/camera.h"
@@ -39,6 +40,7 @@ struct PathState {
   float widening = 0;                 // regularizationWidth() of the sample; 0: no regularisation
   float minAlpha = 0;                 // of the next vertices (regularization.h)
   Media media;                        // the medium of the ray
+  Place place;                        // at the origin of the ray, whose surfaces are still to cross
   float length = 0;                   // of the path from the camera, metres
   Beam beam{};                        // footprint of the camera ray, for texture filtering
   DeferredLight* deferred = nullptr;  // null: trace shadow rays at once
@@ -46,6 +48,9 @@ struct PathState {
 
   // The number of bounces that maxDepth limits.
   int bounces() const { return depth - straight - transmissions; }
+
+  // Continues behind or before a surface, in direction `wi`.
+  void leave(const Surface& surface, const vec3& wi);
 };
 
 // Estimates radiance along paths. Immutable and shared by all threads; mutable state is in
@@ -85,12 +90,17 @@ class PathTracer {
                         PathContext& context) const;
 
   std::optional<Hit> closestHit(const Ray& ray, PathContext& context) const;
+  // What the path meets next.
+  std::optional<Hit> nextHit(const PathState& state, PathContext& context) const;
+
+  // The surface that the path meets where it has hit one: another one if that coincides with it and
+  // comes first. nullopt if the path ignores the surface and no other one coincides with it.
+  std::optional<Hit> metAt(PathState& state, const Hit& hit, PathContext& context) const;
 
   // Moves a camera path past back faces that the camera does not see (--single-sided); returns the
   // hit of the first visible surface.
   std::optional<Hit> skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                      PathContext& context) const;
-  bool isHiddenBack(const PathState& state, const Hit& hit) const;
 
   // Adds what a ray that hits nothing finds; not for narrow lobes and the camera. `escaped`: of the
   // probe.
@@ -104,6 +114,9 @@ class PathTracer {
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
+  std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface,
+                           PathContext& context) const;
+  Surface surfaceOf(const PathState& state, const Hit& hit) const;
   Rgb escapedRadiance(const PathState& state, PathContext& context) const;
   Rgb weighted(const PathState& state, const LightSource::Escaped& escaped,
                PathContext& context) const;

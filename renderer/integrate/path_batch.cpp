@@ -137,17 +137,23 @@ void PathBatch::traceShadowRays(Task& task) {
 }
 
 void PathBatch::traceNextRays(Task& task) {
-  rays_.size = keys_.size = 0;
+  Indices& traced = shaded_;  // not in use any more
+  traced.size = rays_.size = keys_.size = 0;
   for (const uint32_t i : active_.all()) {
     select(i, task);
     paths_[i].guided.startRest(paths_[i].radiance);
+    if (paths_[i].place) [[unlikely]] {
+      hits_[i] = task.tracer.nextHit(paths_[i], task.context);
+      continue;
+    }
+    traced.add(i);
     rays_.add(paths_[i].ray);
     keys_.add(task.context.sampler.sampleKey());
     if (task.context.log) task.context.log->rays.push_back({paths_[i].ray, false});
   }
   task.accel().intersect(rays_.all(), keys_.all(), Accel::Coherence::None,
                          std::span(found_).first(rays_.size), task.visible());
-  for (size_t k = 0; k < active_.size; ++k) hits_[active_.items[k]] = found_[k];
+  for (size_t k = 0; k < traced.size; ++k) hits_[traced.items[k]] = found_[k];
 }
 
 }  // namespace chromeball

@@ -23,7 +23,7 @@ constexpr float kMaxRoughness = 0.5f;  // of a material that may have narrow lob
 
 bool mayHaveNarrowLobes(const Material& m) {
   if (m.straightShadows) return false;  // light passes it without a change of direction
-  return m.roughness <= kMaxRoughness || m.metallicRoughnessTexture ||
+  return m.roughness <= kMaxRoughness || m.hasRoughnessTexture() ||
          (m.extended && (m.extended->transmission > 0 || m.extended->clearcoat > 0));
 }
 
@@ -192,6 +192,10 @@ class PhotonTracer {
       const Surface surface =
           surfaceAt(world_.scene, instance, hit.triangle, hit.barycentric, -ray.direction);
       flux *= luminance(media.transmittance(hit.distance));
+      if (media.ignores(*surface.material, surface.frontFace)) {
+        ray = rayFrom(surface, ray.direction);
+        continue;
+      }
       const Bsdf bsdf = bsdfAt(surface, instance, -ray.direction, media);
       BsdfSample next;
       const vec2 u = random.get2();

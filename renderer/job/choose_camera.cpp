@@ -10,7 +10,7 @@ namespace chromeball {
 namespace {
 
 Camera chooseWithoutLens(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
-  if (job.file.camera) return *job.file.camera;
+  if (job.file.camera) return job.file.camera->relativeTo(view.origin);
   if (const auto wanted = job.file.settings.getIfGiven<std::string>("camera.name")) {
     std::vector<std::string_view> names;
     for (const auto name : {&Camera::name, &Camera::node})

@@ -19,7 +19,7 @@ namespace {
 std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
                                      ModelCache& cache, std::vector<std::string>& files) {
   const auto& surroundings = job.file.surroundings;
-  if (!surroundings || surroundings->shape != Surroundings::Shape::Model) return nullptr;
+  if (!surroundings || surroundings->shape.shape != Surroundings::Shape::Model) return nullptr;
   GltfChoice choice = job.file.models.front().choice;
   choice.animation.reset();
   choice.variant.reset();
@@ -27,9 +27,15 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
   choice.origin = origin;
   choice.cache = &cache;
   Scene model = loadGltf(
-      surroundings->model, {}, [](const std::string&) {}, choice);
+      surroundings->shape.model, {}, [](const std::string&) {}, choice);
   files.insert(files.end(), model.files.begin(), model.files.end());
-  return std::make_unique<const Room>(std::move(model), surroundings->capture, surroundings->model);
+  return std::make_unique<const Room>(std::move(model), surroundings->relativeTo(origin).capture,
+                                      surroundings->shape.model);
+}
+
+std::optional<Surroundings> surroundingsOf(const RenderJob& job, const glm::dvec3& origin) {
+  if (!job.file.surroundings) return {};
+  return job.file.surroundings->relativeTo(origin);
 }
 
 // Gives `scene` the meshes of an earlier one where they are equal and do not move: lamps.
@@ -83,7 +89,7 @@ void replaceProbe(RenderJob& job, LoadedScene& loaded, FrameChange& change) {
 void replaceModels(RenderJob& job, LoadedScene& loaded, ModelCache& cache, FrameChange& change) {
   PlacedModels models = placeModels(job, cache);
   if (job.file.surroundings && !loaded.room)
-    checkInside(models.scene, *job.file.surroundings, job.file.models.front().file);
+    checkInside(models.scene, *surroundingsOf(job, models.origin), job.file.models.front().file);
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.modelWarnings = std::move(models.warnings);
@@ -95,7 +101,7 @@ void replaceModels(RenderJob& job, LoadedScene& loaded, ModelCache& cache, Frame
   if (models.origin != loaded.origin) {
     change.lighting = true;
     loaded.origin = models.origin;
-    loaded.surroundings = job.file.surroundings;
+    loaded.surroundings = surroundingsOf(job, loaded.origin);
     std::vector<std::string> known;
     loaded.room = loadRoom(job, loaded.origin, cache, known);
   }
@@ -120,7 +126,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   if (const auto path = settings.getIfGiven<std::string>("composite.plate")) files.push_back(*path);
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.file.surroundings && !room)
-    checkInside(scene, *job.file.surroundings, job.file.models.front().file);
+    checkInside(scene, *surroundingsOf(job, models.origin), job.file.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
@@ -129,7 +135,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
                      models.view,
                      std::move(loaded),
                      std::move(probe),
-                     job.file.surroundings,
+                     surroundingsOf(job, models.origin),
                      std::move(room),
                      models.origin,
                      std::move(sources),

@@ -56,15 +56,6 @@ void chooseSize(RenderJob& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
-// Moves what the scene file places in the world to the scene's coordinates, which changes nothing
-// of the job.
-void moveToOrigin(RenderJob& job, const glm::dvec3& origin) {
-  const bool isAsPlanned = job.plannedParts == partsOf(job);
-  if (job.file.camera) job.file.camera->position -= vec3(origin);
-  if (job.file.surroundings) job.file.surroundings->move(-vec3(origin));
-  if (isAsPlanned) job.plannedParts = partsOf(job);
-}
-
 PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {
   PlacedModels placed;
   placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
@@ -96,7 +87,8 @@ Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& ca
   };
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;
-    choice.origin = origin;
+    // Near the world's origin the translation is as exact as all coordinates.
+    choice.origin = origin == glm::dvec3(0) ? origin : origin - model.translationRest;
     choice.cache = &cache;
     choice.environment = !file.settings.has("probe.file");
     append(scene, loadGltf(model.file, model.placement, add, choice));
@@ -124,7 +116,6 @@ PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
   PlacedModels placed = modelsAtOrigin(job.file, cache);
   if (placed.scene.instances.empty() && !placed.scene.isAnimated)
     throwInput("{}: the model has no triangles to render", job.file.models.front().file);
-  if (placed.origin != glm::dvec3(0)) moveToOrigin(job, placed.origin);
   Scene& scene = placed.scene;
   chooseSize(job, scene);
   placed.view = viewAtStart(job, placed, cache);
@@ -140,7 +131,6 @@ PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
 Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin) {
   chooseSize(job, scene);
-  moveToOrigin(job, origin);
   Camera camera = cameraOf(job, scene, view, origin);
   if (job.shutter) turnCamera(job, scene, view, origin, camera);
   return camera;

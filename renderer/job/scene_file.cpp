@@ -43,7 +43,10 @@ ModelEntry readModel(const Entry& entry) {
     const vec3 scale = readScale(e);
     for (int axis = 0; axis < 3; ++axis) placement.linear[axis] *= scale[axis];
   }
-  if (const Entry e = model["translation"]) placement.translation = e.vector();
+  if (const Entry e = model["translation"]) {
+    placement.translation = e.vector();
+    result.translationRest = e.point() - glm::dvec3(placement.translation);
+  }
   const Entry animation = model["animation"], time = model["time"];
   if (animation || time) {
     AnimationTime& when = result.choice.animation.emplace();
@@ -113,7 +116,7 @@ SceneFile readSceneFile(const std::string& path) {
 SceneFile openScene(const std::string& path) {
   const std::string extension = lowerExtension(path);
   if (extension == ".toml") return readSceneFile(path);
-  if (extension != ".gltf" && extension != ".glb")
+  if (extension != ".gltf" && extension != ".glb" && !beginsAsGltf(path))
     throwInput("{}: not a scene; give a scene file (.toml) or a model (.gltf, .glb)", path);
   SceneFile scene;
   scene.path = path;

@@ -20,6 +20,27 @@ struct ModelEntry {
   std::string file;
   Transform placement;  // translation * rotation * scale
   GltfChoice choice;
+  glm::dvec3 translationRest{0};  // what float rounds off the translation
+};
+
+// The camera of a file, in world coordinates. It is rounded to float relative to the scene's
+// origin.
+struct CameraEntry {
+  glm::dvec3 position, target;
+  vec3 up;
+  Camera lens;           // all but the place
+  std::string location;  // FILE:LINE, begins an error
+
+  // Throws InputError if position and target coincide or if up is parallel to the view.
+  Camera relativeTo(const glm::dvec3& origin) const;
+};
+
+// [surroundings], likewise.
+struct SurroundingsEntry {
+  Surroundings shape;  // all but the places
+  glm::dvec3 min{0}, max{0}, center{0}, capture{0};
+
+  Surroundings relativeTo(const glm::dvec3& origin) const;
 };
 
 // A thin lens; applies to any perspective camera.
@@ -61,7 +82,7 @@ struct SceneFile {
   std::string path;                // of the scene file, or of the model if there is no scene file
   std::vector<ModelEntry> models;  // at least one
   Settings settings;               // the given keys, except those of structured parts
-  std::optional<Camera> camera;    // [camera] with `position`, or of another file
+  std::optional<CameraEntry> camera;  // [camera] with `position`, or of another file
   std::vector<ProbeTurn> probeTurns;  // ascending, may be empty
   std::optional<Lens> lens;
   std::optional<Optics> optics;
@@ -70,7 +91,7 @@ struct SceneFile {
   std::vector<std::string> lightLists;  // files that lamps and sources are from
   std::optional<CompositeEntry> composite;
   std::optional<std::string> plateScale;  // location of `[probe] scale = "plate"`
-  std::optional<Surroundings> surroundings;
+  std::optional<SurroundingsEntry> surroundings;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };
 
@@ -78,7 +99,8 @@ struct SceneFile {
 // known one), a wrong type, a value out of range, or a model or probe that does not exist.
 SceneFile readSceneFile(const std::string& path);
 
-// A scene file (.toml), or a model (.gltf, .glb) as a scene file that contains only this model.
+// A scene file (.toml), or a model (.gltf, .glb, or with their contents under another name) as a
+// scene file that contains only this model.
 // Throws InputError.
 SceneFile openScene(const std::string& path);
 

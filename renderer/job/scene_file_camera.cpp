@@ -49,7 +49,6 @@ void readPlace(const Section& camera, SceneFile& scene) {
   if (!position || !target)
     failAt(camera.location(), "[camera] needs `name`, or both `position` and `look_at`");
 
-  const vec3 from = position.vector(), to = target.vector();
   const Entry upEntry = camera["up"], fovEntry = camera["fov"];
   if (orthographic && fovEntry)
     failAt(fovEntry.location(), "[camera] is `orthographic`; it has no `fov`");
@@ -59,18 +58,28 @@ void readPlace(const Section& camera, SceneFile& scene) {
     scene.warnings.push_back(fmt::format(
         "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
         fovEntry.location(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
-  try {
-    scene.camera = Camera::lookAt(from, to, up, fov);
-  } catch (const InputError& error) {
-    failAt(camera.location(), "{}", error.what());
-  }
+  CameraEntry& entry = scene.camera.emplace(
+      CameraEntry{position.point(), target.point(), up, {}, camera.location()});
+  entry.lens.fov = fov;
   if (orthographic) {
-    scene.camera->orthographic = true;
-    scene.camera->halfHeight = 0.5f * float(orthographic.number());
+    entry.lens.orthographic = true;
+    entry.lens.halfHeight = 0.5f * float(orthographic.number());
   }
+  entry.relativeTo(entry.position);  // throws
 }
 
 }  // namespace
+
+Camera CameraEntry::relativeTo(const glm::dvec3& origin) const {
+  try {
+    Camera camera = Camera::lookAt(vec3(position - origin), vec3(target - origin), up, lens.fov);
+    camera.orthographic = lens.orthographic;
+    camera.halfHeight = lens.halfHeight;
+    return camera;
+  } catch (const InputError& error) {
+    failAt(location, "{}", error.what());
+  }
+}
 
 void readCamera(const Section& camera, SceneFile& scene) {
   readLens(camera, scene);

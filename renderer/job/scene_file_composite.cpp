@@ -38,31 +38,40 @@ CompositeEntry readComposite(const Section& section, Settings& settings) {
   return composite;
 }
 
-Surroundings readSurroundings(const Section& section) {
+Surroundings SurroundingsEntry::relativeTo(const glm::dvec3& origin) const {
+  Surroundings s = shape;
+  s.min = vec3(min - origin), s.max = vec3(max - origin);
+  s.center = vec3(center - origin);
+  s.capture = vec3(capture - origin);
+  return s;
+}
+
+SurroundingsEntry readSurroundings(const Section& section) {
   const auto need = [&](const char* key) { return section.required(key); };
   const std::string shape = need("shape").choice();
-  Surroundings s;
+  SurroundingsEntry s;
   if (shape == "box") {
     section.allowOnly({"shape", "min", "max", "capture"}, "a box");
-    s.shape = Surroundings::Shape::Box;
-    s.min = need("min").vector(), s.max = need("max").vector();
+    s.shape.shape = Surroundings::Shape::Box;
+    s.min = need("min").point(), s.max = need("max").point();
     if (!glm::all(glm::lessThan(s.min, s.max)))
       failAt(section.location(), "[surroundings]: `max` must be above `min` along each axis");
-    s.capture = 0.5f * (s.min + s.max);
+    s.capture = 0.5 * (s.min + s.max);
   } else if (shape == "sphere") {
     section.allowOnly({"shape", "center", "radius", "capture"}, "a sphere");
-    s.shape = Surroundings::Shape::Sphere;
-    s.capture = s.center = need("center").vector();
-    s.radius = float(need("radius").number());
+    s.shape.shape = Surroundings::Shape::Sphere;
+    s.capture = s.center = need("center").point();
+    s.shape.radius = float(need("radius").number());
   } else {
     section.allowOnly({"shape", "file", "capture"}, "a model");
-    s.shape = Surroundings::Shape::Model;
-    s.model = existingFile(need("file"));
-    s.capture = need("capture").vector();
+    s.shape.shape = Surroundings::Shape::Model;
+    s.shape.model = existingFile(need("file"));
+    s.capture = need("capture").point();
     return s;
   }
-  if (const Entry e = section["capture"]) s.capture = e.vector();
-  if (!s.contains(s.capture))
+  if (const Entry e = section["capture"]) s.capture = e.point();
+  const Surroundings here = s.relativeTo(s.capture);
+  if (!here.contains(here.capture))
     failAt(section.location(),
            "[surroundings]: `capture`, where the probe was captured, lies outside");
   return s;

@@ -9,6 +9,6 @@ namespace chromeball {
 
 // Scalar keys go to `settings`. Both throw InputError.
 CompositeEntry readComposite(const Section& section, Settings& settings);
-Surroundings readSurroundings(const Section& section);
+SurroundingsEntry readSurroundings(const Section& section);
 
 }  // namespace chromeball

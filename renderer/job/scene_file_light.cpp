@@ -140,13 +140,12 @@ Lamp readLamp(const Section& light, const LampType& type, const std::string& nam
     (lamp.sun = readSun(light))->name = name;
     return lamp;
   }
-  const vec3 position = light.required("position").vector();
+  lamp.position = light.required("position").point();
   if (type.name == "disc") {
-    (lamp.disc = readDisc(light))->position = position;
+    lamp.disc = readDisc(light);
     return lamp;
   }
   lamp.punctual = readPunctual(light, type.name == "spot");
-  lamp.punctual->position = position;
   lamp.punctual->name = name;
   return lamp;
 }

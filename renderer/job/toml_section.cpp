@@ -81,7 +81,9 @@ std::vector<double> Entry::numbers() const {
   return all;
 }
 
-vec3 Entry::vector() const {
+vec3 Entry::vector() const { return vec3(point()); }
+
+glm::dvec3 Entry::point() const {
   if (!isArrayOf(3)) mustBe("three numbers");
   return {element(0).number(), element(1).number(), element(2).number()};
 }

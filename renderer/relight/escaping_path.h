@@ -25,7 +25,7 @@ struct EscapingPath {
 inline EscapingPath follow(const PathTracer& tracer, PathState state, PathContext& context) {
   for (;;) {
     context.sampler.startVertex(state.depth);
-    const std::optional<Hit> hit = tracer.closestHit(state.ray, context);
+    const std::optional<Hit> hit = tracer.nextHit(state, context);
     const bool goesOn = tracer.vertex(state, hit, context);
     if (!hit) return {true, state.throughput, state.ray.direction, state.radiance};
     if (!goesOn) return {false, Rgb(0), vec3(0), state.radiance};

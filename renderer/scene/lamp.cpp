@@ -6,10 +6,6 @@
 namespace chromeball {
 namespace {
 
-vec3 moved(const vec3& position, const glm::dvec3& origin) {
-  return vec3(glm::dvec3(position) - origin);
-}
-
 // A polygon whose front side (corners counter-clockwise) emits.
 Mesh polygonOf(const DiscLamp& disc, const vec3& centre) {
   const double turn = 2 * kPiD / kDiscSides;
@@ -56,13 +52,14 @@ LampPose PunctualLight::poseAt(float time) const {
 void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin) {
   if (lamp.sun) return scene.suns.push_back(*lamp.sun);
   if (lamp.ambient) return scene.ambient.push_back(*lamp.ambient);
+  const vec3 position(lamp.position - origin);
   if (lamp.punctual) {
     scene.lights.push_back(*lamp.punctual);
-    scene.lights.back().position = moved(lamp.punctual->position, origin);
+    scene.lights.back().position = position;
     return;
   }
   scene.materials.push_back(emitter(*lamp.disc, lamp.name));
-  scene.meshes.push_back(polygonOf(*lamp.disc, moved(lamp.disc->position, origin)));
+  scene.meshes.push_back(polygonOf(*lamp.disc, position));
   scene.instances.push_back({int(scene.meshes.size()) - 1,
                              int(scene.materials.size()) - 1,
                              int(scene.nodeNames.size()),

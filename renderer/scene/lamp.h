@@ -13,6 +13,8 @@ namespace chromeball {
 // Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
 struct Lamp {
   std::string name;  // of its node
+  // In the world, metres; of a punctual light or disc, whose own is not used.
+  glm::dvec3 position{0};
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;
   std::optional<SunLamp> sun;

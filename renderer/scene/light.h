@@ -49,7 +49,6 @@ struct PunctualLight {
 
 // A disc that emits uniform radiance from one side.
 struct DiscLamp {
-  vec3 position{0};          // of the centre, metres
   vec3 direction{0, 0, -1};  // unit, the normal of the emitting side
   float radius = 1;          // metres
   Rgb radiance{1};

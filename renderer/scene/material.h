@@ -26,6 +26,10 @@ struct Material {
   float ior = 1.5f;                   // KHR_materials_ior; 0 means infinite (F0 = 1)
   float specular = 1;                 // KHR_materials_specular: weight of the dielectric lobe
   Rgb specularColor{1};
+  // KHR_materials_pbrSpecularGlossiness: the base colour is diffuse, and is reduced by the specular
+  // colour, F0 (with an infinite index); the alpha of its texture times 1 - roughness is the
+  // glossiness.
+  bool specularGlossiness = false;
   float normalScale = 1;
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
@@ -42,6 +46,14 @@ struct Material {
   }
   // Whether light from behind passes the surface.
   bool backLetsLightThrough() const { return hidesBack() && singleSided == SingleSided::Light; }
+
+  // Whether a texture raises the roughness at some points.
+  bool hasRoughnessTexture() const {
+    return metallicRoughnessTexture || (specularGlossiness && specularColorTexture);
+  }
+
+  // Whether rays may pass the surface, refracted or not.
+  bool transmits() const { return extended && extended->transmission > 0; }
 
   // Whether the surface is the boundary of a transparent body (KHR_materials_volume).
   bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }

@@ -101,6 +101,8 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
   return mappedNormal(scene, s.material->normalTexture, s.material->normalScale, s, *frame);
 }
 
+}  // namespace
+
 // Bounds the error, along the normal, of a point interpolated in a triangle and of the next
 // ray-triangle intersection: a few rounding errors of the coordinates. Waechter and Binder (2019)
 // use units in the last place of the point; here the vertices' coordinates are used, so that the
@@ -112,8 +114,6 @@ float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& norm
   const vec3 extent = glm::max(absolute(p0), glm::max(absolute(p1), absolute(p2)));
   return kRoundings * glm::dot(absolute(normal) + kAcross, extent);
 }
-
-}  // namespace
 
 std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance, const Triangle& t,
                               float time) {
@@ -220,6 +220,18 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
   return texture.lookup(slot.transform(uv), texels);
 }
 
+namespace {
+
+// Material::specularGlossiness, where `p` has F0 but not yet this.
+[[gnu::noinline]] void applySpecularGlossiness(const Scene& scene, const Surface& s,
+                                               MaterialPoint& p) {
+  p.baseColor *= 1 - maxComponent(p.dielectricF0);
+  if (const TextureSlot& map = s.material->specularColorTexture)
+    p.roughness = 1 - (1 - p.roughness) * lookup(scene, map, s).w;
+}
+
+}  // namespace
+
 MaterialPoint materialAt(const Scene& scene, const Surface& s) {
   const Material& m = *s.material;
   MaterialPoint p;
@@ -249,6 +261,8 @@ MaterialPoint materialAt(const Scene& scene, const Surface& s) {
   const float r = m.ior == 0 ? 1 : (m.ior - 1) / (m.ior + 1);
   p.dielectricF0 = glm::min(r * r * specularColor, Rgb(1)) * specular;
   p.dielectricF90 = specular;
+  if (m.specularGlossiness) [[unlikely]]
+    applySpecularGlossiness(scene, s, p);
   return p;
 }
 

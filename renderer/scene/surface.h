@@ -36,6 +36,9 @@ struct Surface {
 std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance,
                               const Triangle& triangle, float time);
 
+// The offset of ray origins from a triangle with these corners and this unit normal, metres.
+float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal);
+
 // Whether a ray along `direction` hits the back of the triangle; equals !surfaceAt().frontFace.
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
                   const vec3& direction, float time = 0);

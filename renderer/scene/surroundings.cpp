@@ -28,10 +28,6 @@ Surroundings::Point Surroundings::behind(const vec3& origin, const vec3& directi
   return {position, normal};
 }
 
-void Surroundings::move(const vec3& by) {
-  for (vec3* point : {&min, &max, &center, &capture}) *point += by;
-}
-
 void Surroundings::grow(float fraction) {
   const vec3 margin = fraction * (max - min);
   min -= margin, max += margin;

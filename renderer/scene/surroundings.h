@@ -29,7 +29,6 @@ struct Surroundings {
   Point behind(const vec3& origin, const vec3& direction) const;
 
   bool contains(const vec3& point) const;
-  void move(const vec3& by);
   void grow(float fraction);  // on each side, by this fraction of its size
 };
 

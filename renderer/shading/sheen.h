@@ -2,6 +2,8 @@
 // The sheen of cloth (KHR_materials_sheen): fibres that stand up from the surface.
 #pragma once
 
+#include <algorithm>
+
 #include "math/frame.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
@@ -21,7 +23,7 @@ class Sheen {
   bool has(Lobes lobes) const { return lobes == Lobes::Broad; }
   float albedo() const { return luminance(color_) * whiteAlbedo_; }
   // Fraction of light that does not reach the layers beneath.
-  float surfaceAlbedo() const { return maxComponent(color_) * whiteAlbedo_; }
+  float surfaceAlbedo() const { return std::min(maxComponent(color_) * whiteAlbedo_, 1.0f); }
   // As if it were diffuse.
   void addTo(MapLobes& lobes, float weight) const {
     lobes.addDiffuse(weight * whiteAlbedo_ * color_, frame_.z);

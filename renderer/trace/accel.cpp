@@ -47,6 +47,7 @@ bool Accel::closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const 
   Query query;
   initQueryContext(query.embree);
   query.key = key;
+  query.direction = ray.direction;
   RTCRayHit r;
   r.ray = embreeRay(ray, mask);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -146,13 +147,15 @@ void Accel::transmittance(std::span<const Ray> rays, std::span<Rgb> transmittanc
   }
 }
 
-Rgb Accel::transmittance(const Ray& ray, RayMask mask, const Rgb& attenuation) const {
+Rgb Accel::transmittance(const Ray& ray, RayMask mask, const Rgb& attenuation,
+                         std::span<const Material* const> inside) const {
   if (!isTraceable(ray)) return Rgb(1);
   Query query;
   initQueryContext(query.embree);
   query.direction = ray.direction;
   query.length = ray.tMax;
   query.attenuation = query.largestAttenuation = attenuation;
+  query.inside = inside;
   if (std::isfinite(ray.tMax)) query.opticalDepth = ray.tMax * attenuation;
   RTCRay r = embreeRay(ray, mask);
   rtcOccluded(scene_, r, query.embree);

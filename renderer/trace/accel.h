@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/surface.h"
 #include "trace/ray.h"
 
 struct RTCSceneTy;
@@ -39,8 +41,9 @@ class Accel {
     return masks_.empty() ? kAllInstances : masks_[instance];
   }
 
-  // Whether shadow rays pass any body (Material::straightShadows).
-  bool hasStraightBodies() const { return hasStraightBodies_; }
+  // Whether shadow rays depend on the bodies that contain their origin: they pass some
+  // (Material::straightShadows), or some are masked or blended.
+  bool needsMedia() const { return needsMedia_; }
 
   // The closest hit; none for a ray with a NaN or coordinates beyond 1e18. `key` seeds the random
   // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
@@ -52,19 +55,37 @@ class Accel {
   void intersect(std::span<const Ray> rays, std::span<const uint32_t> keys, Coherence coherence,
                  std::span<std::optional<Hit>> hits, RayMask mask = kAllInstances) const;
 
+  // Calls visit(hit) for all other surfaces at the place of `surface`, which the ray has hit: those
+  // that a ray which continues from Surface::rayOrigin() on its other side would miss. `hit` and
+  // `key`: of intersect().
+  template <class Visit>
+  void forEachCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
+                         RayMask mask, Visit&& visit) const {
+    visitCoincident(
+        ray, hit, surface, key, mask,
+        [](const Hit& other, void* function) {
+          (*static_cast<std::remove_reference_t<Visit>*>(function))(other);
+        },
+        &visit);
+  }
+
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
   // (1 - alpha), surfaces that pass shadow rays (scene/thin_wall.h) and absorption. The ray points
   // towards the light; it passes the front of a surface with Material::backLetsLightThrough().
   // `attenuation`: in the medium at the ray's origin, 1/m. An infinite ray must leave all bodies
-  // that it is in or enters; else a mesh is open, and nothing is absorbed.
-  Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances,
-                    const Rgb& attenuation = Rgb(0)) const;
+  // that it is in or enters; else a mesh is open, and nothing is absorbed. `inside`: the bodies
+  // that contain the origin.
+  Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances, const Rgb& attenuation = Rgb(0),
+                    std::span<const Material* const> inside = {}) const;
 
   // The same for several rays that start in air.
   void transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
                      RayMask mask = kAllInstances) const;
 
  private:
+  using VisitHit = void (*)(const Hit&, void*);
+  void visitCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
+                       RayMask mask, VisitHit visit, void* visitor) const;
   void build();
   void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
@@ -76,7 +97,7 @@ class Accel {
   std::vector<RayMask> masks_;  // by instance; empty: all
   std::shared_ptr<BuiltGeometry> built_;
   RTCSceneTy* scene_ = nullptr;
-  bool hasFilter_ = false, hasAlpha_ = false, hasStraightBodies_ = false;
+  bool hasFilter_ = false, hasAlpha_ = false, needsMedia_ = false;
 };
 
 }  // namespace chromeball

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <string>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "scene/thin_wall.h"
@@ -56,6 +58,39 @@ std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>
   return still;
 }
 
+// Of an instance of a shared mesh that stands still: equal for those that coincide.
+std::string placementKey(const Instance& instance, RayMask mask) {
+  std::string key;
+  const auto append = [&](const auto& value) {
+    key.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  append(instance.mesh);
+  append(instance.material);
+  append(mask);
+  const Transform toWorld = instance.toWorld.value_or(Transform{});
+  append(toWorld.linear);
+  append(toWorld.translation);
+  return key;
+}
+
+// By instance: whether rays cannot tell it from others at its place, so that their number would
+// only cost time. Of an opaque one the first is enough; of those that light passes, kMost are kept.
+std::vector<bool> redundantInstances(const Scene& scene, const std::vector<int>& uses,
+                                     const Accel& accel) {
+  constexpr int kMost = 8;
+  std::unordered_map<std::string, int> counts;
+  std::vector<bool> redundant(scene.instances.size());
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (uses[size_t(instance.mesh)] == 1 || instance.motion) continue;
+    const Material& material = scene.materials[size_t(instance.material)];
+    const bool isOpaque = material.alphaMode == AlphaMode::Opaque && !material.transmits();
+    redundant[i] =
+        ++counts[placementKey(instance, accel.mask(uint32_t(i)))] > (isOpaque ? 1 : kMost);
+  }
+  return redundant;
+}
+
 FilterUse filterUse(const Scene& scene) {
   FilterUse use{std::vector<bool>(scene.meshes.size())};
   for (const Instance& instance : scene.instances) {
@@ -64,7 +99,7 @@ FilterUse filterUse(const Scene& scene) {
     if (!alpha && !passesShadows(material) && !material.backLetsLightThrough()) continue;
     use.ofMesh[size_t(instance.mesh)] = use.any = true;
     use.hasAlpha = use.hasAlpha || alpha;
-    use.hasStraightBodies = use.hasStraightBodies || material.straightShadows;
+    use.needsMedia = use.needsMedia || material.straightShadows || (alpha && material.isBody());
   }
   return use;
 }
@@ -99,7 +134,7 @@ void Accel::build() {
   const FilterUse use = filterUse(scene);
   hasFilter_ = use.any;
   hasAlpha_ = use.hasAlpha;
-  hasStraightBodies_ = use.hasStraightBodies;
+  needsMedia_ = use.needsMedia;
   built_->begin(use);
   std::vector<int> uses(scene.meshes.size());
   for (const Instance& instance : scene.instances) ++uses[size_t(instance.mesh)];
@@ -116,9 +151,10 @@ void Accel::build() {
     return newInstance(built_->device(), built_->meshScene(instance.mesh),
                        instance.toWorld.value_or(Transform{}));
   };
+  const std::vector<bool> redundant = redundantInstances(scene, uses, *this);
   scene_ = built_->newScene();
   for (size_t i = 0; i < scene.instances.size(); ++i) {
-    if (std::ranges::binary_search(still, uint32_t(i))) continue;
+    if (redundant[i] || std::ranges::binary_search(still, uint32_t(i))) continue;
     BuiltGeometry::attach(scene_, geometryOf(scene.instances[i]), uint32_t(i), mask(uint32_t(i)));
   }
   if (!still.empty())

@@ -21,7 +21,7 @@ namespace chromeball {
 struct FilterUse {
   std::vector<bool> ofMesh;  // by mesh: whether any instance lets light pass
   // In the whole scene.
-  bool any = false, hasAlpha = false, hasStraightBodies = false;
+  bool any = false, hasAlpha = false, needsMedia = false;
 };
 
 class BuiltGeometry {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/hash.h"
@@ -33,19 +34,27 @@ void absorb(Query& query, const Material& body, bool enters, float distance) {
   query.largestAttenuation = glm::max(query.largestAttenuation, body.extended->attenuation);
 }
 
-float alphaAt(const RTCFilterFunctionNArguments* arguments, const Hit& hit) {
-  const Scene& scene = sceneOf(arguments);
-  return surfaceAlpha(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric);
+bool isPartlyCoveredBody(const Material& m) {
+  return m.alphaMode != AlphaMode::Opaque && m.isBody();
 }
 
 }  // namespace
 
+bool isCovered(const Scene& scene, const Hit& hit, const vec3& direction, float time,
+               uint32_t key) {
+  const Instance& instance = scene.instances[hit.instance];
+  const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
+  const uint64_t surface = uint64_t(hit.instance) << 32 | hit.triangle;
+  if (!(alpha < 1 && toUnit(uint32_t(hash(key, surface))) >= alpha)) return true;
+  return isPartlyCoveredBody(scene.materials[size_t(instance.material)]) &&
+         isFromBehind(scene, instance, hit.triangle, direction, time);
+}
+
 void filterClosest(const RTCFilterFunctionNArguments* arguments) {
   const auto& query = *reinterpret_cast<const Query*>(arguments->context);
-  const Hit hit = hitOf(arguments);
-  const float alpha = alphaAt(arguments, hit);
-  const uint64_t surface = uint64_t(hit.instance) << 32 | hit.triangle;
-  if (alpha < 1 && toUnit(uint32_t(hash(query.key, surface))) >= alpha) arguments->valid[0] = 0;
+  const float time = RTCRayN_time(arguments->ray, 1, 0);
+  if (!isCovered(sceneOf(arguments), hitOf(arguments), query.direction, time, query.key))
+    arguments->valid[0] = 0;
 }
 
 void filterShadow(const RTCFilterFunctionNArguments* arguments) {
@@ -59,9 +68,12 @@ void filterShadow(const RTCFilterFunctionNArguments* arguments) {
     arguments->valid[0] = 0;
     return;
   }
-  const float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
-  Rgb passed(1 - alpha);
   const Material& material = scene.materials[instance.material];
+  float alpha = surfaceAlpha(scene, instance, hit.triangle, hit.barycentric);
+  if (isPartlyCoveredBody(material) &&
+      isFromBehind(scene, instance, hit.triangle, query.direction, time))
+    alpha = std::ranges::count(query.inside, &material) > 0 ? 1.0f : 0.0f;
+  Rgb passed(1 - alpha);
   if (alpha > 0 && passesShadows(material)) {
     const Surface surface =
         surfaceAt(scene, instance, hit.triangle, hit.barycentric, -query.direction, 0, time);

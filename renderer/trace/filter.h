@@ -2,9 +2,12 @@
 // The functions that Embree calls for each hit of a surface that may let light pass.
 #pragma once
 
+#include <span>
+
 #include "math/vec.h"
 #include "scene/scene.h"
 #include "trace/embree.h"
+#include "trace/ray.h"
 
 namespace chromeball {
 
@@ -12,13 +15,14 @@ namespace chromeball {
 struct Query {
   QueryContext embree;  // first, so that a filter can cast back
   uint32_t key = 0;     // of Accel::intersect()
-  // Of a shadow ray:
   vec3 direction{0};
-  float length = 0;           // may be infinite
-  Rgb transmittance{1};       // of surfaces
-  Rgb opticalDepth{0};        // of bodies
-  Rgb attenuation{0};         // behind the hits so far, 1/m
-  Rgb largestAttenuation{0};  // of the bodies so far, to judge rounding errors
+  // Of a shadow ray:
+  float length = 0;                         // may be infinite
+  Rgb transmittance{1};                     // of surfaces
+  Rgb opticalDepth{0};                      // of bodies
+  Rgb attenuation{0};                       // behind the hits so far, 1/m
+  Rgb largestAttenuation{0};                // of the bodies so far, to judge rounding errors
+  std::span<const Material* const> inside;  // the bodies that contain the origin
 };
 
 // Index into Scene::instances. Geometry i of the top scene is instance i; one more geometry has the
@@ -27,7 +31,12 @@ inline uint32_t instanceOf(const Scene& scene, uint32_t topInstance, uint32_t ge
   return topInstance < scene.instances.size() ? topInstance : geometry;
 }
 
-// Ignores the hit with probability 1 - alpha.
+// Whether a ray meets a surface that it hits: with probability alpha. A ray meets a body as a
+// whole or not at all: its coverage is decided where the ray enters, and the ray meets the back
+// always, to be ignored there if the ray is not inside (Media::ignores).
+bool isCovered(const Scene& scene, const Hit& hit, const vec3& direction, float time, uint32_t key);
+
+// Ignores the hit unless isCovered().
 void filterClosest(const RTCFilterFunctionNArguments* arguments);
 
 // Multiplies Query::transmittance by that of the surface; ignores the hit unless it is now 0.

@@ -2,6 +2,7 @@
 #include "scene/gltf/custom_data.h"
 
 #include "scene/gltf/accessor.h"
+#include "scene/gltf/extension_members.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/meshopt.h"
 
@@ -19,20 +20,20 @@ std::vector<vec3> readFinite(GltfFile& file, int accessor, const std::string& wh
 
 void readExtras(GltfFile& file, CustomData& data) {
   if (!file.model.extras.IsObject()) return;
-  const Value& extras = file.model.extras.Get("chromeball");
+  const Value& extras = memberOf(file.model.extras, "chromeball");
   if (!extras.IsObject()) return;
   for (const std::string& key : extras.Keys())
-    if (const Value& value = extras.Get(key); value.IsString())
+    if (const Value& value = memberOf(extras, key); value.IsString())
       data.texts[key] = value.Get<std::string>();
-  const Value& origin = extras.Get("origin");
+  const Value& origin = memberOf(extras, "origin");
   if (origin.IsArray() && origin.ArrayLen() == 3)
     for (int i = 0; i < 3; ++i)
-      if (const Value& number = origin.Get(i); number.IsNumber())
+      if (const Value& number = elementOf(origin, size_t(i)); number.IsNumber())
         data.origin[i] = number.GetNumberAsDouble();
-  const Value& tables = extras.Get("tables");
+  const Value& tables = memberOf(extras, "tables");
   if (!tables.IsObject()) return;
   for (const std::string& name : tables.Keys()) {
-    const Value& index = tables.Get(name);
+    const Value& index = memberOf(tables, name);
     data.tables[name] = readFinite(file, index.IsInt() ? index.GetNumberAsInt() : -1,
                                    "extras.chromeball.tables." + name);
   }

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <new>
 
+#include "scene/gltf/extension_members.h"
+
 namespace chromeball {
 namespace {
 
@@ -131,12 +133,12 @@ class DracoReader {
   void decode(tinygltf::Primitive& primitive, const Value& extension, const std::string& where) {
     if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
       file_.fail("{}: mode {} is not supported; only triangles (4) are", where, primitive.mode);
-    const Value& attributes = extension.Get("attributes");
-    if (!extension.Get("bufferView").IsInt() || !attributes.IsObject())
+    const Value& attributes = memberOf(extension, "attributes");
+    if (!memberOf(extension, "bufferView").IsInt() || !attributes.IsObject())
       file_.fail("{}: has no bufferView or no attributes", where);
     tinygltf::Accessor& indices = accessor(primitive.indices, where + ".indices");
     const draco::Mesh& mesh =
-        meshOf(extension.Get("bufferView").GetNumberAsInt(), indices.count, where);
+        meshOf(memberOf(extension, "bufferView").GetNumberAsInt(), indices.count, where);
     if (indices.bufferView < 0) {
       indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
       setData(indices, size_t(mesh.num_faces()) * 3, indexBytes(mesh));
@@ -147,7 +149,7 @@ class DracoReader {
       const std::string at = where + ".attributes." + name;
       tinygltf::Accessor& target = accessor(user->second, at);
       if (target.bufferView >= 0) continue;  // decoded for another primitive
-      const Value& id = attributes.Get(name);
+      const Value& id = memberOf(attributes, name);
       const draco::PointAttribute* attribute =
           id.IsInt() && id.GetNumberAsInt() >= 0
               ? mesh.GetAttributeByUniqueId(uint32_t(id.GetNumberAsInt()))

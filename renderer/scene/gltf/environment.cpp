@@ -25,28 +25,28 @@ constexpr int kFaces = 6, kMaxFace = 2048;
 const Value* findLight(const GltfFile& file, std::string& where) {
   if (file.model.scenes.empty()) return nullptr;
   const int scene = std::max(file.model.defaultScene, 0);
-  const Value* use = findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions,
-                                   kEnvironmentExtension);
+  const Value* use =
+      findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions, kEnvironmentExtension);
   if (!use) return nullptr;
-  const Value& light = use->Get("light");
+  const Value& light = memberOf(*use, "light");
   const Value* root = findExtension(file.model.extensions, kEnvironmentExtension);
   const int index = light.IsInt() ? light.GetNumberAsInt() : -1;
   where = fmt::format("{}.lights[{}]", kEnvironmentExtension, index);
-  if (index < 0 || !root || !root->Get("lights").IsArray() ||
-      size_t(index) >= root->Get("lights").ArrayLen())
+  if (index < 0 || !root || !memberOf(*root, "lights").IsArray() ||
+      size_t(index) >= memberOf(*root, "lights").ArrayLen())
     file.fail("scenes[{}]: {} does not exist", scene, where);
-  return &root->Get("lights").Get(index);
+  return &elementOf(memberOf(*root, "lights"), size_t(index));
 }
 
 std::array<int, kFaces> facesOf(const GltfFile& file, const Value& light,
                                 const std::string& where) {
-  const Value& levels = light.Get("specularImages");
-  const Value& level = levels.IsArray() && levels.ArrayLen() > 0 ? levels.Get(0) : levels;
+  const Value& levels = memberOf(light, "specularImages");
+  const Value& level = levels.IsArray() && levels.ArrayLen() > 0 ? elementOf(levels, 0) : levels;
   if (!level.IsArray() || level.ArrayLen() != size_t(kFaces))
     file.fail("{}.specularImages: must begin with the six faces of a cube", where);
   std::array<int, kFaces> faces{};
   for (int i = 0; i < kFaces; ++i) {
-    const Value& image = level.Get(i);
+    const Value& image = elementOf(level, size_t(i));
     faces[size_t(i)] = image.IsInt() ? image.GetNumberAsInt() : -1;
     file.at(file.images, faces[size_t(i)], "images", where + ".specularImages");
   }
@@ -101,11 +101,11 @@ glm::dmat3 rotationOf(GltfFile& file, const Value& light, const std::string& whe
 // mean radiance of the images.
 void compareWithCoefficients(GltfFile& file, const Value& light, const Image& latLong,
                              const std::string& where) {
-  const Value& coefficients = light.Get("irradianceCoefficients");
-  if (!coefficients.IsArray() || !coefficients.Get(0).IsArray()) return;
+  const Value& coefficients = memberOf(light, "irradianceCoefficients");
+  if (!coefficients.IsArray() || !elementOf(coefficients, 0).IsArray()) return;
   double stated = 0;
   for (int i = 0; i < 3; ++i)
-    if (const Value& x = coefficients.Get(0).Get(i); x.IsNumber())
+    if (const Value& x = elementOf(elementOf(coefficients, 0), size_t(i)); x.IsNumber())
       stated += x.GetNumberAsDouble() * std::sqrt(1 / (4 * kPiD)) / 3;
   const dvec3 mean = kPiD * meanRadiance(latLong);
   const double ofImages = (mean.x + mean.y + mean.z) / 3, ratio = ofImages / stated;

@@ -5,6 +5,16 @@
 
 namespace chromeball {
 
+const tinygltf::Value& memberOf(const tinygltf::Value& object, const std::string& key) {
+  static const tinygltf::Value none;
+  return object.IsObject() ? object.Get(key) : none;
+}
+
+const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index) {
+  static const tinygltf::Value none;
+  return index < array.ArrayLen() ? array.Get(int(index)) : none;
+}
+
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
   const auto found = extensions.find(name);
   return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
@@ -19,7 +29,7 @@ float number(GltfFile& file, double x, double low, double high, const std::strin
 
 float member(GltfFile& file, const tinygltf::Value& object, const char* key, double fallback,
              double low, double high, const std::string& where) {
-  const tinygltf::Value& v = object.Get(key);
+  const tinygltf::Value& v = memberOf(object, key);
   return number(file, v.IsNumber() ? v.GetNumberAsDouble() : fallback, low, high,
                 where + "." + key);
 }

@@ -8,6 +8,12 @@
 
 namespace chromeball {
 
+// A member of an object and an element of an array; a null value if there is none. (tinygltf's
+// Get() aborts unless the value is an object or array. It drops empty ones, so that a file's {} and
+// [] are null too.)
+const tinygltf::Value& memberOf(const tinygltf::Value& object, const std::string& key);
+const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index);
+
 // The extension's object; null if it is absent or not an object.
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
 
@@ -23,13 +29,15 @@ template <int N>
 glm::vec<N, float> vectorMember(GltfFile& file, const tinygltf::Value& object, const char* key,
                                 glm::vec<N, float> fallback, double low, double high,
                                 const std::string& where) {
-  const tinygltf::Value& v = object.Get(key);
+  const tinygltf::Value& v = memberOf(object, key);
   if (!v.IsArray()) return fallback;
   if (v.ArrayLen() != N)
     file.fail("{}.{}: has {} numbers; it must have {}", where, key, v.ArrayLen(), N);
   for (int i = 0; i < N; ++i) {
-    if (!v.Get(i).IsNumber()) file.fail("{}.{}: element {} is not a number", where, key, i);
-    fallback[i] = number(file, v.Get(i).GetNumberAsDouble(), low, high, where + "." + key);
+    if (!elementOf(v, size_t(i)).IsNumber())
+      file.fail("{}.{}: element {} is not a number", where, key, i);
+    fallback[i] =
+        number(file, elementOf(v, size_t(i)).GetNumberAsDouble(), low, high, where + "." + key);
   }
   return fallback;
 }

@@ -54,6 +54,14 @@ void makeIntegersWhole(json& value) {
   if (x < 0 && x > -kExact && x == std::floor(x)) value = int64_t(x);
 }
 
+// Where the chunk behind one of `size` bytes at `at` begins: after padding to 4 bytes, which some
+// writers leave out.
+size_t nextChunk(std::span<const uint8_t> glb, size_t at, size_t size) {
+  const size_t unpadded = at + size, padded = at + (size + 3) / 4 * 4;
+  const bool isUnpadded = unpadded + 8 <= glb.size() && word(glb, unpadded + 4) == kBinaryChunk;
+  return isUnpadded ? unpadded : std::min(padded, glb.size());
+}
+
 }  // namespace
 
 GltfChunks splitContainer(std::span<const uint8_t> file) {
@@ -75,7 +83,7 @@ GltfChunks splitContainer(std::span<const uint8_t> file) {
       failGlb("is a damaged GLB: a chunk claims {} bytes, but only {} are left", size, length - at);
     if (type == kJsonChunk && chunks.json.empty()) chunks.json = file.subspan(at, size);
     if (type == kBinaryChunk && chunks.binary.empty()) chunks.binary = file.subspan(at, size);
-    at = std::min(at + (size + 3) / 4 * 4, length);
+    at = nextChunk(file.first(length), at, size);
   }
   if (chunks.json.empty()) failGlb("is a damaged GLB: it has no JSON chunk");
   return chunks;

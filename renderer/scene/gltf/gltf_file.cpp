@@ -75,6 +75,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
 void GltfFile::readModel(json& root) {
   checkSkins(root);
   const int noView = fillGaps(root);
+  keepLargeNumbers(root);
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("has more than 4 GiB of JSON");
   std::string error, warning;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
 #include <stdexcept>
 
 #include "scene/gltf/gltf_file.h"
@@ -28,11 +29,14 @@ const std::set<std::string> kSupportedExtensions = {
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 };
 
@@ -42,8 +46,6 @@ const char* adviceFor(const std::string& extension) {
     return "convert its KTX2 textures to PNG, JPEG or WebP (`ktx extract` of KTX-Software can)";
   if (extension == "EXT_texture_avif" || extension == "MSFT_texture_dds")
     return "export it again with PNG, JPEG or WebP textures";
-  if (extension == "KHR_materials_pbrSpecularGlossiness")
-    return "convert it to metallic-roughness materials";
   return "export it again without it";
 }
 
@@ -112,6 +114,26 @@ int fillGaps(json& root) {
   views.push_back({{"buffer", 0}, {"byteLength", 1}});
   return none;
 }
+
+namespace {
+
+bool exceedsInt(const json& value) {
+  if (value.is_number_unsigned()) return value.get<uint64_t>() > uint64_t(INT_MAX);
+  return value.is_number_integer() && value.get<int64_t>() < INT_MIN;
+}
+
+void keepLargeNumbersOf(json& value, bool inExtension) {
+  if (inExtension && exceedsInt(value)) value = value.get<double>();
+  if (value.is_array())
+    for (json& element : value) keepLargeNumbersOf(element, inExtension);
+  if (value.is_object())
+    for (auto& [key, member] : value.items())
+      keepLargeNumbersOf(member, inExtension || key == "extensions" || key == "extras");
+}
+
+}  // namespace
+
+void keepLargeNumbers(json& root) { keepLargeNumbersOf(root, false); }
 
 json takeArray(json& root, const char* key) {
   const auto found = root.find(key);

@@ -26,6 +26,10 @@ void checkSkins(const nlohmann::json& root);
 // without a buffer view get an additional dummy view, whose index is returned.
 int fillGaps(nlohmann::json& root);
 
+// tinygltf reads whole numbers in extensions and extras as int. Those that exceed its range become
+// floating-point numbers.
+void keepLargeNumbers(nlohmann::json& root);
+
 // Removes an array from the file and returns it; empty if there is none.
 nlohmann::json takeArray(nlohmann::json& root, const char* key);
 

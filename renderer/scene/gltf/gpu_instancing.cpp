@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/gltf/accessor.h"
+#include "scene/gltf/extension_members.h"
 
 namespace chromeball {
 namespace {
@@ -15,7 +16,7 @@ template <int N>
 std::vector<glm::vec<N, float>> readAttribute(GltfFile& file, const tinygltf::Value& attributes,
                                               const char* name, size_t& count,
                                               const std::string& where) {
-  const tinygltf::Value& accessor = attributes.Get(name);
+  const tinygltf::Value& accessor = memberOf(attributes, name);
   if (!accessor.IsInt()) return {};
   const std::string at = where + "." + name;
   auto elements = readVectors<N>(file, accessor.GetNumberAsInt(), at);
@@ -32,11 +33,12 @@ std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::N
   const auto found = node.extensions.find(kInstancingExtension);
   if (found == node.extensions.end()) return {glm::dmat4(1)};
   const std::string at = where + "." + kInstancingExtension;
-  const tinygltf::Value& attributes = found->second.Get("attributes");
+  const tinygltf::Value& attributes = memberOf(found->second, "attributes");
   size_t count = 0;
   const auto translations = readAttribute<3>(file, attributes, "TRANSLATION", count, at);
   const auto rotations = readAttribute<4>(file, attributes, "ROTATION", count, at);
   const auto scales = readAttribute<3>(file, attributes, "SCALE", count, at);
+  if (translations.empty() && rotations.empty() && scales.empty()) return {glm::dmat4(1)};
 
   file.spend(count * sizeof(glm::dmat4));
   std::vector<glm::dmat4> transforms(count, glm::dmat4(1));

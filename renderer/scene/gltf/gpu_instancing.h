@@ -9,7 +9,7 @@
 namespace chromeball {
 
 // The transforms of the node's instances, relative to the node; one identity if it does not use the
-// extension.
+// extension, or without transforms.
 std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
                                                const std::string& where);
 

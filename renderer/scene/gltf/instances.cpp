@@ -26,7 +26,7 @@ class InstanceReader {
         materials_(file, cache ? &cache->texels : nullptr) {}
 
   Scene read() {
-    for (int node : tree_.inScene) planNode(node);
+    for (int node : tree_.visible) planNode(node);
     for (const Plan& plan : plans_) addInstance(plan);
     if (cache_) cache_->forgetUnused();
     materials_.moveInto(scene_);

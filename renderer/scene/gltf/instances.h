@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// A scene with the meshes, instances, materials and textures of the nodes in the tree. Geometry
-// that several primitives share is stored once. `cache` receives what is read; null: none.
+// A scene with the meshes, instances, materials and textures of the visible nodes in the tree.
+// Geometry that several primitives share is stored once. `cache` receives what is read; null: none.
 Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache);
 
 }  // namespace chromeball

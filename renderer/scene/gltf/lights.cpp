@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/lights.h"
 
+#include "scene/gltf/extension_members.h"
+
 namespace chromeball {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr const char* kLightsExtension = "KHR_lights_punctual";
 
 double number(const GltfFile& file, const Value& object, const char* key, double fallback,
               double low, double high, const std::string& where) {
-  const Value& v = object.Get(key);
+  const Value& v = memberOf(object, key);
   const double x = v.IsNumber() ? v.GetNumberAsDouble() : fallback;
   if (!(x >= low && x <= high))
     file.fail("{}.{}: {} is not in the range {} to {}", where, key, x, low, high);
@@ -19,11 +21,11 @@ double number(const GltfFile& file, const Value& object, const char* key, double
 }
 
 Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
-  const Value& v = light.Get("color");
+  const Value& v = memberOf(light, "color");
   Rgb c(1);
   if (!v.IsArray()) return c;
   for (int i = 0; i < 3; ++i) {
-    const Value& x = v.Get(i);  // null if the array is too short
+    const Value& x = elementOf(v, size_t(i));  // null if the array is too short
     c[i] = x.IsNumber() ? float(x.GetNumberAsDouble()) : NAN;
     if (!(c[i] >= 0 && std::isfinite(c[i])))
       file.fail("{}.color: must be three numbers >= 0", where);
@@ -34,7 +36,7 @@ Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
 PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits units,
                         const std::string& where) {
   const std::string type =
-      source.Get("type").IsString() ? source.Get("type").Get<std::string>() : "";
+      memberOf(source, "type").IsString() ? memberOf(source, "type").Get<std::string>() : "";
   PunctualLight light;
   light.kind = type == "directional" ? Kind::Directional
                : type == "spot"      ? Kind::Spot
@@ -44,10 +46,10 @@ PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits un
   light.intensity =
       color(file, source, where) *
       (float(number(file, source, "intensity", 1, 0, 1e30, where)) / lumensPerWatt(units));
-  if (source.Get("range").IsNumber())
+  if (memberOf(source, "range").IsNumber())
     light.range = float(number(file, source, "range", 0, 1e-20, 1e30, where));
   if (light.kind != Kind::Spot) return light;
-  const Value& spot = source.Get("spot");
+  const Value& spot = memberOf(source, "spot");
   const std::string at = where + ".spot";
   const double outer = number(file, spot, "outerConeAngle", kPiD / 4, 0, kPiD / 2 + 1e-6, at);
   light.cosOuter = float(std::cos(outer));
@@ -59,17 +61,18 @@ PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits un
 
 std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, LightUnits units) {
   std::vector<PunctualLight> lights;
-  for (int index : tree.inScene) {
+  for (int index : tree.visible) {
     const auto& extensions = file.model.nodes[size_t(index)].extensions;
     const auto found = extensions.find(kLightsExtension);
-    if (found == extensions.end() || !found->second.Get("light").IsInt()) continue;
-    const int id = found->second.Get("light").GetNumberAsInt();
+    if (found == extensions.end() || !memberOf(found->second, "light").IsInt()) continue;
+    const int id = memberOf(found->second, "light").GetNumberAsInt();
     const auto root = file.model.extensions.find(kLightsExtension);
     const Value& sources =
-        root == file.model.extensions.end() ? found->second : root->second.Get("lights");
+        root == file.model.extensions.end() ? found->second : memberOf(root->second, "lights");
     if (id < 0 || !sources.IsArray() || size_t(id) >= sources.ArrayLen())
       file.fail("nodes[{}].{}: lights[{}] does not exist", index, kLightsExtension, id);
-    PunctualLight light = readLight(file, sources.Get(id), units, fmt::format("lights[{}]", id));
+    PunctualLight light =
+        readLight(file, elementOf(sources, size_t(id)), units, fmt::format("lights[{}]", id));
 
     const glm::dmat4& toWorld = tree.toWorld[size_t(index)];
     light.position = vec3(toWorld[3]);

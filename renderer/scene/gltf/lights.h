@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// The lights of the nodes in the tree, in world space. Throws InputError if one is invalid.
+// The lights of the visible nodes in the tree, in world space. Throws InputError if one is invalid.
 std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, LightUnits units);
 
 }  // namespace chromeball

@@ -2,6 +2,8 @@
 #include "scene/gltf/load_gltf.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
@@ -90,6 +92,16 @@ std::shared_ptr<GltfFile> openedFile(const std::string& path, const GltfChoice& 
 }
 
 }  // namespace
+
+bool beginsAsGltf(const std::string& path) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kBlank = " \t\r\n";
+  std::string text(64, ' ');
+  if (std::filesystem::is_regular_file(path)) std::ifstream(path).read(text.data(), 64);
+  if (text.starts_with("glTF")) return true;
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  const size_t first = text.find_first_not_of(kBlank);
+  return first != std::string::npos && text[first] == '{';
+}
 
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice) {

@@ -20,12 +20,12 @@ void MaterialReader::readTransmission(const tinygltf::ExtensionMap& extensions,
   if (const Value* e = findExtension(extensions, "KHR_materials_transmission")) {
     m.transmission = member(file_, *e, "transmissionFactor", 0, 0, 1, where);
     m.transmissionTexture =
-        slot(e->Get("transmissionTexture"), false, where + ".transmissionTexture");
+        slot(memberOf(*e, "transmissionTexture"), false, where + ".transmissionTexture");
   }
   if (const Value* e = findExtension(extensions, "KHR_materials_volume")) {
     // thicknessFactor only tells whether the mesh is a body; the geometry tells its thickness.
     m.thinWalled = member(file_, *e, "thicknessFactor", 0, 0, INFINITY, where) == 0;
-    const Value& distance = e->Get("attenuationDistance");
+    const Value& distance = memberOf(*e, "attenuationDistance");
     if (distance.IsNumber())
       m.attenuation = attenuationOf(
           vectorMember<3>(file_, *e, "attenuationColor", vec3(1), 0, 1, where),
@@ -37,11 +37,11 @@ void MaterialReader::readTransmission(const tinygltf::ExtensionMap& extensions,
 
 void MaterialReader::readClearcoat(const Value& e, const std::string& where, ExtendedMaterial& m) {
   m.clearcoat = member(file_, e, "clearcoatFactor", 0, 0, 1, where);
-  m.clearcoatTexture = slot(e.Get("clearcoatTexture"), false, where + ".clearcoatTexture");
+  m.clearcoatTexture = slot(memberOf(e, "clearcoatTexture"), false, where + ".clearcoatTexture");
   m.clearcoatRoughness = member(file_, e, "clearcoatRoughnessFactor", 0, 0, 1, where);
   m.clearcoatRoughnessTexture =
-      slot(e.Get("clearcoatRoughnessTexture"), false, where + ".clearcoatRoughnessTexture");
-  const Value& normal = e.Get("clearcoatNormalTexture");
+      slot(memberOf(e, "clearcoatRoughnessTexture"), false, where + ".clearcoatRoughnessTexture");
+  const Value& normal = memberOf(e, "clearcoatNormalTexture");
   m.clearcoatNormalTexture = slot(normal, false, where + ".clearcoatNormalTexture");
   if (normal.IsObject())
     m.clearcoatNormalScale =
@@ -50,27 +50,28 @@ void MaterialReader::readClearcoat(const Value& e, const std::string& where, Ext
 
 void MaterialReader::readSheen(const Value& e, const std::string& where, ExtendedMaterial& m) {
   m.sheenColor = vectorMember<3>(file_, e, "sheenColorFactor", vec3(0), 0, 1, where);
-  m.sheenColorTexture = slot(e.Get("sheenColorTexture"), true, where + ".sheenColorTexture");
+  m.sheenColorTexture = slot(memberOf(e, "sheenColorTexture"), true, where + ".sheenColorTexture");
   m.sheenRoughness = member(file_, e, "sheenRoughnessFactor", 0, 0, 1, where);
   m.sheenRoughnessTexture =
-      slot(e.Get("sheenRoughnessTexture"), false, where + ".sheenRoughnessTexture");
+      slot(memberOf(e, "sheenRoughnessTexture"), false, where + ".sheenRoughnessTexture");
 }
 
 void MaterialReader::readAnisotropy(const Value& e, const std::string& where, ExtendedMaterial& m) {
   m.anisotropy = member(file_, e, "anisotropyStrength", 0, 0, 1, where);
   m.anisotropyRotation = member(file_, e, "anisotropyRotation", 0, -1e6, 1e6, where);
-  m.anisotropyTexture = slot(e.Get("anisotropyTexture"), false, where + ".anisotropyTexture");
+  m.anisotropyTexture = slot(memberOf(e, "anisotropyTexture"), false, where + ".anisotropyTexture");
 }
 
 void MaterialReader::readIridescence(const Value& e, const std::string& where,
                                      ExtendedMaterial& m) {
   m.iridescence = member(file_, e, "iridescenceFactor", 0, 0, 1, where);
-  m.iridescenceTexture = slot(e.Get("iridescenceTexture"), false, where + ".iridescenceTexture");
+  m.iridescenceTexture =
+      slot(memberOf(e, "iridescenceTexture"), false, where + ".iridescenceTexture");
   m.filmIor = member(file_, e, "iridescenceIor", 1.3, 1, 1e3, where);
   m.filmMinThickness = member(file_, e, "iridescenceThicknessMinimum", 100, 0, 1e6, where);
   m.filmMaxThickness = member(file_, e, "iridescenceThicknessMaximum", 400, 0, 1e6, where);
-  m.filmThicknessTexture =
-      slot(e.Get("iridescenceThicknessTexture"), false, where + ".iridescenceThicknessTexture");
+  m.filmThicknessTexture = slot(memberOf(e, "iridescenceThicknessTexture"), false,
+                                where + ".iridescenceThicknessTexture");
 }
 
 std::optional<ExtendedMaterial> MaterialReader::readExtensions(

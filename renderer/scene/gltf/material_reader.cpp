@@ -82,6 +82,8 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   }
   if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"))
     readSpecular(*e, where, m);
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
+    readSpecularGlossiness(*e, use, where + ".KHR_materials_pbrSpecularGlossiness", m);
   m.extended = readExtensions(source.extensions, where);
   if (m.extended && m.ior == 0) m.extended->transmission = 0;  // infinite index: reflects all light
   return m;
@@ -91,19 +93,36 @@ void MaterialReader::readSpecular(const Value& extension, const std::string& whe
   m.specular = member(file_, extension, "specularFactor", 1, 0, 1, where);
   m.specularColor =
       vectorMember<3>(file_, extension, "specularColorFactor", vec3(1), 0, INFINITY, where);
-  m.specularTexture = slot(extension.Get("specularTexture"), false, where + ".specularTexture");
+  m.specularTexture =
+      slot(memberOf(extension, "specularTexture"), false, where + ".specularTexture");
   m.specularColorTexture =
-      slot(extension.Get("specularColorTexture"), true, where + ".specularColorTexture");
+      slot(memberOf(extension, "specularColorTexture"), true, where + ".specularColorTexture");
 }
 
-TextureSlot MaterialReader::slot(const Value& textureInfo, bool srgb, const std::string& where) {
-  if (!textureInfo.IsObject() || !textureInfo.Get("index").IsInt()) return {};
-  const Value& set = textureInfo.Get("texCoord");
+// Replaces the metallic-roughness parameters. The specular colour is F0 itself, as that of an
+// infinite index; its texture's alpha is the glossiness.
+void MaterialReader::readSpecularGlossiness(const Value& e, TexelUse diffuse,
+                                            const std::string& where, Material& m) {
+  m.specularGlossiness = true;
+  m.ior = 0;
+  m.metallic = 0;
+  m.metallicRoughnessTexture = {};
+  m.baseColor = vectorMember<4>(file_, e, "diffuseFactor", vec4(1), 0, 1, where);
+  m.baseColorTexture = slot(memberOf(e, "diffuseTexture"), diffuse, where + ".diffuseTexture");
+  m.specularColor = vectorMember<3>(file_, e, "specularFactor", vec3(1), 0, 1, where);
+  m.roughness = 1 - member(file_, e, "glossinessFactor", 1, 0, 1, where);
+  m.specularColorTexture =
+      slot(memberOf(e, "specularGlossinessTexture"), true, where + ".specularGlossinessTexture");
+}
+
+TextureSlot MaterialReader::slot(const Value& textureInfo, TexelUse use, const std::string& where) {
+  if (!textureInfo.IsObject() || !memberOf(textureInfo, "index").IsInt()) return {};
+  const Value& set = memberOf(textureInfo, "texCoord");
   tinygltf::ExtensionMap extensions;
-  if (const Value& nested = textureInfo.Get("extensions"); nested.IsObject())
-    for (const std::string& key : nested.Keys()) extensions[key] = nested.Get(key);
-  return slot(textureInfo.Get("index").GetNumberAsInt(), set.IsInt() ? set.GetNumberAsInt() : 0,
-              extensions, {.srgb = srgb}, where);
+  if (const Value& nested = memberOf(textureInfo, "extensions"); nested.IsObject())
+    for (const std::string& key : nested.Keys()) extensions[key] = memberOf(nested, key);
+  return slot(memberOf(textureInfo, "index").GetNumberAsInt(),
+              set.IsInt() ? set.GetNumberAsInt() : 0, extensions, use, where);
 }
 
 TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::ExtensionMap& extensions,
@@ -121,7 +140,7 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
     s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
-    if (e->Get("texCoord").IsInt()) s.uvSet = e->Get("texCoord").GetNumberAsInt();
+    if (memberOf(*e, "texCoord").IsInt()) s.uvSet = memberOf(*e, "texCoord").GetNumberAsInt();
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
     file_.fail("{}: texCoord {} is not in the range 0 to {}", where, s.uvSet, kMaxUvSet);
@@ -132,7 +151,7 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
   int image = source.source;
   if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
-    image = e->Get("source").IsInt() ? e->Get("source").GetNumberAsInt() : -1;
+    image = memberOf(*e, "source").IsInt() ? memberOf(*e, "source").GetNumberAsInt() : -1;
   if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
     file_.fail(
         "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "

@@ -37,9 +37,14 @@ class MaterialReader {
   Material convert(const tinygltf::Material& source, const std::string& where);
   TextureSlot slot(int texture, int uvSet, const tinygltf::ExtensionMap& extensions, TexelUse use,
                    const std::string& where);
-  TextureSlot slot(const tinygltf::Value& textureInfo, bool srgb, const std::string& where);
+  TextureSlot slot(const tinygltf::Value& textureInfo, TexelUse use, const std::string& where);
+  TextureSlot slot(const tinygltf::Value& textureInfo, bool srgb, const std::string& where) {
+    return slot(textureInfo, TexelUse{.srgb = srgb}, where);
+  }
   int texture(int index, TexelUse use, const std::string& where);
   TexelGrid* grid(int image);
+  void readSpecularGlossiness(const tinygltf::Value& extension, TexelUse diffuse,
+                              const std::string& where, Material& m);
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
   // nullopt if the extensions have no effect.
   std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,

@@ -3,12 +3,19 @@
 
 #include <meshoptimizer.h>
 
+#include <algorithm>
+#include <array>
+
+#include "scene/gltf/extension_members.h"
+
 namespace chromeball {
 namespace {
 
 using tinygltf::Value;
 
-constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
+// KHR_meshopt_compression adds a version of the vertex stream and a filter, which are not
+// supported, to what else is EXT_meshopt_compression.
+constexpr std::array kExtensions = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 // The extension's description of a buffer view.
 struct Compressed {
@@ -19,7 +26,7 @@ struct Compressed {
 
 size_t sizeMember(const GltfFile& file, const Value& object, const char* key, bool required,
                   const std::string& where) {
-  const Value& v = object.Get(key);
+  const Value& v = memberOf(object, key);
   if (!required && !v.IsNumber()) return 0;
   const double number = v.IsNumber() ? v.GetNumberAsDouble() : -1;
   if (!(number >= 0 && number < 4294967296.0) || number != std::floor(number))
@@ -28,7 +35,7 @@ size_t sizeMember(const GltfFile& file, const Value& object, const char* key, bo
 }
 
 std::string textMember(const Value& object, const char* key, const char* fallback) {
-  const Value& v = object.Get(key);
+  const Value& v = memberOf(object, key);
   return v.IsString() ? v.Get<std::string>() : fallback;
 }
 
@@ -54,6 +61,14 @@ void check(const GltfFile& file, const Compressed& c, const std::string& where) 
   if (!strideFits) file.fail("{}.byteStride: {} is invalid for {}", where, c.stride, c.mode);
   if (c.count == 0 || (c.mode == "TRIANGLES" && c.count % 3 != 0))
     file.fail("{}.count: {} is invalid for {}", where, c.count, c.mode);
+  constexpr uint8_t kVertexStream = 0xa0;  // version 0
+  if (c.mode == "ATTRIBUTES" && !c.bytes.empty() && (c.bytes[0] & 0xf0) == kVertexStream &&
+      c.bytes[0] != kVertexStream)
+    file.fail("{}: version {} of the vertex stream is not supported; compress the model with {}",
+              where, c.bytes[0] & 0x0f, kExtensions[0]);
+  if (c.filter == "COLOR")
+    file.fail("{}.filter: COLOR is not supported; compress the model with {}", where,
+              kExtensions[0]);
   const bool filterFits =
       c.filter == "NONE" ||
       (!isIndex && ((c.filter == "OCTAHEDRAL" && (c.stride == 4 || c.stride == 8)) ||
@@ -83,10 +98,11 @@ void decodeMeshopt(GltfFile& file) {
   const size_t viewCount = file.model.bufferViews.size();
   for (size_t i = 0; i < viewCount; ++i) {
     const auto& extensions = file.model.bufferViews[i].extensions;
-    const auto found = extensions.find(kMeshoptExtension);
-    if (found == extensions.end()) continue;
-    const std::string where = fmt::format("bufferViews[{}].{}", i, kMeshoptExtension);
-    const Compressed compressed = readExtension(file, found->second, where);
+    const auto name = std::ranges::find_if(
+        kExtensions, [&](const char* extension) { return extensions.contains(extension); });
+    if (name == kExtensions.end()) continue;
+    const std::string where = fmt::format("bufferViews[{}].{}", i, *name);
+    const Compressed compressed = readExtension(file, extensions.at(*name), where);
     check(file, compressed, where);
     file.spend(compressed.count * compressed.stride);
     const int decoded = file.addView(decode(file, compressed, where));

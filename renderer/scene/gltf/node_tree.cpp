@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/node_tree.h"
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <iterator>
+
+#include "scene/gltf/extension_members.h"
 
 namespace chromeball {
 namespace {
@@ -86,7 +90,29 @@ std::vector<int> sceneRoots(const GltfFile& file, const std::vector<int>& treeRo
   return roots;
 }
 
-std::string nodeName(const tinygltf::Model& model, size_t i) {
+bool isMarkedHidden(const tinygltf::Node& node) {
+  const tinygltf::Value* e = findExtension(node.extensions, "KHR_node_visibility");
+  if (!e) return false;
+  const tinygltf::Value& visible = memberOf(*e, "visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
+// Without the nodes that are hidden or have a hidden ancestor. `order`: parents before children.
+std::vector<int> visibleNodes(const GltfFile& file, const std::vector<int>& parents,
+                              const std::vector<int>& order, const std::vector<int>& inScene) {
+  std::vector<bool> hidden(parents.size());
+  for (const int i : order) {
+    const int parent = parents[size_t(i)];
+    hidden[size_t(i)] =
+        isMarkedHidden(file.model.nodes[size_t(i)]) || (parent != -1 && hidden[size_t(parent)]);
+  }
+  std::vector<int> visible;
+  std::ranges::copy_if(inScene, std::back_inserter(visible),
+                       [&](int node) { return !hidden[size_t(node)]; });
+  return visible;
+}
+
+std::string nameOf(const tinygltf::Model& model, size_t i) {
   const tinygltf::Node& node = model.nodes[i];
   if (!node.name.empty()) return node.name;
   const bool hasMesh = node.mesh >= 0 && size_t(node.mesh) < model.meshes.size();
@@ -125,7 +151,8 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
     file.fail("nodes[{}]: is its own ancestor; nodes must form trees", first);
   }
   tree.inScene = descend(file, sceneRoots(file, treeRoots));
-  for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nodeName(file.model, i));
+  tree.visible = visibleNodes(file, parents, order, tree.inScene);
+  for (size_t i = 0; i < nodes.size(); ++i) tree.names.push_back(nameOf(file.model, i));
   tree.parents = parents;
   return tree;
 }

@@ -12,6 +12,7 @@ namespace chromeball {
 struct NodeTree {
   std::vector<glm::dmat4> toWorld;  // of every node in the file
   std::vector<int> inScene;         // the nodes of the default scene, parents before children
+  std::vector<int> visible;         // those whose meshes and lights are seen (KHR_node_visibility)
   std::vector<std::string> names;   // of every node in the file; never empty
   std::vector<int> parents;         // of every node in the file; -1: a root
   std::vector<bool> moves;          // of every node: the animation moves it or changes its weights

@@ -17,9 +17,9 @@ std::vector<std::string> variantNames(const GltfFile& file) {
   std::vector<std::string> names;
   const Value* extension = findExtension(file.model.extensions, kVariants);
   if (!extension) return names;
-  const Value& list = extension->Get("variants");
+  const Value& list = memberOf(*extension, "variants");
   for (size_t i = 0; i < list.ArrayLen(); ++i) {
-    const Value& name = list.Get(int(i)).Get("name");
+    const Value& name = memberOf(elementOf(list, i), "name");
     names.push_back(name.IsString() ? name.Get<std::string>() : "");
   }
   return names;
@@ -32,14 +32,15 @@ struct Mapping {
 };
 std::vector<Mapping> mappingsOf(const Value& extension) {
   std::vector<Mapping> result;
-  const Value& mappings = extension.Get("mappings");
+  const Value& mappings = memberOf(extension, "mappings");
   for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
-    const Value& mapping = mappings.Get(int(i));
-    if (!mapping.Get("material").IsInt()) continue;
-    Mapping& m = result.emplace_back(Mapping{mapping.Get("material").GetNumberAsInt(), {}});
-    const Value& variants = mapping.Get("variants");
+    const Value& mapping = elementOf(mappings, i);
+    if (!memberOf(mapping, "material").IsInt()) continue;
+    Mapping& m = result.emplace_back(Mapping{memberOf(mapping, "material").GetNumberAsInt(), {}});
+    const Value& variants = memberOf(mapping, "variants");
     for (size_t k = 0; k < variants.ArrayLen(); ++k)
-      if (variants.Get(int(k)).IsInt()) m.variants.push_back(variants.Get(int(k)).GetNumberAsInt());
+      if (elementOf(variants, k).IsInt())
+        m.variants.push_back(elementOf(variants, k).GetNumberAsInt());
   }
   return result;
 }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// PathTracer: which of the surfaces at one place a path meets.
+#include "integrate/place.h"
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+
+#include "integrate/pass_through.h"
+#include "integrate/path.h"
+
+namespace chromeball {
+namespace {
+
+auto orderOf(const Hit& hit) { return std::tuple(hit.instance, hit.triangle); }
+
+// Collects the surfaces that a path does not ignore, in any order.
+class PlaceCollector {
+ public:
+  PlaceCollector(const Scene& scene, const PathState& state) : scene_(scene), state_(state) {}
+
+  void add(const Hit& hit) {
+    const Instance& instance = scene_.instances[hit.instance];
+    const Material& material = scene_.materials[size_t(instance.material)];
+    const bool front =
+        !isFromBehind(scene_, instance, hit.triangle, state_.ray.direction, state_.ray.time);
+    if (ignores(state_, material, front)) return;
+    ++count_;
+    if (material.transmits()) return addLayer({hit, !material.isBody() ? 1 : front ? 0 : 2});
+    // Of several opaque surfaces the path meets a front.
+    const Layer found{hit, front ? 0 : 1};
+    if (!opaque_ ||
+        std::tuple(found.rank, orderOf(hit)) < std::tuple(opaque_->rank, orderOf(opaque_->hit)))
+      opaque_ = found;
+  }
+
+  int count() const { return count_; }
+
+  // Needs a surface. `axis`: unit, on the side to which the path goes.
+  Place place(const vec3& axis, float rayOffset) {
+    Place place;
+    place.axis = axis;
+    place.rayOffset = rayOffset;
+    if (opaque_) {
+      place.count = 1;
+      place.hits[0] = opaque_->hit;
+      return place;
+    }
+    // Of one rank, in an order that is the reverse for the other direction.
+    const bool ascends = glm::dot(axis, vec3(0.8147f, 0.9058f, 0.1270f)) > 0;
+    const auto layers = std::span(layers_).first(size_t(layerCount_));
+    if (!ascends) std::ranges::reverse(layers);
+    std::ranges::stable_sort(layers, {}, &Layer::rank);
+    for (const Layer& layer : layers) place.hits[size_t(place.count++)] = layer.hit;
+    return place;
+  }
+
+ private:
+  struct Layer {
+    Hit hit;
+    int rank;  // before those with higher ones
+  };
+
+  // Keeps the first kMost of the scene.
+  void addLayer(const Layer& layer) {
+    int i = layerCount_;
+    while (i > 0 && orderOf(layer.hit) < orderOf(layers_[size_t(i - 1)].hit)) --i;
+    if (i == Place::kMost) return;
+    layerCount_ = std::min(layerCount_ + 1, Place::kMost);
+    std::copy_backward(layers_.begin() + i, layers_.begin() + layerCount_ - 1,
+                       layers_.begin() + layerCount_);
+    layers_[size_t(i)] = layer;
+  }
+
+  const Scene& scene_;
+  const PathState& state_;
+  int count_ = 0, layerCount_ = 0;
+  std::optional<Layer> opaque_;
+  std::array<Layer, Place::kMost> layers_;  // ascending by orderOf()
+};
+
+}  // namespace
+
+// Not inlined, because most surfaces let no path pass.
+[[gnu::noinline]] std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit,
+                                                       const Surface& surface,
+                                                       PathContext& context) const {
+  PlaceCollector found(world_.scene, state);
+  found.add(hit);
+  const bool isMet = found.count() == 1;
+  float rayOffset = surface.rayOffset;
+  world_.accel.forEachCoincident(state.ray, hit, surface, context.sampler.sampleKey(),
+                                 settings_.visible, [&](const Hit& other) {
+                                   found.add(other);
+                                   rayOffset =
+                                       std::max(rayOffset, surfaceOf(state, other).rayOffset);
+                                 });
+  if (found.count() == 0) return std::nullopt;
+  if (isMet && found.count() == 1) return hit;
+  state.place = found.place(-surface.geometricNormal, rayOffset);
+  return state.place.current();
+}
+
+std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathContext& context) const {
+  const Instance& instance = world_.scene.instances[hit.instance];
+  const Material& material = world_.scene.materials[size_t(instance.material)];
+  if (state.place || !(material.transmits() || material.hidesBack())) return hit;
+  const Surface surface = surfaceOf(state, hit);
+  return mayPass(state, surface) ? metAt(state, hit, surface, context) : hit;
+}
+
+std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,
+                                               PathContext& context) const {
+  while (hit) {
+    if (const auto met = metAt(state, *hit, context)) return met;
+    const Surface back = surfaceOf(state, *hit);
+    state.length += hit->distance;
+    state.leave(back, state.ray.direction);
+    hit = closestHit(state.ray, context);
+  }
+  return hit;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces that coincide, as layers with no distance between them.
+#pragma once
+
+#include <array>
+
+#include "trace/ray.h"
+
+namespace chromeball {
+
+// The surfaces at the end of a path's ray, if there are several, in the order in which the path
+// crosses them: bodies that it enters, then sheets, then bodies that it leaves, so that touching
+// bodies refract as one boundary. Seen from the other side the order is the reverse. No path
+// crosses an opaque surface: it is alone. Those beyond kMost are ignored.
+struct Place {
+  static constexpr int kMost = 8;
+
+  int count = 0;        // 0: the path is not at such a place
+  int at = 0;           // the path's surface
+  vec3 axis{0};         // unit; the order ascends along it
+  float rayOffset = 0;  // the largest of the surfaces
+  std::array<Hit, kMost> hits;
+
+  explicit operator bool() const { return count > 0; }
+  const Hit& current() const { return hits[size_t(at)]; }
+
+  // Moves to the next surface for a path that goes on in this direction; to none behind the last.
+  void leave(const vec3& direction) {
+    if (count == 0) return;
+    at += glm::dot(axis, direction) > 0 ? 1 : -1;
+    if (at < 0 || at >= count) count = 0;
+  }
+};
+
+}  // namespace chromeball

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces at one distance: a ray that passes one of them meets the others.
+#include <gtest/gtest.h>
+
+#include "probe/synth.h"
+#include "test_scene.h"
+
+namespace chromeball {
+namespace {
+
+const Rgb kRed(0.8f, 0.1f, 0.1f), kGreen(0.1f, 0.8f, 0.1f);
+
+Material oneSidedMatte(Rgb albedo) {
+  Material m = lambert(albedo);
+  m.doubleSided = false;
+  return m;
+}
+
+Material sheetOfGlass(Rgb color = Rgb(1)) {
+  Material m;
+  m.baseColor = vec4(color, 1);
+  m.metallic = 0;
+  m.roughness = 0;
+  m.doubleSided = true;
+  m.extended.emplace();
+  m.extended->transmission = 1;
+  return m;
+}
+
+Material bodyOf(float ior, Rgb attenuation) {
+  Material m = sheetOfGlass();
+  m.ior = ior;
+  const float r = (ior - 1) / (ior + 1);
+  m.specular = r == 0 ? 0 : 1;
+  m.extended->thinWalled = false;
+  m.extended->attenuation = attenuation;
+  return m;
+}
+
+// A square at height y, whose front faces up or down, oblique and larger than what a camera sees.
+void addSquare(Scene& scene, const Material& material, float y, bool frontUp, float half = 300) {
+  const vec3 a(2 * half, 0, 0.1f * half), b(0, 0, -2 * half);
+  addQuad(scene, addMaterial(scene, material), {-half, y, half}, frontUp ? a : b, frontUp ? b : a);
+}
+
+// A slab between two heights.
+void addSlab(Scene& scene, const Material& material, float bottom, float top) {
+  addSquare(scene, material, bottom, false);
+  addSquare(scene, material, top, true);
+}
+
+Rgb meanIn(const Scene& scene, const Camera& camera, const Image& probe, uint32_t samples = 64,
+           const std::string& strategy = "importance", int depth = 6) {
+  return meanColor(
+      renderScene(scene, camera, Probe(probe), strategy, smallRender(8, 8, samples, depth))
+          .film.mean());
+}
+
+Rgb meanInWhite(const Scene& scene, const Camera& camera, uint32_t samples = 64,
+                const std::string& strategy = "importance") {
+  return meanIn(scene, camera, constantProbe({16, 8}, Rgb(1)), samples, strategy);
+}
+
+Camera above(float height = 5) {
+  return Camera::lookAt({0.4f, height, 0.3f}, {0, 0, 0}, {0, 0, -1}, 0.3f);
+}
+Camera below() { return Camera::lookAt({0.4f, -5, 0.3f}, {0, 0, 0}, {0, 0, -1}, 0.3f); }
+
+void expectColor(const Rgb& found, const Rgb& expected, float tolerance, const std::string& what) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << what << " " << c;
+}
+
+// The camera sees the front, and never the probe behind a back.
+TEST(Coincident, OfTwoSheetsBackToBackEachSideShowsItsFront) {
+  for (const bool redFirst : {true, false}) {
+    Scene scene;
+    if (redFirst) addSquare(scene, oneSidedMatte(kRed), 0, true);
+    addSquare(scene, oneSidedMatte(kGreen), 0, false);
+    if (!redFirst) addSquare(scene, oneSidedMatte(kRed), 0, true);
+    expectColor(meanInWhite(scene, above()), kRed, 0.01f, "from above");
+    expectColor(meanInWhite(scene, below()), kGreen, 0.01f, "from below");
+  }
+}
+
+TEST(Coincident, InstancesAndMovingSurfacesToo) {
+  for (const bool moves : {false, true}) {
+    Scene scene;
+    addSquare(scene, oneSidedMatte(kRed), 0, true);
+    scene.materials.push_back(oneSidedMatte(kGreen));
+    // The same mesh, turned over about the x axis and back into the same plane.
+    Instance turned = scene.instances[0];
+    turned.material = 1;
+    scene.instances[0].toWorld = Transform{};
+    Transform over;
+    over.linear = glm::mat3(vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1));
+    turned.toWorld = over;
+    scene.instances.push_back(turned);
+    if (moves)
+      for (Instance& instance : scene.instances) {
+        auto motion = std::make_shared<InstanceMotion>();
+        for (const float x : {0.0f, 1.0f}) {
+          Transform at = *instance.toWorld;
+          at.translation = {x, x, 0};
+          motion->keys.push_back({scene.meshes.shared(0), at});
+        }
+        instance.motion = motion;
+        instance.moves = scene.moves = true;
+      }
+    expectColor(meanInWhite(scene, above()), kRed, 0.01f, moves ? "moving" : "still");
+    expectColor(meanInWhite(scene, below()), kGreen, 0.01f, moves ? "moving" : "still");
+  }
+}
+
+// Diffuse bounces, mirrors and light samples see an opaque surface, whatever lies on it.
+TEST(Coincident, AnOpaqueSurfaceHidesWhatIsBehindGlassOnIt) {
+  Material rough = sheetOfGlass();
+  rough.roughness = 0.5f;
+  for (const Material& glass : {sheetOfGlass(), rough, bodyOf(1.5f, Rgb(0))})
+    for (const bool glassFirst : {true, false}) {
+      Scene scene;
+      if (glassFirst) addSquare(scene, glass, 0, true);
+      addSquare(scene, lambert(kRed), 0, true);
+      if (!glassFirst) addSquare(scene, glass, 0, true);
+      for (const char* strategy : {"importance", "bsdf"})
+        expectColor(meanInWhite(scene, above(), 256, strategy), kRed, 0.02f, strategy);
+    }
+}
+
+TEST(Coincident, ASheetOnARoofLetsNoLightThrough) {
+  Scene roof;
+  addSquare(roof, lambert(Rgb(0.5f)), 0, true, 1);
+  addSquare(roof, lambert(Rgb(0.8f)), 1, true, 300);
+  Scene covered = roof;
+  addSquare(covered, sheetOfGlass(), 1, true, 300);
+  const Camera camera = Camera::lookAt({0, 0.5f, 0.4f}, {0, 0, 0}, {0, 1, 0}, 0.3f);
+  for (const char* strategy : {"importance", "bsdf"})
+    EXPECT_EQ(meanInWhite(roof, camera, 64, strategy).x,
+              meanInWhite(covered, camera, 64, strategy).x);
+}
+
+// Slabs that touch: exp(-sum of attenuation x thickness), from both sides and in any order.
+TEST(Coincident, TouchingBodiesAbsorbInTurn) {
+  const Rgb first(0.3f, 0.1f, 0), second(0.1f, 0.4f, 0.2f), third(0, 0.2f, 0.5f);
+  const Rgb expected = glm::exp(-(first * 1.0f + second * 2.0f + third * 0.5f));
+  for (int order = 0; order < 3; ++order) {
+    Scene scene;
+    for (int k = 0; k < 3; ++k) switch ((order + k) % 3) {
+        case 0:
+          addSlab(scene, bodyOf(1, first), 0, 1);
+          break;
+        case 1:
+          addSlab(scene, bodyOf(1, second), 1, 3);
+          break;
+        default:
+          addSlab(scene, bodyOf(1, third), 3, 3.5f);
+      }
+    for (const vec3& eye : {vec3(0.01f, 50, 0), vec3(0.01f, -50, 0)}) {
+      const Camera camera = Camera::lookAt(eye, {0, 0, 0}, {0, 0, -1}, 0.01f);
+      expectColor(meanInWhite(scene, camera, 4), expected, 1e-3f, std::to_string(order));
+    }
+  }
+}
+
+// A boundary between glass and water refracts by their ratio: no light is reflected totally on the
+// way into an air gap, and no light is lost.
+TEST(Coincident, TouchingGlassAndWaterConserveEnergy) {
+  for (const bool waterFirst : {true, false}) {
+    Scene scene;
+    if (waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
+    addSlab(scene, bodyOf(1.5f, Rgb(0)), 1, 2);
+    if (!waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
+    expectColor(meanInWhite(scene, above(), 64), Rgb(1), 0.01f, "white");
+    // From a steep angle in the water, light passes the glass up to the angle of total reflection
+    // in air, as if there was water only.
+    Scene water;
+    addSlab(water, bodyOf(1.33f, Rgb(0)), 0, 2);
+    const Image half = gradientProbe({32, 16}, Rgb(0.2f), {0, 1, 0});
+    const Camera oblique = Camera::lookAt({0, 4, 8}, {0, 0, 0}, {0, 1, 0}, 0.2f);
+    expectColor(meanIn(scene, oblique, half, 1024), meanIn(water, oblique, half, 1024), 0.02f,
+                "oblique");
+  }
+}
+
+// Any number of surfaces, of which a bounded number is met.
+TEST(Coincident, ManySheetsAreAFurnace) {
+  for (const int count : {2, 5, 8, 9, 40}) {
+    Scene scene;
+    for (int i = 0; i < count; ++i) addSquare(scene, sheetOfGlass(), 0, i % 2 == 0);
+    expectColor(meanInWhite(scene, above(), 256), Rgb(1), 0.01f, std::to_string(count));
+  }
+}
+
+// Two tinted sheets: light passes both, by the camera's rays and by shadow rays.
+TEST(Coincident, TwoSheetsTintTwice) {
+  Material tinted = sheetOfGlass({0.5f, 0.8f, 1});
+  tinted.specular = 0;  // no reflection
+  Scene scene;
+  addSquare(scene, tinted, 1, true);
+  addSquare(scene, tinted, 1, true);
+  const Camera camera = Camera::lookAt({0, 5, 0.1f}, {0, 0, 0}, {0, 1, 0}, 0.1f);
+  expectColor(meanInWhite(scene, camera), {0.25f, 0.64f, 1}, 1e-3f, "seen through");
+  addSquare(scene, lambert(Rgb(0.5f)), 0, true);
+  const Camera under = Camera::lookAt({0, 0.5f, 0.4f}, {0, 0, 0}, {0, 1, 0}, 0.1f);
+  for (const char* strategy : {"importance", "bsdf"})
+    expectColor(meanInWhite(scene, under, 512, strategy), 0.5f * Rgb(0.25f, 0.64f, 1), 0.01f,
+                strategy);
+}
+
+// A blended body is there as a whole or not at all: alpha T + 1 - alpha.
+TEST(BlendedBody, ItsCoverageIsDecidedOnce) {
+  const float attenuation = -std::log(0.75f) / 2;
+  Material body = bodyOf(1, Rgb(attenuation));
+  body.alphaMode = AlphaMode::Blend;
+  body.baseColor.w = 0.5f;
+  for (const bool wall : {false, true}) {
+    Scene scene;
+    addSlab(scene, body, 1, 3);
+    if (wall) {
+      Material white = lambert(Rgb(1));
+      white.unlit = true;
+      addSquare(scene, white, 0, true);
+    }
+    const Camera camera = Camera::lookAt({0.01f, 90, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f);
+    EXPECT_NEAR(meanInWhite(scene, camera, 4096).x, 0.875f, 0.004f) << wall;
+  }
+}
+
+// A floor below a blended body, which blocks light samples where it is: both ways to find the light
+// agree.
+TEST(BlendedBody, LightSamplesAndBouncesAgree) {
+  Material body = bodyOf(1.5f, Rgb(0.3f));
+  body.alphaMode = AlphaMode::Blend;
+  body.baseColor.w = 0.5f;
+  Scene scene;
+  addSlab(scene, body, 1, 2);
+  addSquare(scene, lambert(Rgb(0.5f)), 0, true);
+  const Camera under = Camera::lookAt({0, 0.5f, 0.4f}, {0, 0, 0}, {0, 1, 0}, 0.1f);
+  const float sampled = meanInWhite(scene, under, 4096).x;
+  EXPECT_NEAR(meanInWhite(scene, under, 4096, "bsdf").x, sampled, 0.01f * sampled);
+  EXPECT_NEAR(meanInWhite(scene, under, 4096, "uniform").x, sampled, 0.01f * sampled);
+}
+
+// More of one instance at one place than a ray could visit.
+TEST(Coincident, EqualInstancesCostNothing) {
+  Scene scene;
+  addSquare(scene, lambert(kRed), 0, true);
+  scene.instances[0].toWorld = Transform{};
+  scene.instances.resize(100000, scene.instances[0]);
+  expectColor(meanInWhite(scene, above(), 256), kRed, 0.01f, "opaque");
+  scene.materials[0] = sheetOfGlass();
+  expectColor(meanInWhite(scene, above(), 256), Rgb(1), 0.01f, "sheets");
+}
+
+}  // namespace
+}  // namespace chromeball
