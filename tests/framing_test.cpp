@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "test_scene.h"
 
 namespace chromeball {
@@ -164,11 +166,96 @@ TEST(Framing, FurnishedRoomsAreSeenFromInsideAndCupsFromOutside) {
   EXPECT_FALSE(isInside(doubleWalls(5, 0.02f), 0.02f)) << "a small box, 16 cm long";
 }
 
+// Whether all of the scene is in view.
+bool isSeenFromOutside(const Scene& scene) {
+  const Camera camera = framingCamera(scene, kAspect);
+  return std::ranges::all_of(scene.instances, [&](const Instance& instance) {
+    return imageFraction(camera, scene.meshes[size_t(instance.mesh)]) > 0;
+  });
+}
+
+// However deep: far from the opening its angle is that of a window.
 TEST(Framing, OpenBoxesAreSeenFromOutside) {
-  Scene box = room({{5, 5}, {5, 0}, {0, 0}, {0, 5}}, 5);
-  box.meshes.pop_back(), box.instances.pop_back();  // the front, at z = 5, is open
-  addFloorAndCeiling(box, vec2(0), vec2(5, 5), 5);
-  EXPECT_GT(framingCamera(box, kAspect).position.z, 5);
+  for (const float depth : {5.0f, 10.0f, 20.0f, 40.0f}) {
+    Scene box = room({{5, depth}, {5, 0}, {0, 0}, {0, depth}}, 5);
+    box.meshes.pop_back(), box.instances.pop_back();  // the front, at z = depth, is open
+    addFloorAndCeiling(box, vec2(0), vec2(5, depth), 5);
+    EXPECT_GT(framingCamera(box, kAspect).position.z, depth);
+    for (const int furniture : {1, 6}) {
+      Scene furnished = box;
+      for (int i = 0; i < furniture; ++i)
+        addSphere(furnished, 0, vec3(1 + i % 3, 0.5f, 1 + i / 3), 0.5f, 8);
+      EXPECT_TRUE(isSeenFromOutside(furnished)) << depth << " " << furniture;
+    }
+  }
+}
+
+// A stage of two or three walls with two faces each, and furniture in front of its open sides.
+TEST(Framing, DioramasAreSeenFromOutside) {
+  for (const int walls : {2, 3})
+    for (const float depth : {4.0f, 8.0f}) {
+      Scene stage;
+      addMaterial(stage, lambert(Rgb(0.5f)));
+      const auto block = [&](vec3 corner, vec3 size) {
+        Scene part = room({{corner.x, corner.z},
+                           {corner.x + size.x, corner.z},
+                           {corner.x + size.x, corner.z + size.z},
+                           {corner.x, corner.z + size.z}},
+                          size.y);
+        for (Mesh mesh : part.meshes) {
+          for (vec3& p : mesh.positions) p.y += corner.y;
+          addMesh(stage, 0, mesh);
+        }
+        addQuad(stage, 0, corner + vec3(0, size.y, 0), vec3(0, 0, size.z), vec3(size.x, 0, 0));
+      };
+      block({0, -0.1f, 0}, {4, 0.1f, depth});
+      block({0, 0, 0}, {4, 2.5f, 0.1f});
+      block({0, 0, 0}, {0.1f, 2.5f, depth});
+      if (walls == 3) block({3.9f, 0, 0}, {0.1f, 2.5f, depth});
+      for (int i = 0; i < 4; ++i) block({0.2f + i, 0, depth - 0.5f}, {0.7f, 1.6f, 0.4f});
+      EXPECT_TRUE(isSeenFromOutside(stage)) << walls << " " << depth;
+    }
+}
+
+void addTorus(Scene& scene, vec3 centre, float radius, float tube) {
+  constexpr uint32_t kAround = 24, kAcross = 12;
+  Mesh mesh;
+  for (uint32_t i = 0; i < kAround; ++i)
+    for (uint32_t j = 0; j < kAcross; ++j) {
+      const float a = 2 * kPi * float(i) / kAround, b = 2 * kPi * float(j) / kAcross;
+      const float r = radius + tube * std::cos(b);
+      mesh.positions.push_back(centre + vec3(r * std::cos(a), tube * std::sin(b), r * std::sin(a)));
+      const uint32_t i1 = (i + 1) % kAround, j1 = (j + 1) % kAcross;
+      const auto at = [](uint32_t u, uint32_t v) { return u * kAcross + v; };
+      mesh.triangles.push_back({at(i, j), at(i, j1), at(i1, j)});
+      mesh.triangles.push_back({at(i1, j), at(i, j1), at(i1, j1)});
+    }
+  addMesh(scene, 0, mesh);
+}
+
+// The hole of a torus is no room, also where others lie around it or a plate closes it below.
+TEST(Framing, ToriAreSeenFromOutside) {
+  for (const bool hasPlate : {false, true}) {
+    Scene row;
+    addMaterial(row, lambert(Rgb(0.5f)));
+    for (int i = 0; i < 5; ++i) addSphere(row, 0, vec3(2 * i, 0, 0), 1, 8);
+    addTorus(row, vec3(-2, 0, 0), 1, 0.25f);
+    addTorus(row, vec3(10, 0, 0), 1, 0.25f);
+    if (hasPlate) addQuad(row, 0, vec3(-3.3f, -1, -1.3f), vec3(0, 0, 2.6f), vec3(14.6f, 0, 0));
+    EXPECT_TRUE(isSeenFromOutside(row)) << hasPlate;
+  }
+}
+
+// A body whose front faces are inside, which is no room without a floor.
+TEST(Framing, BodiesTurnedInsideOutAreSeenFromOutside) {
+  Scene creature;
+  addMaterial(creature, lambert(Rgb(0.5f)));
+  addSphere(creature, 0, vec3(0, 1, 0), 1, 24);
+  addSphere(creature, 0, vec3(0, 2.2f, 0.4f), 0.5f, 24);
+  for (const float x : {-0.5f, 0.5f}) addSphere(creature, 0, vec3(x, 0.1f, 0.2f), 0.3f, 24);
+  for (size_t i = 0; i < creature.meshes.size(); ++i)
+    for (Triangle& t : creature.meshes.edit(i).triangles) std::swap(t[1], t[2]);
+  EXPECT_TRUE(isSeenFromOutside(creature));
 }
 
 }  // namespace

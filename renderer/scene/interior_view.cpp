@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "scene/eye_view.h"
 #include "scene/outside_view.h"
 #include "scene/placed_triangles.h"
 
@@ -132,6 +133,52 @@ double viewArea(const Panorama& seen, int i) {
   return area;
 }
 
+// Whether the eye stands on a floor: nearly all that is below it are floor, walls and furniture,
+// most of it level or upright. (Below an eye in the hole of a torus is nothing, and within a body
+// that is turned inside out nothing is level.)
+bool standsOnFloor(const std::vector<Sight>& sights) {
+  constexpr double kBelow = -0.2, kLevel = 0.95, kUpright = 0.2;
+  constexpr double kMinSeen = 0.9, kMinFlat = 0.6;
+  double below = 0, seen = 0, flat = 0;
+  for (const Sight& s : sights) {
+    if (s.direction.y > kBelow) continue;
+    ++below;
+    seen += s.isWall();
+    const double slope = std::fabs(s.normal.y);
+    flat += s.isWall() && (slope > kLevel || slope < kUpright);
+  }
+  return seen > kMinSeen * below && flat > kMinFlat * seen;
+}
+
+bool contains(const Bounds& box, const dvec3& p) {
+  return glm::all(glm::lessThanEqual(dvec3(box.min), p)) &&
+         glm::all(glm::lessThanEqual(p, dvec3(box.max)));
+}
+
+// Whether one of the four sides of the model is open: from there, most of the space that the eye
+// sees is seen from outside.
+bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box,
+                 const OutsideViews& views) {
+  constexpr double kMaxShown = 0.5;
+  constexpr int kSteps = 16;
+  const double whole = glm::length(box.size());
+  for (const int axis : {0, 2})
+    for (const bool upper : {false, true}) {
+      double space = 0, shown = 0;
+      for (const Sight& s : sights)
+        for (int k = 0; k < kSteps; ++k) {
+          const double distance = (k + 0.5) / kSteps * std::min(s.distance, whole);
+          const dvec3 point = eye + distance * s.direction;
+          if (!contains(box, point)) break;
+          const double volume = distance * distance * std::min(s.distance, whole);
+          space += volume;
+          if (views[size_t(axis)].shows(point, upper)) shown += volume;
+        }
+      if (shown > kMaxShown * space) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
@@ -139,12 +186,13 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
   constexpr float kFov = kPi / 3;
   const Bounds box = bounds(scene, instances);
   if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
-  if (!isFurnishedRoom(box, instances) && !facesInwards(scene, instances, box)) return std::nullopt;
+  const OutsideViews outside = outsideViews(scene, instances, box);
+  if (!isFurnishedRoom(box, instances) && !faceInwards(outside)) return std::nullopt;
 
   const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
   const Section section(scene, instances, box, height);
   double maxArea = 0;
-  std::optional<Camera> best;
+  dvec3 eye(0), target(0);
   for (int z = 0; z < Section::kSide; z += 4)
     for (int x = 0; x < Section::kSide; x += 4) {
       if (!section.isFree(x, z)) continue;
@@ -159,11 +207,13 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
         if (!(area > maxArea)) continue;
         maxArea = area;
         const dvec2 at = section.point(x, z), to = at + box.size().y * direction(i);
-        const dvec3 eye(at.x, height, at.y), target(to.x, height - 0.1 * box.size().y, to.y);
-        best = Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);
+        eye = {at.x, height, at.y}, target = {to.x, height - 0.1 * box.size().y, to.y};
       }
     }
-  return best;
+  if (maxArea == 0) return std::nullopt;
+  const std::vector<Sight> sights = sightsFrom(scene, instances, eye);
+  if (!standsOnFloor(sights) || hasOpenSide(sights, eye, box, outside)) return std::nullopt;
+  return Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);
 }
 
 }  // namespace chromeball

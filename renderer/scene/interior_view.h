@@ -10,7 +10,8 @@ namespace chromeball {
 
 // A camera inside the room that the instances form (indices into scene.instances); nullopt if they
 // do not form a room. They do if front faces of walls surround some free position on all sides
-// except for a window or a door, and one of these holds:
+// except for a window or a door, floor and furniture are below it, none of the four sides of the
+// model is open, and one of these holds:
 // - Seen from the six sides of the bounding box, 60% of the nearest surfaces are back faces:
 //   single-sided walls that face inwards.
 // - The bounding box is 2 to 10 metres high and at least 2.5 metres wide, and there are at least
