@@ -39,14 +39,16 @@ Json partOf(const ModelEntry& model) {
   return part;
 }
 
-Json partOf(const Camera& camera) {
-  return {{"position", numbersIn(camera.position)},
-          {"axes", {numbersIn(camera.right), numbersIn(camera.up), numbersIn(camera.back)}},
-          {"orthographic", camera.orthographic},
-          {"view", {camera.fov, camera.halfHeight, camera.aspect}},
-          {"lens", {camera.lensRadius, camera.focus}},
-          {"principalPoint", numbersIn(camera.principalPoint)},
-          {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
+Json partOf(const CameraEntry& entry) {
+  const Camera& lens = entry.lens;
+  return {{"position", numbersIn(entry.position)},
+          {"target", numbersIn(entry.target)},
+          {"up", numbersIn(entry.up)},
+          {"orthographic", lens.orthographic},
+          {"view", {lens.fov, lens.halfHeight, lens.aspect}},
+          {"lens", {lens.lensRadius, lens.focus}},
+          {"principalPoint", numbersIn(lens.principalPoint)},
+          {"distortion", {lens.distortion.k1, lens.distortion.k2}}};
 }
 
 Json partOf(const Lens& lens) { return {lens.aperture, lens.focus}; }
@@ -58,18 +60,16 @@ Json partOf(const Optics& optics) {
 }
 
 Json partOf(const Lamp& lamp) {
-  Json part = {{"name", lamp.name}};
+  Json part = {{"name", lamp.name}, {"position", numbersIn(lamp.position)}};
   if (const auto& light = lamp.punctual)
     part["punctual"] = {int(light->kind),
                         numbersIn(light->intensity),
-                        numbersIn(light->position),
                         numbersIn(light->direction),
                         light->range,
                         light->cosInner,
                         light->cosOuter};
   if (const auto& disc = lamp.disc)
-    part["disc"] = {numbersIn(disc->position), numbersIn(disc->direction), disc->radius,
-                    numbersIn(disc->radiance)};
+    part["disc"] = {numbersIn(disc->direction), disc->radius, numbersIn(disc->radiance)};
   if (const auto& sun = lamp.sun)
     part["sun"] = {numbersIn(sun->sun.direction), numbersIn(sun->sun.irradiance), sun->sun.angle,
                    sun->isVisible, sun->name};
@@ -84,13 +84,10 @@ Json partOf(const SourceEntry& source) {
   return part;
 }
 
-Json partOf(const Surroundings& around) {
-  return {{"shape", int(around.shape)},
-          {"min", numbersIn(around.min)},
-          {"max", numbersIn(around.max)},
-          {"center", numbersIn(around.center)},
-          {"radius", around.radius},
-          {"model", around.model},
+Json partOf(const SurroundingsEntry& around) {
+  return {{"shape", int(around.shape.shape)},    {"min", numbersIn(around.min)},
+          {"max", numbersIn(around.max)},        {"center", numbersIn(around.center)},
+          {"radius", around.shape.radius},       {"model", around.shape.model},
           {"capture", numbersIn(around.capture)}};
 }
 

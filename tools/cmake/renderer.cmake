@@ -2,9 +2,14 @@
 # The library: chromeball_renderer here, chromeball::renderer for others.
 file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
 list(FILTER renderer_sources EXCLUDE REGEX "/image/imageio/")  # the module
-add_library(chromeball_renderer ${renderer_sources})
+# Rooms of which a render's time has no part: what is read, planned and reported.
+set(planning_sources ${renderer_sources})
+list(FILTER planning_sources INCLUDE REGEX "/renderer/(job|study|scene/solve)/")
+list(REMOVE_ITEM renderer_sources ${planning_sources})
+add_library(chromeball_planning OBJECT ${planning_sources})
+add_library(chromeball_renderer ${renderer_sources} $<TARGET_OBJECTS:chromeball_planning>)
 add_library(chromeball::renderer ALIAS chromeball_renderer)
-chromeball_compile(chromeball_renderer)
+chromeball_optimize_less(chromeball_planning)
 set_target_properties(chromeball_renderer PROPERTIES
   EXPORT_NAME renderer
   OUTPUT_NAME chromeball
@@ -28,21 +33,31 @@ add_dependencies(chromeball_renderer chromeball_imageio)
 set_property(SOURCE renderer/image/io/imageio_module.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_BIN_TO_LIB="${bin_to_lib}")
 
-# GLM's definitions decide what its vectors declare, so consumers need the same.
-target_compile_definitions(chromeball_renderer
-  PUBLIC GLM_FORCE_SILENT_WARNINGS GLM_FORCE_XYZW_ONLY
-  PRIVATE CHROMEBALL_VERSION="${PROJECT_VERSION}")
-target_include_directories(chromeball_renderer PRIVATE renderer)
-target_include_directories(chromeball_renderer SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
-target_link_libraries(chromeball_renderer
-  PUBLIC fmt::fmt glm::glm
+set(chromeball_private_libraries
   # tinygltf before Draco: Debian's libdraco exports a tinygltf of another version, whose functions
   # would take the place of those that our calls were compiled for.
-  PRIVATE TBB::tbb embree OpenEXR::OpenEXR PNG::PNG JPEG::JPEG PkgConfig::WebP
-          TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer
-          # Headers only: a static library's consumers need not find them.
-          $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
-          $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+  TBB::tbb embree OpenEXR::OpenEXR PNG::PNG JPEG::JPEG PkgConfig::WebP
+  TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer
+  # Headers only: a static library's consumers need not find them.
+  $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
+  $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+foreach(target chromeball_planning chromeball_renderer)
+  chromeball_compile(${target})
+  # GLM's definitions decide what its vectors declare, so consumers need the same.
+  target_compile_definitions(${target}
+    PUBLIC GLM_FORCE_SILENT_WARNINGS GLM_FORCE_XYZW_ONLY
+    PRIVATE CHROMEBALL_VERSION="${PROJECT_VERSION}")
+  target_include_directories(${target} PRIVATE renderer)
+  target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
+  chromeball_unity(${target} 48)
+  # What nearly every file includes, parsed once.
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
+    <fmt/format.h> ${PROJECT_SOURCE_DIR}/renderer/math/vec.h)
+endforeach()
+set_target_properties(chromeball_planning PROPERTIES
+  POSITION_INDEPENDENT_CODE "${BUILD_SHARED_LIBS}")
 
 # The page of a comparison and its script become strings.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
@@ -51,11 +66,6 @@ file(READ renderer/study/report/report.html report_html)
 file(READ renderer/study/report/report.js report_script)
 configure_file(renderer/study/report/embedded.cpp.in report_embedded.cpp @ONLY)
 target_sources(chromeball_renderer PRIVATE ${PROJECT_BINARY_DIR}/report_embedded.cpp)
-chromeball_unity(chromeball_renderer 48)
-# What nearly every file includes, parsed once: saves a fifth of a build's time.
-target_precompile_headers(chromeball_renderer PRIVATE
-  <algorithm> <functional> <memory> <string> <vector> <fmt/format.h>
-  ${PROJECT_SOURCE_DIR}/renderer/math/vec.h)
 
 # Headers for consumers, who write #include <chromeball/film/film.h>. They are copies, in which
 # "math/vec.h" reads <chromeball/math/vec.h>, so that renderer/ itself is on nobody else's path.
