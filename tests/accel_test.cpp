@@ -14,7 +14,7 @@
 #include "scene/surface.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::accel_test {
 namespace {
 
 // Deterministic random numbers in [0, 1).
@@ -465,4 +465,4 @@ TEST(Accel, MasksHideInstances) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::accel_test

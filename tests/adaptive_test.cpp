@@ -11,7 +11,7 @@
 #include "probe/sky.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::adaptive_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
@@ -215,4 +215,4 @@ TEST(Adaptive, NeedsSixteenSamples) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::adaptive_test

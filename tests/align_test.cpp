@@ -12,7 +12,7 @@
 #include "shared_data.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::align_test {
 namespace {
 
 using glm::dvec3;
@@ -157,4 +157,4 @@ TEST(SlowAlign, GalileosCrossHasTheOrientationOfItsAngularMap) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::align_test

@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::alpha_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -112,4 +112,4 @@ TEST(Alpha, TransparentRendersHaveTheCoverageOfEachPixel) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::alpha_test

@@ -15,7 +15,7 @@
 #include "strategy_samples.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::area_lights_test {
 namespace {
 
 constexpr const char* kRegions[] = {"median-cut-area", "median-cut-centre-area",
@@ -241,4 +241,4 @@ TEST(AreaLights, ThePenumbraOfAPillarHasOneStepInsteadOfOneForEachLight) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::area_lights_test

@@ -13,7 +13,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::assemble_test {
 namespace {
 
 constexpr ImageSize kSize{256, 128};
@@ -237,4 +237,4 @@ TEST(SlowAssemble, TwoFisheyeViewsReturnTheProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::assemble_test

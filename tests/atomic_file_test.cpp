@@ -6,7 +6,7 @@
 
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::atomic_file_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -82,4 +82,4 @@ TEST(AtomicFile, LeavesTheFilesOfOtherMachines) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::atomic_file_test

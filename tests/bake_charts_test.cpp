@@ -5,7 +5,7 @@
 #include "bake/bake_points.h"
 #include "bake_scenes.h"
 
-namespace chromeball {
+namespace chromeball::bake_charts_test {
 namespace {
 
 TEST(BakeCharts, ChartsHoldEveryTriangleOnceAndDoNotOverlap) {
@@ -91,4 +91,4 @@ TEST(BakeCharts, EveryTexelThatAChartTouchesHasAPoint) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::bake_charts_test

@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::bake_test {
 namespace {
 
 struct Baked {
@@ -218,4 +218,4 @@ TEST(Bake, VerticesTakeTheMeanOfNeighboursInsideOfBodies) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::bake_test

@@ -10,7 +10,7 @@
 #include "measure/agreement.h"
 #include "measure/power_law.h"
 
-namespace chromeball {
+namespace chromeball::bias_variance_test {
 namespace {
 
 constexpr int kWidth = 24, kHeight = 16;
@@ -188,4 +188,4 @@ TEST(Agreement, differentImagesAreDetected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::bias_variance_test

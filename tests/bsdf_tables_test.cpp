@@ -4,7 +4,7 @@
 
 #include "all_tables.h"
 
-namespace chromeball {
+namespace chromeball::bsdf_tables_test {
 namespace {
 
 Material lambertian() {
@@ -65,4 +65,4 @@ TEST(BsdfTables, anisotropyOfStrengthZeroIsIsotropic) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::bsdf_tables_test

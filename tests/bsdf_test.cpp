@@ -8,7 +8,7 @@
 #include "shading/ggx.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::bsdf_test {
 namespace {
 
 Surface flatSurface() {
@@ -192,4 +192,4 @@ TEST(Bsdf, shadingNormalsNeitherBlackenNorLeak) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::bsdf_test

@@ -7,7 +7,7 @@
 #include "scene/framing.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::camera_test {
 namespace {
 
 void expectNear(vec3 a, vec3 b, float tolerance = 1e-6f) {
@@ -174,4 +174,4 @@ TEST(Camera, FramingOfAnEmptySceneOrAPointIsValid) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::camera_test

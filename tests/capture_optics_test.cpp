@@ -6,7 +6,7 @@
 
 #include "capture_photographs.h"
 
-namespace chromeball {
+namespace chromeball::capture_optics_test {
 namespace {
 
 // By the vector form of reflection, for a camera at azimuth 0, whose frame is that of the world.
@@ -108,4 +108,4 @@ TEST(BallReflectance, IsMeasuredAtTheCentre) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::capture_optics_test

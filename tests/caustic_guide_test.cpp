@@ -18,7 +18,7 @@
 #include "sphere_test.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::caustic_guide_test {
 namespace {
 
 const vec3 kUp(0, 1, 0);
@@ -428,4 +428,4 @@ TEST(CausticGuide, IsUsedWhereItPays) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::caustic_guide_test

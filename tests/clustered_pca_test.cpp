@@ -8,7 +8,7 @@
 
 #include "relight/clustered_pca.h"
 
-namespace chromeball {
+namespace chromeball::clustered_pca_test {
 namespace {
 
 double squaredDistance(std::span<const float> a, std::span<const float> b) {
@@ -105,4 +105,4 @@ TEST(ClusteredPca, DegenerateSignals) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::clustered_pca_test

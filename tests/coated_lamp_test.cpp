@@ -5,7 +5,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::coated_lamp_test {
 namespace {
 
 Material lamp(float clearcoat) {
@@ -127,4 +127,4 @@ TEST(CoatedLamp, LightSamplesMatchTheIntegral) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::coated_lamp_test

@@ -5,7 +5,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::coincident_test {
 namespace {
 
 const Rgb kRed(0.8f, 0.1f, 0.1f), kGreen(0.1f, 0.8f, 0.1f);
@@ -252,4 +252,4 @@ TEST(Coincident, EqualInstancesCostNothing) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::coincident_test

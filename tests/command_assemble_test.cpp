@@ -15,7 +15,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::command_assemble_test {
 namespace {
 
 using nlohmann::json;
@@ -314,4 +314,4 @@ TEST(SlowCommandAssemble, RealBallAgreesWithItsAuthorsMap) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_assemble_test

@@ -15,7 +15,7 @@
 #include "shared_data.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::command_bake_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -179,4 +179,4 @@ TEST(SlowBake, RealModels) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_bake_test

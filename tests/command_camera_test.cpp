@@ -14,7 +14,7 @@
 #include "scene/solve/picture_lines.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::command_camera_test {
 namespace {
 
 // A model of one triangle, a grey photograph, and what its camera sees.
@@ -279,4 +279,4 @@ TEST_F(CommandCamera, ExifTellsTheFocalLengthWhereItIsNeeded) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_camera_test

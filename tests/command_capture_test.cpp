@@ -17,7 +17,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::command_capture_test {
 namespace {
 
 using nlohmann::json;
@@ -377,4 +377,4 @@ TEST_F(SlowCommandSun, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_capture_test

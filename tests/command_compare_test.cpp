@@ -13,7 +13,7 @@
 #include "run_command.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::command_compare_test {
 namespace {
 
 using nlohmann::json;
@@ -354,4 +354,4 @@ TEST_F(SlowCommandCompare, warnsThatItIgnoresThePlate) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_compare_test

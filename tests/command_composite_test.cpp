@@ -12,7 +12,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::command_composite_test {
 namespace {
 
 // Adds a node with the quad corner + s a + t b, s and t in [0, 1].
@@ -297,4 +297,4 @@ TEST_F(SlowCommandComposite, ARealPhotographAsPlate) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_composite_test

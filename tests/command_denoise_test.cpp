@@ -11,7 +11,7 @@
 #include "image/io/write_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_denoise_test {
 namespace {
 
 class CommandDenoise : public testing::Test {
@@ -139,4 +139,4 @@ TEST_F(CommandDenoise, RefusesDamagedLayers) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_denoise_test

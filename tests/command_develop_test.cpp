@@ -12,7 +12,7 @@
 #include "run_command.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::command_develop_test {
 namespace {
 
 Image filled(int width, int height, int channels, float number) {
@@ -218,4 +218,4 @@ TEST(DevelopText, SeveralInOneString) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_develop_test

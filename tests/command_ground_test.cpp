@@ -12,7 +12,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_ground_test {
 namespace {
 
 // Adds the quad corner + s a + t b, s and t in [0, 1], as node.
@@ -213,4 +213,4 @@ TEST_F(SlowCommandGround, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_ground_test

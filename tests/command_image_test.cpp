@@ -9,7 +9,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::command_image_test {
 namespace {
 
 using nlohmann::json;
@@ -212,4 +212,4 @@ TEST(SlowCommandImage, DamagedFilesAreShownOrRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_image_test

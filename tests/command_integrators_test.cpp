@@ -10,7 +10,7 @@
 #include "run_command.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::command_integrators_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -183,4 +183,4 @@ TEST_F(CommandIntegrators, SlowCompare) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_integrators_test

@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_lights_test {
 namespace {
 
 using nlohmann::json;
@@ -352,4 +352,4 @@ TEST(SlowCommandLights, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_lights_test

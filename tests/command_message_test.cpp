@@ -7,7 +7,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_message_test {
 namespace {
 
 using nlohmann::json;
@@ -161,4 +161,4 @@ TEST_F(SlowCommandMessage, CamerasAreFoundByCameraOrNodeName) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_message_test

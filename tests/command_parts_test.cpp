@@ -11,7 +11,7 @@
 #include "paths.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_parts_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -417,4 +417,4 @@ TEST(SlowWriteEvery, WritesImagesThatGrow) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_parts_test

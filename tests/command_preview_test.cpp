@@ -7,7 +7,7 @@
 
 #include "preview_render.h"
 
-namespace chromeball {
+namespace chromeball::command_preview_test {
 namespace {
 
 using nlohmann::json;
@@ -155,4 +155,4 @@ TEST(SlowPreview, ShowsOneFrameAfterTheOther) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_preview_test

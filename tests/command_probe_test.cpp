@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_probe_test {
 namespace {
 
 using nlohmann::json;
@@ -173,4 +173,4 @@ TEST(SlowCommandProbe, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_probe_test

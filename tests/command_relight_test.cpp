@@ -12,7 +12,7 @@
 #include "small_model.h"
 #include "whole_stage.h"
 
-namespace chromeball {
+namespace chromeball::command_relight_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -340,4 +340,4 @@ TEST_F(CommandRelight, LampsOfTheSceneAreAdded) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_relight_test

@@ -12,7 +12,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_render_test {
 namespace {
 
 using nlohmann::json;
@@ -643,4 +643,4 @@ TEST(CommandRender, TheHeaderMapsNodeAndMaterialIdsToNames) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_render_test

@@ -14,7 +14,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::command_rotation_test {
 namespace {
 
 using nlohmann::json;
@@ -200,4 +200,4 @@ TEST_F(Turned, AlignSaysWhatItCannotTell) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_rotation_test

@@ -12,7 +12,7 @@
 #include "small_model.h"
 #include "tcp.h"
 
-namespace chromeball {
+namespace chromeball::command_tev_test {
 namespace {
 
 class Packet {
@@ -232,4 +232,4 @@ TEST(TevDisplay, IsMissed) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_tev_test

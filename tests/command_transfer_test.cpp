@@ -14,7 +14,7 @@
 #include "scene/gltf/custom_data.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::command_transfer_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -317,4 +317,4 @@ TEST_F(CommandTransfer, RefusesValuesThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::command_transfer_test

@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::composite_test {
 namespace {
 
 // A scene in which some instances are synthetic objects and the others are the local scene.
@@ -579,4 +579,4 @@ TEST(Composite, AlphaIsFractional) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::composite_test

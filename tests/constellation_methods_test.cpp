@@ -11,7 +11,7 @@
 #include "probe/mapping.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::constellation_methods_test {
 namespace {
 
 double energy(const RegionTable& table, const Region& r) { return table.moment(r).w; }
@@ -191,4 +191,4 @@ TEST(SlowConstellation, VarianceCutBeatsMedianCut) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::constellation_methods_test

@@ -9,7 +9,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::constellation_test {
 namespace {
 
 int litTexels(const Image& map) {
@@ -185,4 +185,4 @@ TEST(Constellation, RotatesWithTheMap) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::constellation_test

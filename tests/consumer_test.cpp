@@ -14,7 +14,7 @@
 #include "paths.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::consumer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST(SlowConsumer, ConfiguresAndCompilesWithTheSourceTreeAsSubdirectory) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::consumer_test

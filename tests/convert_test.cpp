@@ -12,7 +12,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::convert_test {
 namespace {
 
 constexpr std::array kMappings = {Mapping::LatLong,         Mapping::AngularMap,
@@ -230,4 +230,4 @@ TEST(Convert, StripAgreesWithOpenExrsLatLong) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::convert_test

@@ -9,7 +9,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::convolve_test {
 namespace {
 
 const std::vector<ZonalKernel> kKernels{ZonalKernel::phong(1),   ZonalKernel::phong(20),
@@ -142,4 +142,4 @@ TEST(Convolve, KernelsOutsideTheirRangeAreRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::convolve_test

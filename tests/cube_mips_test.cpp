@@ -18,7 +18,7 @@
 #include "probe/zonal_kernel.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::cube_mips_test {
 namespace {
 
 // The direction of OpenGL 4.6, section 8.13: from face and texture coordinates in [-1, 1].
@@ -232,4 +232,4 @@ TEST_F(SlowCommandConvolve, Errors) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::cube_mips_test

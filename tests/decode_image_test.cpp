@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::decode_image_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -146,4 +146,4 @@ TEST(DecodeImage, DamagedFilesAreRejectedOrRead) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::decode_image_test

@@ -18,7 +18,7 @@
 #include "strategy_samples.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::delta_lights_test {
 namespace {
 
 Scene mattePlane(const Rgb& albedo) {
@@ -337,4 +337,4 @@ TEST(SlowStrategyTable, resolvedNamesIncludeTheCount) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::delta_lights_test

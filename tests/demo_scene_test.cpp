@@ -10,7 +10,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "trace/accel.h"
 
-namespace chromeball {
+namespace chromeball::demo_scene_test {
 namespace {
 
 Scene sceneOf(demo::Finish finish) {
@@ -75,4 +75,4 @@ TEST(SlowDemoScene, FineHasManyTriangles) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::demo_scene_test

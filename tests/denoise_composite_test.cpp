@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::denoise_composite_test {
 namespace {
 
 constexpr int kWidth = 96, kHeight = 72;
@@ -120,4 +120,4 @@ TEST(DenoiseComposite, StopsAtOnce) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::denoise_composite_test

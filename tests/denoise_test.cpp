@@ -15,7 +15,7 @@
 #include "measure/image_error.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::denoise_test {
 namespace {
 
 constexpr int kWidth = 75, kHeight = 50;  // neither is a multiple of a tile or a vector
@@ -417,4 +417,4 @@ TEST(FeatureFilm, HalvesEstimateTheVariance) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::denoise_test

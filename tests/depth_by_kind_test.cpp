@@ -5,7 +5,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::depth_by_kind_test {
 namespace {
 
 // The radiance inside a closed sphere that emits 1.
@@ -107,4 +107,4 @@ TEST(DepthByKind, NoBouncesOfAnyKindLeaveEmission) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::depth_by_kind_test

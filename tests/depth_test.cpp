@@ -10,7 +10,7 @@
 #include "run_command.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::depth_test {
 namespace {
 
 Probe whiteProbe() { return Probe(constantProbe({64, 32}, Rgb(1))); }
@@ -184,4 +184,4 @@ TEST(Depth, TheCommandReportsTheCutFraction) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::depth_test

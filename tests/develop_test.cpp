@@ -11,7 +11,7 @@
 #include "image/develop/glare.h"
 #include "image/develop/vignette.h"
 
-namespace chromeball {
+namespace chromeball::develop_test {
 namespace {
 
 Image filled(int width, int height, float number) {
@@ -329,4 +329,4 @@ TEST(Develop, SameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::develop_test

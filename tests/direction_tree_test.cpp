@@ -7,7 +7,7 @@
 #include "math/sobol.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::direction_tree_test {
 namespace {
 
 using Points = std::vector<DirectionTree::Point>;
@@ -84,4 +84,4 @@ TEST(DirectionTree, BearsAnyWeights) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::direction_tree_test

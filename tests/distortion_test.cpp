@@ -9,7 +9,7 @@
 #include "scene/projection.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::distortion_test {
 namespace {
 
 const std::vector<Distortion> kLenses = {{-0.2, 0},    {0.3, 0},     {-0.25, 0.06}, {0.1, -0.02},
@@ -191,4 +191,4 @@ TEST(Distortion, RendersAGridWhereTheFormulaPutsIt) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::distortion_test

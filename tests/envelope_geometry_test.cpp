@@ -9,7 +9,7 @@
 #include "image/io/write_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::envelope_geometry_test {
 namespace {
 
 // A ball on a table; the radius of the ball is `scale` metres.
@@ -197,4 +197,4 @@ TEST(EnvelopeGeometry, ThinWallsDoNotLeakLight) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::envelope_geometry_test

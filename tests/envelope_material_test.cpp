@@ -2,7 +2,7 @@
 // tests/ENVELOPE.md: the rows about materials, emission and path depth.
 #include "envelope.h"
 
-namespace chromeball {
+namespace chromeball::envelope_material_test {
 namespace {
 
 Material coated(float roughness, float metallic, float ior) {
@@ -103,4 +103,4 @@ TEST(SlowEnvelopeMaterial, Emission1e10Beside1e_8) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::envelope_material_test

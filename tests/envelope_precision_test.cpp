@@ -10,7 +10,7 @@
 #include "probe/solid_angle.h"
 #include "scene/surface.h"
 
-namespace chromeball {
+namespace chromeball::envelope_precision_test {
 namespace {
 
 constexpr long double kPiL = 3.141592653589793238462643383279502884L;
@@ -171,4 +171,4 @@ TEST(EnvelopePrecision, DirectionsNearThePole) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::envelope_precision_test

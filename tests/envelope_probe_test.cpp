@@ -13,7 +13,7 @@
 #include "probe/repair.h"
 #include "probe/solid_angle.h"
 
-namespace chromeball {
+namespace chromeball::envelope_probe_test {
 namespace {
 
 constexpr const char* kStrategies[] = {"bsdf",
@@ -276,4 +276,4 @@ TEST(EnvelopeProbe, ScalesBeyondTheRangeOfFloatAreRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::envelope_probe_test

@@ -8,7 +8,7 @@
 #include "image/io/write_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::envelope_size_test {
 namespace {
 
 // Path of a model file of a wavy sheet with at least `triangles` triangles.
@@ -80,4 +80,4 @@ TEST(SlowEnvelopeSize, TheErrorOfAMillionSamples) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::envelope_size_test

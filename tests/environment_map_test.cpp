@@ -11,7 +11,7 @@
 #include "test_probes.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::environment_map_test {
 namespace {
 
 RenderResult renderRow(const std::string& name, const Scene& scene, const Camera& camera,
@@ -265,4 +265,4 @@ TEST(Row, NamesOfIntegratorsAndDepthsRoundTrip) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::environment_map_test

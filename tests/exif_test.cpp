@@ -12,7 +12,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::exif_test {
 namespace {
 
 std::string seed(const std::string& name) {
@@ -96,4 +96,4 @@ TEST(Exif, RealPhotographs) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::exif_test

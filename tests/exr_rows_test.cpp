@@ -11,7 +11,7 @@
 #include "image/io/write_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::exr_rows_test {
 namespace {
 
 constexpr uint64_t kNoLimit = uint64_t(1) << 40;
@@ -125,4 +125,4 @@ TEST(ExrRows, RefusesDamagedFiles) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::exr_rows_test

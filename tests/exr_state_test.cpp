@@ -15,7 +15,7 @@
 #include "image/io/write_exr.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::exr_state_test {
 namespace {
 
 struct Item {
@@ -197,4 +197,4 @@ TEST(ExrState, DoesNotAllocateWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::exr_state_test

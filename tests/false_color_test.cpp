@@ -10,7 +10,7 @@
 #include "image/io/read_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::false_color_test {
 namespace {
 
 double grey(const Color8& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
@@ -57,4 +57,4 @@ TEST(EncodePng, isLossless) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::false_color_test

@@ -8,7 +8,7 @@
 #include "image/io/read_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::farm_test {
 namespace {
 
 int shell(const std::string& line) {
@@ -107,4 +107,4 @@ TEST(Farm, RendersShardsOfFrames) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::farm_test

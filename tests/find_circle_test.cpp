@@ -16,7 +16,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::find_circle_test {
 namespace {
 
 void expectCircle(const Image& image, const Circle& truth, double tolerance, const char* what) {
@@ -167,4 +167,4 @@ TEST(FindCircle, OfARealPhotograph) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::find_circle_test

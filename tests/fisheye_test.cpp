@@ -10,7 +10,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::fisheye_test {
 namespace {
 
 using enum FisheyeProjection;
@@ -150,4 +150,4 @@ TEST(Fisheye, Names) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::fisheye_test

@@ -12,7 +12,7 @@
 #include "image/io/write_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::flat_field_test {
 namespace {
 
 using nlohmann::json;
@@ -195,4 +195,4 @@ TEST_F(SlowCommandFlatField, DivisionByZeroIsZeroWithAWarning) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::flat_field_test

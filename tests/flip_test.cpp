@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace chromeball {
+namespace chromeball::flip_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 24;
@@ -85,4 +85,4 @@ TEST(Flip, hdrCoversAllExposures) {
 TEST(Flip, sizesMustAgree) { EXPECT_THROW(flip(reference(), filled(Rgb(0))), InputError); }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::flip_test

@@ -8,7 +8,7 @@
 
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::framing_test {
 namespace {
 
 constexpr float kAspect = 1.5f;
@@ -259,4 +259,4 @@ TEST(Framing, BodiesTurnedInsideOutAreSeenFromOutside) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::framing_test

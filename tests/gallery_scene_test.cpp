@@ -18,7 +18,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "trace/accel.h"
 
-namespace chromeball {
+namespace chromeball::gallery_scene_test {
 namespace {
 
 using demo::Nave;
@@ -248,4 +248,4 @@ TEST(Gallery, WrongArgumentsOfMakeDemoGiveOneLine) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gallery_scene_test

@@ -6,7 +6,7 @@
 #include "scene/thin_wall.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::glass_shadows_test {
 namespace {
 
 constexpr float kAlbedo = 0.5f;
@@ -191,4 +191,4 @@ TEST(GlassShadows, TheCameraSeesRefraction) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::glass_shadows_test

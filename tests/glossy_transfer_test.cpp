@@ -7,7 +7,7 @@
 #include "relight/glossy_transfer.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::glossy_transfer_test {
 namespace {
 
 struct Estimated {
@@ -113,4 +113,4 @@ TEST(GlossyTransfer, SameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::glossy_transfer_test

@@ -4,7 +4,7 @@
 
 #include "gltf_writer.h"
 
-namespace chromeball {
+namespace chromeball::gltf_accessor_test {
 namespace {
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -222,4 +222,4 @@ TEST(GltfAccessor, RejectsAttributesOfDifferentLength) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_accessor_test

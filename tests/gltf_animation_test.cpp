@@ -4,7 +4,7 @@
 
 #include "gltf_writer.h"
 
-namespace chromeball {
+namespace chromeball::gltf_animation_test {
 namespace {
 
 using nlohmann::json;
@@ -216,4 +216,4 @@ TEST(GltfAnimation, InvalidAnimationsAreRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_animation_test

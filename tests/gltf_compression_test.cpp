@@ -8,7 +8,7 @@
 #include "scene/bounds.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::gltf_compression_test {
 namespace {
 
 using nlohmann::json;
@@ -285,4 +285,4 @@ TEST(GltfSamples, CompressedModelsEqualUncompressedOnes) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_compression_test

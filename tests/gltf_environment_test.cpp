@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::gltf_environment_test {
 namespace {
 
 using nlohmann::json;
@@ -196,4 +196,4 @@ TEST(SlowGltfEnvironment, LightsTheSceneUnlessAProbeIsGiven) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_environment_test

@@ -6,7 +6,7 @@
 #include "probe/synth.h"
 #include "sample_model.h"
 
-namespace chromeball {
+namespace chromeball::gltf_extension_pixels_test {
 namespace {
 
 const Probe& darkness() {
@@ -179,4 +179,4 @@ TEST(SlowGltfPixels, ClearCoatTest) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_extension_pixels_test

@@ -7,7 +7,7 @@
 #include "gltf_writer.h"
 #include "temporary_folder.h"
 
-namespace chromeball {
+namespace chromeball::gltf_file_test {
 namespace {
 
 using nlohmann::json;
@@ -304,4 +304,4 @@ TEST(GltfFile, SkinsWithoutJointsAreNamedInTheMessage) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_file_test

@@ -4,7 +4,7 @@
 
 #include "gltf_writer.h"
 
-namespace chromeball {
+namespace chromeball::gltf_instances_test {
 namespace {
 
 using nlohmann::json;
@@ -62,4 +62,4 @@ TEST(GltfInstances, EqualMorphWeightsShareAMesh) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_instances_test

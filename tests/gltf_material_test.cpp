@@ -7,7 +7,7 @@
 #include "gltf_writer.h"
 #include "scene/surface.h"
 
-namespace chromeball {
+namespace chromeball::gltf_material_test {
 namespace {
 
 using nlohmann::json;
@@ -329,4 +329,4 @@ TEST(GltfMaterial, RejectsInvalidImages) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_material_test

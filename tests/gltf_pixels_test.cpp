@@ -9,7 +9,7 @@
 #include "scene/bounds.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::gltf_pixels_test {
 namespace {
 
 // A front view by an orthographic camera of exactly the size of the model, under a constant probe.
@@ -173,4 +173,4 @@ TEST(GltfPixels, OrientationTest) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_pixels_test

@@ -12,7 +12,7 @@
 #include "scene/mesh_attributes.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::gltf_samples_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ TEST(GltfSamples, ComputedTangentsAgreeWithMikkTSpace) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_samples_test

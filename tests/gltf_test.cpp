@@ -4,7 +4,7 @@
 
 #include "gltf_writer.h"
 
-namespace chromeball {
+namespace chromeball::gltf_test {
 namespace {
 
 using nlohmann::json;
@@ -212,4 +212,4 @@ TEST(Gltf, SkinsBlendTheirJoints) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::gltf_test

@@ -5,7 +5,7 @@
 #include "math/grid_table.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::grid_table_test {
 namespace {
 
 using Grid = GridTable<float, 5, 2, 9>;  // steps of 1/4, 1 and 1/8: nodes are exact in binary
@@ -95,4 +95,4 @@ TEST(GridTable, interpolatesValuesOfAnyType) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::grid_table_test

@@ -9,7 +9,7 @@
 #include "composite/plate_scale.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::ground_test {
 namespace {
 
 Scene unitBall() {
@@ -100,4 +100,4 @@ TEST(Ground, PixelsBehindWallsDoNotShowIt) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::ground_test

@@ -15,7 +15,7 @@
 #include "probe/sky.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::guide_test {
 namespace {
 
 float random(uint64_t i, uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); }
@@ -443,4 +443,4 @@ TEST(Film, WeighsSamples) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::guide_test

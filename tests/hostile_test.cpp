@@ -18,7 +18,7 @@
 #include "shared_data.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -252,4 +252,4 @@ TEST(SlowHostile, OtherFormatsAreRejectedByTheirFirstBytes) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::hostile_test

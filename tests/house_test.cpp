@@ -15,6 +15,7 @@
 
 #include "paths.h"
 
+namespace house_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,3 +221,4 @@ TEST(House, TopLevelHasOnlyListedFiles) {
 }
 
 }  // namespace
+}  // namespace house_test

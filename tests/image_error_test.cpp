@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace chromeball {
+namespace chromeball::image_error_test {
 namespace {
 
 Image filled(int w, int h, float number) {
@@ -81,4 +81,4 @@ TEST(ImageError, ZScoresOfNormalNoise) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::image_error_test

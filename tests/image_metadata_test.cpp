@@ -11,7 +11,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::image_metadata_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -308,4 +308,4 @@ TEST(SlowImageMetadata, FilesFromFuzzing) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::image_metadata_test

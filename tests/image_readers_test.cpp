@@ -18,7 +18,7 @@
 #include "image/io/read_image.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::image_readers_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -203,4 +203,4 @@ TEST(ImageReaders, TexturesIgnoreGamma) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::image_readers_test

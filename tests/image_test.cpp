@@ -15,7 +15,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::image_test {
 namespace {
 
 // Values over the whole range of float, with full mantissas.
@@ -271,4 +271,4 @@ TEST(ToneMap, KnownPoints) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::image_test

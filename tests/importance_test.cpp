@@ -8,7 +8,7 @@
 #include "sphere_test.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::importance_test {
 namespace {
 
 TEST(Probe, interpolatesBetweenTexelCentres) {
@@ -164,4 +164,4 @@ TEST(Importance, compensationSubtractsTheMeanAndFallsBackOnAConstantProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::importance_test

@@ -6,7 +6,7 @@
 #include "probe/capture/assemble.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::inpaint_blind_test {
 namespace {
 
 constexpr ImageSize kSize{128, 64};
@@ -105,4 +105,4 @@ TEST(FillBlind, NeedsSomethingToContinue) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::inpaint_blind_test

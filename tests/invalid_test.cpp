@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::invalid_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = INFINITY;
@@ -123,4 +123,4 @@ TEST(InvalidSamples, AProbeReturnsNanForNanDirections) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::invalid_test

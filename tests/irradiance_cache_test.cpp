@@ -12,7 +12,7 @@
 #include "small_scenes.h"
 #include "study/row.h"
 
-namespace chromeball {
+namespace chromeball::irradiance_cache_test {
 namespace {
 
 const std::atomic<bool> kNever = false;
@@ -364,4 +364,4 @@ TEST(SlowIrradianceCache, LightsARoom) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::irradiance_cache_test

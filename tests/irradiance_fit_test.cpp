@@ -22,7 +22,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::irradiance_fit_test {
 namespace {
 
 constexpr ImageSize kSize{64, 32};
@@ -321,4 +321,4 @@ TEST(SlowIrradianceFit, GalileosTombNeedsFewLights) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::irradiance_fit_test

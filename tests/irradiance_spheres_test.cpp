@@ -16,7 +16,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::irradiance_spheres_test {
 namespace {
 
 TEST(Icosphere, FaceOfEachNormal) {
@@ -200,4 +200,4 @@ TEST(SlowAmbientFit, FindsTheWindowsOfAHall) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::irradiance_spheres_test

@@ -16,7 +16,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::irradiance_test {
 namespace {
 
 TEST(Icosphere, NormalsAreSpreadEvenly) {
@@ -328,4 +328,4 @@ TEST(SlowIrradiance, PublishedImages) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::irradiance_test

@@ -14,7 +14,7 @@
 #include "run_command.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::job_test {
 namespace {
 
 TEST(Job, RendersASceneFileToAnImageAndPrintsNothing) {
@@ -183,4 +183,4 @@ TEST(Job, ErrorsSuggestASetting) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::job_test

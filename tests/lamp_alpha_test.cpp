@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::lamp_alpha_test {
 namespace {
 
 const Probe& blackProbe() {
@@ -169,4 +169,4 @@ TEST(EmitterChoice, FineNumbersAreUniformBelowTheTable) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::lamp_alpha_test

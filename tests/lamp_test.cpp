@@ -12,7 +12,7 @@
 #include "small_model.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::lamp_test {
 namespace {
 
 SceneFile read(const TemporaryFolder& folder, const std::string& toml) {
@@ -173,4 +173,4 @@ TEST(Lamps, LightASceneThatHasNoProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::lamp_test

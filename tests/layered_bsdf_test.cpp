@@ -9,7 +9,7 @@
 #include "shading/thin_film.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::layered_bsdf_test {
 namespace {
 
 Surface flatSurface(bool frontFace = true) {
@@ -422,4 +422,4 @@ TEST(LayeredBsdf, sheetMirrorsItsHighlightBelow) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::layered_bsdf_test

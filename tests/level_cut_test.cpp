@@ -15,7 +15,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::level_cut_test {
 namespace {
 
 // Mean and maximum error after 1 to 7 levels, in percent.
@@ -218,4 +218,4 @@ TEST(LightRegions, OfABlackMap) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::level_cut_test

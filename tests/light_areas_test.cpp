@@ -9,7 +9,7 @@
 #include "probe/solid_angle.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::light_areas_test {
 namespace {
 
 // What the sum over the texels of a map says of the lights, for regions of any shape: sum of
@@ -103,4 +103,4 @@ TEST(RegionAreas, HaveTheMeanColourOfTheRegionsOfKolligAndKeller) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::light_areas_test

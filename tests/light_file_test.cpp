@@ -12,7 +12,7 @@
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
 
-namespace chromeball {
+namespace chromeball::light_file_test {
 namespace {
 
 using nlohmann::json;
@@ -238,4 +238,4 @@ TEST(LightError, OfABlackProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::light_file_test

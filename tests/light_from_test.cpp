@@ -22,7 +22,7 @@
 #include "small_model.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::light_from_test {
 namespace {
 
 // A sky with a sun of 3 degrees; the texels have 0.7.
@@ -262,4 +262,4 @@ TEST(LightList, LightsAScene) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::light_from_test

@@ -15,7 +15,7 @@
 #include "run_command.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::light_groups_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -290,4 +290,4 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::light_groups_test

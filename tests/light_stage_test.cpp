@@ -21,7 +21,7 @@
 #include "temporary_folder.h"
 #include "whole_stage.h"
 
-namespace chromeball {
+namespace chromeball::light_stage_test {
 namespace {
 
 constexpr const char* kBases[] = {"lat-long:16x8", "cube:4", "icosphere:1", "sh:3"};
@@ -380,4 +380,4 @@ TEST(LightStage, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::light_stage_test

@@ -11,6 +11,7 @@
 #include "paths.h"
 #include "run_command.h"
 
+namespace manual_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -138,3 +139,4 @@ TEST(Manual, FishCompletesEveryCommandAndOption) {
 }
 
 }  // namespace
+}  // namespace manual_test

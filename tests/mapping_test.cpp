@@ -8,7 +8,7 @@
 #include "probe/detect_mapping.h"
 #include "probe/solid_angle.h"
 
-namespace chromeball {
+namespace chromeball::mapping_test {
 namespace {
 
 constexpr std::array kMappings = {Mapping::LatLong,         Mapping::AngularMap,
@@ -261,4 +261,4 @@ TEST(Mapping, IsDetected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::mapping_test

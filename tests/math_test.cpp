@@ -6,7 +6,7 @@
 #include "math/frame.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::math_test {
 namespace {
 
 TEST(Trig, agreesWithTheStandardLibrary) {
@@ -130,4 +130,4 @@ TEST(CdfRows, aWeightOf1e12PreservesTheOtherWidths) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::math_test

@@ -13,7 +13,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::memory_estimate_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -107,4 +107,4 @@ TEST_F(SlowMemoryEstimate, TexturesAreRefusedByTheirHeaders) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::memory_estimate_test

@@ -12,7 +12,7 @@
 #include "probe/load.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::merge_exposures_test {
 namespace {
 
 const std::vector<double> kFive = {4, 1, 0.25, 0.0625, 0.015625};
@@ -227,4 +227,4 @@ TEST(FilterTransmission, OfTwoImages) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::merge_exposures_test

@@ -5,7 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace chromeball {
+namespace chromeball::mesh_attributes_test {
 namespace {
 
 // A square in z = 0 of two triangles, front to +Z, with an upright texture: v points down.
@@ -112,4 +112,4 @@ TEST(MeshAttributes, TinyNormalsKeepTheirDirection) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::mesh_attributes_test

@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::mip_chain_test {
 namespace {
 
 TexelGrid randomGrid(int width, int height) {
@@ -222,4 +222,4 @@ TEST(SlowMipChain, AFarCheckerboardNeitherAliasesNorBlurs) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::mip_chain_test

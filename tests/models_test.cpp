@@ -11,7 +11,7 @@
 #include "shared_data.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::models_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST(SlowModels, EveryModelUnderEveryProbeHasNoInvalidSample) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::models_test

@@ -11,7 +11,7 @@
 #include "test_probes.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::modes_test {
 namespace {
 
 const char* const kRows[] = {"importance+regularize", "importance+glass-shadows",
@@ -103,4 +103,4 @@ TEST(Modes, StopAtALimitOfNoise) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::modes_test

@@ -16,7 +16,7 @@
 #include "temporary_folder.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::motion_blur_test {
 namespace {
 
 using nlohmann::json;
@@ -510,4 +510,4 @@ TEST(SlowMotionBlur, EveryFrameHasItsProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::motion_blur_test

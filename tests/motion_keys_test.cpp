@@ -9,7 +9,7 @@
 #include "temporary_folder.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::motion_keys_test {
 namespace {
 
 using nlohmann::json;
@@ -229,4 +229,4 @@ TEST(SlowMotionKeys, EveryProbeMustFitIntoMemory) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::motion_keys_test

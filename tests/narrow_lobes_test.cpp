@@ -7,7 +7,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::narrow_lobes_test {
 namespace {
 
 struct NamedMaterial {
@@ -108,4 +108,4 @@ TEST(SlowNarrowLobes, reflectAreaLights) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::narrow_lobes_test

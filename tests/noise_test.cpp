@@ -8,7 +8,7 @@
 #include "shared_data.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::noise_test {
 namespace {
 
 constexpr int kSeeds = 24;
@@ -319,4 +319,4 @@ TEST(Noise, ToleratesPixelsWithoutAValidSample) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::noise_test

@@ -7,7 +7,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::output_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST_F(SlowOutputFiles, TheOutputFolderOfASceneFileIsCreated) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::output_file_test

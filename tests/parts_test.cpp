@@ -14,7 +14,7 @@
 #include "small_scenes.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::parts_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 36;
@@ -274,4 +274,4 @@ TEST(SlowShard, GuidedShardsAreUnbiased) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::parts_test

@@ -9,7 +9,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::path_batch_test {
 namespace {
 
 // Hides PathIntegrator::sampleMany().
@@ -136,4 +136,4 @@ TEST(PathBatch, UnderABlackProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::path_batch_test

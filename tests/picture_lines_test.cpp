@@ -7,7 +7,7 @@
 #include "scene/camera_view.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::picture_lines_test {
 namespace {
 
 // The sum over pixels of a white line on black is its length times its width.
@@ -75,4 +75,4 @@ TEST(PictureLines, EdgesFollowTheLens) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::picture_lines_test

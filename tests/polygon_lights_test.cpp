@@ -25,7 +25,7 @@
 #include "strategy_samples.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::polygon_lights_test {
 namespace {
 
 constexpr int kWidth = 256, kHeight = 128;
@@ -334,4 +334,4 @@ TEST(PolygonLights, RefuseOthers) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::polygon_lights_test

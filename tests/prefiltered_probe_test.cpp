@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::prefiltered_probe_test {
 namespace {
 
 std::vector<vec3> randomDirections(int count) {
@@ -72,4 +72,4 @@ TEST(PrefilteredProbe, BearsRadianceFromTinyToHuge) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::prefiltered_probe_test

@@ -5,7 +5,7 @@
 #include "browser.h"
 #include "preview_render.h"
 
-namespace chromeball {
+namespace chromeball::preview_page_test {
 namespace {
 
 // Uses the page as a person does, and appends what it saw.
@@ -96,4 +96,4 @@ TEST(SlowPreview, worksInABrowser) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::preview_page_test

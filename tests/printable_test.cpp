@@ -9,7 +9,7 @@
 
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::printable_test {
 namespace {
 
 TEST(Printable, PlainTextStaysAsItIs) {
@@ -135,4 +135,4 @@ TEST_F(SlowHostileMessage, ScalesOfPfm) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::printable_test

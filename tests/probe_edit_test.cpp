@@ -20,7 +20,7 @@
 #include "shared_data.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::probe_edit_test {
 namespace {
 
 using nlohmann::json;
@@ -312,4 +312,4 @@ TEST(SlowCommandEdit, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::probe_edit_test

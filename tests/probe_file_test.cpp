@@ -14,7 +14,7 @@
 #include "run_command.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::probe_file_test {
 namespace {
 
 TEST(ProbeFile, LatLongOfAnyShapeIsNotResampled) {
@@ -212,4 +212,4 @@ TEST(ProbeInfo, ConstantAndBlack) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::probe_file_test

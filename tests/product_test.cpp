@@ -8,7 +8,7 @@
 #include "sphere_test.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::product_test {
 namespace {
 
 LightPoint pointWith(const vec3& normal, bool transmits = false) {
@@ -107,4 +107,4 @@ TEST(Product, blackProbesGiveNoSamples) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::product_test

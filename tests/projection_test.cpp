@@ -6,7 +6,7 @@
 
 #include "base/hash.h"
 
-namespace chromeball {
+namespace chromeball::projection_test {
 namespace {
 
 Camera obliqueCamera(bool orthographic) {
@@ -68,4 +68,4 @@ TEST(Projection, HasNoValueForPointsThatTheCameraDoesNotSee) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::projection_test

@@ -15,7 +15,7 @@
 #include "run_command.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::punctual_test {
 namespace {
 
 using Kind = PunctualLight::Kind;
@@ -347,4 +347,4 @@ TEST(GltfLights, LightASceneWithoutAProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::punctual_test

@@ -21,7 +21,7 @@
 #include "shared_data.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::random_rays_test {
 namespace {
 
 using nlohmann::json;
@@ -226,4 +226,4 @@ TEST(SlowCommandRays, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::random_rays_test

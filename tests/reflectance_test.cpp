@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::reflectance_test {
 namespace {
 
 constexpr int kSize = 24;
@@ -219,4 +219,4 @@ TEST(SlowReflectance, OfLayeredFloorsIsThatOfTheirBase) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::reflectance_test

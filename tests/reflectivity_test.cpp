@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::reflectivity_test {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -98,4 +98,4 @@ TEST(Reflectivity, Rectangles) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::reflectivity_test

@@ -6,7 +6,7 @@
 
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::region_tree_test {
 namespace {
 
 struct Record {
@@ -58,4 +58,4 @@ TEST(RegionTree, EndsWithEqualPositions) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::region_tree_test

@@ -10,7 +10,7 @@
 #include "small_scenes.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::regularization_test {
 namespace {
 
 constexpr int kWidth = 20, kHeight = 15;
@@ -137,4 +137,4 @@ TEST(Regularization, WidthsAndSpreads) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::regularization_test

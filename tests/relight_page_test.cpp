@@ -14,7 +14,7 @@
 #include "small_model.h"
 #include "tcp.h"
 
-namespace chromeball {
+namespace chromeball::relight_page_test {
 namespace {
 
 // Uses the page as a person does, and appends what it saw.
@@ -127,4 +127,4 @@ TEST(SlowRelightPage, turnsAndSwapsProbesInABrowser) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::relight_page_test

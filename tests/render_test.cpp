@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::render_test {
 namespace {
 
 Scene plane(const Material& material) {
@@ -213,4 +213,4 @@ TEST(Render, blendedSurfacesTransmitOneMinusAlpha) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::render_test

@@ -10,7 +10,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::rendered_ball_test {
 namespace {
 
 const Rgb kChrome(0.632f, 0.647f, 0.653f);
@@ -92,4 +92,4 @@ TEST(SlowRenderedBall, ReturnsItsReflectivity) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::rendered_ball_test

@@ -10,7 +10,7 @@
 #include "run_command.h"
 #include "small_model.h"
 
-namespace chromeball {
+namespace chromeball::report_test {
 namespace {
 
 // Records errors of the page's scripts.
@@ -107,4 +107,4 @@ TEST(SlowReport, worksInABrowser) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::report_test

@@ -12,7 +12,7 @@
 #include "probe/capture/solve_response.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::response_test {
 namespace {
 
 // A power with a slight S shape, as films have it.
@@ -145,4 +145,4 @@ TEST(ResponseCurve, BadFilesAreRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::response_test

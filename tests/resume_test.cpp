@@ -6,7 +6,7 @@
 #include "integrate/render_state.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::resume_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 36;
@@ -164,4 +164,4 @@ TEST(Resume, SurvivesDamagedStates) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::resume_test

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "floor_in_surroundings.h"
 
-namespace chromeball {
+namespace chromeball::room_test {
 namespace {
 
 const vec3 kMin = box().min, kMax = box().max, kCapture = box().capture;
@@ -94,4 +94,4 @@ TEST(Room, RejectsEmptyModelsAndCapturePointsOutside) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::room_test

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::rotation_test {
 namespace {
 
 using glm::dquat;
@@ -101,4 +101,4 @@ TEST(Rotation, RejectsWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::rotation_test

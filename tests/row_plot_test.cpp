@@ -14,7 +14,7 @@
 #include "study/report/row_plot.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::row_plot_test {
 namespace {
 
 RowDistribution distributionOf(const Image& image, int row, const AzimuthRange& range, int samples,
@@ -246,4 +246,4 @@ TEST(SlowCommandPlot, BadInputIsRejected) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::row_plot_test

@@ -7,7 +7,7 @@
 #include "math/sampler.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::sampler_test {
 namespace {
 
 // Whether each of the 2^k elementary intervals of every shape 2^-a x 2^-(k-a) contains exactly one
@@ -104,4 +104,4 @@ TEST(Sampler, eachNumberIsUniform) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::sampler_test

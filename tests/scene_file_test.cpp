@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "paths.h"
 
-namespace chromeball {
+namespace chromeball::scene_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +332,4 @@ TEST(SceneFileOfTheDemo, IsValidAndItsFilesExist) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::scene_file_test

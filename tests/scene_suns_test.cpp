@@ -16,7 +16,7 @@
 #include "strategy_samples.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::scene_suns_test {
 namespace {
 
 const dvec3 kDirection = glm::normalize(dvec3(0.748, 0.199, 0.633));
@@ -199,4 +199,4 @@ TEST(SceneSuns, AFloorThroughTheCommand) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::scene_suns_test

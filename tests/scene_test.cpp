@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace chromeball {
+namespace chromeball::scene_test {
 namespace {
 
 // One triangle, one material with a texture, one node.
@@ -76,4 +76,4 @@ TEST(Scene, AppendRenumbersEverything) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::scene_test

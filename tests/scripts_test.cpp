@@ -8,6 +8,7 @@
 
 #include "run_command.h"
 
+namespace scripts_test {
 namespace {
 
 // A script of tools/scripts, which reads `input`, in a folder of its own.
@@ -173,3 +174,4 @@ TEST_F(SlowLintSelection, TheLintedCommitIsNear) {
 }
 
 }  // namespace
+}  // namespace scripts_test

@@ -10,7 +10,7 @@
 #include "shared_data.h"
 #include "trace/built_geometry.h"
 
-namespace chromeball {
+namespace chromeball::sequence_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -383,4 +383,4 @@ TEST(Camera, TurnsAroundTheCentre) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::sequence_test

@@ -15,7 +15,7 @@
 #include "job/settings_page.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::settings_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -351,4 +351,4 @@ TEST(CommandSettings, HelpShowsEveryOptionWithItsDefaultAndNames) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::settings_test

@@ -13,7 +13,7 @@
 #include "run_command.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::shadow_catcher_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -229,4 +229,4 @@ TEST(ShadowCatcher, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::shadow_catcher_test

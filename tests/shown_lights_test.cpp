@@ -14,7 +14,7 @@
 #include "small_model.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::shown_lights_test {
 namespace {
 
 constexpr float kRotation = 40;
@@ -148,4 +148,4 @@ TEST(ShownLights, InASceneFile) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::shown_lights_test

@@ -7,7 +7,7 @@
 #include "run_command.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::single_sided_test {
 namespace {
 
 constexpr SingleSided kModes[] = {SingleSided::Camera, SingleSided::Light, SingleSided::Off};
@@ -174,4 +174,4 @@ TEST(SlowSingleSided, ABlackRoomIsReported) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::single_sided_test

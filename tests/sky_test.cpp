@@ -8,7 +8,7 @@
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 
-namespace chromeball {
+namespace chromeball::sky_test {
 namespace {
 
 // Sum over texels of radiance x solid angle x max(0, cosine to `normal`).
@@ -134,4 +134,4 @@ TEST(Synth, StudioHasLightsInADarkRoom) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::sky_test

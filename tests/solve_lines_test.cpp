@@ -11,7 +11,7 @@
 #include "run_command.h"
 #include "scene/solve/fspy.h"
 
-namespace chromeball {
+namespace chromeball::solve_lines_test {
 namespace {
 
 ObservedLine lineOf(const SolvedCamera& camera, int axis, const dvec3& from, double length) {
@@ -227,4 +227,4 @@ TEST_F(Fspy, RefusesOtherFiles) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::solve_lines_test

@@ -11,7 +11,7 @@
 #include "scene/solve/camera_doubts.h"
 #include "scene/solve/spread_rotations.h"
 
-namespace chromeball {
+namespace chromeball::solve_points_test {
 namespace {
 
 const dvec3 kRoom(2, 1.5, 2), kTable(1, 0, 0.7);
@@ -220,4 +220,4 @@ TEST(SolvedCamera, FocalLengthsOn35mmFilmHaveTheSameDiagonal) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::solve_points_test

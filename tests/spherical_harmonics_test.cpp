@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::spherical_harmonics_test {
 namespace {
 
 TEST(SphericalHarmonics, BasisIsOrthonormal) {
@@ -76,4 +76,4 @@ TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::spherical_harmonics_test

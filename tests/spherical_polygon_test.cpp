@@ -8,7 +8,7 @@
 #include "probe/mapping.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::spherical_polygon_test {
 namespace {
 
 dvec3 at(double azimuth, double elevation) { return directionAt(azimuth, elevation); }
@@ -137,4 +137,4 @@ TEST(PlanarPolygon, HullAndTriangles) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::spherical_polygon_test

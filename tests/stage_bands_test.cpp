@@ -10,7 +10,7 @@
 #include "temporary_folder.h"
 #include "whole_stage.h"
 
-namespace chromeball {
+namespace chromeball::stage_bands_test {
 namespace {
 
 constexpr int kWidth = 20, kHeight = 35;
@@ -172,4 +172,4 @@ TEST(StageSize, ExceedsNoFileAndNoMemory) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::stage_bands_test

@@ -15,7 +15,7 @@
 #include "small_model.h"
 #include "whole_stage.h"
 
-namespace chromeball {
+namespace chromeball::stage_memory_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -194,4 +194,4 @@ TEST_F(SlowStageMemory, TheProcessStaysBelowTheLimit) {
 #endif
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::stage_memory_test

@@ -11,7 +11,7 @@
 #include "test_probes.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::start_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST(SlowStart, TheModuleIsFoundInAMovedInstallation) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::start_test

@@ -13,7 +13,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::starved_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -196,4 +196,4 @@ TEST_F(SlowStarved, OutOfMemoryIsOneLine) {
 #endif
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::starved_test

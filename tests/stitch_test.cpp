@@ -20,7 +20,7 @@
 #include "shared_data.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::stitch_test {
 namespace {
 
 using glm::dquat;
@@ -226,4 +226,4 @@ TEST_F(CommandStitch, WrongListsAreExplained) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::stitch_test

@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::strata_test {
 namespace {
 
 struct Case {
@@ -164,4 +164,4 @@ TEST(Strata, blackProbesHaveNoRegions) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::strata_test

@@ -6,7 +6,7 @@
 #include "measure/statistics.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::strategies_test {
 namespace {
 
 constexpr int kSize = 32, kTile = 8, kRepeats = 12;
@@ -69,4 +69,4 @@ TEST(SlowStrategies, allUnbiasedOnesRenderTheSameImage) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::strategies_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace chromeball {
+namespace chromeball::suggest_test {
 namespace {
 
 TEST(Suggest, DistanceCountsEachKindOfEditOnce) {
@@ -42,4 +42,4 @@ TEST(Suggest, MessageHasTheNearestNameOrAllNames) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::suggest_test

@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::sun_extraction_test {
 namespace {
 
 const std::vector<vec3>& normals() {
@@ -324,4 +324,4 @@ TEST(SlowSunExtraction, AgreesWithExactIrradiance) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::sun_extraction_test

@@ -16,7 +16,7 @@
 #include "shared_data.h"
 #include "test_probes.h"
 
-namespace chromeball {
+namespace chromeball::sun_from_ball_test {
 namespace {
 
 const dvec3 kPaint(0.32, 0.333, 0.346);
@@ -226,4 +226,4 @@ TEST(SlowSunFromBall, ClosedLoopsOnRealSkies) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::sun_from_ball_test

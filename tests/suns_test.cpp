@@ -11,7 +11,7 @@
 #include "strategy_samples.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::suns_test {
 namespace {
 
 // A sky that is bright around its suns, so that the sampling techniques overlap.
@@ -204,4 +204,4 @@ TEST(SlowSuns, RenderAgreesWithImportance) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::suns_test

@@ -9,7 +9,7 @@
 #include "relight/occlusion_layers.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::surface_layers_test {
 namespace {
 
 RenderSettings withLayers(uint32_t samples, int maxDepth = 3) {
@@ -220,4 +220,4 @@ TEST(Relit, IsBlackWithoutASurface) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::surface_layers_test

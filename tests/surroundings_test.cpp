@@ -6,7 +6,7 @@
 
 #include "floor_in_surroundings.h"
 
-namespace chromeball {
+namespace chromeball::surroundings_test {
 namespace {
 
 Surroundings dome() {
@@ -170,4 +170,4 @@ TEST(Surroundings, ConvergeToTheDistantProbe) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::surroundings_test

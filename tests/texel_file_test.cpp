@@ -19,7 +19,7 @@
 #include "scene/texture.h"
 #include "shared_data.h"
 
-namespace chromeball {
+namespace chromeball::texel_file_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -252,4 +252,4 @@ TEST(TexelFile, AFailureToReadEndsTheRender) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::texel_file_test

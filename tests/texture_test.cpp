@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace chromeball {
+namespace chromeball::texture_test {
 namespace {
 
 // A row of 8-bit greys.
@@ -118,4 +118,4 @@ TEST(Texture, AnyCoordinateIsValid) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::texture_test

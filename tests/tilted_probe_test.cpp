@@ -16,7 +16,7 @@
 #include "test_probes.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::tilted_probe_test {
 namespace {
 
 const Rotation kTilt = Rotation::ofAngles({35, -50, 110});
@@ -222,4 +222,4 @@ TEST(SlowTiltedProbe, ASceneTurnedWithItsProbeLooksTheSame) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::tilted_probe_test

@@ -10,7 +10,7 @@
 #include "relight/vertex_transfer.h"
 #include "small_scenes.h"
 
-namespace chromeball {
+namespace chromeball::transfer_test {
 namespace {
 
 struct Transferred {
@@ -202,4 +202,4 @@ TEST(Transfer, NamesOfBases) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::transfer_test

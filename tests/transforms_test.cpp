@@ -12,7 +12,7 @@
 #include "relight/haar.h"
 #include "sphere_test.h"
 
-namespace chromeball {
+namespace chromeball::transforms_test {
 namespace {
 
 std::vector<double> randomGrid(size_t count, int seed) {
@@ -109,4 +109,4 @@ TEST(Transform, refusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::transforms_test

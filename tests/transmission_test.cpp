@@ -7,7 +7,7 @@
 #include "shading/fresnel.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::transmission_test {
 namespace {
 
 Probe whiteProbe() { return Probe(constantProbe({64, 32}, Rgb(1))); }
@@ -232,4 +232,4 @@ TEST(Transmission, sheetTransmittanceAtNormalIncidence) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::transmission_test

@@ -9,7 +9,7 @@
 #include "probe/synth.h"
 #include "test_scene.h"
 
-namespace chromeball {
+namespace chromeball::transmissive_strategies_test {
 namespace {
 
 struct NamedMaterial {
@@ -142,4 +142,4 @@ TEST(SlowTransmissiveStrategies, lightsThatReplaceTheProbeEqualLamps) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::transmissive_strategies_test
