@@ -125,12 +125,14 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
          j.file.lens = Lens{0.1f, 3, ""};
        }},
       {"lamp", [](RenderJob& j) { j.file.lamps[0].punctual->intensity = Rgb(2); }},
+      {"place of a lamp", [](RenderJob& j) { j.file.lamps[0].position.y += 1; }},
       {"no lamps", [](RenderJob& j) { j.file.lamps.clear(); }},
       {"placement", [](RenderJob& j) { j.file.models[0].placement.translation.x = 1; }},
       {"one more model", [](RenderJob& j) { j.file.models.push_back(j.file.models[0]); }},
       {"surroundings",
        [](RenderJob& j) {
-         j.file.surroundings = Surroundings{.shape = Surroundings::Shape::Sphere, .radius = 50};
+         j.file.surroundings = SurroundingsEntry{
+             .shape = {.shape = Surroundings::Shape::Sphere, .radius = 50}};
        }},
   };
   for (const auto& [name, change] : plain) expectFound(folder / "plain.toml", name, change);
