@@ -63,7 +63,8 @@ FileBytes::FileBytes(const fs::path& path) {
   if (!isWhole) throwInput("{}: cannot read the whole file", path.string());
 }
 
-void checkReplaceable(const fs::path& path) {
+void checkReplaceable(const fs::path& link) {
+  const fs::path path = replaceableFile(link);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!fs::is_directory(folder))
     throwInput("{}: there is no folder {}", path.string(), folder.string());

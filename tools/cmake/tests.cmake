@@ -5,7 +5,8 @@ file(GLOB test_sources CONFIGURE_DEPENDS tests/*.cpp)
 add_executable(tests ${test_sources})
 chromeball_internal_target(tests)
 target_include_directories(tests PRIVATE tests)
-target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json TBB::tbb GTest::gtest GTest::gtest_main)
+target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json TBB::tbb OpenEXR::OpenEXR
+                      PNG::PNG JPEG::JPEG GTest::gtest GTest::gtest_main)
 target_precompile_headers(tests PRIVATE <gtest/gtest.h> <nlohmann/json.hpp> <fmt/format.h>)
 set_property(SOURCE tests/paths.cpp PROPERTY COMPILE_DEFINITIONS
              CHROMEBALL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

@@ -10,7 +10,7 @@
 namespace chromeball {
 
 // As writeImage(); an .exr has the name of its mapping, which loadProbe() reads. Warns of the
-// channels above 1 that a .png clips.
+// channels above 1 that a .png clips, and of those below 0 that become 0 in a .png and an .hdr.
 void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball
