@@ -18,6 +18,13 @@ inline ExifEntry exposureTime(uint32_t n, uint32_t d) { return {0x829a, n, d}; }
 inline ExifEntry fNumber(uint32_t n, uint32_t d) { return {0x829d, n, d}; }
 inline ExifEntry isoSpeed(uint32_t iso) { return {0x8827, iso, 0}; }
 
+// A first directory with an orientation alone.
+inline std::string orientationBlock(int orientation) {
+  std::string block("MM\0*\0\0\0\10\0\1\1\22\0\3\0\0\0\1\0\0\0\0\0\0\0\0", 26);
+  block[19] = char(orientation);
+  return block;
+}
+
 // A first directory with a pointer to one with these entries.
 inline std::string exifBlock(const std::vector<ExifEntry>& entries, bool bigEndian = true) {
   std::string block;

@@ -72,7 +72,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"rtcore.h", {"renderer/trace/"}},
     {"OpenImageIO/", {"renderer/image/imageio/"}},
-    {"OpenEXR/", {"renderer/image/io/exr_"}},
+    {"OpenEXR/", {"renderer/image/io/exr_", "tests/exr_files_test.cpp"}},
     {"png.h",
      {"renderer/image/io/png_reader.cpp", "renderer/image/io/encode_png.cpp",
       "tests/image_readers_test.cpp"}},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // No command overwrites its input files, or one of its outputs with another.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
@@ -122,6 +123,36 @@ TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
   expectErrorWithoutChanges({"compare", in("model.gltf"), "--probe", probe, "--size", "8x8",
                              "--samples", "1", "-o", in("report")},
                             kInput);
+}
+
+// The file at the end of the links is replaced, and they stay; what is no file is refused first.
+TEST_F(SlowOutputFiles, LinksAreFollowedAndSpecialFilesRefused) {
+  const auto render = [&](const std::string& output) {
+    return Words{"render", in("scene.toml"), "--samples", "1", "--quiet", "-o", output};
+  };
+  fs::create_directory(in("far"));
+  fs::create_symlink("far/real.exr", in("link.exr"));  // there is none yet
+  fs::create_symlink("link.exr", in("second.exr"));
+  for (const char* name : {"link.exr", "second.exr"}) {
+    const CommandResult result = runCommand(render(in(name)));
+    EXPECT_EQ(result.status, 0) << result.error;
+    EXPECT_TRUE(fs::is_symlink(in(name)));
+    EXPECT_TRUE(fs::is_regular_file(in("far/real.exr")));
+    fs::remove(in("far/real.exr"));
+  }
+  fs::create_symlink("circle.exr", in("circle.exr"));
+  EXPECT_EQ(runCommand(render(in("circle.exr"))).status, 2);
+  ASSERT_EQ(mkfifo(in("pipe.exr").c_str(), 0600), 0);
+  fs::create_symlink("/dev/null", in("null.exr"));
+  fs::create_symlink("pipe.exr", in("to_pipe.exr"));
+  for (const auto& [name, what] : {std::pair{"pipe.exr", "is a FIFO"},
+                                   {"to_pipe.exr", "is a FIFO"},
+                                   {"null.exr", "is a device"}}) {
+    const CommandResult result = runCommand(render(in(name)));
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.error.find(what), std::string::npos) << result.error;
+  }
+  EXPECT_TRUE(fs::is_fifo(in("pipe.exr")));
 }
 
 // The folder of an output path in the scene file is created if its parent exists; that of --output

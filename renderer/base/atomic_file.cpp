@@ -43,7 +43,31 @@ int openLocked(const fs::path& path) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), temporary_(target_) {
+fs::path replaceableFile(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  fs::path file = path;
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(file, error)); ++i) {
+    if (i == kMostLinks)
+      throwInput("{}: cannot be written: its symbolic links do not end", path.string());
+    file = file.parent_path() / fs::read_symlink(file, error);  // an absolute one replaces all
+    if (error) throwInput("{}: cannot be written: {}", path.string(), error.message());
+  }
+  const fs::file_status status = fs::status(file, error);
+  const char* what = fs::is_fifo(status)                                          ? "FIFO"
+                     : fs::is_character_file(status) || fs::is_block_file(status) ? "device"
+                     : fs::is_socket(status)                                      ? "socket"
+                                                                                  : nullptr;
+  if (what)
+    throwInput(
+        "{}: cannot be written: it is a {}; an output is a file that appears when it is "
+        "complete",
+        path.string(), what);
+  return file;
+}
+
+AtomicFile::AtomicFile(const fs::path& target)
+    : target_(replaceableFile(target)), temporary_(target_) {
   const std::string name = fmt::format(".{}.{}", target_.filename().string(), machineName());
   temporary_.replace_filename(name + ".part");
   lock_ = openLocked(temporary_);

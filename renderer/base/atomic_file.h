@@ -12,9 +12,11 @@ namespace chromeball {
 // The temporary name is that of the file and of this machine, and locked, so that what a killed
 // process left is overwritten by the next one that writes the file on the same machine. The files
 // of other machines are never touched: whether their process still exists is not known here.
+//
+// A symbolic link stays one: the file that it leads to is replaced.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path target);
+  explicit AtomicFile(const std::filesystem::path& target);  // throws as replaceableFile() does
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -26,5 +28,10 @@ class AtomicFile {
   std::filesystem::path target_, temporary_;
   int lock_ = -1;  // descriptor of the temporary file; -1: none
 };
+
+// The file at the end of the symbolic links that begin at `path`; it need not exist. Throws
+// InputError if it is a FIFO, a device or a socket, which cannot be replaced by a complete file, or
+// if the links go in a circle.
+std::filesystem::path replaceableFile(const std::filesystem::path& path);
 
 }  // namespace chromeball

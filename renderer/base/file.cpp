@@ -65,7 +65,8 @@ FileBytes::FileBytes(const fs::path& path) {
   if (!isWhole) throwInput("{}: cannot read the whole file", path.string());
 }
 
-void checkReplaceable(const fs::path& path) {
+void checkReplaceable(const fs::path& link) {
+  const fs::path path = replaceableFile(link);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   const bool isFolder = fs::is_directory(folder, error);

@@ -34,8 +34,9 @@ class FileBytes {
 };
 
 // Checks that a file can be created or replaced at `path`, so that a run fails before the work and
-// not after it. The write itself may still fail. Throws InputError if the folder does not exist,
-// RunError if nothing can be written into it.
+// not after it. The write itself may still fail. Throws InputError if the folder does not exist or
+// `path` is no file that can be replaced (atomic_file.h), RunError if nothing can be written into
+// it.
 void checkReplaceable(const std::filesystem::path& path);
 
 // Writes the bytes atomically. Throws RunError.

@@ -8,8 +8,8 @@
 #include "image/resample.h"
 
 namespace chromeball {
-Image readPlate(const std::string& path) {
-  Image plate = readImage(path);
+Image readPlate(const std::string& path, Messages* messages) {
+  Image plate = readImage(path, IntegerTexels::Srgb, messages);
   size_t invalid = 0;
   int x = 0, y = 0;
   for (int row = plate.height - 1; row >= 0; --row)

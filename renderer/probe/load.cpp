@@ -85,6 +85,7 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
   const std::optional<Mapping> stated = openExrMapping(file), named = namedMapping(file);
   LoadedProbe probe;
   probe.hasIntegerTexels = file.integers;
+  probe.messages = std::move(file.messages);
   Image image = colorOf(std::move(file), path);
   probe.fileWidth = image.width;
   probe.fileHeight = image.height;
@@ -157,6 +158,13 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
     lines.push_back(fmt::format("{}: repaired {}", path.string(), describe(probe.repair)));
   for (std::string& line : lightWarnings(probe, path)) lines.push_back(std::move(line));
   return lines;
+}
+
+Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& path) {
+  Messages messages = probe.messages;
+  for (std::string& line : warnings(probe, path))
+    messages.push_back({Message::Kind::Warning, std::move(line)});
+  return messages;
 }
 
 std::vector<std::string> lightWarnings(const LoadedProbe& probe,

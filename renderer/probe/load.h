@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/message.h"
 #include "image/image.h"
 #include "probe/mapping.h"
 #include "probe/repair.h"
@@ -25,6 +26,7 @@ struct LoadedProbe {
   bool hasIntegerTexels = false;  // of 8 or 16 bits
   float maximum = 0;              // over texels and channels
   double fractionAtMaximum = 0;   // of the texels; 0 if all are equal
+  Messages messages;              // of its reader, each "FILE: ..."
 };
 
 // The attribute of an EXR, or the comment of an HDR, with the name of its mapping.
@@ -42,6 +44,9 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
 
 // Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
+
+// All that there is to say of the file: the reader's messages, then those warnings.
+Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& path);
 
 // The warnings about the light itself: the probe is black, or clipped.
 std::vector<std::string> lightWarnings(const LoadedProbe& probe, const std::filesystem::path& path);

@@ -138,7 +138,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
       neededLayer(file, arguments.in, "ao", 1)};
   Image color = relit(layers, lightMap(arguments), arguments.rotation);
   if (!arguments.added.empty()) {
-    const Image added = readImage(arguments.added);
+    const Image added = colorOfData(readImageFile(arguments.added), arguments.added);
     if (added.width != color.width || added.height != color.height)
       throwInput("{}: has {} x {} pixels; {} has {} x {}", arguments.added, added.width,
                  added.height, arguments.in, color.width, color.height);

@@ -6,11 +6,13 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "image/io/read_image.h"
+#include "image/io/uncovered_light.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
 #include "job/id_manifest.h"
 #include "job/output_file.h"
 #include "layer_view.h"
+#include "messages.h"
 
 namespace chromeball {
 namespace {
@@ -46,8 +48,9 @@ void printLegend(const Image& ids, const std::map<int, std::string>& names) {
 
 Image colorOf(const std::string& path) {
   ImageFile file = readImageFile(path);
+  print(file.messages, false);
   if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
-  return colorOf(std::move(file), path);
+  return colorOfData(std::move(file), path);
 }
 
 Image viewOf(const std::string& path, const std::string& layer) {
@@ -69,10 +72,10 @@ void run(const ImageViewArguments& arguments) {
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   if (!std::isfinite(transform.exposure))
     throwInput("--exposure: must be a finite number of stops");
-  writeImage(
-      arguments.out,
-      arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer),
-      transform);
+  const Image shown =
+      arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer);
+  if (const auto warning = uncoveredLightWarning(arguments.out, shown)) warn(warning->text);
+  writeImage(arguments.out, shown, transform);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void LightsProbe::checkMask() const {
 
 LoadedProbe LightsProbe::loadWithFile() const {
   LoadedProbe probe = loadProbe(file, mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, file)) warn(warning);
+  print(probeMessages(probe, file), false);
   if (mask == "below-horizon") {
     replaceBelowHorizon(probe.latLong, Rgb(0));
     if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))

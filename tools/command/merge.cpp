@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "image/io/read_image.h"
+#include "image/io/uncovered_light.h"
 #include "image/io/write_image.h"
 #include "image_noise_text.h"
 #include "job/id_manifest.h"
@@ -55,6 +56,9 @@ void run(const MergeArguments& arguments) {
   finished.image.metadata.merge(wholeMetadata(parts));
   for (const std::string& output : arguments.outputs) writeImage(output, finished.image);
   Messages messages;
+  for (const std::string& output : arguments.outputs)
+    if (auto warning = uncoveredLightWarning(output, finished.image.layers.front().image))
+      messages.push_back(*std::move(warning));
   addExcluded(whole.result, messages);
   print(messages, arguments.quiet);
   if (!arguments.quiet)

@@ -83,7 +83,7 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
 
 Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {
   LoadedProbe probe = loadProbe(file, mapping, option);
-  for (const std::string& warning : warnings(probe, file)) warn(warning);
+  print(probeMessages(probe, file), false);
   return std::move(probe.latLong);
 }
 

@@ -55,7 +55,7 @@ void run(const ProbeConvertArguments& arguments) {
   checkDistinct({arguments.out}, {arguments.in});
   const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
   LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
-  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  print(probeMessages(probe, arguments.in), false);
   warnOfSource(probe, arguments);
   if (arguments.flip) mirrorLeftAndRight(probe.latLong);
   const auto [mapping, size] = target(arguments, probe.latLong);

@@ -102,7 +102,7 @@ void run(const ProbeConvolveArguments& arguments) {
   std::optional<ZonalKernel> kernel;
   if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
   LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  print(probeMessages(probe, arguments.in), false);
   if (!arguments.fromSize.empty()) probe.latLong = reduced(arguments, probe.latLong);
   if (!kernel) {
     writeLevels(arguments, probe.latLong);

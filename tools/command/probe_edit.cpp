@@ -143,7 +143,7 @@ void run(const ProbeEditArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
   LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  print(probeMessages(probe, arguments.in), false);
   apply(edits, arguments.in, probe.latLong);
   writeProbe(arguments.out, probe.latLong);
 }

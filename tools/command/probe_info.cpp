@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "json_values.h"
+#include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
@@ -147,6 +148,7 @@ void addProbeInfoCommand(CLI::App& probeCommand) {
                     "also show the solid angles of the file's texels");
   command->callback([arguments] {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
+    print(probe.messages, false);
     for (const std::string& warning : lightWarnings(probe, arguments->file))
       fmt::print(stderr, "chromeball: warning: {}\n", warning);
     const ProbeInfo info = turned(probeInfo(probe.latLong), arguments->rotation);

@@ -33,7 +33,7 @@ void run(const ProbeIrradianceArguments& arguments) {
   const ImageSize given =
       arguments.size.empty() ? ImageSize{0, 0} : parseSize(arguments.size, "--size");
   const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.in)) warn(warning);
+  print(probeMessages(probe, arguments.in), false);
   const ImageSize size =
       given.width > 0 ? given : ImageSize{probe.latLong.width, probe.latLong.height};
   std::optional<BusyLine> busy("irradiance of the probe");

@@ -54,7 +54,7 @@ void run(const ProbePlotArguments& arguments) {
     throwInput("--elevation: {} should be -90 to 90 degrees", *arguments.elevation);
   const AzimuthRange range = parseAzimuthRange(arguments.azimuth);
   const LoadedProbe loaded = loadProbe(arguments.file, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(loaded, arguments.file)) warn(warning);
+  print(probeMessages(loaded, arguments.file), false);
   const Probe probe(loaded.latLong);
   const Importance importance(probe, arguments.compensated);
   const RowDistribution row =

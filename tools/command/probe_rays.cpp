@@ -119,7 +119,7 @@ void run(const ProbeRaysArguments& arguments) {
   const std::optional<ImageSize> size =
       arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
   LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.file)) warn(warning);
+  print(probeMessages(probe, arguments.file), false);
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const Normals normals(probe.latLong, arguments.rotation);
   if (arguments.json)

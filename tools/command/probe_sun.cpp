@@ -182,7 +182,7 @@ void run(const ProbeSunArguments& arguments) {
                 {arguments.probe, arguments.ball, arguments.mask});
 
   LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  for (const std::string& warning : warnings(probe, arguments.probe)) warn(warning);
+  print(probeMessages(probe, arguments.probe), false);
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);

@@ -95,6 +95,7 @@ class RelightModel {
     for (const auto& lines :
          {warnings(loaded, options_.probe), lightWarnings(loaded, options_.probe)})
       warnings_.insert(warnings_.end(), lines.begin(), lines.end());
+    for (const Message& message : loaded.messages) warnings_.push_back(message.text);
     const Rgb scale = parseColor(options_.scale, "--scale");
     const Image map = Probe(loaded.latLong, {}, scale).latLong();
     return file_.basis().project(map, options_.rotation);

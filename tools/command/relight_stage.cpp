@@ -79,7 +79,7 @@ glm::ivec2 parsePixel(const std::string& text, const StageBands& stage) {
 
 Image loadLight(const RelightOptions& a, const std::string& path) {
   const LoadedProbe loaded = loadProbe(path, a.mapping, "--mapping");
-  for (const std::string& warning : warnings(loaded, path)) warn(warning);
+  print(probeMessages(loaded, path), false);
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
 }
 

@@ -25,6 +25,16 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping)));
 }
 
+void warnOfNegative(const std::string& file, const Image& map) {
+  const auto negative =
+      std::ranges::count_if(map.texels, [](float channel) { return channel < 0; });
+  if (negative > 0)
+    warn(fmt::format(
+        "{}: {:.3g}% of the channels are negative, down to {:.3g}, and become 0; an .exr holds "
+        "them",
+        file, 100. * double(negative) / double(map.texels.size()), std::ranges::min(map.texels)));
+}
+
 void warnOfClipping(const std::string& file, const Image& map) {
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });
@@ -37,6 +47,7 @@ void warnOfClipping(const std::string& file, const Image& map) {
 
 void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
   const std::string kind = lowerExtension(file), name = mappingName(mapping);
+  if (kind == ".png" || kind == ".hdr") warnOfNegative(file, map);
   if (kind == ".hdr") {
     checkWritable(file);
     return writeRadianceHdr(file, map, {{kMappingAttribute, name}});

@@ -10,7 +10,8 @@
 namespace chromeball {
 
 // As writeImage(); an .exr or .hdr has the name of its mapping, which loadProbe() reads. Warns of a
-// mapping that other files lose, and of the channels above 1 that a .png clips.
+// mapping that other files lose, of the channels above 1 that a .png clips, and of those below 0
+// that become 0 in a .png and an .hdr.
 void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball

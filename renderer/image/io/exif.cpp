@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exif.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string_view>
@@ -14,6 +15,7 @@ namespace chromeball {
 namespace {
 
 enum Tag : uint16_t {
+  kOrientation = 0x0112,
   kExposureTime = 0x829a,
   kFNumber = 0x829d,
   kExifDirectory = 0x8769,
@@ -21,27 +23,29 @@ enum Tag : uint16_t {
   kFocalLengthIn35mmFilm = 0xa405
 };
 
-enum Type : uint16_t { kShort = 3, kLong = 4, kRational = 5 };
+// IFD is a LONG that points to a directory; LONG8 and IFD8 are BigTIFF's.
+enum Type : uint16_t { kShort = 3, kLong = 4, kRational = 5, kIfd = 13, kLong8 = 16, kIfd8 = 18 };
 
 std::optional<double> positive(double number) {
   return number > 0 && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
-// Bytes beyond the end read as 0.
+// TIFF 6.0 or BigTIFF. Bytes beyond the end read as 0.
 class Block {
  public:
   explicit Block(std::span<const uint8_t> bytes)
-      : bytes_(bytes), bigEndian_(!bytes.empty() && bytes[0] == 'M') {}
+      : bytes_(bytes), bigEndian_(!bytes.empty() && bytes[0] == 'M'), isBig_(number(2, 2) == 43) {}
 
-  bool isTiff() const { return number(2, 2) == 42; }
-  uint64_t firstDirectory() const { return number(4, 4); }
+  bool isTiff() const { return isBig_ || number(2, 2) == 42; }
+  uint64_t firstDirectory() const { return isBig_ ? number(8, 8) : number(4, 4); }
 
   // The first value of the entry with this tag.
   std::optional<double> find(uint64_t directory, Tag tag) const {
-    constexpr uint64_t kEntryBytes = 12;
-    const uint64_t count = number(directory, 2);
+    const uint64_t countBytes = isBig_ ? 8 : 2, entryBytes = isBig_ ? 20 : 12;
+    const uint64_t count =
+        std::min<uint64_t>(number(directory, countBytes), bytes_.size() / entryBytes);
     for (uint64_t i = 0; i < count; ++i) {
-      const uint64_t entry = directory + 2 + i * kEntryBytes;
+      const uint64_t entry = directory + countBytes + i * entryBytes;
       if (number(entry, 2) == tag) return value(entry);
     }
     return std::nullopt;
@@ -57,14 +61,18 @@ class Block {
   }
 
   std::optional<double> value(uint64_t entry) const {
-    const uint64_t at = entry + 8;
+    const uint64_t at = entry + (isBig_ ? 12 : 8);
     switch (number(entry + 2, 2)) {
       case kShort:
         return positive(double(number(at, 2)));
       case kLong:
-        return positive(double(uint32_t(number(at, 4))));
+      case kIfd:
+        return positive(double(number(at, 4)));
+      case kLong8:
+      case kIfd8:
+        return positive(double(number(at, 8)));
       case kRational: {
-        const uint64_t rational = number(at, 4);
+        const uint64_t rational = isBig_ ? at : number(at, 4);
         return positive(double(number(rational, 4)) / double(number(rational + 4, 4)));
       }
       default:
@@ -73,8 +81,22 @@ class Block {
   }
 
   std::span<const uint8_t> bytes_;
-  bool bigEndian_;
+  bool bigEndian_, isBig_;
 };
+
+// Where the file has it; a TIFF is a block itself.
+std::span<const uint8_t> blockOf(std::span<const uint8_t> file) {
+  switch (imageFormat(file)) {
+    case ImageFormat::Jpeg:
+      return jpegExif(file);
+    case ImageFormat::Png:
+      return pngExif(file);
+    case ImageFormat::Tiff:
+      return file;
+    default:
+      return {};
+  }
+}
 
 Exif parse(const Block& block) {
   if (!block.isTiff()) return {};
@@ -100,18 +122,15 @@ Exif fromAttributes(const Metadata& metadata) {
 Exif readExif(const std::filesystem::path& path) {
   const FileBytes file(path);
   const std::span<const uint8_t> bytes = file.bytes();
-  switch (imageFormat(bytes)) {
-    case ImageFormat::Exr:
-      return fromAttributes(readExrMetadata(path));
-    case ImageFormat::Jpeg:
-      return parse(Block(jpegExif(bytes)));
-    case ImageFormat::Png:
-      return parse(Block(pngExif(bytes)));
-    case ImageFormat::Tiff:
-      return parse(Block(bytes));
-    default:
-      return {};
-  }
+  if (imageFormat(bytes) == ImageFormat::Exr) return fromAttributes(readExrMetadata(path));
+  return parse(Block(blockOf(bytes)));
+}
+
+int exifOrientation(std::span<const uint8_t> file) {
+  const Block block(blockOf(file));
+  if (!block.isTiff()) return 1;
+  const double stated = block.find(block.firstDirectory(), kOrientation).value_or(1);
+  return stated <= 8 ? int(stated) : 1;
 }
 
 }  // namespace chromeball

@@ -3,8 +3,10 @@
 // a pointer to another one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 namespace chromeball {
 
@@ -20,5 +22,9 @@ struct Exif {
 // (ImfStandardAttributes.h). Empty for other files and for damaged blocks. Throws InputError if the
 // file cannot be read.
 Exif readExif(const std::filesystem::path& path);
+
+// How the image of a JPEG, PNG or TIFF is stored (orientation.h), 1 to 8; 1 if the file does not
+// tell.
+int exifOrientation(std::span<const uint8_t> file);
 
 }  // namespace chromeball

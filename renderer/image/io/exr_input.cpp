@@ -17,6 +17,7 @@
 #include <tuple>
 
 #include "base/file.h"
+#include "image/io/color_channels.h"
 #include "image/io/exr_header.h"
 #include "image/io/exr_metadata.h"
 #include "image/io/exr_threads.h"
@@ -27,14 +28,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a data window that lies within the display window and is not all of it.
+// Of a data window that is not the display window.
 std::optional<Placement> placementOf(const Imath::Box2i& data, const Imath::Box2i& display) {
-  const Placement p{data.min.x - display.min.x, data.min.y - display.min.y,
-                    display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};
-  const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
-  const bool isWithin = p.x >= 0 && p.y >= 0 && p.width - p.x >= width && p.height - p.y >= height;
-  if (!isWithin || (p.width == width && p.height == height)) return {};
-  return p;
+  const auto length = [](int min, int max) {
+    return int(std::clamp<int64_t>(int64_t(max) - min + 1, 0, std::numeric_limits<int>::max()));
+  };
+  const auto offset = [](int from, int to) {
+    constexpr int64_t kMost = std::numeric_limits<int>::max();
+    return int(std::clamp<int64_t>(int64_t(to) - from, -kMost, kMost));
+  };
+  if (data == display) return {};
+  return Placement{offset(display.min.x, data.min.x), offset(display.min.y, data.min.y),
+                   length(display.min.x, display.max.x), length(display.min.y, display.max.y)};
 }
 
 // Layer by layer; of each, R, G, B and A first, then the others by their names.
@@ -84,11 +89,45 @@ void checkExrLength(const fs::path& path, int width, int height, uint64_t texelB
 
 }  // namespace
 
+// Without the colour that luminance and chroma stand for: their three channels.
+std::vector<std::string> channelsOf(const Imf::ChannelList& channels) {
+  std::vector<std::string> names;
+  if (isLuminanceChroma(channels)) {
+    names = {"R", "G", "B"};
+    if (channels.findChannel("A")) names.emplace_back("A");
+    return names;
+  }
+  for (auto at = channels.begin(); at != channels.end(); ++at) names.emplace_back(at.name());
+  sortChannels(names);
+  return names;
+}
+
+bool isDeep(const Imf::Header& header) {
+  return header.hasType() && Imf::isDeepData(header.type());
+}
+
+std::string choiceText(const fs::path& path, const ColorChannels& color) {
+  if (color.layer.empty() || color.others.empty()) return "";
+  return fmt::format("{}: its colour is that of `{}`, of {} layers with colour", path.string(),
+                     color.layer, color.others.size() + 1);
+}
+
 class ExrInput::Part {
  public:
   explicit Part(const fs::path& path) : path_(path), file_(path.c_str()) {}
 
-  const Imf::Header& header() const { return file_.header(0); }
+  // Every part's channels; none of deep ones.
+  std::vector<PartChannels> parts() const {
+    std::vector<PartChannels> parts(size_t(file_.parts()));
+    for (int i = 0; i < file_.parts(); ++i) {
+      const Imf::Header& header = file_.header(i);
+      if (file_.parts() > 1 && header.hasName()) parts[size_t(i)].name = header.name();
+      if (!isDeep(header)) parts[size_t(i)].channels = channelsOf(header.channels());
+    }
+    return parts;
+  }
+  void select(size_t part) { selected_ = int(part); }
+  const Imf::Header& header() const { return file_.header(selected_); }
 
   void read(int top, int count, const std::vector<std::string>& channels, float* texels) {
     const Imath::Box2i window = header().dataWindow();
@@ -108,7 +147,7 @@ class ExrInput::Part {
       buffer.insert(channels[c], Imf::Slice(isInteger ? Imf::UINT : Imf::FLOAT, begin - offset,
                                             stride, stride * width));
     }
-    if (!part_) part_.emplace(file_, 0);
+    if (!part_) part_.emplace(file_, selected_);
     part_->setFrameBuffer(buffer);
     part_->readPixels(first, last);
     for (size_t c = 0; c < channels.size(); ++c)
@@ -133,6 +172,7 @@ class ExrInput::Part {
 
   fs::path path_;
   Imf::MultiPartInputFile file_;
+  int selected_ = 0;
   std::optional<Imf::InputPart> part_;
   std::optional<Imf::RgbaInputFile> rgba_;
 };
@@ -150,9 +190,16 @@ ExrInput::ExrInput(const fs::path& path, uint64_t maxNumbers) : path_(path) {
 ExrInput::~ExrInput() = default;
 
 void ExrInput::readHeader() {
+  const std::vector<PartChannels> parts = part_->parts();
+  if (const auto color = findColorChannels(parts)) {
+    part_->select(color->part);
+    partName_ = parts[color->part].name;
+    choice_ = choiceText(path_, *color);
+  } else {
+    partName_ = parts.front().name;
+  }
   const Imf::Header& header = part_->header();
-  if (header.hasType() && Imf::isDeepData(header.type()))
-    throwUnreadable(path_, "deep and volume images are not supported");
+  if (isDeep(header)) throwUnreadable(path_, "deep and volume images are not supported");
   const Imath::Box2i window = header.dataWindow();
   width_ = window.max.x - window.min.x + 1;
   height_ = window.max.y - window.min.y + 1;
@@ -160,18 +207,17 @@ void ExrInput::readHeader() {
   numbers_ = numbersOf(header.channels());
   metadata_ = metadataOf(header);
   placement_ = placementOf(window, header.displayWindow());
+  primaries_ = chromaticitiesOf(header);
   checkExrLength(path_, width_, height_, bytesPerTexel(header.channels()));
+  channels_ = channelsOf(header.channels());
   if (isLuminanceChroma(header.channels())) {
-    channels_ = {"R", "G", "B"};
-    if (header.channels().findChannel("A")) channels_.push_back("A");
+    if (parts.size() > 1)
+      throwUnreadable(path_, "luminance and chroma in one of several parts are not supported");
     return;
   }
-  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+  for (auto at = header.channels().begin(); at != header.channels().end(); ++at)
     if (at.channel().xSampling != 1 || at.channel().ySampling != 1)
       throwUnreadable(path_, fmt::format("the channel {} does not have all texels", at.name()));
-    channels_.emplace_back(at.name());
-  }
-  sortChannels(channels_);
 }
 
 void ExrInput::read(int top, int count, float* texels) {

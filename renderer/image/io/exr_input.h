@@ -13,7 +13,8 @@
 
 namespace chromeball {
 
-// The first part of a file; of levels the largest. Functions throw InputError.
+// Of the parts of a file the one that has its colour (color_channels.h), else the first; of levels
+// the largest. Functions throw InputError.
 class ExrInput {
  public:
   enum class Numbers { Half, Float, Integer, Mixed };  // of the channels
@@ -27,6 +28,10 @@ class ExrInput {
   const std::vector<std::string>& channels() const { return channels_; }
   const Metadata& metadata() const { return metadata_; }
   const std::optional<Placement>& placement() const { return placement_; }
+  const std::string& part() const { return partName_; }  // empty: the only one
+  const std::optional<Chromaticities>& primaries() const { return primaries_; }
+  // Of several layers or parts with colour, which one is the file's: one line; else empty.
+  const std::string& choice() const { return choice_; }
   Numbers numbers() const { return numbers_; }
   bool isTiled() const { return isTiled_; }
   int rowsOfBlock() const { return rowsOfBlock_; }  // rows that are compressed together
@@ -44,6 +49,8 @@ class ExrInput {
   std::vector<std::string> channels_;
   Metadata metadata_;
   std::optional<Placement> placement_;
+  std::string partName_, choice_;
+  std::optional<Chromaticities> primaries_;
   Numbers numbers_ = Numbers::Half;
   bool isTiled_ = false;
   std::unique_ptr<Part> part_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exr_metadata.h"
 
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfHeader.h>
@@ -47,6 +48,16 @@ Metadata metadataOf(const Imf::Header& header) {
     }
   }
   return metadata;
+}
+
+std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header) {
+  for (auto at = header.begin(); at != header.end(); ++at)
+    if (const auto* found = typed<Imf::Chromaticities>(at.attribute());
+        found && std::string_view(at.name()) == "chromaticities") {
+      const auto xy = [](const Imath::V2f& v) { return glm::dvec2(v.x, v.y); };
+      return Chromaticities{xy(found->red), xy(found->green), xy(found->blue), xy(found->white)};
+    }
+  return {};
 }
 
 void setMetadata(const Metadata& metadata, Imf::Header& header) {

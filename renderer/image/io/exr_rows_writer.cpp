@@ -96,12 +96,13 @@ void interleave(std::span<const Image* const> images, int top, Image& rows) {
   assert(offset == rows.channels);
 }
 
-// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads busy.
+// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads
+// busy.
 int rowsAtOnce(const ExrLayout& layout) {
   constexpr int kMost = 256;
   const auto floatsPerRow = int64_t(layout.width) * int64_t(layout.channels.size());
-  return int(
-      std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, layout.separateRows ? 1 : 16, kMost));
+  return int(std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, layout.separateRows ? 1 : 16,
+                                 kMost));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(readFile(path)) {}
 
-  Image read() {
+  RadianceHdr read() {
     readHeader();
     checkFileLength();
     Image image(width_, height_, 3);
@@ -35,10 +35,8 @@ class Reader {
         image.setRgb(rightToLeft_ ? width_ - 1 - x : x, bottomUp_ ? height_ - 1 - y : y,
                      decode(row[x]));
     }
-    return image;
+    return {std::move(image), primaries_, std::move(comments_), std::move(messages_)};
   }
-
-  HdrComments takeComments() { return std::move(comments_); }
 
  private:
   [[noreturn]] void fail(std::string_view what) const {
@@ -56,15 +54,19 @@ class Reader {
 
   void readHeader() {
     if (!line().starts_with("#?")) fail("not a Radiance HDR file");
-    double exposure = 1;
-    for (std::string_view text = line(); !text.empty() && text != "\r"; text = line()) {
-      if (text.starts_with("FORMAT=") && text.find("32-bit_rle_rgbe") == std::string_view::npos)
-        fail("unsupported FORMAT; it must be 32-bit_rle_rgbe");
-      if (text.starts_with("# ")) addComment(text.substr(2));
-      if (text.starts_with("EXPOSURE=")) exposure *= std::atof(std::string(text.substr(9)).c_str());
+    for (std::string_view text = line(); !text.empty() && text != "\r"; text = line())
+      readVariable(text);
+    if (!(exposure_ > 1e-20 && exposure_ < 1e20)) fail("EXPOSURE must be a positive number");
+    if (exposure_ != 1)
+      say(Message::Kind::Note, fmt::format("its texels are divided by EXPOSURE={:g}", exposure_));
+    if (correction_ != glm::dvec3(1))
+      say(Message::Kind::Note, fmt::format("its texels are divided by COLORCORR={:g} {:g} {:g}",
+                                           correction_.x, correction_.y, correction_.z));
+    for (int c = 0; c < 3; ++c) {
+      if (!(correction_[c] > 1e-20 && correction_[c] < 1e20))
+        fail("COLORCORR must be three positive numbers");
+      scale_[c] = 1 / exposure_ / correction_[c];
     }
-    if (!(exposure > 1e-20 && exposure < 1e20)) fail("EXPOSURE must be a positive number");
-    scale_ = 1 / exposure;
 
     const std::string resolution(line());
     char ySign = 0, xSign = 0;
@@ -80,6 +82,53 @@ class Reader {
     if (equals == std::string_view::npos) return;
     const std::string_view value = text.substr(equals + 1);
     comments_[std::string(text.substr(0, equals))] = value.substr(0, value.find('\r'));
+  }
+
+  // Real files have lines without meaning: PRIMARIES=0 0 0 0 0 0 0 0, GAMMA=1.
+  void readVariable(std::string_view text) {
+    if (text.starts_with("# ")) return addComment(text.substr(2));
+    const size_t equals = text.find('=');
+    if (equals == std::string_view::npos || text.starts_with('#')) return;
+    const std::string name(text.substr(0, equals));
+    const std::vector<double> numbers = numbersOf(text.substr(equals + 1));
+    const auto isOnly = [&](double number) { return numbers.size() == 1 && numbers[0] == number; };
+    if (name == "FORMAT") {
+      if (text.find("32-bit_rle_rgbe") == std::string_view::npos)
+        fail("unsupported FORMAT; it must be 32-bit_rle_rgbe");
+    } else if (name == "EXPOSURE") {
+      exposure_ *= numbers.empty() ? 0 : numbers[0];
+    } else if (name == "COLORCORR") {
+      if (numbers.size() != 3) fail("COLORCORR must be three positive numbers");
+      correction_ *= glm::dvec3(numbers[0], numbers[1], numbers[2]);
+    } else if (name == "PRIMARIES") {
+      const std::vector<double>& n = numbers;
+      if (n.size() != 8)
+        return say(Message::Kind::Warning, "PRIMARIES, which are not eight numbers, are ignored");
+      if (std::ranges::all_of(n, [](double number) { return number == 0; })) return;
+      primaries_ = Chromaticities{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
+    } else if (name == "GAMMA") {
+      if (!isOnly(1)) say(Message::Kind::Warning, "GAMMA is ignored: texels are taken as linear");
+    } else if (name == "PIXASPECT") {
+      if (!isOnly(1))
+        say(Message::Kind::Warning, "PIXASPECT is ignored: texels are taken as square");
+    } else if (name == "VIEW") {
+      say(Message::Kind::Note, "VIEW is ignored: the mapping is not taken from it");
+    }
+  }
+
+  static std::vector<double> numbersOf(std::string_view text) {
+    const std::string copy(text);
+    std::vector<double> numbers;
+    char* end = nullptr;
+    for (const char* at = copy.c_str();; at = end) {
+      const double number = std::strtod(at, &end);
+      if (end == at) return numbers;
+      numbers.push_back(number);
+    }
+  }
+
+  void say(Message::Kind kind, const std::string& what) {
+    messages_.push_back({kind, path_.string() + ": " + what});
   }
 
   bool atRunLengthRow() const {
@@ -140,8 +189,9 @@ class Reader {
 
   Rgb decode(const Rgbe& t) const {
     if (t[3] == 0) return Rgb(0);
-    const double unit = std::ldexp(scale_, t[3] - 136);
-    return {float(t[0] * unit), float(t[1] * unit), float(t[2] * unit)};
+    Rgb color;
+    for (int c = 0; c < 3; ++c) color[c] = float(t[c] * std::ldexp(scale_[c], t[3] - 136));
+    return color;
   }
 
   std::filesystem::path path_;
@@ -149,7 +199,10 @@ class Reader {
   size_t position_ = 0;
   int width_ = 0, height_ = 0;
   bool bottomUp_ = false, rightToLeft_ = false;
-  double scale_ = 1;
+  double exposure_ = 1;  // the products of these lines
+  glm::dvec3 correction_{1}, scale_{1};
+  std::optional<Chromaticities> primaries_;
+  Messages messages_;
   HdrComments comments_;
 };
 
@@ -192,12 +245,7 @@ void appendRuns(std::vector<uint8_t>& out, const std::vector<Rgbe>& row, int cha
 
 }  // namespace
 
-Image readRadianceHdr(const std::filesystem::path& path, HdrComments* comments) {
-  Reader reader(path);
-  Image image = reader.read();
-  if (comments) *comments = reader.takeComments();
-  return image;
-}
+RadianceHdr readRadianceHdr(const std::filesystem::path& path) { return Reader(path).read(); }
 
 void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
                       const HdrComments& comments) {

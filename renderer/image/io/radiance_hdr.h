@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance images (.hdr, .pic): RGBE texels, flat or in one of the two run-length encodings
 // (Ward, "Real Pixels", Graphics Gems II; Radiance's color.c). A texel (r, g, b, e) encodes
-// (r, g, b) 2^(e - 136), divided by the product of the EXPOSURE lines in the header.
+// (r, g, b) 2^(e - 136), divided by the factors that the header says it was multiplied by.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
+#include "base/message.h"
+#include "image/chromaticities.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -15,8 +18,15 @@ namespace chromeball {
 // What comment lines of the header, "# NAME=VALUE", say.
 using HdrComments = std::map<std::string, std::string>;
 
-// Three channels; also the comments, if asked for. Throws InputError.
-Image readRadianceHdr(const std::filesystem::path& path, HdrComments* comments = nullptr);
+struct RadianceHdr {
+  Image image;                              // three channels
+  std::optional<Chromaticities> primaries;  // of a PRIMARIES line
+  HdrComments comments;
+  Messages messages;  // about lines that scale texels or are not understood
+};
+
+// Texels are divided by the products of EXPOSURE and COLORCORR. Throws InputError.
+RadianceHdr readRadianceHdr(const std::filesystem::path& path);
 
 // Writes the first three channels, each rounded to the nearest mantissa for the texel's shared
 // exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0. Throws RunError.

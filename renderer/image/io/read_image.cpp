@@ -3,17 +3,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "base/file.h"
+#include "image/io/color_channels.h"
+#include "image/io/exif.h"
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
 #include "image/io/pfm.h"
+#include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/sample_reader.h"
 #include "image/io/unreadable.h"
+#include "image/orientation.h"
 #include "image/size_limits.h"
 #include "image/tonemap.h"
 
@@ -36,6 +42,9 @@ ImageFile readExr(const fs::path& path) {
   file.channels = input.channels();
   file.metadata = input.metadata();
   file.placement = input.placement();
+  file.part = input.part();
+  file.primaries = input.primaries();
+  if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
   file.image = Image(input.width(), input.height(), int(input.channels().size()));
   input.read(0, input.height(), file.image.texels.data());
   return file;
@@ -51,25 +60,46 @@ void associate(Image& image, int alphaChannel) {
     }
 }
 
-// Fractions of the largest sample, decoded to linear if that is asked for.
+// The linear number that a sample, a fraction of the largest, stands for.
+using DecodeSample = std::function<float(float)>;
+
 template <class Sample>
-void readSamples(SampleReader& reader, IntegerTexels integers, Image& image) {
+void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image) {
   constexpr float kUnit = 1.0f / std::numeric_limits<Sample>::max();
   const int alpha = reader.layout().hasAlpha() ? image.channels - 1 : -1;
-  std::vector<float> linear(integers == IntegerTexels::Srgb && sizeof(Sample) == 1 ? 256 : 0);
-  for (size_t i = 0; i < linear.size(); ++i) linear[i] = srgbToLinear(float(i) * kUnit);
-  const auto decode = [&](Sample sample) {
-    if (!linear.empty()) return linear[sample];
-    const float fraction = float(sample) * kUnit;
-    return integers == IntegerTexels::Srgb ? srgbToLinear(fraction) : fraction;
+  std::vector<float> ofByte(sizeof(Sample) == 1 ? 256 : 0);
+  for (size_t i = 0; i < ofByte.size(); ++i) ofByte[i] = decode(float(i) * kUnit);
+  const auto number = [&](Sample sample) {
+    return ofByte.empty() ? decode(float(sample) * kUnit) : ofByte[sample];
   };
   reader.read([&](int y, const void* samples) {
     const auto* from = static_cast<const Sample*>(samples);
     float* to = image.at(0, y);
     for (int x = 0; x < image.width; ++x)
       for (int c = 0; c < image.channels; ++c, ++from)
-        *to++ = c == alpha ? float(*from) * kUnit : decode(*from);
+        *to++ = c == alpha ? float(*from) * kUnit : number(*from);
   });
+}
+
+// Sets file.primaries too.
+DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
+                           IntegerTexels integers, ImageFile& file) {
+  if (integers == IntegerTexels::Linear) return [](float sample) { return sample; };
+  const PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
+  file.primaries = color.primaries;
+  if (!color.exponent) return srgbToLinear;
+  return [exponent = *color.exponent](float sample) {
+    return float(std::pow(double(sample), exponent));
+  };
+}
+
+ImageFile readHdr(const fs::path& path) {
+  RadianceHdr hdr = readRadianceHdr(path);
+  ImageFile file{std::move(hdr.image), {"R", "G", "B"}, {}};
+  file.metadata.insert(hdr.comments.begin(), hdr.comments.end());
+  file.primaries = hdr.primaries;
+  file.messages = std::move(hdr.messages);
+  return file;
 }
 
 ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels integers) {
@@ -92,11 +122,13 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   file.integers = true;
   file.bits = layout.bits;
   file.image = Image(layout.width, layout.height, layout.channels);
+  const DecodeSample decode = sampleDecoder(format, bytes, integers, file);
   if (layout.bits == 8)
-    readSamples<uint8_t>(*reader, integers, file.image);
+    readSamples<uint8_t>(*reader, decode, file.image);
   else
-    readSamples<uint16_t>(*reader, integers, file.image);
+    readSamples<uint16_t>(*reader, decode, file.image);
   if (layout.hasAlpha()) associate(file.image, layout.channels - 1);
+  file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
 }
 
@@ -115,6 +147,7 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
       if (int(i % header.channels.size()) != header.alphaChannel)
         file.image.texels[i] = srgbToLinear(file.image.texels[i]);
   if (header.unassociatedAlpha) associate(file.image, header.alphaChannel);
+  file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
 }
 
@@ -125,6 +158,41 @@ Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
     for (size_t c = 0; c < channels.size(); ++c)
       out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
   return out;
+}
+
+// The first three channels are the file's colour.
+Image inRec709(Image color, const ImageFile& file) {
+  if (!file.primaries || isRec709(*file.primaries)) return color;
+  const auto matrix = toRec709(*file.primaries);  // checked by readImageFile()
+  if (matrix) convertColor(color, *matrix);
+  return color;
+}
+
+// Black around the data. Throws InputError if the window exceeds the limits, or has no data.
+Image inDisplayWindow(const Image& data, const Placement& p, const fs::path& path) {
+  checkImageSize(path, p.width, p.height, data.channels);
+  const int64_t left = std::max(p.x, 0), top = std::max(p.y, 0);
+  const int64_t right = std::min<int64_t>(p.width, int64_t(p.x) + data.width),
+                bottom = std::min<int64_t>(p.height, int64_t(p.y) + data.height);
+  if (left >= right || top >= bottom)
+    throwInput("{}: its data window lies outside of its display window", path.string());
+  Image window(p.width, p.height, data.channels);
+  for (int64_t y = top; y < bottom; ++y)
+    std::copy_n(data.at(int(left - p.x), int(y - p.y)), size_t(right - left) * data.channels,
+                window.at(int(left), int(y)));
+  return window;
+}
+
+// "A, Z and 3 more"; names in a damaged file may hold any bytes.
+std::string listOf(const std::vector<std::string>& channels) {
+  constexpr size_t kMost = 8, kMostLetters = 40;
+  std::string text;
+  for (size_t i = 0; i < std::min(channels.size(), kMost); ++i)
+    text += (i ? ", " : "") + channels[i].substr(0, kMostLetters);
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return channels.size() > kMost ? fmt::format("{} and {} more", text, channels.size() - kMost)
+                                 : text;
 }
 
 std::optional<Image> findChannels(const ImageFile& file, const std::string& prefix,
@@ -146,15 +214,12 @@ Metadata readExrMetadata(const fs::path& path) {
 
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
   const ImageFormat format = formatOf(path);
-  return readByLibrary(path, [&]() -> ImageFile {
+  ImageFile file = readByLibrary(path, [&]() -> ImageFile {
     switch (format) {
       case ImageFormat::Exr:
         return readExr(path);
-      case ImageFormat::RadianceHdr: {
-        HdrComments comments;
-        Image image = readRadianceHdr(path, &comments);
-        return {std::move(image), {"R", "G", "B"}, Metadata(comments.begin(), comments.end())};
-      }
+      case ImageFormat::RadianceHdr:
+        return readHdr(path);
       case ImageFormat::Pfm: {
         Image image = readPfm(path);
         const bool isGrey = image.channels == 1;
@@ -171,19 +236,30 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
         throwUnreadable(path, "it is not an EXR, Radiance HDR, PFM, PNG, JPEG or TIFF file");
     }
   });
+  if (file.primaries && !toRec709(*file.primaries))
+    throwInput(
+        "{}: its primaries are degenerate: red ({}, {}), green ({}, {}), blue ({}, {}), white ({}, "
+        "{})",
+        path.string(), file.primaries->red.x, file.primaries->red.y, file.primaries->green.x,
+        file.primaries->green.y, file.primaries->blue.x, file.primaries->blue.y,
+        file.primaries->white.x, file.primaries->white.y);
+  return file;
 }
 
 std::optional<Image> findColor(const ImageFile& file) {
-  if (auto color = findChannels(file, "", {"R", "G", "B"})) return color;
-  for (const std::string& layer : layerNames(file))
-    if (auto color = findChannels(file, layer + ".", {"R", "G", "B"})) return color;
-  if (auto color = findChannels(file, "", {"Y", "Y", "Y"})) return color;
-  if (file.channels.size() > 2) return std::nullopt;
-  return extract(file, {0, 0, 0});
+  const PartChannels part{file.part, file.channels};
+  const std::optional<ColorChannels> found = findColorChannels({&part, 1});
+  if (!found) return {};
+  const std::vector<std::string>& names = found->channels;
+  if (names.size() == 1) return findChannels(file, names[0], {"", "", ""});
+  std::optional<Image> color =
+      findChannels(file, "", {names[0].c_str(), names[1].c_str(), names[2].c_str()});
+  return inRec709(*std::move(color), file);
 }
 
 std::optional<Image> findColorAndAlpha(const ImageFile& file) {
-  if (auto color = findChannels(file, "", {"R", "G", "B", "A"})) return color;
+  if (auto color = findChannels(file, "", {"R", "G", "B", "A"}))
+    return inRec709(*std::move(color), file);
   return findColor(file);
 }
 
@@ -210,17 +286,28 @@ std::vector<std::string> layerNames(const ImageFile& file) {
   return names;
 }
 
-Image colorOf(ImageFile&& file, const fs::path& path) {
-  if (file.channels == std::vector<std::string>{"R", "G", "B"}) return std::move(file.image);
+Image colorOfData(ImageFile&& file, const fs::path& path) {
+  if (file.channels == std::vector<std::string>{"R", "G", "B"} && file.part.empty())
+    return inRec709(std::move(file.image), file);
   std::optional<Image> color = findColor(file);
   if (!color)
-    throwInput("{}: has no colour; it needs channels R, G and B, or Y, or a single channel",
-               path.string());
+    throwInput(
+        "{}: has no colour; it needs channels R, G and B, or Y, or a single channel of light; it "
+        "has {}",
+        path.string(), listOf(file.channels));
   return *std::move(color);
 }
 
-Image readImage(const fs::path& path, IntegerTexels integers) {
-  return colorOf(readImageFile(path, integers), path);
+Image colorOf(ImageFile&& file, const fs::path& path) {
+  const std::optional<Placement> placement = file.placement;
+  Image color = colorOfData(std::move(file), path);
+  return placement ? inDisplayWindow(color, *placement, path) : color;
+}
+
+Image readImage(const fs::path& path, IntegerTexels integers, Messages* messages) {
+  ImageFile file = readImageFile(path, integers);
+  if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
+  return colorOf(std::move(file), path);
 }
 
 }  // namespace chromeball

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/message.h"
+#include "image/chromaticities.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -27,20 +29,26 @@ inline constexpr const char* kEnvmapCube = "cube";
 // The encoding of integer files (8 or 16 bits). Float files are always linear.
 enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear, except alpha
 
-// The position of an image's first pixel in a larger image, and the size of that.
+// The position of an image's first pixel in another image, and the size of that, which need not
+// contain the image.
 struct Placement {
   int x, y, width, height;
 };
 
 // All contents of a file: its channels, interleaved in `image` in the file's order. Colour is
-// associated with alpha (premultiplied, in linear light), however the file stores it.
+// associated with alpha (premultiplied, in linear light), however the file stores it. The image is
+// turned as its EXIF orientation says. Of an .exr with several parts it is the one that has the
+// colour (color_channels.h).
 struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
-  std::optional<Placement> placement;  // of an .exr whose pixels are part of its display window
-  bool integers = false;               // the file has integers per channel, so no texel is above 1
-  int bits = 0;                        // of these, 8 or 16
+  std::optional<Placement> placement = {};  // in the display window of an .exr, if it is not that
+  bool integers = false;  // the file has integers per channel, so no texel is above 1
+  int bits = 0;           // of these, 8 or 16
+  std::string part = {};  // the name of the part that was read, of an .exr with several
+  std::optional<Chromaticities> primaries = {};  // of the colour, if these are not Rec. 709's
+  Messages messages = {};  // what was chosen, or was not understood; each "FILE: ..."
 };
 
 // The attributes alone, of an .exr.
@@ -49,9 +57,8 @@ Metadata readExrMetadata(const std::filesystem::path& path);
 ImageFile readImageFile(const std::filesystem::path& path,
                         IntegerTexels integers = IntegerTexels::Srgb);
 
-// The colour, always three channels: the channels R, G and B; else those of the first layer that
-// has them; else grey repeated (Y, or the first of one or two channels). nullopt if there is none
-// of these.
+// The colour in linear Rec. 709, always three channels: those that findColorChannels() finds
+// (color_channels.h); grey is repeated. nullopt if there are none.
 std::optional<Image> findColor(const ImageFile& file);
 
 // The same, with alpha as a fourth channel if the file has R, G, B and A.
@@ -65,8 +72,13 @@ std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
 // The names of the layers that findLayer() finds.
 std::vector<std::string> layerNames(const ImageFile& file);
 
-// The colour of a file read from `path`. Throws InputError if findColor() finds none.
+// The colour of a file read from `path`, as findColor(), in its display window: black where the
+// file has no data. Throws InputError if there is none.
 Image colorOf(ImageFile&& file, const std::filesystem::path& path);
-Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
+Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb,
+                Messages* messages = nullptr);  // gets the file's
+
+// Without the display window: the texels that the file has.
+Image colorOfData(ImageFile&& file, const std::filesystem::path& path);
 
 }  // namespace chromeball

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which channels of an image file are its colour: radiance, or a photograph's.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace chromeball {
+
+// The channels of one part of a file. A part of several has a name, which says what it holds as
+// that of a layer does.
+struct PartChannels {
+  std::string name;  // empty: the only part, or without a name
+  std::vector<std::string> channels;
+};
+
+struct ColorChannels {
+  size_t part = 0;
+  std::string layer;                  // empty: none; a part's name if the channels have no layer
+  std::vector<std::string> channels;  // R, G and B, or one channel of grey
+  std::vector<std::string> others;    // layers with colour that were not taken
+};
+
+// In this order: R, G and B without a layer; those of the layers Combined, beauty, rgba and C;
+// those of another layer, unless its name says that it is no light (AO, albedo, normal, ...); Y;
+// the only channel, if its name does not say that it is something else (A, Z, R, ...). nullopt if
+// there is none of these.
+std::optional<ColorChannels> findColorChannels(std::span<const PartChannels> parts);
+
+}  // namespace chromeball

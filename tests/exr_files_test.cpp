@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// EXR files of other programs: windows, layers, parts and primaries.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "composite/plate.h"
+#include "image/chromaticities.h"
+#include "image/io/color_channels.h"
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "probe/load.h"
+#include "temporary_folder.h"
+
+namespace chromeball {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// A part of constant channels.
+struct Part {
+  std::string name;
+  std::vector<std::pair<std::string, float>> channels;
+};
+
+struct Windows {
+  Imath::Box2i data{{0, 0}, {7, 3}}, display{{0, 0}, {7, 3}};
+};
+
+void writeParts(const std::string& path, const std::vector<Part>& parts,
+                const Windows& windows = {}, std::optional<Imf::Chromaticities> primaries = {}) {
+  std::vector<Imf::Header> headers;
+  for (const Part& part : parts) {
+    Imf::Header& header = headers.emplace_back(windows.display, windows.data);
+    header.setType(Imf::SCANLINEIMAGE);
+    if (!part.name.empty()) header.setName(part.name);
+    if (primaries) header.insert("chromaticities", Imf::ChromaticitiesAttribute(*primaries));
+    for (const auto& [name, value] : part.channels)
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
+  for (size_t i = 0; i < parts.size(); ++i) {
+    Imf::OutputPart out(file, int(i));
+    const size_t width = size_t(windows.data.max.x - windows.data.min.x + 1);
+    std::vector<std::vector<float>> rows;  // one for all rows of a channel
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, value] : parts[i].channels) {
+      float* begin = rows.emplace_back(width, value).data() - windows.data.min.x;
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(begin), sizeof(float), 0));
+    }
+    out.setFrameBuffer(buffer);
+    out.writePixels(windows.data.max.y - windows.data.min.y + 1);
+  }
+}
+
+Part colored(const std::string& name, const Rgb& color, const std::string& layer = "") {
+  return {name, {{layer + "R", color.x}, {layer + "G", color.y}, {layer + "B", color.z}}};
+}
+
+std::string problemOf(const std::string& path) {
+  try {
+    readImage(path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Data in its place, black elsewhere, the rest cropped.
+TEST(ExrFiles, ImagesAreTheirDisplayWindows) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const Rgb color(0.5f, 2, 1e10f);
+  const auto check = [&](const Windows& windows) {
+    writeParts(path, {colored("", color)}, windows);
+    const int width = windows.display.max.x - windows.display.min.x + 1,
+              height = windows.display.max.y - windows.display.min.y + 1;
+    for (const Image& image :
+         {readImage(path), readPlate(path), loadProbe(path, "lat-long").latLong}) {
+      ASSERT_EQ(image.width, width);
+      ASSERT_EQ(image.height, height);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          const Imath::V2i at = windows.display.min + Imath::V2i(x, y);
+          EXPECT_EQ(image.rgb(x, y), windows.data.intersects(at) ? color : Rgb(0)) << x << " " << y;
+        }
+    }
+  };
+  check({{{0, 0}, {15, 4}}, {{0, 0}, {15, 7}}});     // lower rows are absent
+  check({{{-4, -4}, {19, 11}}, {{0, 0}, {15, 7}}});  // overscan
+  check({{{3, -2}, {30, 5}}, {{0, 0}, {15, 7}}});    // some of both
+  check({{{100, 50}, {107, 53}}, {{96, 48}, {111, 55}}});
+  // The data alone, for users that place it themselves.
+  EXPECT_EQ(readImageFile(path).placement->x, 4);
+  EXPECT_EQ(colorOfData(readImageFile(path), path).width, 8);
+  writeParts(path, {colored("", color)}, {{{100, 0}, {107, 3}}, {{0, 0}, {15, 7}}});
+  EXPECT_NE(problemOf(path).find("outside of its display window"), std::string::npos);
+  writeParts(path, {colored("", color)}, {{{0, 0}, {7, 3}}, {{0, 0}, {1 << 30, 1 << 30}}});
+  EXPECT_NE(problemOf(path).find("exceed the limit"), std::string::npos);
+}
+
+TEST(ExrFiles, TheColourIsChosenByName) {
+  const auto layerOf = [](const Names& channels) -> std::string {
+    const PartChannels part{"", channels};
+    const auto found = findColorChannels({&part, 1});
+    return found ? found->channels.front() : "none";
+  };
+  EXPECT_EQ(layerOf({"B", "G", "R", "beauty.B", "beauty.G", "beauty.R"}), "R");
+  EXPECT_EQ(layerOf({"V.AO.B", "V.AO.G", "V.AO.R", "V.Combined.B", "V.Combined.G", "V.Combined.R"}),
+            "V.Combined.R");
+  EXPECT_EQ(layerOf({"albedo.B", "albedo.G", "albedo.R", "beauty.B", "beauty.G", "beauty.R"}),
+            "beauty.R");
+  EXPECT_EQ(layerOf({"a.B", "a.G", "a.R", "rgba.A", "rgba.B", "rgba.G", "rgba.R"}), "rgba.R");
+  EXPECT_EQ(layerOf({"C.B", "C.G", "C.R", "diffuse.B", "diffuse.G", "diffuse.R"}), "C.R");
+  EXPECT_EQ(layerOf({"depth.Z", "diffuse.B", "diffuse.G", "diffuse.R"}), "diffuse.R");
+  EXPECT_EQ(layerOf({"A", "Y"}), "Y");
+  EXPECT_EQ(layerOf({"Y", "Z"}), "Y");
+  EXPECT_EQ(layerOf({"luminance"}), "luminance");
+  for (const Names& none :
+       {Names{"Z"}, Names{"A"}, Names{"A", "Z"}, Names{"R"}, Names{"G", "R"}, Names{"AO"},
+        Names{"AO.B", "AO.G", "AO.R"}, Names{"BY", "RY", "Y", "id"}, Names{"X", "Y", "Z"},
+        Names{"N.X", "N.Y", "N.Z"}, Names{"depth.Z"}, Names{"a.R", "b.G", "c.B"}})
+    EXPECT_EQ(layerOf(none), "none") << none.front();
+}
+
+TEST(ExrFiles, TheColourIsChosenAmongParts) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const Rgb light(0.8f, 0.5f, 0.2f), other(0.1f, 0.9f, 0.4f);
+  const auto check = [&](const std::vector<Part>& parts, bool hasNote) {
+    writeParts(path, parts);
+    const ImageFile file = readImageFile(path);
+    EXPECT_EQ(file.messages.size(), hasNote ? 1u : 0u);
+    EXPECT_EQ(readImage(path).rgb(2, 1), light) << parts.back().name;
+    EXPECT_EQ(loadProbe(path, "lat-long").messages.size(), file.messages.size());
+  };
+  check({{"depth", {{"Z", 7}}}, colored("any", light)}, false);
+  check({colored("albedo", other), colored("beauty", light)}, false);  // an albedo is no light
+  check({colored("diffuse", other), colored("View.Combined", light)}, true);
+  check({colored("a", other, "AO."), colored("b", light, "Combined.")}, false);
+  check({colored("left", light), colored("right", other)}, true);
+  writeParts(path, {colored("albedo", other), {"depth", {{"Z", 7}}}});
+  EXPECT_NE(problemOf(path).find("has no colour"), std::string::npos);
+  EXPECT_NE(problemOf(path).find("R, G, B"), std::string::npos) << problemOf(path);
+}
+
+TEST(ExrFiles, PrimariesAreConverted) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  using V = Imath::V2f;
+  // ACEScg's matrix, as ACES publishes it for Bradford's adaptation.
+  const Imf::Chromaticities acescg(V(0.713f, 0.293f), V(0.165f, 0.83f), V(0.128f, 0.044f),
+                                   V(0.32168f, 0.33767f));
+  const glm::dmat3 expected(1.70505, -0.13026, -0.02400, -0.62179, 1.14080, -0.12897, -0.08326,
+                            -0.01055, 1.15297);
+  for (int c = 0; c < 3; ++c) {
+    Rgb primary(0);
+    primary[c] = 1;
+    writeParts(path, {colored("", primary)}, {}, acescg);
+    const Rgb read = readImage(path).rgb(0, 0);
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(read[r], expected[c][r], 2e-4);
+  }
+  // Whites stay white; a beauty layer and a part are converted too.
+  for (const Part& white : {colored("", Rgb(1)), colored("", Rgb(1), "beauty.")}) {
+    writeParts(path, {white}, {}, acescg);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(readImage(path).rgb(0, 0)[c], 1, 1e-5);
+  }
+  // CIE XYZ measures light and has no white to adapt to: that of D65 is (0.9505, 1, 1.089).
+  writeParts(path, {colored("", Rgb(0.95046f, 1, 1.08906f))}, {},
+             Imf::Chromaticities(V(1, 0), V(0, 1), V(0, 0), V(1 / 3.f, 1 / 3.f)));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(readImage(path).rgb(0, 0)[c], 1, 1e-3);
+  // Rec. 709 keeps every bit.
+  writeParts(path, {colored("", Rgb(0.1f, 1e10f, 1e-8f))}, {}, Imf::Chromaticities());
+  EXPECT_EQ(readImage(path).rgb(0, 0), Rgb(0.1f, 1e10f, 1e-8f));
+}
+
+TEST(ExrFiles, DegeneratePrimariesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  using V = Imath::V2f;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Imf::Chromaticities& primaries :
+       {Imf::Chromaticities(V(0, 0), V(0, 0), V(0, 0), V(0, 0)),
+        Imf::Chromaticities(V(0.3f, 0.3f), V(0.4f, 0.4f), V(0.5f, 0.5f), V(0.3f, 0.3f)),
+        Imf::Chromaticities(V(0.64f, 0.33f), V(0.3f, 0.6f), V(0.15f, 0.06f), V(0.3f, 0)),
+        Imf::Chromaticities(V(0.64f, 0.33f), V(0.3f, 0.6f), V(0.15f, 0.06f), V(0.9f, 0.9f)),
+        Imf::Chromaticities(V(nan, 0.33f), V(0.3f, 0.6f), V(0.15f, 0.06f), V(0.3f, 0.3f))}) {
+    writeParts(path, {colored("", Rgb(1))}, {}, primaries);
+    EXPECT_NE(problemOf(path).find("primaries are degenerate"), std::string::npos)
+        << problemOf(path);
+  }
+}
+
+}  // namespace
+}  // namespace chromeball

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the headers of .hdr, PNG, JPEG and TIFF files say of light, colour and orientation.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "exif_block.h"
+#include "image/io/encode_png.h"
+#include "image/io/exif.h"
+#include "image/io/read_image.h"
+#include "image/io/uncovered_light.h"
+#include "image/io/write_image.h"
+#include "image/orientation.h"
+#include "image/tonemap.h"
+#include "probe/load.h"
+#include "run_command.h"
+
+namespace chromeball {
+namespace {
+
+std::string saved(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+std::string seed(const std::string& name) {
+  return fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/" + name);
+}
+
+// One texel, (1, .5, .25), after these lines.
+std::string hdr(const std::string& lines) {
+  return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 1\n" + "\x80\x40\x20\x81";
+}
+
+TEST(ImageHeaders, RadianceLinesAreAppliedOrNamed) {
+  const TemporaryFolder folder;
+  const auto check = [&](const std::string& lines, const Rgb& color, const char* message) {
+    const ImageFile file = readImageFile(saved(folder / "a.hdr", hdr(lines)));
+    const Rgb read = findColor(file)->rgb(0, 0);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], color[c], 1e-4f) << lines;
+    EXPECT_EQ(file.messages.empty(), !message) << lines;
+    if (message && !file.messages.empty()) {
+      EXPECT_NE(file.messages[0].text.find(message), std::string::npos) << file.messages[0].text;
+    }
+  };
+  const Rgb plain(1, 0.5f, 0.25f);
+  check("", plain, nullptr);
+  check("EXPOSURE=2\nEXPOSURE=2\n", plain / 4.f, "EXPOSURE=4");
+  check("EXPOSURE=1.0\n", plain, nullptr);
+  check("COLORCORR=1 .5 .25\n", Rgb(1), "COLORCORR=1 0.5 0.25");
+  check("COLORCORR=2 2 2\nCOLORCORR= .5 .5 .5\n", plain, nullptr);
+  // What real files have: Photoshop's lines, a doubled first line.
+  check("PRIMARIES=0 0 0 0 0 0 0 0\nGAMMA=1\n#?RADIANCE\n# comment = 1\n", plain, nullptr);
+  check("PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n", plain, nullptr);
+  check("GAMMA=2.2\n", plain, "GAMMA");
+  check("PIXASPECT=1\n", plain, nullptr);
+  check("PIXASPECT=2\n", plain, "PIXASPECT");
+  check("VIEW= -vtv -vp 0 0 0\n", plain, "VIEW");
+  check("PRIMARIES=1 2 3\n", plain, "PRIMARIES");
+  // AP0 is wider than Rec. 709, so its colours are more saturated.
+  const ImageFile wide = readImageFile(
+      saved(folder / "a.hdr", hdr("PRIMARIES=0.7347 0.2653 0 1 0.0001 -0.077 0.32168 0.33767\n")));
+  EXPECT_GT(findColor(wide)->rgb(0, 0).x, 1.5f);
+  EXPECT_EQ(
+      runCommand({"probe", "info", saved(folder / "a.hdr", hdr("PRIMARIES=1 1 1 1 1 1 1 1\n")),
+                  "--mapping", "lat-long"})
+          .status,
+      2);
+  EXPECT_EQ(runCommand({"probe", "info", saved(folder / "a.hdr", hdr("COLORCORR=0 1 1\n"))}).status,
+            2);
+}
+
+// A PNG of one texel with these chunks.
+std::string png(const std::array<uint8_t, 3>& texel, const std::string& chunks) {
+  const std::vector<uint8_t> bytes = encodePng(1, 1, 3, texel);
+  std::string file(bytes.begin(), bytes.end()), kept = file.substr(0, 8);
+  for (size_t at = 8; at < file.size();) {
+    const auto* head = reinterpret_cast<const uint8_t*>(&file[at]);
+    const size_t length = size_t(head[0]) << 24 | size_t(head[1]) << 16 | head[2] << 8 | head[3];
+    const std::string type = file.substr(at + 4, 4);
+    if (type == "IHDR" || type == "IDAT" || type == "IEND")
+      kept += file.substr(at, length + 12) + (type == "IHDR" ? chunks : "");
+    at += length + 12;
+  }
+  return kept;
+}
+
+std::string chunk(const std::string& type, const std::vector<uint32_t>& numbers) {
+  std::string data;
+  for (const uint32_t number : numbers) data += bigEndian(number, 4);
+  return bigEndian(data.size(), 4) + type + data + "\1\2\3\4";
+}
+
+TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
+  const TemporaryFolder folder;
+  const std::array<uint8_t, 3> texel = {200, 100, 50};
+  const auto read = [&](const std::string& chunks, IntegerTexels integers = IntegerTexels::Srgb) {
+    return readImage(saved(folder / "a.png", png(texel, chunks)), integers).rgb(0, 0);
+  };
+  Rgb srgb, fraction;
+  for (int c = 0; c < 3; ++c) fraction[c] = float(texel[size_t(c)]) / 255;
+  for (int c = 0; c < 3; ++c) srgb[c] = srgbToLinear(fraction[c]);
+  const auto expectNear = [](const Rgb& a, const Rgb& b) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-6f);
+  };
+  expectNear(read(""), srgb);
+  expectNear(read(chunk("gAMA", {45455})), srgb);  // what writers of sRGB state
+  expectNear(read(chunk("gAMA", {100000})), fraction);
+  expectNear(read(chunk("gAMA", {50000})), fraction * fraction);
+  expectNear(read(chunk("gAMA", {0})), srgb);
+  const std::string sRgb = bigEndian(1, 4) + "sRGB" + std::string(1, '\0') + "\1\2\3\4";
+  expectNear(read(sRgb + chunk("gAMA", {100000})), srgb);
+  expectNear(read(chunk("gAMA", {100000}), IntegerTexels::Linear), fraction);
+  // Display P3: a grey stays, a colour becomes more saturated.
+  const std::string p3 = chunk("cHRM", {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000});
+  const Rgb converted = read(p3);
+  EXPECT_GT(converted.x, srgb.x * 1.05f);
+  EXPECT_LT(converted.y, srgb.y);
+  expectNear(read(p3, IntegerTexels::Linear), fraction);  // raw levels are not light
+  // That of a file of light: GIMP and others write the one of sRGB.
+  expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
+}
+
+// The texel in the upper left of the picture, by where the orientation says that it is stored.
+TEST(ImageHeaders, OrientationTurnsAsExifSays) {
+  Image stored(3, 2, 1);
+  for (int i = 0; i < 6; ++i) stored.texels[size_t(i)] = float(i);
+  const std::vector<std::vector<float>> seen = {
+      {0, 1, 2, 3, 4, 5}, {2, 1, 0, 5, 4, 3}, {5, 4, 3, 2, 1, 0}, {3, 4, 5, 0, 1, 2},
+      {0, 3, 1, 4, 2, 5}, {3, 0, 4, 1, 5, 2}, {5, 2, 4, 1, 3, 0}, {2, 5, 1, 4, 0, 3}};
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    const Image image = oriented(stored, orientation);
+    EXPECT_EQ(image.width, orientation < 5 ? 3 : 2);
+    EXPECT_EQ(image.texels, seen[size_t(orientation - 1)]) << orientation;
+  }
+  for (const int other : {0, 9, -1}) EXPECT_EQ(oriented(stored, other).texels, stored.texels);
+}
+
+TEST(ImageHeaders, AllReadersTurnAlike) {
+  const TemporaryFolder folder;
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    for (const char* name : {"a.jpg", "a.png"}) {
+      const Image stored = readImage(saved(folder / name, seed(name)));
+      const std::string turned = withExif(seed(name), orientationBlock(orientation));
+      EXPECT_EQ(readImage(saved(folder / name, turned)).texels,
+                oriented(stored, orientation).texels)
+          << name << orientation;
+    }
+  }
+}
+
+// A TIFF or BigTIFF of directories alone: the first has a pointer of this type to the second, which
+// has an exposure time of 1/40 s.
+std::string directories(int pointerType, bool isBig, int orientation) {
+  std::string file = isBig ? std::string("II+\0\10\0\0\0", 8) : std::string("II*\0", 4);
+  const auto put = [&](uint64_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) file += char(value >> 8 * i & 0xff);
+  };
+  const int offset = isBig ? 8 : 4, count = isBig ? 8 : 2;
+  const auto entry = [&](int tag, int type, uint64_t value) {
+    put(uint64_t(tag), 2), put(uint64_t(type), 2), put(1, offset), put(value, offset);
+  };
+  const size_t entryBytes = size_t(4 + 2 * offset);
+  const size_t first = file.size() + size_t(offset);
+  const size_t second = first + size_t(count) + 2 * entryBytes + size_t(offset);
+  const size_t rational = second + size_t(count) + entryBytes + size_t(offset);
+  put(first, offset), put(2, count);
+  entry(274, 3, uint64_t(orientation)), entry(0x8769, pointerType, second), put(0, offset);
+  put(1, count);
+  if (isBig)
+    entry(0x829a, 5, uint64_t(40) << 32 | 1);
+  else
+    entry(0x829a, 5, rational);
+  put(0, offset);
+  put(1, 4), put(40, 4);
+  return file;
+}
+
+TEST(ImageHeaders, PointersOfEveryTypeLeadToExif) {
+  const TemporaryFolder folder;
+  for (const bool isBig : {false, true})
+    for (const int type : {4, 13, 16, 18}) {
+      if (!isBig && type >= 16) continue;
+      const std::string file = directories(type, isBig, 6);
+      const Exif exif = readExif(saved(folder / "a.tif", file));
+      EXPECT_DOUBLE_EQ(exif.exposureTime.value_or(0), 1. / 40) << type << isBig;
+      EXPECT_EQ(exifOrientation({reinterpret_cast<const uint8_t*>(file.data()), file.size()}), 6);
+      for (size_t length = 0; length < file.size(); ++length)  // truncated
+        readExif(saved(folder / "b.tif", file.substr(0, length)));
+    }
+}
+
+TEST(ImageHeaders, NegativeChannelsAreCounted) {
+  const TemporaryFolder folder;
+  Image probe(16, 8, 3);
+  probe.setRgb(3, 3, Rgb(1000));  // spherical harmonics ring around it
+  writeImage(folder / "p.exr", probe);
+  for (const char* name : {"a.hdr", "a.png", "a.exr"}) {
+    const CommandResult result = runCommand({"probe", "irradiance", folder / "p.exr", folder / name,
+                                             "--method", "sh", "--mapping", "lat-long"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.error.find("are negative, down to -") != std::string::npos,
+              std::string(name) != "a.exr")
+        << result.error;
+  }
+}
+
+// Light beyond alpha is lost in a .png where nothing covers the background.
+TEST(ImageHeaders, UncoveredLightIsCounted) {
+  Image image(4, 1, 4);  // black, an object, its bright edge, a caustic
+  const std::array<std::array<float, 4>, 4> texels = {
+      {{0, 0, 0, 0}, {5, 5, 5, 1}, {3, 3, 3, 0.75f}, {2, 2, 2, 0}}};
+  for (int x = 0; x < 4; ++x) std::copy_n(texels[size_t(x)].begin(), 4, image.at(x, 0));
+  const auto warning = uncoveredLightWarning("a.png", image);
+  ASSERT_TRUE(warning);
+  EXPECT_NE(warning->text.find("25% of the pixels, 20% of the image's"), std::string::npos)
+      << warning->text;
+  EXPECT_FALSE(uncoveredLightWarning("a.exr", image));
+  std::fill_n(image.at(3, 0), 4, 0.0f);
+  EXPECT_FALSE(uncoveredLightWarning("a.png", image));
+}
+
+}  // namespace
+}  // namespace chromeball
