@@ -6,3 +6,5 @@ if ! command -v blender >/dev/null; then
   echo "This comparison needs Debian 12's packages blender and python3-numpy." >&2
   exit 1
 fi
+# Blender takes the modules of the first python3 in the PATH: it must be Debian's, which has NumPy.
+export PATH=/usr/bin:$PATH
