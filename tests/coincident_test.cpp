@@ -38,15 +38,19 @@ Material bodyOf(float ior, Rgb attenuation) {
 }
 
 // A square at height y, whose front faces up or down, oblique and larger than what a camera sees.
-void addSquare(Scene& scene, const Material& material, float y, bool frontUp, float half = 300) {
+void addSquare(Scene& scene, int material, float y, bool frontUp, float half = 300) {
   const vec3 a(2 * half, 0, 0.1f * half), b(0, 0, -2 * half);
-  addQuad(scene, addMaterial(scene, material), {-half, y, half}, frontUp ? a : b, frontUp ? b : a);
+  addQuad(scene, material, {-half, y, half}, frontUp ? a : b, frontUp ? b : a);
+}
+void addSquare(Scene& scene, const Material& material, float y, bool frontUp, float half = 300) {
+  addSquare(scene, addMaterial(scene, material), y, frontUp, half);
 }
 
 // A slab between two heights.
 void addSlab(Scene& scene, const Material& material, float bottom, float top) {
-  addSquare(scene, material, bottom, false);
-  addSquare(scene, material, top, true);
+  const int body = addMaterial(scene, material);
+  addSquare(scene, body, bottom, false);
+  addSquare(scene, body, top, true);
 }
 
 Rgb meanIn(const Scene& scene, const Camera& camera, const Image& probe, uint32_t samples = 64,
@@ -156,28 +160,33 @@ TEST(Coincident, TouchingBodiesAbsorbInTurn) {
       }
     for (const vec3& eye : {vec3(0.01f, 50, 0), vec3(0.01f, -50, 0)}) {
       const Camera camera = Camera::lookAt(eye, {0, 0, 0}, {0, 0, -1}, 0.01f);
-      expectColor(meanInWhite(scene, camera, 4), expected, 1e-3f, std::to_string(order));
+      expectColor(meanInWhite(scene, camera, 256), expected, 0.015f, std::to_string(order));
     }
   }
 }
 
-// A boundary between glass and water refracts by their ratio: no light is reflected totally on the
-// way into an air gap, and no light is lost.
-TEST(Coincident, TouchingGlassAndWaterConserveEnergy) {
+// A boundary between glass and water refracts by their ratio: a slab of both loses less light by
+// reflection than two slabs, at normal incidence 2 R_g + 2 R_w + 2 R_gw to first order in R.
+TEST(Coincident, TouchingGlassAndWaterRefractAsOneBoundary) {
+  const auto reflectance = [](double n1, double n2) {
+    const double r = (n1 - n2) / (n1 + n2);
+    return r * r;
+  };
   for (const bool waterFirst : {true, false}) {
     Scene scene;
     if (waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
     addSlab(scene, bodyOf(1.5f, Rgb(0)), 1, 2);
     if (!waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
     expectColor(meanInWhite(scene, above(), 64), Rgb(1), 0.01f, "white");
-    // From a steep angle in the water, light passes the glass up to the angle of total reflection
-    // in air, as if there was water only.
-    Scene water;
-    addSlab(water, bodyOf(1.33f, Rgb(0)), 0, 2);
-    const Image half = gradientProbe({32, 16}, Rgb(0.2f), {0, 1, 0});
-    const Camera oblique = Camera::lookAt({0, 4, 8}, {0, 0, 0}, {0, 1, 0}, 0.2f);
-    expectColor(meanIn(scene, oblique, half, 1024), meanIn(water, oblique, half, 1024), 0.02f,
-                "oblique");
+    Material black = lambert(Rgb(0));
+    addSquare(scene, black, -1, true);  // what is seen is reflected
+    // Incoherent layers (as of a pile of plates): r / (1 - r) adds.
+    double ratio = 0;
+    for (const double r : {reflectance(1, 1.5), reflectance(1.5, 1.33), reflectance(1.33, 1)})
+      ratio += r / (1 - r);
+    const Camera camera = Camera::lookAt({0.01f, 50, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f);
+    expectColor(meanInWhite(scene, camera, 2048), Rgb(float(ratio / (1 + ratio))), 2e-3f,
+                "reflected");
   }
 }
 

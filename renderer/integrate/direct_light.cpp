@@ -46,7 +46,8 @@ Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext
   Media media = vertex.media;
   media.follow(vertex.surface, ray.direction);
   Rgb passed(1);
-  if (vertex.place) passed = crossPlace(*vertex.place, ray.direction, ray.time, media);
+  if (vertex.place && *vertex.place)
+    passed = crossPlace(*vertex.place, ray.direction, ray.time, media);
   if (isBlack(passed)) return passed;
   return passed * visibility(ray, media, context, lamp);
 }

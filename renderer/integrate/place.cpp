@@ -104,7 +104,8 @@ class PlaceCollector {
 std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathContext& context) const {
   const Instance& instance = world_.scene.instances[hit.instance];
   const Material& material = world_.scene.materials[size_t(instance.material)];
-  if (state.place || !(material.transmits() || material.hidesBack())) return hit;
+  const bool isPassed = state.isDelta ? material.hidesBack() : material.backLetsLightThrough();
+  if (state.place || !(material.transmits() || isPassed)) return hit;
   const Surface surface = surfaceOf(state, hit);
   return mayPass(state, surface) ? metAt(state, hit, surface, context) : hit;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Building the acceleration structure.
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstring>
-#include <string>
-#include <unordered_map>
+#include <tuple>
 
 #include "base/error.h"
 #include "scene/thin_wall.h"
@@ -22,11 +22,16 @@ void throwOnError(RTCDevice device) {
                                                       : fmt::format("error {}", int(error)));
 }
 
+std::array<float, 12> columnsOf(const Transform& toWorld) {
+  std::array<float, 12> columns;
+  std::memcpy(columns.data(), &toWorld.linear, sizeof toWorld.linear);
+  std::memcpy(columns.data() + 9, &toWorld.translation, sizeof toWorld.translation);
+  return columns;
+}
+
 void setTransform(RTCGeometry geometry, unsigned step, const Transform& toWorld) {
-  float columns[12];
-  std::memcpy(columns, &toWorld.linear, sizeof toWorld.linear);
-  std::memcpy(columns + 9, &toWorld.translation, sizeof toWorld.translation);
-  rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                          columnsOf(toWorld).data());
 }
 
 RTCGeometry newInstance(RTCDevice device, RTCScene scene, const Transform& toWorld) {
@@ -58,35 +63,31 @@ std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>
   return still;
 }
 
-// Of an instance of a shared mesh that stands still: equal for those that coincide.
-std::string placementKey(const Instance& instance, RayMask mask) {
-  std::string key;
-  const auto append = [&](const auto& value) {
-    key.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  append(instance.mesh);
-  append(instance.material);
-  append(mask);
-  const Transform toWorld = instance.toWorld.value_or(Transform{});
-  append(toWorld.linear);
-  append(toWorld.translation);
-  return key;
+// Equal for instances that rays cannot tell from each other.
+auto placementOf(const Scene& scene, uint32_t instance, RayMask mask) {
+  const Instance& i = scene.instances[instance];
+  return std::tuple(i.mesh, i.material, mask, columnsOf(i.toWorld.value_or(Transform{})));
 }
 
-// By instance: whether rays cannot tell it from others at its place, so that their number would
-// only cost time. Of an opaque one the first is enough; of those that light passes, kMost are kept.
+// By instance: whether there are enough equal ones without it, more of which would only cost time.
+// Of opaque ones the first is enough; of those that light passes, kMost are kept.
 std::vector<bool> redundantInstances(const Scene& scene, const std::vector<int>& uses,
                                      const Accel& accel) {
-  constexpr int kMost = 8;
-  std::unordered_map<std::string, int> counts;
+  constexpr size_t kMost = 8;
+  std::vector<uint32_t> shared;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    if (uses[size_t(scene.instances[i].mesh)] > 1 && !scene.instances[i].motion)
+      shared.push_back(i);
+  const auto placement = [&](uint32_t i) { return placementOf(scene, i, accel.mask(i)); };
+  std::ranges::stable_sort(shared, {}, placement);
   std::vector<bool> redundant(scene.instances.size());
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (uses[size_t(instance.mesh)] == 1 || instance.motion) continue;
-    const Material& material = scene.materials[size_t(instance.material)];
-    const bool isOpaque = material.alphaMode == AlphaMode::Opaque && !material.transmits();
-    redundant[i] =
-        ++counts[placementKey(instance, accel.mask(uint32_t(i)))] > (isOpaque ? 1 : kMost);
+  for (size_t begin = 0, end; begin < shared.size(); begin = end) {
+    for (end = begin + 1;
+         end < shared.size() && placement(shared[end]) == placement(shared[begin]);)
+      ++end;
+    const Material& m = scene.materials[size_t(scene.instances[shared[begin]].material)];
+    const bool isOpaque = m.alphaMode == AlphaMode::Opaque && !m.transmits();
+    for (size_t k = begin + (isOpaque ? 1 : kMost); k < end; ++k) redundant[shared[k]] = true;
   }
   return redundant;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
@@ -96,7 +97,8 @@ std::shared_ptr<GltfFile> openedFile(const std::string& path, const GltfChoice& 
 bool beginsAsGltf(const std::string& path) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kBlank = " \t\r\n";
   std::string text(64, ' ');
-  if (std::filesystem::is_regular_file(path)) std::ifstream(path).read(text.data(), 64);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) std::ifstream(path).read(text.data(), 64);
   if (text.starts_with("glTF")) return true;
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   const size_t first = text.find_first_not_of(kBlank);

@@ -34,15 +34,15 @@ int MaterialReader::use(int index, const std::string& where) {
 }
 
 Material MaterialReader::convert(const tinygltf::Material& source, const std::string& where) {
-  const auto& pbr = source.pbrMetallicRoughness;
   Material m;
   m.name = source.name;
-  for (int i = 0; i < 4; ++i)
-    m.baseColor[i] =
-        number(file_, pbr.baseColorFactor[size_t(i)], 0, 1, where + ".baseColorFactor");
   const TexelUse use{.srgb = true, .weightedByAlpha = source.alphaMode != "OPAQUE"};
-  m.baseColorTexture = slot(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                            pbr.baseColorTexture.extensions, use, where + ".baseColorTexture");
+  constexpr const char* kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+  const Value* glossiness = findExtension(source.extensions, kGlossiness);
+  if (glossiness)
+    readSpecularGlossiness(*glossiness, use, where + "." + kGlossiness, m);
+  else
+    readBaseColor(source, use, where, m);
   m.doubleSided = source.doubleSided;
   m.alphaCutoff = number(file_, source.alphaCutoff, 0, 1e6, where + ".alphaCutoff");
   if (source.alphaMode == "MASK")
@@ -56,11 +56,14 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
     return m;
   }
 
-  m.metallic = number(file_, pbr.metallicFactor, 0, 1, where + ".metallicFactor");
-  m.roughness = number(file_, pbr.roughnessFactor, 0, 1, where + ".roughnessFactor");
-  m.metallicRoughnessTexture =
-      slot(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
-           pbr.metallicRoughnessTexture.extensions, {}, where + ".metallicRoughnessTexture");
+  if (!glossiness) {
+    const auto& pbr = source.pbrMetallicRoughness;
+    m.metallic = number(file_, pbr.metallicFactor, 0, 1, where + ".metallicFactor");
+    m.roughness = number(file_, pbr.roughnessFactor, 0, 1, where + ".roughnessFactor");
+    m.metallicRoughnessTexture =
+        slot(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
+             pbr.metallicRoughnessTexture.extensions, {}, where + ".metallicRoughnessTexture");
+  }
   m.normalScale = number(file_, source.normalTexture.scale, -1e6, 1e6, where + ".normalTexture");
   m.normalTexture = slot(source.normalTexture.index, source.normalTexture.texCoord,
                          source.normalTexture.extensions, {}, where + ".normalTexture");
@@ -76,17 +79,25 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
         slot(source.emissiveTexture.index, source.emissiveTexture.texCoord,
              source.emissiveTexture.extensions, {.srgb = true}, where + ".emissiveTexture");
 
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_ior")) {
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_ior"); e && !glossiness) {
     m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
     if (m.ior != 0) m.ior = std::max(m.ior, 1.0f);
   }
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"))
+  if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"); e && !glossiness)
     readSpecular(*e, where, m);
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
-    readSpecularGlossiness(*e, use, where + ".KHR_materials_pbrSpecularGlossiness", m);
   m.extended = readExtensions(source.extensions, where);
   if (m.extended && m.ior == 0) m.extended->transmission = 0;  // infinite index: reflects all light
   return m;
+}
+
+void MaterialReader::readBaseColor(const tinygltf::Material& source, TexelUse use,
+                                   const std::string& where, Material& m) {
+  const auto& pbr = source.pbrMetallicRoughness;
+  for (int i = 0; i < 4; ++i)
+    m.baseColor[i] =
+        number(file_, pbr.baseColorFactor[size_t(i)], 0, 1, where + ".baseColorFactor");
+  m.baseColorTexture = slot(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
+                            pbr.baseColorTexture.extensions, use, where + ".baseColorTexture");
 }
 
 void MaterialReader::readSpecular(const Value& extension, const std::string& where, Material& m) {
@@ -99,14 +110,13 @@ void MaterialReader::readSpecular(const Value& extension, const std::string& whe
       slot(memberOf(extension, "specularColorTexture"), true, where + ".specularColorTexture");
 }
 
-// Replaces the metallic-roughness parameters. The specular colour is F0 itself, as that of an
-// infinite index; its texture's alpha is the glossiness.
+// The specular colour is F0 itself, as that of an infinite index; its texture's alpha is the
+// glossiness.
 void MaterialReader::readSpecularGlossiness(const Value& e, TexelUse diffuse,
                                             const std::string& where, Material& m) {
   m.specularGlossiness = true;
   m.ior = 0;
   m.metallic = 0;
-  m.metallicRoughnessTexture = {};
   m.baseColor = vectorMember<4>(file_, e, "diffuseFactor", vec4(1), 0, 1, where);
   m.baseColorTexture = slot(memberOf(e, "diffuseTexture"), diffuse, where + ".diffuseTexture");
   m.specularColor = vectorMember<3>(file_, e, "specularFactor", vec3(1), 0, 1, where);

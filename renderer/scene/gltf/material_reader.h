@@ -43,6 +43,8 @@ class MaterialReader {
   }
   int texture(int index, TexelUse use, const std::string& where);
   TexelGrid* grid(int image);
+  void readBaseColor(const tinygltf::Material& source, TexelUse use, const std::string& where,
+                     Material& m);
   void readSpecularGlossiness(const tinygltf::Value& extension, TexelUse diffuse,
                               const std::string& where, Material& m);
   void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);

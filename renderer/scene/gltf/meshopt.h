@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_meshopt_compression: buffer views whose bytes are compressed.
+// EXT_meshopt_compression and KHR_meshopt_compression: buffer views whose bytes are compressed.
 #pragma once
 
 #include "scene/gltf/gltf_file.h"
