@@ -160,7 +160,7 @@ TEST(Job, WhatIsAsPlannedIsNotDescribedTwice) {
     Settings given;
     given.set("render.noise", 7.3);
     given.set("camera.shutter", 0.4);
-    given.set("render.irradiance_cache", 0.15);
+    given.set("clamp", 0.15);
     if (std::string(scene) != "plain.toml") given = {};
     RenderJob job = planJob(openScene(folder / scene), given);
     const LoadedScene loaded = loadScene(job);

@@ -99,7 +99,7 @@ Json partOf(const CompositeEntry& entry) {
   return part;
 }
 
-uint64_t hashOf(const Image& image) {
+uint64_t pixelHash(const Image& image) {
   uint64_t sum = hash(uint64_t(image.width), uint64_t(image.height), uint64_t(image.channels));
   for (const float texel : image.texels) sum = hash(sum, uint64_t(std::bit_cast<uint32_t>(texel)));
   return sum;
@@ -107,7 +107,7 @@ uint64_t hashOf(const Image& image) {
 
 // loadScene() may decide the reflectance.
 Json partOf(const CompositePlan& plan) {
-  return {{"plate", hashOf(plan.plate)},
+  return {{"plate", pixelHash(plan.plate)},
           {"mode", int(plan.mode)},
           {"reflectance", plan.choosesReflectance ? -1 : int(plan.reflectance)},
           {"iterations", plan.iterations},
