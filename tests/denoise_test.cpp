@@ -267,6 +267,26 @@ TEST(Denoise, LimitsFireflies) {
   EXPECT_NEAR(found / added, 1, 0.1);
 }
 
+// The light that the limit of fireflies removes is no error of pixels around them that have no
+// noise.
+TEST(Denoise, LostFirefliesLeaveTheErrorOfCleanPixels) {
+  const auto edge = [](int x, int) { return x < kWidth / 2 ? 0.01f : 1.0f; };
+  DenoiseInput input = noisy(0, edge);
+  HalvedImage& color = input.parts[0];
+  for (const auto& [y, sign] : {std::pair{10, 1.0f}, {35, -1.0f}})  // of either half
+    for (const int x : {kWidth / 2 + 1, kWidth / 2 + 5}) {
+      color.mean.setRgb(x, y, color.mean.rgb(x, y) + 300.0f);
+      color.half.setRgb(x, y, color.half.rgb(x, y) + sign * 300.0f);
+    }
+  const Denoised denoised = run(input);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth / 2 - 15; ++x) ASSERT_LT(*denoised.error.at(x, y), 1e-4f);
+  double before = 0;
+  for (size_t i = 0; i < color.half.texels.size(); i += 3)
+    before += color.half.texels[i] * color.half.texels[i] / (kWidth * kHeight);
+  EXPECT_LT(remainingNoise(denoised), std::sqrt(before));
+}
+
 // Errors of bright pixels do not spread to dark ones, nor relative errors of dark ones to bright
 // ones.
 TEST(Denoise, KnowsItsErrorBesideAnEdge) {

@@ -298,6 +298,59 @@ TEST(Noise, EdgesOfLampsAreNotRareLight) {
   EXPECT_LT(quantiles.p95, 9 * estimateNoise(errors).noise);
 }
 
+// A dim image in which every sample of the pixels within `radius` of the middle meets a bright
+// light with a probability of `lights` / 32; 32 samples per pixel. Returns the ratio of the mean
+// square of `noise` over many renders to its true value.
+double noiseRatioOfHighlight(double radius, double lights) {
+  constexpr int kSide = 32, kRenders = 60;
+  constexpr uint32_t kSamples = 32;
+  constexpr double kDim = 0.1, kBright = 20;
+  const double probability = lights / kSamples;
+  const auto isLit = [&](int x, int y) {
+    return std::hypot(x - kSide / 2, y - kSide / 2) <= radius;
+  };
+  const double litLuminance = kDim / 2 + probability * kBright;
+  double lit = 0;
+  for (int i = 0; i < kSide * kSide; ++i) lit += isLit(i % kSide, i / kSide);
+  const double share = lit / (kSide * kSide);
+  const double mean = share * litLuminance + (1 - share) * kDim / 2;
+  const double dimVariance = kDim * kDim / 12 / kSamples;  // of uniform numbers
+  const double litVariance =
+      dimVariance + probability * (1 - probability) * kBright * kBright / kSamples;
+  const double dimReference = std::max(kDim / 2, 0.01 * mean);
+  const double expected = share * litVariance / (litLuminance * litLuminance) +
+                          (1 - share) * dimVariance / (dimReference * dimReference);
+  double squared = 0;
+  for (uint64_t render = 0; render < kRenders; ++render) {
+    Film film(kSide, kSide);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        std::array<SampleSums, Film::kHalves> sums;
+        for (uint64_t k = 0; k < kSamples; ++k) {
+          const uint64_t key = hash(uint64_t(y * kSide + x), render * kSamples + k);
+          const double dim = kDim * double(toUnit(uint32_t(hash(key, 1))));
+          const bool meets = isLit(x, y) && double(toUnit(uint32_t(hash(key, 2)))) < probability;
+          sums[k % 2].add(Rgb(float(dim + (meets ? kBright : 0))));
+        }
+        for (int half = 0; half < Film::kHalves; ++half) film.add(x, y, half, sums[size_t(half)]);
+      }
+    squared += std::pow(film.noise().noise, 2) / kRenders;
+  }
+  return squared / expected;
+}
+
+// A highlight counts with its own luminance, also where few samples make it up, and rare light
+// with that of its surroundings.
+TEST(Noise, KnowsHighlightsFromRareLight) {
+  for (const double radius : {1.5, 3.0, 6.0})
+    for (const double lights : {4.0, 10.0}) {
+      const double ratio = noiseRatioOfHighlight(radius, lights);
+      EXPECT_GT(ratio, 0.75) << radius << " " << lights;
+      EXPECT_LT(ratio, 1.5) << radius << " " << lights;
+    }
+  EXPECT_NEAR(noiseRatioOfHighlight(100, 0.02), 1, 0.3);
+}
+
 // A pixel without a valid sample has an unknown variance, which does not affect the others.
 TEST(Noise, ToleratesPixelsWithoutAValidSample) {
   Film film(8, 8);

@@ -148,29 +148,85 @@ std::string roomFile(GltfWriter& w) {
   return w.save();
 }
 
+void writeProbe(const std::string& path, float radiance) {
+  std::ofstream file(path, std::ios::binary);
+  file << "PF\n2 1\n-1\n";
+  for (int i = 0; i < 6; ++i) file.write(reinterpret_cast<const char*>(&radiance), 4);
+}
+
+// What the command says about the model, or a scene file, under a constant probe.
+std::string messagesOf(const std::string& file, float radiance,
+                       const std::vector<std::string>& more = {}) {
+  const TemporaryFolder folder;
+  writeProbe(folder / "probe.pfm", radiance);
+  std::vector<std::string> arguments = {
+      "render",         file,     "--probe", folder / "probe.pfm", "-o",
+      folder / "a.pfm", "--size", "96x96",   "--samples",          "4"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const CommandResult r = runCommand(arguments);
+  EXPECT_EQ(r.status, 0) << r.error;
+  return r.error;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 TEST(SlowSingleSided, ABlackRoomIsReported) {
   GltfWriter w;
   const TemporaryFolder folder;
   std::ofstream(folder / "a.toml") << "model = '" << roomFile(w) << "'\n"
                                    << "[camera]\nposition = [0, -2, 30]\nlook_at = [0, -2, 0]\n";
-  std::ofstream(folder / "probe.pfm") << "PF\n2 1\n-1\n"
-                                      << std::string("\0\0\x80?\0\0\x80?\0\0\x80?", 12)
-                                      << std::string("\0\0\x80?\0\0\x80?\0\0\x80?", 12);
-  const auto render = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {
-        "render",         folder / "a.toml", "--probe", folder / "probe.pfm", "-o",
-        folder / "a.pfm", "--size",          "96x96",   "--samples",          "4"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const CommandResult r = runCommand(arguments);
-    EXPECT_EQ(r.status, 0) << r.error;
-    return r.error;
-  };
-  const std::string message = render({});
-  EXPECT_NE(message.find("are black: single-sided walls"), std::string::npos) << message;
-  EXPECT_NE(message.find("--single-sided light"), std::string::npos) << message;
-  EXPECT_EQ(render({"--single-sided", "light"}).find("are black"), std::string::npos);
+  const std::string message = messagesOf(folder / "a.toml", 1);
+  EXPECT_TRUE(contains(message, "are black: single-sided walls")) << message;
+  EXPECT_TRUE(contains(message, "--single-sided light")) << message;
+  EXPECT_FALSE(
+      contains(messagesOf(folder / "a.toml", 1, {"--single-sided", "light"}), "are black"));
   expectError({"render", folder / "a.toml", "-o", folder / "b.pfm", "--single-sided", "ligth"},
               "--single-sided: `ligth` is not known; did you mean `light`?");
+}
+
+// Walls are named only where they are the cause.
+TEST(SlowSingleSided, WallsAreNotBlamedForABlackProbeOrAShadowedSide) {
+  GltfWriter w;
+  const TemporaryFolder folder;
+  const std::string model = roomFile(w);
+  std::ofstream(folder / "a.toml") << "model = '" << model << "'\n"
+                                   << "[camera]\nposition = [0, -2, 30]\nlook_at = [0, -2, 0]\n";
+  const std::string unlit = messagesOf(folder / "a.toml", 0);
+  EXPECT_TRUE(contains(unlit, "the probe is black")) << unlit;
+  EXPECT_FALSE(contains(unlit, "walls")) << unlit;
+
+  // A closed body that turns its front faces outwards, lit from behind.
+  GltfWriter outwards;
+  outwards.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+  const int positions = outwards.vec3s({-9, -5, 0, 9, -5, 0, 0, 9, 0, 0, 0, -3});
+  outwards.add(
+      "nodes",
+      {{"mesh", outwards.mesh({{"attributes", {{"POSITION", positions}}},
+                               {"indices", outwards.indices({0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0})},
+                               {"material", 0}})}});
+  std::ofstream(folder / "b.toml") << "model = '" << outwards.save() << "'\n"
+                                   << "[camera]\nposition = [0, 0, 30]\nlook_at = [0, 0, 0]\n"
+                                   << "[[light]]\ntype = \"sun\"\ndirection = [0, 0, -1]\n"
+                                   << "irradiance = [1, 1, 1]\n";
+  const std::string shadowed = messagesOf(folder / "b.toml", 0);
+  EXPECT_TRUE(contains(shadowed, "no light reaches them")) << shadowed;
+  EXPECT_FALSE(contains(shadowed, "walls")) << shadowed;
+}
+
+TEST(SlowSingleSided, AnEmptyViewIsReported) {
+  GltfWriter w;  // a triangle that faces down
+  w.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+  const int positions = w.vec3s({-1, 0, -1, 1, 0, -1, 0, 0, 1});
+  w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}}},
+                                   {"indices", w.indices({0, 1, 2})},
+                                   {"material", 0}})}});
+  const std::string model = w.save();
+  const std::string message = messagesOf(model, 1);
+  EXPECT_TRUE(contains(message, "no surface is in view")) << message;
+  EXPECT_TRUE(contains(message, "--single-sided off")) << message;
+  EXPECT_FALSE(contains(messagesOf(model, 1, {"--single-sided", "off"}), "in view"));
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 namespace chromeball {
 namespace {
 
-constexpr int kNoiseReach = 1;  // of the windows over which squared halves are averaged
+constexpr int kHalvesReach = 1;  // of the windows over which squared halves are averaged,
+constexpr int kNoiseReach = 3;   // and over which they are the noise of the input
 
 // A power of two that brings the mean of the images close to 1, so that the squares of radiances
 // between 1e-8 and 1e10 are floats.
@@ -37,7 +38,7 @@ Plane varianceOf(const Plane& a, const Plane& b) {
     const float half = (a.at(x, y) - b.at(x, y)) / 2;
     return half * half;
   });
-  return boxMean(squared, kNoiseReach);
+  return boxMean(squared, kHalvesReach);
 }
 
 HalfPlanes halvesOf(const HalvedImage& image, float scale) {
@@ -68,7 +69,7 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
   HalfGuides halves;
   for (int c = 0; c < image.mean.channels; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
-    const Plane noise = boxMean(squares(half), kNoiseReach);
+    const Plane noise = boxMean(squares(half), kHalvesReach);
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
       halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {
@@ -131,6 +132,20 @@ HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
   return guides;
 }
 
+// Squared errors of the channels of the input, averaged over windows.
+RgbPlanes noiseOf(const HalvedImage& image, float scale) {
+  RgbPlanes noise;
+  for (int c = 0; c < 3; ++c) {
+    const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
+    const auto scaled = [&](const Plane& plane) {
+      return makePlane(plane.width(), plane.height(),
+                       [&](int x, int y) { return scale * plane.at(x, y); });
+    };
+    noise[size_t(c)] = averageErrors(squares(scaled(half)), scaled(mean), kNoiseReach);
+  }
+  return noise;
+}
+
 // Two passes with two bandwidths each: the second computes its weights from the narrower result of
 // the first. `progress` receives the fraction.
 Selection denoise(const Component& component, const FeaturePlanes& features,
@@ -162,6 +177,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
   std::vector<DenoisedPart> results;
   for (const HalvedImage& part : input.parts) {
     const double before = double(results.size()), count = double(input.parts.size());
+    const RgbPlanes noise = noiseOf(part, scale);
     HalfPlanes halves = halvesOf(part, scale);
     const Plane squaredBias = limitFireflies(halves);
     const Selection found = denoise(
@@ -175,8 +191,10 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
       for (int x = 0; x < width; ++x) {
         if (isEmpty(input, part, x, y)) continue;
         for (int c = 0; c < 3; ++c) {
+          // The light of fireflies is missing; without the limit there would be their noise.
+          const float known = std::max(found.error[size_t(c)].at(x, y), 0.0f);
           const float error =
-              std::max(found.error[size_t(c)].at(x, y), 0.0f) + squaredBias.at(x, y);
+              std::min(known + squaredBias.at(x, y), std::max(known, noise[size_t(c)].at(x, y)));
           result.color.at(x, y)[c] = found.color[size_t(c)].at(x, y) / scale;
           result.squaredError.at(x, y)[c] = error / scale / scale;
         }
@@ -203,7 +221,7 @@ Denoised sumOf(const std::vector<DenoisedPart>& parts) {
 }
 
 double denoiseBytes(int width, int height, int parts) {
-  const double planes = 140 + 6 * parts;  // that exist at the same time, at most
+  const double planes = 143 + 6 * parts;  // that exist at the same time, at most
   return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 
@@ -217,8 +235,11 @@ double remainingNoise(const Denoised& denoised) {
   if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
-      const double reference = std::max(double(luminance(color.rgb(x, y))), 0.01 * mean);
-      const double relative = double(*error.at(x, y)) / reference;
+      // As far as is known, a pixel is as bright as its error if that exceeds its luminance.
+      const double absolute = double(*error.at(x, y));
+      const double reference =
+          std::max({double(luminance(color.rgb(x, y))), absolute, 0.01 * mean});
+      const double relative = absolute / reference;
       sum += relative * relative / count;
     }
   return std::sqrt(sum);

@@ -82,6 +82,18 @@ Plane choose(const std::vector<Candidate>& candidates) {
 
 }  // namespace
 
+Plane averageErrors(const Plane& squaredErrors, const Plane& color, int reach) {
+  const Plane size = makePlaneLike(
+      color, [&](int x, int y) { return std::max(square(color.at(x, y)), square(kDark)); });
+  const Plane absolute = boxMean(squaredErrors, reach);
+  const Plane relative = boxMean(
+      makePlaneLike(size, [&](int x, int y) { return squaredErrors.at(x, y) / size.at(x, y); }),
+      reach);
+  return makePlaneLike(size, [&](int x, int y) {
+    return std::min(absolute.at(x, y), relative.at(x, y) * size.at(x, y));
+  });
+}
+
 Candidate unfiltered(const Component& component) {
   Candidate candidate{.margin = kUnfilteredMargin};
   for (size_t c = 0; c < 3; ++c) {
@@ -130,26 +142,15 @@ Selection best(const std::vector<Candidate>& candidates) {
       });
     };
     result.color[c] = blend(&Candidate::color);
-    // The lesser of the absolute and the relative mean: absolute errors would spread from bright
-    // pixels to dark ones, and relative ones from dark pixels to bright ones.
-    const Plane size = makePlaneLike(chosen, [&](int x, int y) {
-      return std::max(square(result.color[c].at(x, y)), square(kDark));
-    });
     const auto averaged = [&](const Plane& squaredError, int reach) {
-      const Plane absolute = boxMean(squaredError, reach);
-      const Plane relative = boxMean(
-          makePlaneLike(size, [&](int x, int y) { return squaredError.at(x, y) / size.at(x, y); }),
-          reach);
-      return makePlaneLike(size, [&](int x, int y) {
-        return std::min(absolute.at(x, y), relative.at(x, y) * size.at(x, y));
-      });
+      return averageErrors(squaredError, result.color[c], reach);
     };
     const Plane blended = blend(&Candidate::variance);
     const Plane variance = averaged(blended, kVarianceReach);
     const Plane error = averaged(blend(&Candidate::error), kBiasReach);
     const Plane spread = averaged(blended, kBiasReach);
     const Plane noise = averaged(candidates.back().error[c], kErrorReach);
-    result.error[c] = makePlaneLike(size, [&](int x, int y) {
+    result.error[c] = makePlaneLike(chosen, [&](int x, int y) {
       const float bias = std::max(error.at(x, y) - spread.at(x, y), 0.0f);
       return std::min(variance.at(x, y) + bias, std::max(variance.at(x, y), noise.at(x, y)));
     });

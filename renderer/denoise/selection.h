@@ -29,6 +29,11 @@ Candidate unfiltered(const Component& component);
 // (Bitterli et al. 2016, section 5.3).
 Candidate filtered(const Component& component, const HalfPlanes& halves, Bandwidth bandwidth);
 
+// The mean of squared errors over the window around each pixel of an image: the lesser of the
+// absolute and the relative mean. Absolute errors would spread from bright pixels to dark ones, and
+// relative ones from dark pixels to bright ones.
+Plane averageErrors(const Plane& squaredErrors, const Plane& color, int reach);
+
 // An image, and its squared errors, averaged over windows.
 struct Selection {
   RgbPlanes color, error;

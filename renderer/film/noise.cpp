@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "base/for_ranges.h"
@@ -23,17 +24,26 @@ double meanOf(const std::vector<double>& values) {
   return sum / double(std::max<size_t>(values.size(), 1));
 }
 
-// The divisor of a pixel's relative error: its luminance, and at least 0.01 of the image's mean. If
-// the pixel's own luminance is too uncertain (a firefly), at most the mean of the window: otherwise
-// the errors of fireflies would be divided by their own luminance and seem small.
+// The divisor of a pixel's relative error: its luminance, and at least 0.01 of the image's mean. A
+// firefly must not be divided by its own luminance, which would make its error seem small; a
+// highlight must. They differ in the number of samples that make up the pixel's excess over its
+// surroundings: one that alone adds d to the mean has the scatter d^2, and n equal ones have
+// (n d)^2 / n. Where it is one, the light is as rare as it is in the window around the pixel, or,
+// at the border of a highlight, in the pixels next to it.
 double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) {
   const size_t i = size_t(y) * size_t(errors.width) + size_t(x);
-  double reference = errors.luminances[i];
-  if (errors.halves[i].w > kMaxRelativeError * kMaxRelativeError * reference * reference) {
-    double sum = 0, count = 0;
-    forWindow(errors.width, errors.height, x, y, kReach,
-              [&](size_t j, int, int) { sum += errors.luminances[j], ++count; });
-    reference = std::min(reference, sum / count);
+  const double own = errors.luminances[i], scatter = errors.scatter[i].w;
+  double reference = own;
+  if (scatter > kMaxRelativeError * kMaxRelativeError * own * own) {
+    double sum = 0, count = 0, nextSum = 0, nextCount = 0;
+    forWindow(errors.width, errors.height, x, y, kReach, [&](size_t j, int dx, int dy) {
+      sum += errors.luminances[j], ++count;
+      const bool isNext = std::max(std::abs(dx), std::abs(dy)) == 1;
+      if (isNext) nextSum += errors.luminances[j], ++nextCount;
+    });
+    const double around = std::min(own, std::max(sum / count, nextSum / std::max(nextCount, 1.0)));
+    const double samples = (own - around) * (own - around) / scatter;
+    reference = glm::mix(around, own, std::clamp(samples - 1, 0.0, 1.0));
   }
   return std::max(reference, 0.01 * mean);
 }

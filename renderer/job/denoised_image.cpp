@@ -22,8 +22,8 @@ std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress
   return sumOf(*parts);
 }
 
-double addDenoised(Denoised denoised, OutputImage& image) {
-  const double noise = remainingNoise(denoised);
+double addDenoised(Denoised denoised, double noise, OutputImage& image) {
+  const double remaining = remainingNoise(denoised);
   Image& color = image.layers.front().image;
   Image noisy(color.width, color.height, 3);
   for (int y = 0; y < color.height; ++y)
@@ -33,17 +33,17 @@ double addDenoised(Denoised denoised, OutputImage& image) {
     }
   image.layers.push_back({"noisy", "RGB", std::move(noisy)});
   image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
-  return noise;
+  return noise < remaining ? noise : remaining;
 }
 
-std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const Progress& progress,
-                                         OutputImage& image) {
+std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,
+                                         const Progress& progress, OutputImage& image) {
   Stopwatch watch;
   std::optional<Denoised> found =
       denoise([&](double fraction) { progress(kRenderShare + (1 - kRenderShare) * fraction); });
   if (!found) return std::nullopt;
-  const double noise = addDenoised(*std::move(found), image);
-  return DenoiseReport{noise, watch.lap()};
+  const double remaining = addDenoised(*std::move(found), noise, image);
+  return DenoiseReport{remaining, watch.lap()};
 }
 
 }  // namespace chromeball

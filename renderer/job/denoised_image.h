@@ -29,12 +29,13 @@ inline constexpr double kRenderShare = 0.9;
 
 // Replaces the color of `image` (its alpha only by one that is denoised) by the denoised one, and
 // adds the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare
-// to 1. nullopt if `denoise` returns nullopt.
+// to 1. `noise`: of the image before, which the remaining noise does not exceed; NaN: unknown.
+// nullopt if `denoise` returns nullopt.
 using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
-std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const Progress& progress,
-                                         OutputImage& image);
+std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,
+                                         const Progress& progress, OutputImage& image);
 
 // The same with an image that is already denoised. Returns the remaining noise.
-double addDenoised(Denoised denoised, OutputImage& image);
+double addDenoised(Denoised denoised, double noise, OutputImage& image);
 
 }  // namespace chromeball

@@ -149,7 +149,7 @@ FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result
         [&](const Progress& part) {
           return denoiseComposite(result, composite.plate, composite.mode, part, stop);
         },
-        progress, finished.image);
+        finished.noise.noise, progress, finished.image);
   return finished;
 }
 
@@ -250,7 +250,7 @@ FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const P
   if (plan.settings.denoisesAtEnd() && !result.interrupted)
     finished.denoised =
         addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
-                    progress, finished.image);
+                    finished.noise.noise, progress, finished.image);
   return finished;
 }
 

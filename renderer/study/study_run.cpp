@@ -96,7 +96,8 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
     std::optional<Denoised> denoised = denoiseRender(
         result, [](double) {}, stop);
     if (!denoised) return;
-    noise = remainingNoise(*denoised);
+    const double remaining = remainingNoise(*denoised);
+    if (!(noise < remaining)) noise = remaining;
     image = std::move(denoised->color);
   }
   const double seconds = watch.seconds();

@@ -56,6 +56,13 @@ struct Reader {
   }
 };
 
+// `noise` of the render; NaN: unknown.
+double noiseOf(const Metadata& metadata) {
+  const auto found = metadata.find("noise");
+  const float* noise = found == metadata.end() ? nullptr : std::get_if<float>(&found->second);
+  return noise ? double(*noise) : double(NAN);
+}
+
 Image withColor(Image image, const Image& color) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) image.setRgb(x, y, color.rgb(x, y));
@@ -90,7 +97,7 @@ void run(const ImageDenoiseArguments& arguments) {
   output.metadata = std::move(file.metadata);
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
-  const double noise = addDenoised(std::move(denoised), output);
+  const double noise = addDenoised(std::move(denoised), noiseOf(output.metadata), output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
   writeImage(arguments.output, output);
   if (!arguments.quiet)

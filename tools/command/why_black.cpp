@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "why_black.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/icosphere.h"
+#include "probe/solid_angle.h"
+#include "scene/surface.h"
+#include "trace/surface_ray.h"
+
+namespace chromeball {
+namespace {
+
+constexpr int kMaxSurfaces = 64;  // that one ray passes
+
+// The first surface along the ray that `stops`, with the hits of those before it passed.
+template <class Stops>
+std::optional<Surface> firstSurface(const Accel& accel, Ray ray, const Stops& stops) {
+  const Scene& scene = accel.scene();
+  Hit hit;
+  for (int i = 0; i < kMaxSurfaces && accel.intersect(ray, 0, hit); ++i) {
+    const Surface surface = surfaceAt(scene, scene.instances[hit.instance], hit.triangle,
+                                      hit.barycentric, -ray.direction, 0, ray.time);
+    if (stops(surface)) return surface;
+    const float left = ray.tMax - hit.distance;
+    ray = rayFrom(surface, ray.direction, left);
+  }
+  return std::nullopt;
+}
+
+// What the camera sees through the pixels of a grid.
+struct Seen {
+  std::vector<Surface> black;  // visible surfaces in pixels that are black
+  int surfaces = 0;            // pixels with a visible surface
+  int hidden = 0;              // with none, but the hidden back of one
+};
+
+Seen lookThrough(const LoadedScene& loaded, const Accel& accel, const Image& mean, float dark,
+                 int grid) {
+  const CameraRays camera(loaded.camera, float(mean.width) / float(mean.height));
+  const int columns = std::min(grid, mean.width), rows = std::min(grid, mean.height);
+  Seen seen;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int x = int(int64_t(i) * mean.width / columns);
+      const int y = int(int64_t(j) * mean.height / rows);
+      Ray ray;
+      camera.ray((float(x) + 0.5f) / float(mean.width), (float(y) + 0.5f) / float(mean.height),
+                 ray.origin, ray.direction);
+      bool passesBack = false;
+      const std::optional<Surface> surface = firstSurface(accel, ray, [&](const Surface& s) {
+        const bool isHidden = !s.frontFace && s.material->hidesBack();
+        passesBack |= isHidden;
+        return !isHidden;
+      });
+      seen.surfaces += surface.has_value();
+      seen.hidden += !surface && passesBack;
+      if (surface && luminance(mean.rgb(x, y)) <= dark) seen.black.push_back(*surface);
+    }
+  return seen;
+}
+
+struct Target {
+  vec3 direction;                     // unit, or
+  std::optional<vec3> position = {};  // that of a lamp
+};
+
+// Directions in proportion to the probe's light.
+void addProbe(const Probe& probe, std::vector<Target>& targets) {
+  constexpr int kCount = 64;
+  std::vector<vec3> directions;
+  std::vector<double> sums;
+  double sum = 0;
+  for (int row = 0; row < probe.cellRows(); ++row)
+    for (int column = 0; column < probe.width(); ++column) {
+      Probe::Position middle{column, row, 0.5f, 0.5f, 0};
+      directions.push_back(probe.direction(middle));
+      const Rgb radiance = Probe::interpolate(probe.corners(column, row), middle.s, middle.t);
+      sums.push_back(sum += double(luminance(radiance)) * double(middle.sinTheta));
+    }
+  for (int k = 0; k < kCount && sum > 0; ++k) {
+    const auto at = std::ranges::lower_bound(sums, (k + 0.5) / kCount * sum);
+    targets.push_back({directions[size_t(at - sums.begin())]});
+  }
+}
+
+std::vector<Target> lightsOf(const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  std::vector<Target> targets;
+  addProbe(loaded.probe, targets);
+  for (const SunLamp& lamp : scene.suns) targets.push_back({vec3(lamp.sun.direction)});
+  for (const PunctualLight& light : scene.lights)
+    light.kind == PunctualLight::Kind::Directional
+        ? targets.push_back({-light.direction})
+        : targets.push_back({.direction = {}, .position = light.position});
+  if (!scene.ambient.empty())
+    for (const vec3& direction : icosphereNormals(0)) targets.push_back({direction});
+  return targets;
+}
+
+// Whether single-sided walls alone hide the light from the surface: a ray to it passes the fronts
+// of some, which it would with --single-sided light, and meets nothing else.
+bool isBehindWalls(const Accel& accel, const Surface& surface, const std::vector<Target>& lights) {
+  return std::ranges::any_of(lights, [&](const Target& light) {
+    const vec3 way = light.position ? *light.position - surface.position : light.direction;
+    if (!(glm::dot(way, surface.geometricNormal) > 0)) return false;
+    const vec3 direction = glm::normalize(way);
+    const float length = light.position ? glm::length(way) : INFINITY;
+    bool passesWall = false;
+    const auto blocks = [&](const Surface& s) {
+      const bool isWall = s.frontFace && s.material->hidesBack();
+      passesWall |= isWall;
+      return !isWall;
+    };
+    return !firstSurface(accel, rayFrom(surface, direction, length), blocks) && passesWall;
+  });
+}
+
+std::string noneInView(const Seen& seen) {
+  if (seen.hidden > 0)
+    return "no surface is in view: the camera is behind single-sided ones, whose backs it does not "
+           "see; try --single-sided off, or another camera";
+  return "no surface is in view; try another camera";
+}
+
+}  // namespace
+
+std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loaded,
+                                    const Accel& accel, const Image& mean) {
+  constexpr float kDark = 1e-4f;  // of the probe's mean
+  constexpr double kMax = 0.8, kNearlyAll = 0.95;
+  constexpr int kGrid = 48, kFine = 1024;
+  const float probeMean = luminance(Rgb(meanRadiance(loaded.probe.latLong())));
+  const Seen seen = lookThrough(loaded, accel, mean, kDark * probeMean, kGrid);
+  if (seen.surfaces == 0) {
+    const Seen finer = lookThrough(loaded, accel, mean, 0, kFine);
+    return finer.surfaces == 0 ? std::optional(noneInView(finer)) : std::nullopt;
+  }
+  const double black = double(seen.black.size()) / seen.surfaces;
+  if (job.settings.maxDepth == 0 || black < kMax) return std::nullopt;  // at 0, only emitters shine
+  const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ", 100 * black);
+  const auto scale = job.file.settings.get<std::vector<double>>("probe.scale");
+  if (std::ranges::all_of(scale, [](double channel) { return channel == 0; }))
+    return what + "--probe-scale 0 turns the probe off";
+  const std::vector<Target> lights = lightsOf(loaded);
+  const auto behindWalls = std::ranges::count_if(
+      seen.black, [&](const Surface& surface) { return isBehindWalls(accel, surface, lights); });
+  const bool lets = std::ranges::any_of(loaded.scene.materials,
+                                        [](const Material& m) { return m.backLetsLightThrough(); });
+  if (!lets && 2 * size_t(behindWalls) > seen.black.size())
+    return what +
+           "single-sided walls, which the camera sees through, block the light; "
+           "try --single-sided light, or add lamps with [[light]] in a scene file";
+  if (black < kNearlyAll) return std::nullopt;
+  if (lights.empty() && job.file.settings.has("probe.file"))
+    return what + "the probe is black; take another, or add lamps with [[light]] in a scene file";
+  return what + "no light reaches them; add lamps with [[light]] in a scene file";
+}
+
+}  // namespace chromeball
