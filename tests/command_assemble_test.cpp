@@ -68,10 +68,11 @@ TEST(SlowCommandAssemble, TwoPhotographsReturnTheProbe) {
   EXPECT_NEAR(second["gain"], 0.5, 0.005);
   EXPECT_EQ(report["blind_share"], 0);
   for (const json& view : report["views"]) {
-    EXPECT_NEAR(view["circle"][0], kCircle.centre.x, 0.4);
-    EXPECT_NEAR(view["circle"][1], kCircle.centre.y, 0.4);
-    EXPECT_NEAR(view["circle"][2], kCircle.radius, 0.4);
-    EXPECT_GT(view["circle_support"], 0.5);
+    EXPECT_NEAR(view["circle"][0], kCircle.centre.x, 0.15);
+    EXPECT_NEAR(view["circle"][1], kCircle.centre.y, 0.15);
+    EXPECT_NEAR(view["circle"][2], kCircle.radius, 0.15);
+    EXPECT_LT(view["circle_standard_error"], 0.1);
+    EXPECT_GT(view["circle_support"], 0.4);
   }
   EXPECT_LT(irradianceError(readImage(photographs.out), photographs.map).mean, 0.01);
   const Image picture = readImage(preview);
@@ -179,6 +180,40 @@ TEST(SlowCommandAssemble, FisheyePhotographs) {
                       .out);
   EXPECT_EQ(report["blind_share"], 0);
   EXPECT_LT(irradianceError(readImage(folder / "probe.exr"), map).mean, 0.003);
+}
+
+// A lens that looks up has its camera below: elevation -90. With the other sign the sky would be
+// below the horizon.
+TEST(SlowCommandAssemble, WarnsOfAProbeThatIsUpsideDown) {
+  const TemporaryFolder folder;
+  const std::string sky = folder / "sky.exr", ground = folder / "ground.exr";
+  writeImage(sky, constantProbe({100, 100}, Rgb(4)));
+  writeImage(ground, constantProbe({100, 100}, Rgb(0.5f)));
+  const auto error = [&](std::vector<std::string> photographs, const std::string& azimuths) {
+    photographs.insert(photographs.begin(), {"probe", "assemble"});
+    photographs.insert(photographs.end(),
+                       {"-o", folder / "probe.exr", "--from", "fisheye", "--azimuth", azimuths,
+                        "--size", "32x16", "--keep-exposure", "--keep-azimuth"});
+    return run(photographs).error;
+  };
+  EXPECT_NE(error({sky}, "0:90").find("looks below the horizon"), std::string::npos);
+  EXPECT_EQ(error({sky}, "0:-90"), "");
+  EXPECT_EQ(error({sky, ground}, "0:-90,0:90"), "");
+  EXPECT_NE(error({sky, ground}, "0:90,0:-90").find("as bright below the horizon"),
+            std::string::npos);
+  EXPECT_EQ(error({sky}, "0"), "");
+}
+
+// What the output is, is written in its own mapping.
+TEST(SlowCommandAssemble, NamesTheMappingOfItsOutput) {
+  const Photographs photographs;
+  run({"probe", "assemble", photographs.a, "-o", photographs.out, "--circle", "102.2,98.6,80.3",
+       "--reflectivity", "0.6", "--distance", "32", "--to", "angular", "--size", "64x64"});
+  EXPECT_EQ(loadProbe(photographs.out).mapping, Mapping(Mapping::AngularMap));
+  EXPECT_NE(run({"probe", "assemble", photographs.a, "-o", photographs.out, "--circle",
+                 "102.2,98.6,80.3", "--reflectivity", "0.6"})
+                .error.find("no --distance"),
+            std::string::npos);
 }
 
 // What `probe convert` says of photographs, and how it flips them.

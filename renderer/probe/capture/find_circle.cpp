@@ -20,7 +20,7 @@ constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
 // Of the arcs of the final fit: of random edges, a fifth would agree. And in pixels.
-constexpr double kLeastOutline = 0.4, kLargestError = 0.5;
+constexpr double kLeastOutline = 0.3, kLargestError = 0.5;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
