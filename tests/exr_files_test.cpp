@@ -18,7 +18,7 @@
 #include "probe/load.h"
 #include "temporary_folder.h"
 
-namespace chromeball {
+namespace chromeball::exr_files_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -198,4 +198,4 @@ TEST(ExrFiles, DegeneratePrimariesAreRefused) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::exr_files_test

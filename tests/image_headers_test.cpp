@@ -15,7 +15,7 @@
 #include "probe/load.h"
 #include "run_command.h"
 
-namespace chromeball {
+namespace chromeball::image_headers_test {
 namespace {
 
 std::string saved(const std::string& path, const std::string& bytes) {
@@ -221,4 +221,4 @@ TEST(ImageHeaders, UncoveredLightIsCounted) {
 }
 
 }  // namespace
-}  // namespace chromeball
+}  // namespace chromeball::image_headers_test
