@@ -18,8 +18,9 @@ class PacketWriter {
   template <class T>
   void put(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const char* begin = reinterpret_cast<const char*>(&value);
-    bytes_.insert(bytes_.end(), begin, begin + sizeof value);
+    const size_t end = bytes_.size();
+    bytes_.resize(end + sizeof value);
+    std::memcpy(bytes_.data() + end, &value, sizeof value);
   }
   void put(const std::string& text) {
     bytes_.insert(bytes_.end(), text.c_str(), text.c_str() + text.size() + 1);
