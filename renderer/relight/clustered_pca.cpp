@@ -2,10 +2,11 @@
 #include "relight/clustered_pca.h"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 namespace {
@@ -21,13 +22,13 @@ MatrixXf principalVectors(const MatrixXd& centred, int most) {
   const bool isWide = centred.cols() > centred.rows();
   const MatrixXd product =
       isWide ? MatrixXd(centred * centred.transpose()) : MatrixXd(centred.transpose() * centred);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(product);
+  const SymmetricEigen eigen = eigenOfSymmetric(product);
   const Eigen::Index size = product.rows();
-  const double least = 1e-14 * std::max(solver.eigenvalues()[size - 1], 0.0);
+  const double least = 1e-14 * std::max(eigen.values[size - 1], 0.0);
   std::vector<VectorXd> found;
   for (Eigen::Index i = size - 1; i >= 0 && found.size() < size_t(most); --i) {
-    if (!(solver.eigenvalues()[i] > least)) break;
-    VectorXd vector = solver.eigenvectors().col(i);
+    if (!(eigen.values[i] > least)) break;
+    VectorXd vector = eigen.vectors.col(i);
     if (!isWide) vector = (centred * vector).eval();
     // Against the earlier ones, from which rounding moves those of small variance.
     for (const VectorXd& other : found) vector -= other.dot(vector) * other;

@@ -50,7 +50,7 @@ foreach(target chromeball_planning chromeball_renderer)
   target_include_directories(${target} PRIVATE renderer)
   target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
-  chromeball_unity(${target} 48)
+  chromeball_unity(${target} 32)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>

@@ -2,7 +2,7 @@
 // Nonlinear least squares by the Levenberg-Marquardt method (Marquardt 1963).
 #pragma once
 
-#include <Eigen/Dense>
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 
@@ -30,10 +30,10 @@ Minimum<typename Problem::State> minimise(const Problem& problem, typename Probl
   best.squares = residual.squaredNorm();
   double damping = kFirst;
   for (int step = 0; step < maxSteps && damping < kMost; ++step) {
-    best.normal = jacobian.transpose() * jacobian;
+    best.normal = normalMatrix(jacobian);
     Eigen::MatrixXd damped = best.normal;
     damped.diagonal() *= 1 + damping;
-    const Eigen::VectorXd move = damped.ldlt().solve(-jacobian.transpose() * residual);
+    const Eigen::VectorXd move = solveSymmetric(damped, -jacobian.transpose() * residual);
     typename Problem::State moved = problem.moved(best.state, move);
     if (!move.allFinite() || !problem.residuals(moved, other, nullptr) ||
         !(other.squaredNorm() <= best.squares)) {
@@ -47,7 +47,7 @@ Minimum<typename Problem::State> minimise(const Problem& problem, typename Probl
     damping *= kLess;
     if (gain <= kStill * best.squares) break;
   }
-  best.normal = jacobian.transpose() * jacobian;
+  best.normal = normalMatrix(jacobian);
   return best;
 }
 

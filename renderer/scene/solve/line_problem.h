@@ -3,7 +3,7 @@
 // (levenberg_marquardt.h).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/point_problem.h"
 
+#include "math/dense_solvers.h"
 #include "scene/solve/spread_rotations.h"
 
 namespace chromeball {
@@ -90,7 +91,7 @@ std::optional<PointView> PointProblem::viewWith(const dmat3& rotation) const {
       right[row] = pixel[axis];
     }
   }
-  const Eigen::VectorXd x = matrix.colPivHouseholderQr().solve(right);
+  const Eigen::VectorXd x = solveLeastSquares(matrix, right);
   PointView view{rotation, {x[0], x[1]}, x[2], focalLength_ ? 0 : x[3]};
   if (x.allFinite() && residuals(view, residual, nullptr)) return view;
 

@@ -2,7 +2,7 @@
 // The reprojection error of known points, as a least-squares problem (levenberg_marquardt.h).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 

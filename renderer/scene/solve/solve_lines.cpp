@@ -75,8 +75,8 @@ CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, s
                       const std::string& file) {
   constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: of f / h, either way
   const double f = found.state.focalLength, h = 0.5 * known.size.height;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(found.normal);
-  if (!(eigen.eigenvalues().minCoeff() > kLeastPivot * eigen.eigenvalues().maxCoeff()) ||
+  const SymmetricEigen eigen = eigenOfSymmetric(found.normal);
+  if (!(eigen.values.minCoeff() > kLeastPivot * eigen.values.maxCoeff()) ||
       !(f < kExtreme * h && h < kExtreme * f))
     throwInput(
         "{}: the lines do not tell the field of view; give it, or lines of another axis, or "
@@ -86,7 +86,7 @@ CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, s
   CameraErrors errors;
   // A line has one equation, for two ends. Without any to spare, the error is unknown.
   const Eigen::MatrixXd covariance =
-      (freedom > 0 ? found.squares / freedom : std::nan("")) * found.normal.inverse();
+      (freedom > 0 ? found.squares / freedom : std::nan("")) * inverseOf(found.normal);
   for (int axis = 0; axis < 3; ++axis) errors.rotation[axis] = std::sqrt(covariance(axis, axis));
   if (!known.focalLength) errors.fov = std::sqrt(covariance(3, 3)) * f * 2 * h / (f * f + h * h);
   return errors;

@@ -36,10 +36,10 @@ struct Extents {
     for (size_t i = 0; i < points.size(); ++i)
       for (int axis = 0; axis < 3; ++axis)
         positions(Eigen::Index(i), axis) = points[i].position[axis];
-    const auto svd = positions.jacobiSvd(Eigen::ComputeFullV);
+    const SingularVectors svd = singularVectors(positions);
     for (int axis = 0; axis < 3; ++axis) {
-      lengths[axis] = svd.singularValues()[axis];
-      normal[axis] = svd.matrixV()(axis, 2);
+      lengths[axis] = svd.values[axis];
+      normal[axis] = svd.right(axis, 2);
     }
   }
 };
@@ -169,16 +169,16 @@ CameraErrors errorsOf(const FoundByPoints& found, const PointProblem& problem,
   // Scaled to a unit diagonal, so that the eigenvalues tell whether an unknown depends on others.
   const Eigen::VectorXd scale = found.normal.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * found.normal * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+  const SymmetricEigen eigen = eigenOfSymmetric(
       scale.allFinite() ? scaled : Eigen::MatrixXd::Zero(scale.size(), scale.size()));
-  if (!(eigen.eigenvalues().minCoeff() > kLeastPivot))
+  if (!(eigen.values.minCoeff() > kLeastPivot))
     throwInput("{}: the points leave the camera open{}", file,
                known.focalLength ? "; it takes more of them, not all on one plane"
                                  : "; give the field of view, or points at different distances");
   const int freedom = int(2 * count) - problem.unknowns();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * eigen.eigenvectors() *
-                                  eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                                  eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * eigen.vectors *
+                                  eigen.values.cwiseInverse().asDiagonal() *
+                                  eigen.vectors.transpose() * scale.asDiagonal();
   const Eigen::MatrixXd covariance = found.squares / freedom * inverse;
   const Eigen::MatrixXd slopes = cameraSlopes(found.state, problem, known);
   const Eigen::VectorXd sigma =
