@@ -22,7 +22,7 @@ std::string lastWord(const std::string& layer) {
 
 // The least is the best; nullopt: no light.
 constexpr int kUnnamed = 0, kOtherLayer = 5, kGrey = 6;
-std::optional<int> rankOf(const std::string& layer) {
+std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};
   constexpr std::array kNoLight = {"a",        "alpha",  "ao",     "z",       "depth",  "mist",
                                    "albedo",   "n",      "normal", "normals", "p",      "position",
@@ -35,7 +35,7 @@ std::optional<int> rankOf(const std::string& layer) {
   return kOtherLayer;
 }
 
-bool has(const std::vector<std::string>& channels, const std::string& name) {
+bool hasChannel(const std::vector<std::string>& channels, const std::string& name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
@@ -45,7 +45,7 @@ std::optional<std::string> greyChannel(const std::vector<std::string>& channels)
   const auto isPart = [&](const std::string& channel) {
     return std::find(kPartsOfColor.begin(), kPartsOfColor.end(), channel) != kPartsOfColor.end();
   };
-  const bool hasY = has(channels, "Y");
+  const bool hasY = hasChannel(channels, "Y");
   if (hasY && std::ranges::none_of(
                   channels, [&](const auto& channel) { return isPart(channel) && channel != "Z"; }))
     return "Y";
@@ -53,40 +53,42 @@ std::optional<std::string> greyChannel(const std::vector<std::string>& channels)
   std::optional<std::string> only;
   for (const std::string& channel : channels) {
     if (channel == "A") continue;
-    if (only || isPart(channel) || !rankOf(channel)) return {};
+    if (only || isPart(channel) || !colorRank(channel)) return {};
     only = channel;
   }
   return only;
 }
 
-struct Candidate {
+struct ColorCandidate {
   int rank;
   ColorChannels color;
 };
 
-void addCandidates(const PartChannels& part, size_t index, std::vector<Candidate>& candidates) {
+void addCandidates(const PartChannels& part, size_t index,
+                   std::vector<ColorCandidate>& candidates) {
   std::vector<std::string> layers;
   for (const std::string& channel : part.channels) {
     if (channel != "R" && !channel.ends_with(".R")) continue;
     const std::string prefix = channel.substr(0, channel.size() - 1);
-    if (!has(part.channels, prefix + "G") || !has(part.channels, prefix + "B")) continue;
+    if (!hasChannel(part.channels, prefix + "G") || !hasChannel(part.channels, prefix + "B"))
+      continue;
     const std::string layer = prefix.empty() ? part.name : prefix.substr(0, prefix.size() - 1);
-    if (const auto rank = rankOf(layer))
+    if (const auto rank = colorRank(layer))
       candidates.push_back({*rank, {index, layer, {prefix + "R", prefix + "G", prefix + "B"}, {}}});
   }
-  if (const auto grey = greyChannel(part.channels); grey && rankOf(part.name))
+  if (const auto grey = greyChannel(part.channels); grey && colorRank(part.name))
     candidates.push_back({kGrey, {index, part.name, {*grey}, {}}});
 }
 
 }  // namespace
 
 std::optional<ColorChannels> findColorChannels(std::span<const PartChannels> parts) {
-  std::vector<Candidate> candidates;
+  std::vector<ColorCandidate> candidates;
   for (size_t i = 0; i < parts.size(); ++i) addCandidates(parts[i], i, candidates);
-  const auto best = std::ranges::min_element(candidates, {}, &Candidate::rank);
+  const auto best = std::ranges::min_element(candidates, {}, &ColorCandidate::rank);
   if (best == candidates.end()) return {};
   ColorChannels chosen = best->color;
-  for (const Candidate& candidate : candidates)
+  for (const ColorCandidate& candidate : candidates)
     if (&candidate != &*best && !candidate.color.layer.empty())
       chosen.others.push_back(candidate.color.layer);
   return chosen;
