@@ -267,30 +267,6 @@ TEST(Denoise, LimitsFireflies) {
   EXPECT_NEAR(found / added, 1, 0.1);
 }
 
-// Less noise of bright pixels does not excuse light that a filter brings to the dark ones beside
-// them.
-TEST(Denoise, DoesNotWorsenDarkPixelsBesideBrightNoise) {
-  const auto isBright = [](int x, int y) { return x % 25 >= 12 && x % 25 < 16 && y % 20 >= 5; };
-  const auto radiance = [&](int x, int y) { return isBright(x, y) ? 5.0f : 0.2f; };
-  DenoiseInput input = noisy(0.02f, radiance);
-  const DenoiseInput strong = noisy(0.6f, radiance);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      if (isBright(x, y)) {
-        input.parts[0].mean.setRgb(x, y, strong.parts[0].mean.rgb(x, y));
-        input.parts[0].half.setRgb(x, y, strong.parts[0].half.rgb(x, y));
-      }
-  const Denoised denoised = run(input);
-  double before = 0, after = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      if (!isBright(x, y)) {
-        before += std::pow(input.parts[0].mean.at(x, y)[1] - 0.2f, 2);
-        after += std::pow(denoised.color.at(x, y)[1] - 0.2f, 2);
-      }
-  EXPECT_LT(after, before);
-}
-
 // The light that the limit of fireflies removes is no error of pixels around them that have no
 // noise.
 TEST(Denoise, LostFirefliesLeaveTheErrorOfCleanPixels) {
