@@ -12,7 +12,10 @@ constexpr int kVarianceReach = 1;  // variances in it
 constexpr float kDark = 0.01f;     // as in film/noise.h; the mean of the image is about 1
 constexpr int kChoiceReach = 2;  // of the windows over which errors decide, and choices are blended
 constexpr float kWindow = (2 * kChoiceReach + 1) * (2 * kChoiceReach + 1);
-constexpr float kDarkChoice = 1.5f;  // as kDark, where the errors of a window decide
+// As kDark, where the errors of a window decide: between filters, and between these and the noisy
+// image. The latter is lower, so that less noise of bright pixels does not excuse light that a
+// filter brings to dark ones beside them.
+constexpr float kDarkFiltered = 1.5f, kDarkUnfiltered = 0.1f;
 
 // Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both
 // are known equally badly, and the filtered image is better.
@@ -35,8 +38,8 @@ float total(const RgbPlanes& planes, int x, int y) {
 
 // What the errors of a pixel are relative to. The narrow filters know a sharp highlight from the
 // dark pixels around it, and both halves of the samples contain it, but only one contains a
-// firefly.
-Plane squaredSizes(const std::vector<Candidate>& candidates) {
+// firefly. `dark`: the least size.
+Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
   const Candidate& noisy = candidates.back();
   return makePlaneLike(noisy.error[0], [&](int x, int y) {
     float size = 0;
@@ -47,24 +50,27 @@ Plane squaredSizes(const std::vector<Candidate>& candidates) {
       const float lesserHalf = noisy.color[c].at(x, y) - std::sqrt(noisy.variance[c].at(x, y));
       size += square((sum / count + std::max(lesserHalf, 0.0f)) / 2);
     }
-    return std::max(size, 3 * square(kDarkChoice));
+    return std::max(size, 3 * square(dark));
   });
 }
 
 // The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
 // pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
-  const Plane size = squaredSizes(candidates);
+  const Plane filteredSize = squaredSizes(candidates, kDarkFiltered);
+  const Plane unfilteredSize = squaredSizes(candidates, kDarkUnfiltered);
   const auto errorOf = [&](size_t i) {
-    return makePlaneLike(
-        size, [&, i](int x, int y) { return total(candidates[i].error, x, y) / size.at(x, y); });
+    return makePlaneLike(filteredSize,
+                         [&, i](int x, int y) { return total(candidates[i].error, x, y); });
   };
   Plane chosen = makePlaneLike(candidates[0].error[0], [](int, int) { return 0.0f; });
   Plane error = errorOf(0);
   for (size_t i = 1; i < candidates.size(); ++i) {
     const Plane next = errorOf(i);
-    const Plane gain =
-        makePlaneLike(error, [&](int x, int y) { return error.at(x, y) - next.at(x, y); });
+    const bool isUnfiltered = candidates[i].bandwidth == Bandwidth::None;
+    const Plane& size = isUnfiltered ? unfilteredSize : filteredSize;
+    const Plane gain = makePlaneLike(
+        size, [&](int x, int y) { return (error.at(x, y) - next.at(x, y)) / size.at(x, y); });
     const Plane squared = makePlaneLike(gain, [&](int x, int y) { return square(gain.at(x, y)); });
     const Plane mean = boxMean(gain, kChoiceReach), meanSquare = boxMean(squared, kChoiceReach);
     const float margin = candidates[i].margin / std::sqrt(kWindow);
