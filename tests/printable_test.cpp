@@ -116,7 +116,7 @@ TEST_F(SlowHostileMessage, NumbersBeyondADouble) {
 
 TEST_F(SlowHostileMessage, LongAndLoopingPaths) {
   const std::string name(100000, 'n');
-  expectRefusal({"render", name}, "too long");
+  expectRefusal({"render", name + ".gltf"}, "too long");
   expectRefusal({"render", file("long.toml", "model = \"" + name + "\"\n")}, "no such file");
   expectRefusal({"probe", "info", folder / std::string(300, 'n')}, "too long");
   std::filesystem::create_symlink("loop.exr", folder / "loop.exr");

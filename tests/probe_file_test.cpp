@@ -69,18 +69,19 @@ TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
 TEST(ProbeFile, ConvertWarnsOfALostMapping) {
   const TemporaryFolder folder;
   writeImage(folder / "sky.exr", gradientProbe({64, 32}, Rgb(0.1f, 0.2f, 0.3f), {0.2, 0.3, 0.4}));
-  const auto warns = [&](const char* name, const char* mapping) {
-    const CommandResult result =
-        runCommand({"probe", "convert", folder / "sky.exr", folder / name, "--to", mapping});
+  const auto warns = [&](const char* name, const char* mapping, const char* size) {
+    const CommandResult result = runCommand(
+        {"probe", "convert", folder / "sky.exr", folder / name, "--to", mapping, "--size", size});
     EXPECT_EQ(result.status, 0);
     return result.error.find("has no place for its mapping") != std::string::npos;
   };
   for (const char* name : {"p.pfm", "p.png"}) {
-    EXPECT_TRUE(warns(name, "mirror-ball"));
-    EXPECT_TRUE(warns(name, "fisheye"));
-    EXPECT_FALSE(warns(name, "angular"));
-    EXPECT_FALSE(warns(name, "lat-long"));
-    EXPECT_FALSE(warns(name, "cube-cross"));
+    EXPECT_TRUE(warns(name, "mirror-ball", "256x256"));
+    EXPECT_TRUE(warns(name, "fisheye", "256x256"));
+    EXPECT_TRUE(warns(name, "lat-long", "256x256"));
+    EXPECT_FALSE(warns(name, "angular", "256x256"));
+    EXPECT_FALSE(warns(name, "lat-long", "256x128"));
+    EXPECT_FALSE(warns(name, "cube-cross", "192x256"));
   }
 }
 

@@ -13,9 +13,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
     for (const DirectionalLight& light : readLights(path).lights)
       if (!isFinite(light.direction) || !isFinite(light.irradiance)) std::abort();
   });
-  static const LoadedProbe probe{.latLong = constantProbe({64, 32}, Rgb(1)),
-                                 .fileWidth = 64,
-                                 .fileHeight = 32};
+  static const LoadedProbe probe = [] {
+    LoadedProbe made;
+    made.latLong = constantProbe({64, 32}, Rgb(1));
+    made.fileWidth = 64, made.fileHeight = 32;
+    return made;
+  }();
   return readOrReject([&] {
     for (const PolygonCorners& corners : readPolygons(path))
       if (!(polygonOf(corners, probe, "polygon").solidAngle() > 0)) std::abort();
