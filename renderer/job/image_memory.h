@@ -7,7 +7,7 @@
 namespace chromeball {
 
 // The program, its libraries and its fixed tables; measured.
-inline constexpr double kProcessBytes = 1.3e8;
+inline constexpr double kProcessBytes = 3e7;
 
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
