@@ -77,7 +77,7 @@ TEST(Bake, NothingIsReflectedWithoutBounces) {
   lamp.emission = Rgb(0.25f);
   addSphere(scene, addMaterial(scene, lamp), {0, 0, 0}, -1, 8, false);
   const auto lightAt = [&](BakedLight what) {
-    const Baked baked(scene, white(), "bsdf", 32, {.what = what, .samples = 4, .maxDepth = 0});
+    const Baked baked(scene, white(), "bsdf", 64, {.what = what, .samples = 4, .maxDepth = 0});
     return baked.result.points[0].mean();
   };
   EXPECT_EQ(lightAt(BakedLight::Irradiance), Rgb(0));
