@@ -122,7 +122,8 @@ TEST(SlowHostile, DamagedImagesAreRejectedOrRead) {
       EXPECT_TRUE(isRejected) << path;
     }
     if (path.parent_path().filename() == "openexr-values") {
-      EXPECT_FALSE(isRejected) << path;
+      const bool isPartOfColor = path.filename() == "WideFloatRange.exr";  // a channel G alone
+      EXPECT_EQ(isRejected, isPartOfColor) << path;
     }
   }
   EXPECT_GT(rejected, 60);

@@ -28,8 +28,9 @@ double meanOf(const std::vector<double>& values) {
 // firefly must not be divided by its own luminance, which would make its error seem small; a
 // highlight must. They differ in the number of samples that make up the pixel's excess over its
 // surroundings: one that alone adds d to the mean has the scatter d^2, and n equal ones have
-// (n d)^2 / n. Where it is one, the light is as rare as it is in the window around the pixel, or,
-// at the border of a highlight, in the pixels next to it.
+// (n d)^2 / n. Up to three, the light is as rare as it is in the window around the pixel,
+// or, at the border of a highlight, in the pixels next to it; from five on it is the
+// pixel's own.
 double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) {
   const size_t i = size_t(y) * size_t(errors.width) + size_t(x);
   const double own = errors.luminances[i], scatter = errors.scatter[i].w;
@@ -43,7 +44,7 @@ double referenceLuminance(const PixelErrors& errors, int x, int y, double mean) 
     });
     const double around = std::min(own, std::max(sum / count, nextSum / std::max(nextCount, 1.0)));
     const double samples = (own - around) * (own - around) / scatter;
-    reference = glm::mix(around, own, std::clamp(samples - 1, 0.0, 1.0));
+    reference = glm::mix(around, own, std::clamp((samples - 3) / 2, 0.0, 1.0));
   }
   return std::max(reference, 0.01 * mean);
 }
