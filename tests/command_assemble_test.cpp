@@ -63,8 +63,8 @@ TEST(SlowCommandAssemble, TwoPhotographsReturnTheProbe) {
   EXPECT_EQ(result.error, "");
   const json report = json::parse(result.out);
   const json& second = report["views"][1];
-  // A direction turns by 2 / radius for each pixel that a circle is beside its ball; both may be off
-  // by 0.1 pixels.
+  // A direction turns by 2 / radius for each pixel that a circle is beside its ball; both may be
+  // off by 0.1 pixels.
   const double tolerance = 0.1 + 2 * glm::degrees(2 * 0.1 / kCircle.radius);
   EXPECT_NEAR(second["turn"], -1, tolerance) << result.out;
   EXPECT_NEAR(second["azimuth"], 90, tolerance);

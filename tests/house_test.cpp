@@ -199,6 +199,20 @@ TEST(House, SourcesStartWithTheirLicence) {
   }
 }
 
+// Files of tests are compiled together, with the same short names in many
+// (tools/cmake/unity.cmake).
+TEST(House, EachFileOfTestsHasANamespaceOfItsName) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(kSourceDir / fs::path("tests"))) {
+    const fs::path& path = entry.path();
+    if (!path.filename().string().ends_with("_test.cpp")) continue;
+    const std::regex own("\nnamespace (chromeball::)?" + path.stem().string() + " \\{\n");
+    EXPECT_TRUE(std::regex_search(contents(path), own)) << path;
+    ++files;
+  }
+  EXPECT_GT(files, 100);
+}
+
 TEST(House, TopLevelHasOnlyListedFiles) {
   const std::set<std::string> allowed = {"renderer",
                                          "tools",

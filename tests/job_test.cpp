@@ -131,8 +131,8 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
       {"one more model", [](RenderJob& j) { j.file.models.push_back(j.file.models[0]); }},
       {"surroundings",
        [](RenderJob& j) {
-         j.file.surroundings = SurroundingsEntry{
-             .shape = {.shape = Surroundings::Shape::Sphere, .radius = 50}};
+         j.file.surroundings =
+             SurroundingsEntry{.shape = {.shape = Surroundings::Shape::Sphere, .radius = 50}};
        }},
   };
   for (const auto& [name, change] : plain) expectFound(folder / "plain.toml", name, change);

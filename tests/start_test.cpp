@@ -8,8 +8,8 @@
 
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
-#include "test_probes.h"
 #include "run_command.h"
+#include "test_probes.h"
 
 namespace chromeball::start_test {
 namespace {

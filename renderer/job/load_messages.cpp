@@ -76,8 +76,7 @@ void addSources(const LoadedScene& loaded, Collector& messages) {
 
 void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
   for (const Message& message : probe.messages)
-    message.kind == Message::Kind::Note ? messages.note(message.text)
-                                        : messages.warn(message.text);
+    message.kind == Message::Kind::Note ? messages.note(message.text) : messages.warn(message.text);
   for (const std::string& line : warnings(probe, path)) messages.warn(line);
   if (!probe.detected) return;
   const std::string mapping = mappingName(probe.mapping);

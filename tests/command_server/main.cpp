@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the command line in forks of itself for the tests, which start it more than a thousand times. Its argument is the name of a socket. Each connection is one run: it sends strings that
+// Runs the command line in forks of itself for the tests, which start it more than a thousand
+// times. Its argument is the name of a socket. Each connection is one run: it sends strings that
 // end with 0 (the files for standard output and standard error, the working folder, the number of
 // arguments, the arguments, and the environment), then nothing more, and gets the status of
 // waitpid(). Ends when standard input does, that is, with the process that started it.

@@ -25,8 +25,8 @@ constexpr int kFaces = 6, kMaxFace = 2048;
 const Value* findLight(const GltfFile& file, std::string& where) {
   if (file.model.scenes.empty()) return nullptr;
   const int scene = std::max(file.model.defaultScene, 0);
-  const Value* use =
-      findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions, kEnvironmentExtension);
+  const Value* use = findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions,
+                                   kEnvironmentExtension);
   if (!use) return nullptr;
   const Value& light = memberOf(*use, "light");
   const Value* root = findExtension(file.model.extensions, kEnvironmentExtension);
