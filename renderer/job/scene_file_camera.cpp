@@ -58,8 +58,11 @@ void readPlace(const Section& camera, SceneFile& scene) {
     scene.warnings.push_back(fmt::format(
         "{}: `fov` is in degrees; {:g} is very narrow (as radians, it is {:.1f} degrees)",
         fovEntry.location(), glm::degrees(fov), glm::degrees(glm::degrees(fov))));
-  CameraEntry& entry = scene.camera.emplace(
-      CameraEntry{position.point(), target.point(), up, {}, camera.location()});
+  CameraEntry& entry = scene.camera.emplace();
+  entry.position = position.point();
+  entry.target = target.point();
+  entry.up = up;
+  entry.location = camera.location();
   entry.lens.fov = fov;
   if (orthographic) {
     entry.lens.orthographic = true;
