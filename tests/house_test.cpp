@@ -84,7 +84,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"toml++/", {"renderer/job/toml_section.h"}},
     {"nlohmann/json.hpp",
      {"renderer/base/json_file.h", "renderer/bake/gltf_document.h", "renderer/job/",
-      "renderer/lighting/light_list.cpp", "renderer/scene/gltf/", "renderer/scene/solve/",
+      "renderer/lighting/light_file.cpp", "renderer/scene/gltf/", "renderer/scene/solve/",
       "renderer/study/", "tools/", "tests/"}},
     {"Eigen/",
      {"renderer/math/dense_solvers.", "renderer/math/least_squares.cpp", "renderer/lighting/fit/",
