@@ -61,7 +61,9 @@ printf '%s\0' "${files[@]}" | xargs -0 -n 50 -P "$(nproc)" clang-format-14 --dry
   fail "the format differs from .clang-format; run tools/lint.sh --fix"
 ((tidy)) || exit 0
 
-hasGit || all=1
+# Without the history, of which a shallow clone has too little, nobody knows what has changed.
+wasAll=$all
+[[ $(git rev-parse --is-shallow-repository 2>/dev/null) == false ]] || all=1
 # Configured only, without precompiled headers, since GCC's are of no use to clang-tidy.
 configure() {
   cmake -S . -B build/lint -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCHROMEBALL_UNITY="$1" \
@@ -87,7 +89,7 @@ if ! xargs -d '\n' -n 1 -P "$(nproc)" sh -c \
   fail "clang-tidy found faults (all of it: $log)"
 fi
 
-if ((all)) && hasGit; then
+if ((wasAll)) && hasGit; then
   if [[ -z $(git status --porcelain -- '*.h' '*.cpp' '*.clang-tidy') ]]; then
     git rev-parse HEAD >tools/linted_commit
     echo "Wrote tools/linted_commit: commit it"
