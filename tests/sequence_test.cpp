@@ -335,7 +335,7 @@ TEST(Sequence, FramesAreCheckedLikeStills) {
   const Moving model;
   const TemporaryFolder out;
   const CommandResult result =
-      runCommand(words(model.scene(), {"--frames", "0:1", "--memory", "0.1"}, out / "f.#.exr"));
+      runCommand(words(model.scene(), {"--frames", "0:1", "--memory", "0.03"}, out / "f.#.exr"));
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.error.find("GB of memory"), std::string::npos) << result.error;
 }

@@ -79,9 +79,12 @@ show() {
     --enable-unsafe-swiftshader --ignore-gpu-blocklist --no-first-run
     --disable-quic --disable-background-networking --disable-component-update --disable-sync
     --virtual-time-budget=30000 --user-data-dir="$folder/profile" --window-size=$width,$height --hide-scrollbars)
-  local found
-  found=$("$chromium" "${options[@]}" --dump-dom "$page" 2> "$folder/log" |
-    sed -n 's/.*<pre id="result">\(.*\)<\/pre>.*/\1/p')
+  local found attempt
+  for attempt in 1 2 3; do  # a busy machine may end the page before it has drawn
+    found=$("$chromium" "${options[@]}" --dump-dom "$page" 2> "$folder/log" |
+      sed -n 's/.*<pre id="result">\(.*\)<\/pre>.*/\1/p')
+    [[ $found != compared* ]] || break
+  done
   [ "$keeps" -eq 0 ] ||
     "$chromium" "${options[@]}" --screenshot="$folder/$1.png" "$page" 2>> "$folder/log" || true
   case $found in
