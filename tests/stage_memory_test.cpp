@@ -141,9 +141,9 @@ TEST_F(SlowStageMemory, RefusesWhatDoesNotFitInBands) {
               "--directions: 9000 x 9000 pixels with 512 elements are");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.exr"));
   ASSERT_EQ(runCommand(basis("64x80", directions, "s.exr", 100)).status, 0);
-  expectError(relight("s.exr", "o.exr", 0.13), "s.exr: a row of 64 pixels with 1024 elements");
+  expectError(relight("s.exr", "o.exr", 0.03), "s.exr: a row of 64 pixels with 1024 elements");
   expectError(
-      {"relight", folder_ / "s.exr", "--probe", folder_ / "p.exr", "--preview", "--memory", "0.18"},
+      {"relight", folder_ / "s.exr", "--probe", folder_ / "p.exr", "--preview", "--memory", "0.08"},
       "--preview: 1024 elements of 64 x 80 pixels take");
   for (const char* memory : {"0", "-1", "nan", "inf"})
     expectError({"relight", folder_ / "s.exr", "--probe", folder_ / "p.exr", "-o",
