@@ -223,9 +223,9 @@ TEST(SlowMotionKeys, EveryProbeMustFitIntoMemory) {
   writeImage(out / "probe.1.exr", constantProbe({2048, 1024}, Rgb(1)));
   const CommandResult result = runCommand(
       {"render", w.save(), "--frames", "0:1", "--probe-sequence", out / "probe.#.exr", "--memory",
-       "0.15", "--size", "8x8", "--samples", "1", "--quiet", "-o", out / "f.#.exr"});
+       "0.05", "--size", "8x8", "--samples", "1", "--quiet", "-o", out / "f.#.exr"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.error.find("the limit is 0.15 GB"), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("the limit is 0.05 GB"), std::string::npos) << result.error;
 }
 
 }  // namespace
