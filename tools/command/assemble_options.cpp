@@ -14,22 +14,22 @@
 namespace chromeball {
 namespace {
 
-void addBallOptions(CLI::App& command, AssembleArguments& arguments) {
-  command.add_option("--distance", arguments.distance,
-                     "from the ball's centre to the camera, in radii of the ball; else infinite");
-  command.add_option("--reflectivity", arguments.reflectivity,
-                     "X or R,G,B of the ball, as `probe reflectivity` measures it; else 1");
+void addBallOptions(Command command, AssembleArguments& arguments) {
+  command.addOption("--distance", arguments.distance,
+                    "from the ball's centre to the camera, in radii of the ball; else infinite");
+  command.addOption("--reflectivity", arguments.reflectivity,
+                    "X or R,G,B of the ball, as `probe reflectivity` measures it; else 1");
   command
-      .add_option("--ball-ior", arguments.ballIor,
-                  "N,K: the reflectivity changes with the angle as that of a metal of refractive "
-                  "index N + iK: chrome 3.18,3.31. Without --reflectivity, also its value at the "
-                  "centre")
-      ->excludes(command.add_flag("--schlick", arguments.schlick,
-                                  "the reflectivity rises to 1 at the rim, by Schlick's "
-                                  "approximation: a rendered ball of glTF"));
-  command.add_option("--camera-disc", arguments.cameraDisc,
-                     "degrees around the camera's reflection that other photographs replace; else "
-                     "15");
+      .addOption("--ball-ior", arguments.ballIor,
+                 "N,K: the reflectivity changes with the angle as that of a metal of refractive "
+                 "index N + iK: chrome 3.18,3.31. Without --reflectivity, also its value at the "
+                 "centre")
+      .excludes(command.addFlag("--schlick", arguments.schlick,
+                                "the reflectivity rises to 1 at the rim, by Schlick's "
+                                "approximation: a rendered ball of glTF"));
+  command.addOption("--camera-disc", arguments.cameraDisc,
+                    "degrees around the camera's reflection that other photographs replace; else "
+                    "15");
 }
 
 // "X", for all channels, or "R,G,B".
@@ -77,43 +77,43 @@ bool isColor(const std::string& text) {
 
 }  // namespace
 
-void addAssembleOptions(CLI::App& command, AssembleArguments& arguments) {
-  command.add_option("PHOTO", arguments.photographs, "linear images, up to 16")->required();
-  command.add_option("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
+void addAssembleOptions(Command command, AssembleArguments& arguments) {
+  command.addOption("PHOTO", arguments.photographs, "linear images, up to 16").required();
+  command.addOption("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
   command
-      .add_option(
+      .addOption(
           "--azimuth", arguments.azimuths,
           "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
           "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, 0:-90 "
           "straight up. One photograph: 0 if left out")
-      ->allow_extra_args(false);
+      .onePerName();
   command
-      .add_option("--circle", arguments.circles,
-                  "X,Y,RADIUS[;...]: the outline of each ball, in pixels from the top left corner; "
-                  "else, or for auto, it is found")
-      ->allow_extra_args(false);
+      .addOption("--circle", arguments.circles,
+                 "X,Y,RADIUS[;...]: the outline of each ball, in pixels from the top left corner; "
+                 "else, or for auto, it is found")
+      .onePerName();
   command
-      .add_option("--mask", arguments.masks,
-                  "an image of the same size, black where a photograph shows the stand or the "
-                  "operator; one for all, or one for each")
-      ->allow_extra_args(false);
+      .addOption("--mask", arguments.masks,
+                 "an image of the same size, black where a photograph shows the stand or the "
+                 "operator; one for all, or one for each")
+      .onePerName();
   addBallOptions(command, arguments);
-  command.add_option("--from", arguments.from,
-                     "mirror-ball, or fisheye[:FOV[:PROJECTION]]: 180 degrees; equidistant, "
-                     "equisolid, orthographic or stereographic");
-  command.add_flag("--keep-exposure", arguments.keepExposure,
-                   "do not match the exposures of the photographs");
-  command.add_flag("--keep-azimuth", arguments.keepAzimuth,
-                   "do not correct the azimuths by up to 5 degrees");
-  command.add_option("--fill", arguments.fill,
-                     "what blind directions get: inpaint (smooth), black, R,G,B or the file of a "
-                     "probe");
-  command.add_option("--to", arguments.to, "the mapping of the output, as of `probe convert`");
-  command.add_option("--size", arguments.size, "WIDTHxHEIGHT; else the size that keeps the detail");
-  command.add_option("--preview", arguments.preview,
-                     "a .png: the circles on the photographs, and the probe with its blind spots");
-  command.add_flag("--json", arguments.json, "print JSON");
+  command.addOption("--from", arguments.from,
+                    "mirror-ball, or fisheye[:FOV[:PROJECTION]]: 180 degrees; equidistant, "
+                    "equisolid, orthographic or stereographic");
+  command.addFlag("--keep-exposure", arguments.keepExposure,
+                  "do not match the exposures of the photographs");
+  command.addFlag("--keep-azimuth", arguments.keepAzimuth,
+                  "do not correct the azimuths by up to 5 degrees");
+  command.addOption("--fill", arguments.fill,
+                    "what blind directions get: inpaint (smooth), black, R,G,B or the file of a "
+                    "probe");
+  command.addOption("--to", arguments.to, "the mapping of the output, as of `probe convert`");
+  command.addOption("--size", arguments.size, "WIDTHxHEIGHT; else the size that keeps the detail");
+  command.addOption("--preview", arguments.preview,
+                    "a .png: the circles on the photographs, and the probe with its blind spots");
+  command.addFlag("--json", arguments.json, "print JSON");
 }
 
 void checkFiles(const AssembleArguments& arguments) {

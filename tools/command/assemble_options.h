@@ -2,7 +2,7 @@
 // The options of `chromeball probe assemble`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 #include "probe/capture/assemble.h"
 #include "probe/capture/find_circle.h"
@@ -19,7 +19,7 @@ struct AssembleArguments {
   bool isFisheye() const { return from != "mirror-ball"; }
 };
 
-void addAssembleOptions(CLI::App& command, AssembleArguments& arguments);
+void addAssembleOptions(Command command, AssembleArguments& arguments);
 
 // One photograph with all that is needed to read it.
 struct AssemblyPhotograph {

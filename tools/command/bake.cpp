@@ -202,12 +202,12 @@ void run(const BakeOptions& options) {
 
 }  // namespace
 
-void addBakeCommand(CLI::App& app) {
+void addBakeCommand(Command app) {
   const auto options = std::make_shared<BakeOptions>();
-  CLI::App* command = app.add_subcommand(
-      "bake", "Bake light into a lightmap or vertex colours, for real-time viewers");
-  addBakeOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command =
+      app.addCommand("bake", "Bake light into a lightmap or vertex colours, for real-time viewers");
+  addBakeOptions(command, *options);
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace chromeball

@@ -58,32 +58,32 @@ void checkBakeOptions(const BakeOptions& a) {
   if (!a.toVertices()) checkWritable(a.lightmapPath());
 }
 
-void addBakeOptions(CLI::App& command, BakeOptions& options) {
+void addBakeOptions(Command command, BakeOptions& options) {
   addSceneOptions(command, options, SceneCommand::Bake);
   command
-      .add_option("-o,--output", options.output,
-                  "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it")
-      ->required();
+      .addOption("-o,--output", options.output,
+                 "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it")
+      .required();
   command
-      .add_option("--what", options.what,
-                  "irradiance, ambient-occlusion, or radiance along the normal")
-      ->capture_default_str();
-  command.add_option("--to", options.to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)")
-      ->capture_default_str();
-  command.add_option("--size", options.size,
-                     "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
-  command.add_option("--texel", options.texel,
-                     "in place of --size: metres along the edge of a texel");
-  command.add_option("--padding", options.padding, "texels around each chart; 4 by default");
-  command.add_option("--scale", options.scale,
-                     "the light that the file's white stands for; by default a power of two "
-                     "that clips only what emits");
-  CLI::Option* denoises =
-      command.add_flag("--denoise", options.denoises, "remove noise from lightmaps: the default");
-  command.add_flag("--no-denoise", options.keepsNoise, "do not")->excludes(denoises);
-  command.add_flag("--keep-materials", options.keepsMaterials,
-                   "write the model's own materials; engines take the light from the .exr or from "
-                   "_IRRADIANCE of the vertices");
+      .addOption("--what", options.what,
+                 "irradiance, ambient-occlusion, or radiance along the normal")
+      .showsDefault();
+  command.addOption("--to", options.to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)")
+      .showsDefault();
+  command.addOption("--size", options.size,
+                    "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
+  command.addOption("--texel", options.texel,
+                    "in place of --size: metres along the edge of a texel");
+  command.addOption("--padding", options.padding, "texels around each chart; 4 by default");
+  command.addOption("--scale", options.scale,
+                    "the light that the file's white stands for; by default a power of two "
+                    "that clips only what emits");
+  Option denoises =
+      command.addFlag("--denoise", options.denoises, "remove noise from lightmaps: the default");
+  command.addFlag("--no-denoise", options.keepsNoise, "do not").excludes(denoises);
+  command.addFlag("--keep-materials", options.keepsMaterials,
+                  "write the model's own materials; engines take the light from the .exr or from "
+                  "_IRRADIANCE of the vertices");
 }
 
 }  // namespace chromeball

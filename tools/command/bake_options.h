@@ -25,7 +25,7 @@ struct BakeOptions : SceneOptions {
 };
 
 // `options` is filled when the command line is parsed; it must outlive `command`.
-void addBakeOptions(CLI::App& command, BakeOptions& options);
+void addBakeOptions(Command command, BakeOptions& options);
 
 // Throws InputError for values out of range, for options that exclude each other, and for outputs
 // that cannot be written.

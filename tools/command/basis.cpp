@@ -36,36 +36,33 @@ void run(const BasisArguments& a) {
 
 }  // namespace
 
-void addBasisCommand(CLI::App& app) {
+void addBasisCommand(Command app) {
   const auto arguments = std::make_shared<BasisArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.addCommand(
       "basis",
       "Render a light stage, a scene under light from each of many directions; or the same "
       "at a model's vertices");
-  addSceneOptions(*command, *arguments, SceneCommand::Basis);
-  command->add_option("--at", arguments->at, "pixels, or vertices: precomputed radiance transfer")
-      ->capture_default_str();
-  command->add_option("--directions", arguments->directions,
-                      "of pixels: lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS "
-                      "(triangles), sh:ORDER (spherical harmonics); else lat-long:32x16");
-  command->add_option("--basis", arguments->functions,
-                      "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube "
-                      "of N x N cells a face); else sh:4");
-  command->add_flag("--glossy", arguments->isGlossy,
-                    "of vertices: matrices for surfaces that look different from each side; "
-                    "compressed");
+  addSceneOptions(command, *arguments, SceneCommand::Basis);
+  command.addOption("--at", arguments->at, "pixels, or vertices: precomputed radiance transfer")
+      .showsDefault();
+  command.addOption("--directions", arguments->directions,
+                    "of pixels: lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS "
+                    "(triangles), sh:ORDER (spherical harmonics); else lat-long:32x16");
+  command.addOption("--basis", arguments->functions,
+                    "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube "
+                    "of N x N cells a face); else sh:4");
+  command.addFlag("--glossy", arguments->isGlossy,
+                  "of vertices: matrices for surfaces that look different from each side; "
+                  "compressed");
+  command.addOption("--clusters", arguments->clusters, "of matrices with principal components: 16")
+      .inRange(1, 1024);
+  command.addOption("--vectors", arguments->vectors, "of each cluster: 8").inRange(0, 256);
+  command.addFlag("--half", arguments->halves, "write 16 bits per number: half the file, to 0.05%");
   command
-      ->add_option("--clusters", arguments->clusters, "of matrices with principal components: 16")
-      ->check(CLI::Range(1, 1024));
-  command->add_option("--vectors", arguments->vectors, "of each cluster: 8")
-      ->check(CLI::Range(0, 256));
-  command->add_flag("--half", arguments->halves,
-                    "write 16 bits per number: half the file, to 0.05%");
-  command
-      ->add_option("-o,--output", arguments->out,
-                   "the light stage to write, .exr; of vertices the model, .glb or .gltf")
-      ->required();
-  command->callback([arguments] { run(*arguments); });
+      .addOption("-o,--output", arguments->out,
+                 "the light stage to write, .exr; of vertices the model, .glb or .gltf")
+      .required();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -4,10 +4,10 @@
 
 namespace chromeball {
 
-void addCameraCommand(CLI::App& app) {
-  CLI::App* camera = app.add_subcommand("camera", "Find the cameras of photographs.");
-  camera->require_subcommand(1);
-  addCameraSolveCommand(*camera);
+void addCameraCommand(Command app) {
+  Command camera = app.addCommand("camera", "Find the cameras of photographs.");
+  camera.requiresCommand();
+  addCameraSolveCommand(camera);
 }
 
 }  // namespace chromeball

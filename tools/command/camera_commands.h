@@ -2,10 +2,10 @@
 // The subcommands of `chromeball camera`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 namespace chromeball {
 
-void addCameraSolveCommand(CLI::App& camera);
+void addCameraSolveCommand(Command camera);
 
 }  // namespace chromeball

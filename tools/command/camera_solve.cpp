@@ -173,50 +173,49 @@ void run(const CameraSolveArguments& a) {
 
 }  // namespace
 
-void addCameraSolveCommand(CLI::App& camera) {
+void addCameraSolveCommand(Command camera) {
   const auto a = std::make_shared<CameraSolveArguments>();
-  CLI::App* command = camera.add_subcommand(
+  Command command = camera.addCommand(
       "solve",
       "Find where a photograph was taken from, and its field of view: by points of known "
       "positions, or by lines along the scene's axes.");
-  command->add_option("MODEL", a->model, "the model, .glb or .gltf, or a scene file")->required();
-  command->add_option("PLATE", a->plate, "the photograph")->required();
-  command->add_option(
-      "--points", a->points,
-      "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
-  command->add_option("--lines", a->lines,
-                      "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
-  command->add_option("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
+  command.addOption("MODEL", a->model, "the model, .glb or .gltf, or a scene file").required();
+  command.addOption("PLATE", a->plate, "the photograph").required();
+  command.addOption("--points", a->points,
+                    "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
+  command.addOption("--lines", a->lines,
+                    "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
+  command.addOption("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
   command
-      ->add_option("-o,--output", a->output,
-                   "the .toml to write; `[camera] file` and --camera-file "
-                   "read it")
-      ->required();
-  command->add_option("--fov", a->fov, "the vertical field of view in degrees, if it is known");
-  command->add_option("--focal35", a->focal35,
-                      "the focal length in mm that has the same diagonal field of view on 35 mm "
-                      "film, if it is known");
-  command->add_flag("--distortion", a->distortion, "find the lens's radial distortion k1 too");
-  command->add_option("--principal-point", a->principalPoint,
-                      "U,V: where the lens's axis meets the image, as fractions of its size from "
-                      "the top left [0.5,0.5]");
-  command->add_option("--height", a->height,
-                      "height of the camera above the ground y = 0 in metres, for lines");
-  command->add_option("--origin", a->origin,
-                      "PX,PY: the pixel that shows the point 0, 0, 0 of the ground, for lines");
-  command->add_option("--up", a->up, "the axis of fSpy's scene that is up: y, or z as in Blender")
-      ->capture_default_str();
-  command->add_option("--preview", a->preview,
-                      "an image to write: the model's edges over the photograph, picked points as "
-                      "crosses, where the camera sees them as circles");
-  command->add_flag("--json", a->json, "print JSON");
-  command->footer(
+      .addOption("-o,--output", a->output,
+                 "the .toml to write; `[camera] file` and --camera-file "
+                 "read it")
+      .required();
+  command.addOption("--fov", a->fov, "the vertical field of view in degrees, if it is known");
+  command.addOption("--focal35", a->focal35,
+                    "the focal length in mm that has the same diagonal field of view on 35 mm "
+                    "film, if it is known");
+  command.addFlag("--distortion", a->distortion, "find the lens's radial distortion k1 too");
+  command.addOption("--principal-point", a->principalPoint,
+                    "U,V: where the lens's axis meets the image, as fractions of its size from "
+                    "the top left [0.5,0.5]");
+  command.addOption("--height", a->height,
+                    "height of the camera above the ground y = 0 in metres, for lines");
+  command.addOption("--origin", a->origin,
+                    "PX,PY: the pixel that shows the point 0, 0, 0 of the ground, for lines");
+  command.addOption("--up", a->up, "the axis of fSpy's scene that is up: y, or z as in Blender")
+      .showsDefault();
+  command.addOption("--preview", a->preview,
+                    "an image to write: the model's edges over the photograph, picked points as "
+                    "crosses, where the camera sees them as circles");
+  command.addFlag("--json", a->json, "print JSON");
+  command.footer(
       "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
       "go\n"
       "from one to another farther along the positive axis. `metres` is the length of a line "
       "whose\n"
       "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
-  command->callback([a] { run(*a); });
+  command.callback([a] { run(*a); });
 }
 
 }  // namespace chromeball

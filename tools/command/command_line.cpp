@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command_line.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -103,18 +104,19 @@ int run(int argc, char** argv) {
   CLI::App app{"Renders glTF scenes lit by HDR light probes.", "chromeball"};
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
   app.require_subcommand(1);
-  addRenderCommand(app);
-  addMergeCommand(app);
-  addCompareCommand(app);
-  addBakeCommand(app);
-  addBasisCommand(app);
-  addRelightCommand(app);
-  addProbeCommand(app);
-  addImageCommand(app);
-  addCameraCommand(app);
-  addLightsCommand(app);
-  addLightsErrorCommand(app);
-  addReferenceCommand(app);
+  const Command command(app);
+  addRenderCommand(command);
+  addMergeCommand(command);
+  addCompareCommand(command);
+  addBakeCommand(command);
+  addBasisCommand(command);
+  addRelightCommand(command);
+  addProbeCommand(command);
+  addImageCommand(command);
+  addCameraCommand(command);
+  addLightsCommand(command);
+  addLightsErrorCommand(command);
+  addReferenceCommand(command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -3,21 +3,21 @@
 // callback throws InputError or RunError.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 namespace chromeball {
 
-void addRenderCommand(CLI::App& app);
-void addMergeCommand(CLI::App& app);
-void addCompareCommand(CLI::App& app);
-void addBakeCommand(CLI::App& app);
-void addBasisCommand(CLI::App& app);
-void addRelightCommand(CLI::App& app);
-void addProbeCommand(CLI::App& app);   // info, convert, synth, irradiance
-void addImageCommand(CLI::App& app);   // view, error
-void addCameraCommand(CLI::App& app);  // solve
-void addLightsCommand(CLI::App& app);
-void addLightsErrorCommand(CLI::App& app);
-void addReferenceCommand(CLI::App& app);
+void addRenderCommand(Command app);
+void addMergeCommand(Command app);
+void addCompareCommand(Command app);
+void addBakeCommand(Command app);
+void addBasisCommand(Command app);
+void addRelightCommand(Command app);
+void addProbeCommand(Command app);   // info, convert, synth, irradiance
+void addImageCommand(Command app);   // view, error
+void addCameraCommand(Command app);  // solve
+void addLightsCommand(Command app);
+void addLightsErrorCommand(Command app);
+void addReferenceCommand(Command app);
 
 }  // namespace chromeball

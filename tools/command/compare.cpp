@@ -234,46 +234,46 @@ void compare(const CompareArguments& a) {
 
 }  // namespace
 
-void addCompareCommand(CLI::App& app) {
+void addCompareCommand(Command app) {
   const auto arguments = std::make_shared<CompareArguments>();
   CompareArguments& a = *arguments;
-  CLI::App* command =
-      app.add_subcommand("compare", "Compare lighting strategies on a scene: error, bias and time");
-  addSceneOptions(*command, a.scene, SceneCommand::Compare);
-  command->footer(strategyHelp());
+  Command command =
+      app.addCommand("compare", "Compare lighting strategies on a scene: error, bias and time");
+  addSceneOptions(command, a.scene, SceneCommand::Compare);
+  command.footer(strategyHelp());
   command
-      ->add_option("--strategies", a.strategies,
-                   "NAME or NAME:COUNT, separated by commas; all if not given. With +adaptive, "
-                   "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise; "
-                   "+environment-map with +ao, +reflection-occlusion; +diffuse-depth:N, "
-                   "+specular-depth:N, +irradiance-cache:ERROR")
-      ->delimiter(',');
+      .addOption("--strategies", a.strategies,
+                 "NAME or NAME:COUNT, separated by commas; all if not given. With +adaptive, "
+                 "+guide, +regularize, +glass-shadows or +denoise: NAME+regularize+denoise; "
+                 "+environment-map with +ao, +reflection-occlusion; +diffuse-depth:N, "
+                 "+specular-depth:N, +irradiance-cache:ERROR")
+      .delimiter(',');
   command
-      ->add_option("--integrators", a.integrators,
-                   "Renders each strategy with each of these, separated by commas: path, direct, "
-                   "ambient-occlusion, environment-map (as modes: NAME+ambient-occlusion)")
-      ->delimiter(',');
+      .addOption("--integrators", a.integrators,
+                 "Renders each strategy with each of these, separated by commas: path, direct, "
+                 "ambient-occlusion, environment-map (as modes: NAME+ambient-occlusion)")
+      .delimiter(',');
   command
-      ->add_option("--samples", a.samples,
-                   "Samples per pixel; 1,4,16,64 if neither these nor --times are given")
-      ->delimiter(',');
-  command->add_option("--times", a.times, "Seconds per render: 1,2,4")->delimiter(',');
+      .addOption("--samples", a.samples,
+                 "Samples per pixel; 1,4,16,64 if neither these nor --times are given")
+      .delimiter(',');
+  command.addOption("--times", a.times, "Seconds per render: 1,2,4").delimiter(',');
   command
-      ->add_option("--repeats", a.repeats,
-                   "Independent renders of each strategy and budget, 3 or more")
-      ->capture_default_str();
-  command->add_option("--reference", a.reference, "Reference image; else it is rendered");
-  command->add_option("--reference-samples", a.referenceSamples,
-                      "Samples per pixel of a reference that is rendered");
+      .addOption("--repeats", a.repeats,
+                 "Independent renders of each strategy and budget, 3 or more")
+      .showsDefault();
+  command.addOption("--reference", a.reference, "Reference image; else it is rendered");
+  command.addOption("--reference-samples", a.referenceSamples,
+                    "Samples per pixel of a reference that is rendered");
   command
-      ->add_option("--reference-strategy", a.referenceStrategy,
-                   "Strategy of a reference that is rendered")
-      ->capture_default_str();
-  command->add_option("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
+      .addOption("--reference-strategy", a.referenceStrategy,
+                 "Strategy of a reference that is rendered")
+      .showsDefault();
+  command.addOption("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
   command
-      ->add_option("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
-      ->required();
-  command->callback([arguments] { compare(*arguments); });
+      .addOption("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
+      .required();
+  command.callback([arguments] { compare(*arguments); });
 }
 
 }  // namespace chromeball

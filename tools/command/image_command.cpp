@@ -4,16 +4,16 @@
 
 namespace chromeball {
 
-void addImageCommand(CLI::App& app) {
-  CLI::App* image = app.add_subcommand("image", "View and compare images.");
-  image->require_subcommand(1);
-  addImageDenoiseCommand(*image);
-  addImageDevelopCommand(*image);
-  addImageDivideCommand(*image);
-  addImageErrorCommand(*image);
-  addImageFlatFieldCommand(*image);
-  addImageRelightCommand(*image);
-  addImageViewCommand(*image);
+void addImageCommand(Command app) {
+  Command image = app.addCommand("image", "View and compare images.");
+  image.requiresCommand();
+  addImageDenoiseCommand(image);
+  addImageDevelopCommand(image);
+  addImageDivideCommand(image);
+  addImageErrorCommand(image);
+  addImageFlatFieldCommand(image);
+  addImageRelightCommand(image);
+  addImageViewCommand(image);
 }
 
 }  // namespace chromeball

@@ -2,16 +2,16 @@
 // The subcommands of `chromeball image`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 namespace chromeball {
 
-void addImageDenoiseCommand(CLI::App& image);
-void addImageDevelopCommand(CLI::App& image);
-void addImageDivideCommand(CLI::App& image);
-void addImageErrorCommand(CLI::App& image);
-void addImageFlatFieldCommand(CLI::App& image);
-void addImageRelightCommand(CLI::App& image);
-void addImageViewCommand(CLI::App& image);
+void addImageDenoiseCommand(Command image);
+void addImageDevelopCommand(Command image);
+void addImageDivideCommand(Command image);
+void addImageErrorCommand(Command image);
+void addImageFlatFieldCommand(Command image);
+void addImageRelightCommand(Command image);
+void addImageViewCommand(Command image);
 
 }  // namespace chromeball

@@ -108,17 +108,17 @@ void run(const ImageDenoiseArguments& arguments) {
 
 }  // namespace
 
-void addImageDenoiseCommand(CLI::App& image) {
+void addImageDenoiseCommand(Command image) {
   const auto arguments = std::make_shared<ImageDenoiseArguments>();
-  CLI::App* command = image.add_subcommand(
+  Command command = image.addCommand(
       "denoise", "Remove noise from a render (biased), and estimate the error that remains.");
-  command->add_option("IN", arguments->input, "A render with --aov denoise, .exr")->required();
+  command.addOption("IN", arguments->input, "A render with --aov denoise, .exr").required();
   command
-      ->add_option("OUT", arguments->output,
-                   "The image to write; an .exr also has the layers noisy and denoise_error")
-      ->required();
-  command->add_flag("--quiet", arguments->quiet, "Show neither progress nor the noise");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("OUT", arguments->output,
+                 "The image to write; an .exr also has the layers noisy and denoise_error")
+      .required();
+  command.addFlag("--quiet", arguments->quiet, "Show neither progress nor the noise");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -160,20 +160,20 @@ void run(const ImageDevelopArguments& arguments) {
 
 }  // namespace
 
-void addImageDevelopCommand(CLI::App& image) {
+void addImageDevelopCommand(Command image) {
   const auto arguments = std::make_shared<ImageDevelopArguments>();
-  CLI::App* command = image.add_subcommand(
+  Command command = image.addCommand(
       "develop",
       "Show an HDR image through the optics of a camera: blur, streaks and vignetting before tone "
       "mapping. In the order of the options.");
-  command->add_option("IN", arguments->in, "The image, linear")->required();
+  command.addOption("IN", arguments->in, "The image, linear").required();
   command
-      ->add_option("OUT", arguments->out,
-                   "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)")
-      ->required();
+      .addOption("OUT", arguments->out,
+                 "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)")
+      .required();
   const auto add = [&](const char* name, const char* type, const char* help) {
     const auto found = std::ranges::find(arguments->optics, name, &OpticsOption::name);
-    command->add_option(std::string("--") + name, found->value, help)->type_name(type);
+    command.addOption(std::string("--") + name, found->value, help).typeName(type);
   };
   add("clip", "X",
       "Clip red, green and blue at X times white (after --exposure) first: what a blurred image of "
@@ -189,18 +189,18 @@ void addImageDevelopCommand(CLI::App& image) {
   add("vignette", "STRENGTH|FILE",
       "Multiply by 1 - STRENGTH (1 - cos^4 of the angle to the axis), or by an image that is "
       "stretched over the picture");
-  command->add_option("--fov", arguments->fov,
-                      "Vertical field of view in degrees, of the whole picture; without it that of "
-                      "the .exr");
-  command->add_flag("--exact", arguments->exact,
-                    "Use the exact kernels for all Gaussians: slow, the reference");
-  command->add_option("--exposure", arguments->exposure,
-                      "Stops: a .png shows radiance times 2^STOPS");
+  command.addOption("--fov", arguments->fov,
+                    "Vertical field of view in degrees, of the whole picture; without it that of "
+                    "the .exr");
+  command.addFlag("--exact", arguments->exact,
+                  "Use the exact kernels for all Gaussians: slow, the reference");
+  command.addOption("--exposure", arguments->exposure,
+                    "Stops: a .png shows radiance times 2^STOPS");
   command
-      ->add_option("--tonemap", arguments->tone,
-                   fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      ->capture_default_str();
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--tonemap", arguments->tone,
+                 fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      .showsDefault();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

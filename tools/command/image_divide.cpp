@@ -45,18 +45,18 @@ void run(const ImageDivideArguments& arguments) {
 
 }  // namespace
 
-void addImageDivideCommand(CLI::App& image) {
+void addImageDivideCommand(Command image) {
   const auto arguments = std::make_shared<ImageDivideArguments>();
-  CLI::App* command = image.add_subcommand(
+  Command command = image.addCommand(
       "divide",
       "Divide the colour of an image by that of another, in linear light: a photograph by its flat "
       "field.");
-  command->add_option("A", arguments->a, "the image; its layer `clipped` is kept")->required();
-  command->add_option("B", arguments->b, "what to divide by")->required();
+  command.addOption("A", arguments->a, "the image; its layer `clipped` is kept").required();
+  command.addOption("B", arguments->b, "what to divide by").required();
   command
-      ->add_option("-o,--output", arguments->output, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  command->callback([arguments] { run(*arguments); });
+      .addOption("-o,--output", arguments->output, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

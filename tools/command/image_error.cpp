@@ -151,22 +151,21 @@ void run(const ImageErrorArguments& arguments) {
 
 }  // namespace
 
-void addImageErrorCommand(CLI::App& image) {
+void addImageErrorCommand(Command image) {
   const auto arguments = std::make_shared<ImageErrorArguments>();
-  CLI::App* command =
-      image.add_subcommand("error", "The error of image A against the reference B.");
-  command->add_option("A", arguments->a, "The image")->required();
-  command->add_option("B", arguments->b, "The reference image")->required();
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->add_flag("--flip", arguments->flip,
-                    "Also the perceived difference FLIP (Andersson et al. 2020, 2021), 0 to 1");
-  command->add_option("-o,--output", arguments->output, "Write the error in false colors, .png");
+  Command command = image.addCommand("error", "The error of image A against the reference B.");
+  command.addOption("A", arguments->a, "The image").required();
+  command.addOption("B", arguments->b, "The reference image").required();
+  command.addFlag("--json", arguments->json, "Print JSON");
+  command.addFlag("--flip", arguments->flip,
+                  "Also the perceived difference FLIP (Andersson et al. 2020, 2021), 0 to 1");
+  command.addOption("-o,--output", arguments->output, "Write the error in false colors, .png");
   command
-      ->add_option(
+      .addOption(
           "--map", arguments->map,
           "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip")
-      ->capture_default_str();
-  command->callback([arguments] { run(*arguments); });
+      .showsDefault();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -123,33 +123,32 @@ void run(const ImageFlatFieldArguments& arguments) {
 
 }  // namespace
 
-void addImageFlatFieldCommand(CLI::App& image) {
+void addImageFlatFieldCommand(Command image) {
   const auto arguments = std::make_shared<ImageFlatFieldArguments>();
-  CLI::App* command = image.add_subcommand(
+  Command command = image.addCommand(
       "flat-field",
       "Fit how a lens darkens the image towards the corners, 1 + a2 r^2 + a4 r^4 + a6 r^6, to "
       "photographs that show one constant source at different places.");
   command
-      ->add_option("SERIES", arguments->files,
-                   "linear photographs with equal exposure, at least four, each with the source at "
-                   "another distance from the centre")
-      ->required();
+      .addOption("SERIES", arguments->files,
+                 "linear photographs with equal exposure, at least four, each with the source at "
+                 "another distance from the centre")
+      .required();
   command
-      ->add_option("-o,--output", arguments->output,
-                   "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png")
-      ->required();
+      .addOption("-o,--output", arguments->output,
+                 "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png")
+      .required();
   command
-      ->add_option(
-          "--at", arguments->positions,
-          "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
-          "it the brightest spot of each")
-      ->allow_extra_args(false);
-  command->add_option("--radius", arguments->radius, "of the disc that is averaged, in pixels")
-      ->capture_default_str();
-  command->add_option("--centre", arguments->centre,
-                      "X,Y: of the lens, in pixels; without it the middle of the image");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--at", arguments->positions,
+                 "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
+                 "it the brightest spot of each")
+      .onePerName();
+  command.addOption("--radius", arguments->radius, "of the disc that is averaged, in pixels")
+      .showsDefault();
+  command.addOption("--centre", arguments->centre,
+                    "X,Y: of the lens, in pixels; without it the middle of the image");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

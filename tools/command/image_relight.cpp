@@ -182,38 +182,37 @@ void run(const ImageRelightArguments& arguments) {
 
 }  // namespace
 
-void addImageRelightCommand(CLI::App& image) {
+void addImageRelightCommand(Command image) {
   const auto arguments = std::make_shared<ImageRelightArguments>();
-  CLI::App* command = image.add_subcommand(
+  Command command = image.addCommand(
       "relight",
       "Mix the light groups of a render anew (`render --aov light_groups`), or light its surfaces "
       "by another probe (`render --aov albedo,normal,ao,bent_normal`).");
-  command->add_option("GROUPS", arguments->in, "the .exr with the layers")->required();
-  command->add_option("--gain", arguments->gains,
-                      "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
-  command->add_option("--probe", arguments->probe,
-                      "light by this probe: albedo / pi times ambient occlusion times irradiance");
-  command->add_flag("--bent", arguments->bent, "with --probe: irradiance on the bent normals");
-  command->add_flag("--suns", arguments->leavesSunsOut,
-                    "with --probe: without its suns, which `render --light-from suns` renders "
-                    "with their shadows");
-  command->add_option("--add", arguments->added,
-                      "with --probe: a picture to add, such as that of the suns");
-  addRotationOption(*command, arguments->rotation);
-  command->add_option("--scale", arguments->scale, "X or R,G,B: factor of the probe")
-      ->capture_default_str();
-  command->add_option("--mapping", arguments->mapping, "of the probe; auto detects it")
-      ->capture_default_str();
+  command.addOption("GROUPS", arguments->in, "the .exr with the layers").required();
+  command.addOption("--gain", arguments->gains,
+                    "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
+  command.addOption("--probe", arguments->probe,
+                    "light by this probe: albedo / pi times ambient occlusion times irradiance");
+  command.addFlag("--bent", arguments->bent, "with --probe: irradiance on the bent normals");
+  command.addFlag("--suns", arguments->leavesSunsOut,
+                  "with --probe: without its suns, which `render --light-from suns` renders "
+                  "with their shadows");
+  command.addOption("--add", arguments->added,
+                    "with --probe: a picture to add, such as that of the suns");
+  addRotationOption(command, arguments->rotation);
+  command.addOption("--scale", arguments->scale, "X or R,G,B: factor of the probe").showsDefault();
+  command.addOption("--mapping", arguments->mapping, "of the probe; auto detects it")
+      .showsDefault();
   command
-      ->add_option("-o,--output", arguments->out,
-                   "the image to write: .exr (with the changed groups), .hdr, .pfm or .png")
-      ->required();
-  command->add_option("--exposure", arguments->exposure, "of a .png, in stops");
+      .addOption("-o,--output", arguments->out,
+                 "the image to write: .exr (with the changed groups), .hdr, .pfm or .png")
+      .required();
+  command.addOption("--exposure", arguments->exposure, "of a .png, in stops");
   command
-      ->add_option("--tonemap", arguments->tone,
-                   fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      ->capture_default_str();
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--tonemap", arguments->tone,
+                 fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      .showsDefault();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -80,21 +80,21 @@ void run(const ImageViewArguments& arguments) {
 
 }  // namespace
 
-void addImageViewCommand(CLI::App& image) {
+void addImageViewCommand(Command image) {
   const auto arguments = std::make_shared<ImageViewArguments>();
-  CLI::App* command = image.add_subcommand("view", "Convert an image for display.");
-  command->add_option("IN", arguments->in, "The image")->required();
-  command->add_option("OUT", arguments->out, "The image to write, .png")->required();
-  command->add_option("--exposure", arguments->exposure, "Stops: radiance times 2^STOPS");
+  Command command = image.addCommand("view", "Convert an image for display.");
+  command.addOption("IN", arguments->in, "The image").required();
+  command.addOption("OUT", arguments->out, "The image to write, .png").required();
+  command.addOption("--exposure", arguments->exposure, "Stops: radiance times 2^STOPS");
   command
-      ->add_option("--tonemap", arguments->tone,
-                   fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")))
-      ->capture_default_str();
-  command->add_option("--layer", arguments->layer,
-                      "A layer in place of the color: albedo, normal (-1..1 as 0..1), depth (near "
-                      "is white), node and "
-                      "material (one color each, printed with its name), variance, samples, ...");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--tonemap", arguments->tone,
+                 fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")))
+      .showsDefault();
+  command.addOption("--layer", arguments->layer,
+                    "A layer in place of the color: albedo, normal (-1..1 as 0..1), depth (near "
+                    "is white), node and "
+                    "material (one color each, printed with its name), variance, samples, ...");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

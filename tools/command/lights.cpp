@@ -204,62 +204,61 @@ void run(LightsArguments arguments) {
 
 }  // namespace
 
-void addLightsCommand(CLI::App& app) {
+void addLightsCommand(Command app) {
   const auto arguments = std::make_shared<LightsArguments>();
-  CLI::App* command =
-      app.add_subcommand("lights", "Replace a probe by directional lights, for other programs.");
-  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
-  command->footer(lightMethodHelp());
-  command->add_option("--method", arguments->method, "how to find the lights; see below");
-  command->add_option("--suggest", arguments->suggest,
-                      "in place of a method: propose polygons around so many bright regions, as a "
-                      ".json that [[source]] reads");
-  command->add_option("--polygons", arguments->polygons,
-                      "in place of a method: a light for each polygon of this .json");
-  command->add_option("--count", arguments->request.count,
-                      "number of lights; of cube-grid: of lights along a face's edge; of suns: the "
-                      "maximum");
+  Command command =
+      app.addCommand("lights", "Replace a probe by directional lights, for other programs.");
+  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
+  command.footer(lightMethodHelp());
+  command.addOption("--method", arguments->method, "how to find the lights; see below");
+  command.addOption("--suggest", arguments->suggest,
+                    "in place of a method: propose polygons around so many bright regions, as a "
+                    ".json that [[source]] reads");
+  command.addOption("--polygons", arguments->polygons,
+                    "in place of a method: a light for each polygon of this .json");
+  command.addOption("--count", arguments->request.count,
+                    "number of lights; of cube-grid: of lights along a face's edge; of suns: the "
+                    "maximum");
   command
-      ->add_option("-o,--output", arguments->output,
-                   "the lights to write: .json, .gltf (KHR_lights_punctual), .csv or .h (OpenGL)")
-      ->required();
-  command->add_option("--format", arguments->format,
-                      "of the output, whatever its name: json, gltf, csv or opengl (a C header of "
-                      "values for glLightfv)");
-  command->add_option("--angle", arguments->angle,
-                      "angular diameter of the written lights in degrees, up to 10; a .json then "
-                      "has their radiance too");
-  command->add_option("--light-units", arguments->units,
-                      "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them; the "
-                      "default), or radiometric (1 lux)");
-  command->add_option("--preview", arguments->preview,
-                      "write an image of the probe with a dot at each light");
-  command->add_flag("--regions", arguments->regions,
-                    "in the preview: outline the region of each light, of penrose the tiling");
-  command->add_option("--sphere", arguments->sphere,
-                      "write an image of white spheres: in the left column lit by the probe, in "
-                      "the middle by the lights, in the right one their difference about grey, "
-                      "times a power of two that is printed; above the front (+Z), below the back; "
-                      "at the right edge a square of the ambient light");
-  command->add_option(
+      .addOption("-o,--output", arguments->output,
+                 "the lights to write: .json, .gltf (KHR_lights_punctual), .csv or .h (OpenGL)")
+      .required();
+  command.addOption("--format", arguments->format,
+                    "of the output, whatever its name: json, gltf, csv or opengl (a C header of "
+                    "values for glLightfv)");
+  command.addOption("--angle", arguments->angle,
+                    "angular diameter of the written lights in degrees, up to 10; a .json then "
+                    "has their radiance too");
+  command.addOption("--light-units", arguments->units,
+                    "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them; the "
+                    "default), or radiometric (1 lux)");
+  command.addOption("--preview", arguments->preview,
+                    "write an image of the probe with a dot at each light");
+  command.addFlag("--regions", arguments->regions,
+                  "in the preview: outline the region of each light, of penrose the tiling");
+  command.addOption("--sphere", arguments->sphere,
+                    "write an image of white spheres: in the left column lit by the probe, in "
+                    "the middle by the lights, in the right one their difference about grey, "
+                    "times a power of two that is printed; above the front (+Z), below the back; "
+                    "at the right edge a square of the ambient light");
+  command.addOption(
       "--normals", arguments->normals,
       "number of faces of these spheres: 20 times a power of 4, up to 1310720; 20480 by "
       "default");
-  command->add_option("--recursion", arguments->request.levels,
-                      "median-cut: in place of --count, cut all regions this many times: 8 lights "
-                      "of 3");
-  command->add_option("--max-error", arguments->maxError,
-                      "irradiance-fit: find the smallest number of lights, up to --count, whose "
-                      "mean error is no greater; percent of the mean irradiance");
-  command->add_flag("--ambient", arguments->request.ambient,
-                    "irradiance-fit: also fit a constant radiance from all directions");
-  command->add_option("--seed", arguments->seed, "of stochastic methods");
-  addRotationOption(*command, arguments->rotation,
+  command.addOption("--recursion", arguments->request.levels,
+                    "median-cut: in place of --count, cut all regions this many times: 8 lights "
+                    "of 3");
+  command.addOption("--max-error", arguments->maxError,
+                    "irradiance-fit: find the smallest number of lights, up to --count, whose "
+                    "mean error is no greater; percent of the mean irradiance");
+  command.addFlag("--ambient", arguments->request.ambient,
+                  "irradiance-fit: also fit a constant radiance from all directions");
+  command.addOption("--seed", arguments->seed, "of stochastic methods");
+  addRotationOption(command, arguments->rotation,
                     ": the lights that are written; mask and images are those of the probe's map");
-  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command->add_option("--mapping", arguments->probe.mapping,
-                      "the mapping of PROBE; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

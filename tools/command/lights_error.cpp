@@ -132,29 +132,27 @@ void run(LightsErrorArguments arguments) {
 
 }  // namespace
 
-void addLightsErrorCommand(CLI::App& app) {
+void addLightsErrorCommand(Command app) {
   const auto arguments = std::make_shared<LightsErrorArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.addCommand(
       "lights-error", "The error of the irradiance of directional lights against their probe.");
-  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
-  command->footer(lightMethodHelp());
-  command->add_option("--methods", arguments->methods, "one or several; see below")
-      ->required()
-      ->delimiter(',');
-  command->add_option("--counts", arguments->counts, "numbers of lights: 2,4,8,...")
-      ->delimiter(',');
+  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
+  command.footer(lightMethodHelp());
+  command.addOption("--methods", arguments->methods, "one or several; see below")
+      .required()
+      .delimiter(',');
+  command.addOption("--counts", arguments->counts, "numbers of lights: 2,4,8,...").delimiter(',');
   command
-      ->add_option("--recursion", arguments->levels,
-                   "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
-      ->delimiter(',');
-  command->add_option("--normals", arguments->normals, kNormalsHelp)->capture_default_str();
-  command->add_option("--csv", arguments->csv, "write the table to this file");
-  command->add_option("--plot", arguments->plot, "write a plot of the table to this .svg");
-  command->add_option("--seed", arguments->seed, "of stochastic methods");
-  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command->add_option("--mapping", arguments->probe.mapping,
-                      "the mapping of PROBE; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--recursion", arguments->levels,
+                 "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
+      .delimiter(',');
+  command.addOption("--normals", arguments->normals, kNormalsHelp).showsDefault();
+  command.addOption("--csv", arguments->csv, "write the table to this file");
+  command.addOption("--plot", arguments->plot, "write a plot of the table to this .svg");
+  command.addOption("--seed", arguments->seed, "of stochastic methods");
+  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -69,21 +69,21 @@ void run(const MergeArguments& arguments) {
 
 }  // namespace
 
-void addMergeCommand(CLI::App& app) {
+void addMergeCommand(Command app) {
   const auto arguments = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.addCommand(
       "merge", "Put the parts of a render together, of `render --shard` and `--crop`");
   command
-      ->add_option("PART", arguments->parts,
-                   "All parts, .exr, in any order; the image has the same bits for each")
-      ->required();
+      .addOption("PART", arguments->parts,
+                 "All parts, .exr, in any order; the image has the same bits for each")
+      .required();
   command
-      ->add_option("-o,--output", arguments->outputs,
-                   "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
-      ->required()
-      ->allow_extra_args(false);
-  command->add_flag("--quiet", arguments->quiet, "Show neither progress nor the noise");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("-o,--output", arguments->outputs,
+                 "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
+      .required()
+      .onePerName();
+  command.addFlag("--quiet", arguments->quiet, "Show neither progress nor the noise");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -111,21 +111,21 @@ void run(const ProbeAlignArguments& arguments) {
 
 }  // namespace
 
-void addProbeAlignCommand(CLI::App& probe) {
+void addProbeAlignCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeAlignArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "align", "Find the rotation that makes one probe of a place agree with another.");
-  command->add_option("A", arguments->first, "a probe")->required();
-  command->add_option("B", arguments->second, "the probe to turn")->required();
-  command->add_option("-o,--output", arguments->out, "write B, turned, as a lat-long map");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->add_option("--mapping-a", arguments->firstMapping, "the mapping of A; auto detects it");
-  command->add_option("--mapping-b", arguments->secondMapping, "the mapping of B; auto detects it");
-  command->footer(
+  command.addOption("A", arguments->first, "a probe").required();
+  command.addOption("B", arguments->second, "the probe to turn").required();
+  command.addOption("-o,--output", arguments->out, "write B, turned, as a lat-long map");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.addOption("--mapping-a", arguments->firstMapping, "the mapping of A; auto detects it");
+  command.addOption("--mapping-b", arguments->secondMapping, "the mapping of B; auto detects it");
+  command.footer(
       "render takes the angles or the quaternion as --probe-rotation of B. The probes may differ "
       "in "
       "exposure, white balance, size and noise.\n");
-  command->callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

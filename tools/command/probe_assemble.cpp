@@ -180,12 +180,12 @@ void run(const AssembleArguments& arguments) {
 
 }  // namespace
 
-void addProbeAssembleCommand(CLI::App& probe) {
+void addProbeAssembleCommand(Command probe) {
   const auto arguments = std::make_shared<AssembleArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.");
-  addAssembleOptions(*command, *arguments);
-  command->callback([arguments] { run(*arguments); });
+  addAssembleOptions(command, *arguments);
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

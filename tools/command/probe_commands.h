@@ -2,25 +2,25 @@
 // The subcommands of `chromeball probe`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 namespace chromeball {
 
-void addProbeInfoCommand(CLI::App& probe);
-void addProbeConvertCommand(CLI::App& probe);
-void addProbeConvolveCommand(CLI::App& probe);
-void addProbeAssembleCommand(CLI::App& probe);
-void addProbeReflectivityCommand(CLI::App& probe);
-void addProbeSynthCommand(CLI::App& probe);
-void addProbeEditCommand(CLI::App& probe);
-void addProbeIrradianceCommand(CLI::App& probe);
-void addProbeRaysCommand(CLI::App& probe);
-void addProbePlotCommand(CLI::App& probe);
-void addProbeMergeCommand(CLI::App& probe);
-void addProbeSplitCommand(CLI::App& probe);
-void addProbeAddSunCommand(CLI::App& probe);
-void addProbeAlignCommand(CLI::App& probe);
-void addProbeStitchCommand(CLI::App& probe);
-void addProbeSunCommand(CLI::App& probe);
+void addProbeInfoCommand(Command probe);
+void addProbeConvertCommand(Command probe);
+void addProbeConvolveCommand(Command probe);
+void addProbeAssembleCommand(Command probe);
+void addProbeReflectivityCommand(Command probe);
+void addProbeSynthCommand(Command probe);
+void addProbeEditCommand(Command probe);
+void addProbeIrradianceCommand(Command probe);
+void addProbeRaysCommand(Command probe);
+void addProbePlotCommand(Command probe);
+void addProbeMergeCommand(Command probe);
+void addProbeSplitCommand(Command probe);
+void addProbeAddSunCommand(Command probe);
+void addProbeAlignCommand(Command probe);
+void addProbeStitchCommand(Command probe);
+void addProbeSunCommand(Command probe);
 
 }  // namespace chromeball

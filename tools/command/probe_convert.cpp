@@ -71,29 +71,26 @@ void run(const ProbeConvertArguments& arguments) {
 
 }  // namespace
 
-void addProbeConvertCommand(CLI::App& probe) {
+void addProbeConvertCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeConvertArguments>();
-  CLI::App* command =
-      probe.add_subcommand("convert", "Resample a probe into another mapping or size.");
-  command->add_option("IN", arguments->in, "the probe's image")->required();
-  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
+  Command command = probe.addCommand("convert", "Resample a probe into another mapping or size.");
+  command.addOption("IN", arguments->in, "the probe's image").required();
+  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
   command
-      ->add_option("--to", arguments->to,
-                   "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
-                   "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
-                   "orthographic, stereographic")
-      ->required();
-  command->add_option("--from", arguments->from, "the mapping of IN; auto detects it");
-  command->add_option("--size", arguments->size,
-                      "WIDTHxHEIGHT; else the size that keeps the detail");
-  addRotationOption(*command, arguments->rotation);
-  command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
-  command->add_flag(
-      "--flip", arguments->flip,
-      "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
-      "shows the camera: with the camera on +Z, turn by --rotation 180");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--to", arguments->to,
+                 "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
+                 "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
+                 "orthographic, stereographic")
+      .required();
+  command.addOption("--from", arguments->from, "the mapping of IN; auto detects it");
+  command.addOption("--size", arguments->size, "WIDTHxHEIGHT; else the size that keeps the detail");
+  addRotationOption(command, arguments->rotation);
+  command.addOption("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
+  command.addFlag("--flip", arguments->flip,
+                  "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
+                  "shows the camera: with the camera on +Z, turn by --rotation 180");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

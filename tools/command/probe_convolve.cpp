@@ -119,31 +119,31 @@ void run(const ProbeConvolveArguments& arguments) {
 
 }  // namespace
 
-void addProbeConvolveCommand(CLI::App& probe) {
+void addProbeConvolveCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeConvolveArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "convolve", "Blur a probe by the lobe of a surface: a prefiltered environment map.");
-  command->add_option("IN", arguments->in, "the probe's image")->required();
+  command.addOption("IN", arguments->in, "the probe's image").required();
   command
-      ->add_option("OUT", arguments->out,
-                   "the lat-long map to write: .exr, .hdr, .pfm or .png; or a cube map with levels "
-                   "for the roughnesses of GGX: .ktx2")
-      ->required();
-  command->add_option("--kernel", arguments->kernel,
-                      "diffuse (irradiance / pi), phong:EXPONENT or ggx:ROUGHNESS");
-  command->add_option("--size", arguments->size,
-                      "WIDTHxHEIGHT; else the probe's, as lat-long. Of a face of a .ktx2: 256x256");
-  command->add_option("--from-size", arguments->fromSize,
-                      "reduce the probe to WIDTHxHEIGHT first: faster, and less exact");
+      .addOption("OUT", arguments->out,
+                 "the lat-long map to write: .exr, .hdr, .pfm or .png; or a cube map with levels "
+                 "for the roughnesses of GGX: .ktx2")
+      .required();
+  command.addOption("--kernel", arguments->kernel,
+                    "diffuse (irradiance / pi), phong:EXPONENT or ggx:ROUGHNESS");
+  command.addOption("--size", arguments->size,
+                    "WIDTHxHEIGHT; else the probe's, as lat-long. Of a face of a .ktx2: 256x256");
+  command.addOption("--from-size", arguments->fromSize,
+                    "reduce the probe to WIDTHxHEIGHT first: faster, and less exact");
   command
-      ->add_option("--method", arguments->method,
-                   "exact, or sh: spherical harmonics to order 2, may be negative")
-      ->capture_default_str();
-  command->add_option("--mips", arguments->mips,
-                      "the roughness of the levels of a .ktx2: khronos (linear), or filament");
-  addRotationOption(*command, arguments->rotation);
-  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--method", arguments->method,
+                 "exact, or sh: spherical harmonics to order 2, may be negative")
+      .showsDefault();
+  command.addOption("--mips", arguments->mips,
+                    "the roughness of the levels of a .ktx2: khronos (linear), or filament");
+  addRotationOption(command, arguments->rotation);
+  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -150,36 +150,35 @@ void run(const ProbeEditArguments& arguments) {
 
 }  // namespace
 
-void addProbeEditCommand(CLI::App& probe) {
+void addProbeEditCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeEditArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "edit",
       "Change the light of a probe, and write it as a lat-long map. Edits are done in the order of "
       "the options below; angles are in degrees.");
-  command->add_option("IN", arguments->in, "the probe's image")->required();
-  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  addRotationOption(*command, arguments->rotation, "; before all other edits");
-  command->add_option("--fill-nadir", arguments->fillNadir,
-                      "RADIUS: fill the disc straight below smoothly from its rim (a tripod)");
-  command->add_option(
-      "--below-horizon", arguments->belowHorizon,
-      "replace the lower half: black, mirror (the upper half's), or radiance R,G,B");
+  command.addOption("IN", arguments->in, "the probe's image").required();
+  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
+  addRotationOption(command, arguments->rotation, "; before all other edits");
+  command.addOption("--fill-nadir", arguments->fillNadir,
+                    "RADIUS: fill the disc straight below smoothly from its rim (a tripod)");
+  command.addOption("--below-horizon", arguments->belowHorizon,
+                    "replace the lower half: black, mirror (the upper half's), or radiance R,G,B");
   command
-      ->add_option("--region", arguments->regions,
-                   "AZIMUTH,ELEVATION,RADIUS: a disc to multiply by --gain; may be given several "
-                   "times. Azimuth is from -Z, the map's centre, counter-clockwise seen from above")
-      ->allow_extra_args(false);
-  command->add_option("--gain", arguments->gains, "X or R,G,B, one for each --region, in order")
-      ->allow_extra_args(false);
-  command->add_option("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
-  command->add_option("--clip", arguments->clip, "X: lower the channels above X to X");
+      .addOption("--region", arguments->regions,
+                 "AZIMUTH,ELEVATION,RADIUS: a disc to multiply by --gain; may be given several "
+                 "times. Azimuth is from -Z, the map's centre, counter-clockwise seen from above")
+      .onePerName();
+  command.addOption("--gain", arguments->gains, "X or R,G,B, one for each --region, in order")
+      .onePerName();
+  command.addOption("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
+  command.addOption("--clip", arguments->clip, "X: lower the channels above X to X");
   command
-      ->add_option("--clip-stops", arguments->clipStops,
-                   "N: the same at 2^N times the mean luminance over the sphere")
-      ->excludes("--clip");
-  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--clip-stops", arguments->clipStops,
+                 "N: the same at 2^N times the mean luminance over the sphere")
+      .excludes("--clip");
+  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

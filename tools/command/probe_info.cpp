@@ -127,26 +127,26 @@ ProbeInfo turned(ProbeInfo info, const Rotation& rotation) {
 
 }  // namespace
 
-void addProbeInfoCommand(CLI::App& probeCommand) {
+void addProbeInfoCommand(Command probeCommand) {
   struct Arguments {
     std::string file, mapping = "auto";
     Rotation rotation;
     bool json = false, mappingReport = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      probeCommand.add_subcommand("info", "Show the mapping and the statistics of a probe.");
-  command->add_option("FILE", arguments->file, "the probe's image")->required();
-  command->add_option("--mapping", arguments->mapping,
-                      "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
-  addRotationOption(*command, arguments->rotation, ", and with it the directions");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->footer(
+  Command command =
+      probeCommand.addCommand("info", "Show the mapping and the statistics of a probe.");
+  command.addOption("FILE", arguments->file, "the probe's image").required();
+  command.addOption("--mapping", arguments->mapping,
+                    "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
+  addRotationOption(command, arguments->rotation, ", and with it the directions");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.footer(
       "robust_range of the JSON is null if it is infinite, as more than 1% of the sphere is black, "
       "and 0 if less than 1% is lit.\n");
-  command->add_flag("--mapping-report", arguments->mappingReport,
-                    "also show the solid angles of the file's texels");
-  command->callback([arguments] {
+  command.addFlag("--mapping-report", arguments->mappingReport,
+                  "also show the solid angles of the file's texels");
+  command.callback([arguments] {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
     print(probe.messages, false);
     for (const std::string& warning : lightWarnings(probe, arguments->file))

@@ -45,21 +45,21 @@ void run(const ProbeIrradianceArguments& arguments) {
 
 }  // namespace
 
-void addProbeIrradianceCommand(CLI::App& probe) {
+void addProbeIrradianceCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeIrradianceArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.");
-  command->add_option("IN", arguments->in, "the probe's image")->required();
-  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
+  command.addOption("IN", arguments->in, "the probe's image").required();
+  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
+  command.addOption("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
   command
-      ->add_option("--method", arguments->method,
-                   "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
-      ->capture_default_str();
-  addRotationOption(*command, arguments->rotation);
-  command->add_option("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--method", arguments->method,
+                 "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
+      .showsDefault();
+  addRotationOption(command, arguments->rotation);
+  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -151,13 +151,13 @@ void calibrate(const MergeArguments& arguments) {
 
 }  // namespace
 
-void addProbeMergeCommand(CLI::App& probe) {
+void addProbeMergeCommand(Command probe) {
   const auto arguments = std::make_shared<MergeArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "merge",
       "Merge photographs of one view that differ in exposure into an image of high dynamic range.");
-  arguments->addTo(*command);
-  command->callback([arguments] {
+  arguments->addTo(command);
+  command.callback([arguments] {
     if (arguments->calibration.empty())
       merge(*arguments);
     else

@@ -67,51 +67,49 @@ PhotographSeries::FlatField parseFlatField(const std::string& text) {
 
 }  // namespace
 
-void MergeArguments::addTo(CLI::App& command) {
-  command.add_option("PHOTOGRAPHS", files,
-                     "photographs of one view, of one size: JPEG, PNG, TIFF, .exr, .hdr or .pfm");
-  command.add_option("-o,--output", output,
-                     "the image to write: .exr (with the layer `clipped`), .hdr or .pfm");
-  command.add_option(
-      "--exposures", exposures,
-      "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
-      "of EXIF's time, aperture and ISO");
-  command.add_option("--apertures", apertures,
-                     "f-numbers, one for each photograph, in place of EXIF's");
+void MergeArguments::addTo(Command command) {
+  command.addOption("PHOTOGRAPHS", files,
+                    "photographs of one view, of one size: JPEG, PNG, TIFF, .exr, .hdr or .pfm");
+  command.addOption("-o,--output", output,
+                    "the image to write: .exr (with the layer `clipped`), .hdr or .pfm");
+  command.addOption("--exposures", exposures,
+                    "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
+                    "of EXIF's time, aperture and ISO");
+  command.addOption("--apertures", apertures,
+                    "f-numbers, one for each photograph, in place of EXIF's");
   command
-      .add_option("--aperture-ratio", ratios,
-                  "A:B=X: f/A lets X times as much light pass as f/B, measured; else (B/A)^2")
-      ->allow_extra_args(false);
+      .addOption("--aperture-ratio", ratios,
+                 "A:B=X: f/A lets X times as much light pass as f/B, measured; else (B/A)^2")
+      .onePerName();
   command
-      .add_option("--filter", filters,
-                  "K=R,G,B: the K-th photograph was taken through a filter of this transmission")
-      ->allow_extra_args(false);
+      .addOption("--filter", filters,
+                 "K=R,G,B: the K-th photograph was taken through a filter of this transmission")
+      .onePerName();
   command
-      .add_option("--flat-field", flatFields,
-                  "F.exr, or N=F.exr for the photographs at f/N: divide by it (`image flat-field`)")
-      ->allow_extra_args(false);
-  command.add_option("--response", response,
-                     "linear, srgb, solve or a file of --write-response; without it srgb for 8 "
-                     "bits, else linear");
-  command.add_option("--write-response", responseOutput,
-                     "the response as text: 256 levels and their exposures");
-  command.add_option(
+      .addOption("--flat-field", flatFields,
+                 "F.exr, or N=F.exr for the photographs at f/N: divide by it (`image flat-field`)")
+      .onePerName();
+  command.addOption("--response", response,
+                    "linear, srgb, solve or a file of --write-response; without it srgb for 8 "
+                    "bits, else linear");
+  command.addOption("--write-response", responseOutput,
+                    "the response as text: 256 levels and their exposures");
+  command.addOption(
       "--smoothness", smoothness,
       fmt::format("of the solved response, default {:g}", PhotographSeries{}.smoothness));
-  command.add_option(
+  command.addOption(
       "--white", white,
       "where floats saturate; without it 1, or the largest number if that is higher. The result "
       "has the scale of the files");
-  command.add_flag("--resize", resizes,
-                   "accept photographs of several sizes, each cropped to the same ball: resample "
-                   "them to the smallest");
-  command.add_flag("--unaligned", unaligned, "accept photographs that seem shifted");
+  command.addFlag("--resize", resizes,
+                  "accept photographs of several sizes, each cropped to the same ball: resample "
+                  "them to the smallest");
+  command.addFlag("--unaligned", unaligned, "accept photographs that seem shifted");
   command
-      .add_option(
-          "--calibrate-filter", calibration,
-          "WITH WITHOUT: instead, print the transmission of a filter from two merged images")
-      ->expected(2);
-  command.add_flag("--json", json, "print JSON");
+      .addOption("--calibrate-filter", calibration,
+                 "WITH WITHOUT: instead, print the transmission of a filter from two merged images")
+      .words(2);
+  command.addFlag("--json", json, "print JSON");
 }
 
 PhotographSeries MergeArguments::series() const {

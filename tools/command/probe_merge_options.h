@@ -2,7 +2,7 @@
 // The options of `chromeball probe merge`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 #include "probe/capture/merge_photographs.h"
 
@@ -13,7 +13,7 @@ struct MergeArguments {
   std::string output, exposures, apertures, response, responseOutput, smoothness, white;
   bool unaligned = false, resizes = false, json = false;
 
-  void addTo(CLI::App& command);
+  void addTo(Command command);
 
   // What they ask for, without looking at files. Throws InputError.
   PhotographSeries series() const;

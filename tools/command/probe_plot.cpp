@@ -69,25 +69,24 @@ void run(const ProbePlotArguments& arguments) {
 
 }  // namespace
 
-void addProbePlotCommand(CLI::App& probe) {
+void addProbePlotCommand(Command probe) {
   const auto arguments = std::make_shared<ProbePlotArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "plot", "Plot how importance sampling draws directions from one row of a probe.");
-  command->add_option("PROBE", arguments->file, "the probe's image")->required();
-  command->add_option("OUT", arguments->out, "the plot to write: .svg")->required();
-  command->add_option("--row", arguments->row,
-                      "row of texels of the lat-long map, from 0 at the top; else the brightest");
-  command->add_option("--elevation", arguments->elevation, "or the row at this elevation, degrees")
-      ->excludes("--row");
-  command->add_option("--azimuth", arguments->azimuth,
-                      "A,B: the part to plot, in degrees from -Z, the map's centre, "
-                      "counter-clockwise seen from above; else all of the row");
-  command->add_option("--samples", arguments->samples, "number of samples to draw")
-      ->capture_default_str();
-  command->add_flag("--compensated", arguments->compensated,
-                    "sample what is brighter than the mean, as renders with MIS do");
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
-  command->callback([arguments] { run(*arguments); });
+  command.addOption("PROBE", arguments->file, "the probe's image").required();
+  command.addOption("OUT", arguments->out, "the plot to write: .svg").required();
+  command.addOption("--row", arguments->row,
+                    "row of texels of the lat-long map, from 0 at the top; else the brightest");
+  command.addOption("--elevation", arguments->elevation, "or the row at this elevation, degrees")
+      .excludes("--row");
+  command.addOption("--azimuth", arguments->azimuth,
+                    "A,B: the part to plot, in degrees from -Z, the map's centre, "
+                    "counter-clockwise seen from above; else all of the row");
+  command.addOption("--samples", arguments->samples, "number of samples to draw").showsDefault();
+  command.addFlag("--compensated", arguments->compensated,
+                  "sample what is brighter than the mean, as renders with MIS do");
+  command.addOption("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -131,28 +131,28 @@ void run(const ProbeRaysArguments& arguments) {
 
 }  // namespace
 
-void addProbeRaysCommand(CLI::App& probe) {
+void addProbeRaysCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeRaysArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "rays",
       "How many random rays the irradiance of an unoccluded point needs: facing up, and the "
       "median and the most of 1280 normals.");
-  command->add_option("PROBE", arguments->file, "the probe's image")->required();
+  command.addOption("PROBE", arguments->file, "the probe's image").required();
   command
-      ->add_option("--error", arguments->error,
-                   "the standard error of the luminance to reach, as a fraction")
-      ->capture_default_str();
-  command->add_option("--size", arguments->size,
-                      "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
-  addRotationOption(*command, arguments->rotation);
-  command->add_option("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->footer(
+      .addOption("--error", arguments->error,
+                 "the standard error of the luminance to reach, as a fraction")
+      .showsDefault();
+  command.addOption("--size", arguments->size,
+                    "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
+  addRotationOption(command, arguments->rotation);
+  command.addOption("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.footer(
       "Samplings:\n"
       "  uniform      directions uniform over the hemisphere\n"
       "  cosine       pdf proportional to the cosine\n"
       "  luminance    pdf proportional to the probe's luminance, over the whole sphere\n");
-  command->callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

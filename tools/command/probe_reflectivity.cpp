@@ -116,29 +116,29 @@ void run(const ProbeReflectivityArguments& arguments) {
 
 }  // namespace
 
-void addProbeReflectivityCommand(CLI::App& probe) {
+void addProbeReflectivityCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeReflectivityArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "reflectivity",
       "Measure how much a mirror ball or a paint reflects, from a photograph that shows a surface "
       "directly and in the ball, or the paint and a standard.");
-  command->add_option("PHOTO", arguments->photograph, "a linear image")->required();
-  command->add_option("--direct", arguments->direct,
-                      "X,Y,WIDTH,HEIGHT in pixels: the surface seen directly, or the standard");
+  command.addOption("PHOTO", arguments->photograph, "a linear image").required();
+  command.addOption("--direct", arguments->direct,
+                    "X,Y,WIDTH,HEIGHT in pixels: the surface seen directly, or the standard");
   command
-      ->add_option("--reflected", arguments->reflected,
-                   "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint")
-      ->required();
-  command->add_option("--against", arguments->against,
-                      "where the standard is: the photograph in which --direct lies, or its "
-                      "rectangle in PHOTO");
-  command->add_option("--standard-reflectance", arguments->standard,
-                      "X or R,G,B of the standard; else 1");
-  command->add_option("--saturation", arguments->saturation,
-                      "the level from which on channels are clipped; else 1 in integer images, and "
-                      "65504");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--reflected", arguments->reflected,
+                 "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint")
+      .required();
+  command.addOption("--against", arguments->against,
+                    "where the standard is: the photograph in which --direct lies, or its "
+                    "rectangle in PHOTO");
+  command.addOption("--standard-reflectance", arguments->standard,
+                    "X or R,G,B of the standard; else 1");
+  command.addOption("--saturation", arguments->saturation,
+                    "the level from which on channels are clipped; else 1 in integer images, and "
+                    "65504");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -77,38 +77,37 @@ void addSuns(const AddArguments& arguments) {
 
 }  // namespace
 
-void addProbeSplitCommand(CLI::App& probe) {
+void addProbeSplitCommand(Command probe) {
   const auto arguments = std::make_shared<SplitArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "split",
       "Divide a probe into its suns, as a list of lights, and the rest, as a lat-long map.");
-  command->add_option("PROBE", arguments->probe.file, "the probe's image")->required();
-  command->add_option("--suns", arguments->suns, "the .json to write; [[light]] `file` reads it")
-      ->required();
-  command->add_option("--rest", arguments->rest, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  command->add_option("--angle", arguments->angle,
-                      "diameter of the suns in degrees, in place of the measured one; the Sun's is "
-                      "0.5323");
-  command->add_option("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command->add_option("--mapping", arguments->probe.mapping,
-                      "the mapping of PROBE; auto detects it");
-  command->callback([arguments] { splitProbe(*arguments); });
+  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
+  command.addOption("--suns", arguments->suns, "the .json to write; [[light]] `file` reads it")
+      .required();
+  command.addOption("--rest", arguments->rest, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
+  command.addOption("--angle", arguments->angle,
+                    "diameter of the suns in degrees, in place of the measured one; the Sun's is "
+                    "0.5323");
+  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
+  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
+  command.callback([arguments] { splitProbe(*arguments); });
 }
 
-void addProbeAddSunCommand(CLI::App& probe) {
+void addProbeAddSunCommand(Command probe) {
   const auto arguments = std::make_shared<AddArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "add-sun", "Draw a list of lights into a probe: discs of constant radiance.");
-  command->add_option("IN", arguments->probe.file, "the probe's image")->required();
-  command->add_option("OUT", arguments->out, "the lat-long map to write: .exr, .hdr, .pfm or .png")
-      ->required();
+  command.addOption("IN", arguments->probe.file, "the probe's image").required();
+  command.addOption("OUT", arguments->out, "the lat-long map to write: .exr, .hdr, .pfm or .png")
+      .required();
   command
-      ->add_option("--lights", arguments->lights,
-                   "the .json of `probe split` or `lights`; its ambient light is added too")
-      ->required();
-  command->add_option("--mapping", arguments->probe.mapping, "the mapping of IN; auto detects it");
-  command->callback([arguments] { addSuns(*arguments); });
+      .addOption("--lights", arguments->lights,
+                 "the .json of `probe split` or `lights`; its ambient light is added too")
+      .required();
+  command.addOption("--mapping", arguments->probe.mapping, "the mapping of IN; auto detects it");
+  command.callback([arguments] { addSuns(*arguments); });
 }
 
 }  // namespace chromeball

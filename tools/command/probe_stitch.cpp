@@ -85,23 +85,23 @@ void run(const ProbeStitchArguments& arguments) {
 
 }  // namespace
 
-void addProbeStitchCommand(CLI::App& probe) {
+void addProbeStitchCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeStitchArguments>();
-  CLI::App* command = probe.add_subcommand(
+  Command command = probe.addCommand(
       "stitch", "Stitch photographs of known direction (tiles) to a lat-long probe.");
-  command->add_option("TILES", arguments->list, "the list of tiles (.toml); see below")->required();
-  command->add_option("-o,--output", arguments->out, "the probe to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  command->add_option("--size", arguments->size,
-                      "WIDTHxHEIGHT; else the size that keeps the detail of the tiles");
-  command->add_flag("--refine", arguments->refine,
-                    "turn all tiles but the first until they agree where they overlap");
-  command->add_option("--poses", arguments->poses,
-                      "with --refine: write the list with the poses that were found (.toml), for "
-                      "other exposures from the same directions");
-  command->add_flag("--same-exposure", arguments->sameExposure,
-                    "take the tiles as they are; else factors make them agree where they overlap");
-  command->footer(
+  command.addOption("TILES", arguments->list, "the list of tiles (.toml); see below").required();
+  command.addOption("-o,--output", arguments->out, "the probe to write: .exr, .hdr, .pfm or .png")
+      .required();
+  command.addOption("--size", arguments->size,
+                    "WIDTHxHEIGHT; else the size that keeps the detail of the tiles");
+  command.addFlag("--refine", arguments->refine,
+                  "turn all tiles but the first until they agree where they overlap");
+  command.addOption("--poses", arguments->poses,
+                    "with --refine: write the list with the poses that were found (.toml), for "
+                    "other exposures from the same directions");
+  command.addFlag("--same-exposure", arguments->sameExposure,
+                  "take the tiles as they are; else factors make them agree where they overlap");
+  command.footer(
       "The list:\n"
       "  fov = 50            # vertical, degrees; of all tiles that give none\n"
       "  [[tile]]\n"
@@ -109,7 +109,7 @@ void addProbeStitchCommand(CLI::App& probe) {
       "  yaw = 40            # of the camera, as of a probe's rotation: 0 looks along -Z,\n"
       "  pitch = 10          # positive yaw to the left, positive pitch up,\n"
       "  roll = 0            # positive roll lifts the camera's right\n");
-  command->callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

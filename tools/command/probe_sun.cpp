@@ -211,44 +211,41 @@ void run(const ProbeSunArguments& arguments) {
 
 }  // namespace
 
-void addProbeSunCommand(CLI::App& probe) {
+void addProbeSunCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeSunArguments>();
-  CLI::App* command =
-      probe.add_subcommand("sun",
-                           "Find the irradiance of a sun that a probe's photographs have clipped, "
-                           "from a photograph of a "
-                           "diffuse ball in the same light and with the same exposure.");
-  command->add_option("CLIPPED", arguments->probe, "the probe's image")->required();
-  command->add_option("--diffuse", arguments->ball, "the photograph of the ball, linear")
-      ->required();
-  command->add_option("--circle", arguments->circle, "X,Y,R: the ball in it, in pixels")
-      ->required();
-  command->add_option("--paint", arguments->paint, "X or R,G,B: the reflectance of the ball")
-      ->required();
+  Command command =
+      probe.addCommand("sun",
+                       "Find the irradiance of a sun that a probe's photographs have clipped, "
+                       "from a photograph of a "
+                       "diffuse ball in the same light and with the same exposure.");
+  command.addOption("CLIPPED", arguments->probe, "the probe's image").required();
+  command.addOption("--diffuse", arguments->ball, "the photograph of the ball, linear").required();
+  command.addOption("--circle", arguments->circle, "X,Y,R: the ball in it, in pixels").required();
+  command.addOption("--paint", arguments->paint, "X or R,G,B: the reflectance of the ball")
+      .required();
   command
-      ->add_option("--camera", arguments->camera,
-                   "AZ,EL: where the camera is, seen from the ball, in degrees: 0 is +Z, 90 is +X; "
-                   "elevation 90 is +Y")
-      ->required();
-  command->add_option("--distance", arguments->distance,
-                      "of the camera, in radii of the ball; without it infinite");
-  command->add_option("--angle", arguments->angle, "diameter of the sun in degrees")
-      ->capture_default_str();
-  command->add_option("--direction", arguments->direction,
-                      "X,Y,Z: towards the sun; without it the middle of what is clipped: the layer "
-                      "`clipped` (`probe merge`), or the brightest texels");
-  command->add_option("--mask", arguments->mask,
-                      "an image of the photograph's size, black where the ball does not count");
-  command->add_option("-o,--output", arguments->output,
-                      "the lat-long map with the sun to write: .exr, .hdr, .pfm or .png");
-  command->add_option("--lights", arguments->lights,
-                      "the sun as a list of lights to write, .json; [[light]] `file` reads it");
-  command->add_option("--residual", arguments->residual,
-                      "an image to write of what neither probe nor sun explain: .exr, or .png in "
-                      "which black and white are 10% of the mean");
-  command->add_option("--mapping", arguments->mapping, "the mapping of CLIPPED; auto detects it");
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments] { run(*arguments); });
+      .addOption("--camera", arguments->camera,
+                 "AZ,EL: where the camera is, seen from the ball, in degrees: 0 is +Z, 90 is +X; "
+                 "elevation 90 is +Y")
+      .required();
+  command.addOption("--distance", arguments->distance,
+                    "of the camera, in radii of the ball; without it infinite");
+  command.addOption("--angle", arguments->angle, "diameter of the sun in degrees").showsDefault();
+  command.addOption("--direction", arguments->direction,
+                    "X,Y,Z: towards the sun; without it the middle of what is clipped: the layer "
+                    "`clipped` (`probe merge`), or the brightest texels");
+  command.addOption("--mask", arguments->mask,
+                    "an image of the photograph's size, black where the ball does not count");
+  command.addOption("-o,--output", arguments->output,
+                    "the lat-long map with the sun to write: .exr, .hdr, .pfm or .png");
+  command.addOption("--lights", arguments->lights,
+                    "the sun as a list of lights to write, .json; [[light]] `file` reads it");
+  command.addOption("--residual", arguments->residual,
+                    "an image to write of what neither probe nor sun explain: .exr, or .png in "
+                    "which black and white are 10% of the mean");
+  command.addOption("--mapping", arguments->mapping, "the mapping of CLIPPED; auto detects it");
+  command.addFlag("--json", arguments->json, "print JSON");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -96,13 +96,13 @@ const std::map<std::string, std::vector<std::string_view>> kKindsOf = {
     {"--ground-albedo", {"sun-sky", "overcast"}},
     {"--no-sun", {"sun-sky"}}};
 
-void checkOptions(const CLI::App& command, const std::string& kind) {
+void checkOptions(const Command& command, const std::string& kind) {
   for (const auto& [option, kinds] : kKindsOf)
-    if (command.count(option) > 0 && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    if (command.has(option) && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
       throwInput("{}: not an option of {}; only of {}", option, kind, fmt::join(kinds, ", "));
 }
 
-void run(const ProbeSynthArguments& arguments, const CLI::App& command) {
+void run(const ProbeSynthArguments& arguments, const Command& command) {
   const auto maker = kMakers.find(arguments.kind);
   if (maker == kMakers.end()) {
     std::vector<std::string_view> kinds;
@@ -119,37 +119,37 @@ void run(const ProbeSynthArguments& arguments, const CLI::App& command) {
 
 }  // namespace
 
-void addProbeSynthCommand(CLI::App& probe) {
+void addProbeSynthCommand(Command probe) {
   const auto arguments = std::make_shared<ProbeSynthArguments>();
-  CLI::App* command = probe.add_subcommand("synth", "Make a lat-long probe from a formula.");
+  Command command = probe.addCommand("synth", "Make a lat-long probe from a formula.");
   command
-      ->add_option("KIND", arguments->kind,
-                   "constant, one-hot, gradient, sun-sky, overcast or studio")
-      ->required();
-  command->add_option("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      ->required();
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT")->capture_default_str();
+      .addOption("KIND", arguments->kind,
+                 "constant, one-hot, gradient, sun-sky, overcast or studio")
+      .required();
+  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
+      .required();
+  command.addOption("--size", arguments->size, "WIDTHxHEIGHT").showsDefault();
   command
-      ->add_option("--radiance", arguments->radiance,
-                   "R,G,B: of constant, one-hot's texel, gradient's mean, overcast's zenith")
-      ->capture_default_str();
-  command->add_option("--texel", arguments->texel, "X,Y: one-hot's texel; else the middle one");
-  command->add_option("--direction", arguments->direction, "X,Y,Z: or the one it lies in")
-      ->excludes("--texel");
-  command->add_option("--slope", arguments->slope, "X,Y,Z: gradient is radiance (1 + slope . D)")
-      ->capture_default_str();
-  command->add_option("--sun-elevation", arguments->sky.sunElevation, "degrees, 0 to 90")
-      ->capture_default_str();
+      .addOption("--radiance", arguments->radiance,
+                 "R,G,B: of constant, one-hot's texel, gradient's mean, overcast's zenith")
+      .showsDefault();
+  command.addOption("--texel", arguments->texel, "X,Y: one-hot's texel; else the middle one");
+  command.addOption("--direction", arguments->direction, "X,Y,Z: or the one it lies in")
+      .excludes("--texel");
+  command.addOption("--slope", arguments->slope, "X,Y,Z: gradient is radiance (1 + slope . D)")
+      .showsDefault();
+  command.addOption("--sun-elevation", arguments->sky.sunElevation, "degrees, 0 to 90")
+      .showsDefault();
   command
-      ->add_option("--sun-azimuth", arguments->sky.sunAzimuth,
-                   "degrees from -Z, counter-clockwise seen from above")
-      ->capture_default_str();
-  command->add_option("--turbidity", arguments->sky.turbidity, "2 (very clear) to 10 (hazy)")
-      ->capture_default_str();
-  command->add_option("--ground-albedo", arguments->sky.groundAlbedo, "0 to 1: sun-sky, overcast")
-      ->capture_default_str();
-  command->add_flag("--no-sun", arguments->withoutSun, "sun-sky without its sun");
-  command->callback([arguments, command] { run(*arguments, *command); });
+      .addOption("--sun-azimuth", arguments->sky.sunAzimuth,
+                 "degrees from -Z, counter-clockwise seen from above")
+      .showsDefault();
+  command.addOption("--turbidity", arguments->sky.turbidity, "2 (very clear) to 10 (hazy)")
+      .showsDefault();
+  command.addOption("--ground-albedo", arguments->sky.groundAlbedo, "0 to 1: sun-sky, overcast")
+      .showsDefault();
+  command.addFlag("--no-sun", arguments->withoutSun, "sun-sky without its sun");
+  command.callback([arguments, command] { run(*arguments, command); });
 }
 
 }  // namespace chromeball

@@ -7,10 +7,10 @@
 
 namespace chromeball {
 
-void addReferenceCommand(CLI::App& app) {
-  app.add_subcommand("reference", "Print the reference page of the scene file")
-      ->group("")
-      ->callback([] { fmt::print("{}", settingsPage()); });
+void addReferenceCommand(Command app) {
+  app.addCommand("reference", "Print the reference page of the scene file").hidden().callback([] {
+    fmt::print("{}", settingsPage());
+  });
 }
 
 }  // namespace chromeball

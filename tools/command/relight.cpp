@@ -102,69 +102,65 @@ void run(const RelightOptions& a) {
 
 }  // namespace
 
-void addRelightCommand(CLI::App& app) {
+void addRelightCommand(Command app) {
   const auto a = std::make_shared<RelightOptions>();
-  CLI::App* command =
-      app.add_subcommand("relight", "Light a light stage, or a model with transfer, by a probe");
-  command->add_option("STAGE", a->stage, "the light stage or model, from `chromeball basis`");
-  command->add_option("--images", a->images,
-                      "in place of STAGE: a folder of linear photographs of a subject, each under "
-                      "light from one direction");
-  command->add_option(
-      "--directions", a->directions,
-      "a .csv of these: FILE,X,Y,Z or FILE,AZIMUTH,ELEVATION (degrees) on each line");
+  Command command =
+      app.addCommand("relight", "Light a light stage, or a model with transfer, by a probe");
+  command.addOption("STAGE", a->stage, "the light stage or model, from `chromeball basis`");
+  command.addOption("--images", a->images,
+                    "in place of STAGE: a folder of linear photographs of a subject, each under "
+                    "light from one direction");
+  command.addOption("--directions", a->directions,
+                    "a .csv of these: FILE,X,Y,Z or FILE,AZIMUTH,ELEVATION (degrees) on each line");
   command
-      ->add_option("--irradiance", a->irradiance,
-                   "of these: what the lamp puts on a surface that faces it")
-      ->capture_default_str();
-  command->add_option("--probe", a->probes, "the light; with --preview several, each by --probe")
-      ->type_name("TEXT")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--mapping", a->mapping, "of the probe; auto detects it")
-      ->capture_default_str();
-  addRotationOption(*command, a->rotation);
-  command->add_option("--scale", a->scale, "X or R,G,B: factor of the probe")
-      ->capture_default_str();
+      .addOption("--irradiance", a->irradiance,
+                 "of these: what the lamp puts on a surface that faces it")
+      .showsDefault();
+  command.addOption("--probe", a->probes, "the light; with --preview several, each by --probe")
+      .typeName("TEXT")
+      .takesAll();
+  command.addOption("--mapping", a->mapping, "of the probe; auto detects it").showsDefault();
+  addRotationOption(command, a->rotation);
+  command.addOption("--scale", a->scale, "X or R,G,B: factor of the probe").showsDefault();
   command
-      ->add_option("--domain", a->domain,
-                   "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the result is "
-                   "the same, unless some is left out")
-      ->capture_default_str();
+      .addOption("--domain", a->domain,
+                 "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the result is "
+                 "the same, unless some is left out")
+      .showsDefault();
   command
-      ->add_option("--keep", a->keep,
-                   "PERCENT of the stage's numbers in that domain to keep, the largest; prints the "
-                   "error. Of a model: how many of the light's coefficients to keep, or PERCENT%")
-      ->capture_default_str();
+      .addOption("--keep", a->keep,
+                 "PERCENT of the stage's numbers in that domain to keep, the largest; prints the "
+                 "error. Of a model: how many of the light's coefficients to keep, or PERCENT%")
+      .showsDefault();
   command
-      ->add_option("--keep-light", a->keepLight,
-                   "PERCENT of the light's numbers in that domain to keep, the largest")
-      ->capture_default_str();
-  command->add_option("--reflectance-function", a->pixel,
-                      "X,Y: in place of a probe, what this pixel reflects of light from each "
-                      "direction, as a lat-long map");
-  command->add_option("-o,--output", a->out,
-                      "the image to write: .exr, .hdr, .pfm or .png; of a model .glb or .gltf");
-  command->add_flag("--preview")
-      ->description(
+      .addOption("--keep-light", a->keepLight,
+                 "PERCENT of the light's numbers in that domain to keep, the largest")
+      .showsDefault();
+  command.addOption("--reflectance-function", a->pixel,
+                    "X,Y: in place of a probe, what this pixel reflects of light from each "
+                    "direction, as a lat-long map");
+  command.addOption("-o,--output", a->out,
+                    "the image to write: .exr, .hdr, .pfm or .png; of a model .glb or .gltf");
+  command
+      .addFlagWithValue(
+          "--preview", [a](const std::string& word) { a->preview = word == "true" ? "0" : word; },
           "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
           "which the probes are turned and swapped")
-      ->each([a](const std::string& word) { a->preview = word == "true" ? "0" : word; })
-      ->type_name("[=PORT]");
-  command->add_option("--white", a->white,
-                      "of a model: the light that its white stands for; without it, the brightest");
-  command->add_option("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
-  command->add_flag("--allow-external", a->allowsExternal,
-                    "of a model: read files outside of its folder");
-  command->add_option("--memory", a->memory,
-                      "GB: a stage that takes more is read in bands; else 0.8 times the machine's");
-  command->add_option("--exposure", a->exposure, "of a .png, in stops");
+      .typeName("[=PORT]");
+  command.addOption("--white", a->white,
+                    "of a model: the light that its white stands for; without it, the brightest");
+  command.addOption("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
+  command.addFlag("--allow-external", a->allowsExternal,
+                  "of a model: read files outside of its folder");
+  command.addOption("--memory", a->memory,
+                    "GB: a stage that takes more is read in bands; else 0.8 times the machine's");
+  command.addOption("--exposure", a->exposure, "of a .png, in stops");
   command
-      ->add_option("--tonemap", a->tone,
-                   fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      ->capture_default_str();
-  command->add_flag("--quiet", a->quiet, "print nothing but warnings and errors");
-  command->callback([a] { run(*a); });
+      .addOption("--tonemap", a->tone,
+                 fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
+      .showsDefault();
+  command.addFlag("--quiet", a->quiet, "print nothing but warnings and errors");
+  command.callback([a] { run(*a); });
 }
 
 }  // namespace chromeball

@@ -188,12 +188,12 @@ void render(const SceneOptions& options) {
 
 }  // namespace
 
-void addRenderCommand(CLI::App& app) {
+void addRenderCommand(Command app) {
   const auto options = std::make_shared<SceneOptions>();
-  CLI::App* command = app.add_subcommand("render", "Render a scene file or a model to an image");
-  addSceneOptions(*command, *options, SceneCommand::Render);
-  command->footer(strategyHelp());
-  command->callback([options] { render(*options); });
+  Command command = app.addCommand("render", "Render a scene file or a model to an image");
+  addSceneOptions(command, *options, SceneCommand::Render);
+  command.footer(strategyHelp());
+  command.callback([options] { render(*options); });
 }
 
 }  // namespace chromeball

@@ -2,8 +2,8 @@
 // The option --rotation of commands about probes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+#include "command.h"
 
 #include "job/arguments.h"
 
@@ -11,15 +11,17 @@ namespace chromeball {
 
 // `rotation` is set when the command line is parsed; it must outlive the command. `more` ends the
 // sentence of the help.
-inline void addRotationOption(CLI::App& command, Rotation& rotation, const std::string& more = "") {
+inline void addRotationOption(Command command, Rotation& rotation, const std::string& more = "") {
   command
-      .add_option_function<std::string>(
+      .addParsedOption(
           "--rotation",
-          [&rotation](const std::string& text) { rotation = parseRotation(text, "--rotation"); },
+          [&rotation](const Command::Words& words) {
+            rotation = parseRotation(words.front(), "--rotation");
+          },
           "YAW[,PITCH,ROLL] in degrees, or a quaternion X,Y,Z,W: turn the environment as render's "
           "--probe-rotation" +
               more)
-      ->type_name("TEXT");
+      .typeName("TEXT");
 }
 
 }  // namespace chromeball

@@ -92,32 +92,31 @@ bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
 }
 
-void addOption(CLI::App& app, const Setting& setting, Settings& settings) {
+void addSettingOption(Command app, const Setting& setting, Settings& settings) {
   const std::string name = "--" + std::string(setting.option);
   const std::string names = setting.letter ? fmt::format("-{},{}", setting.letter, name) : name;
-  const auto set = [&setting, &settings, name](const CLI::results_t& words) {
+  const auto set = [&setting, &settings, name](const std::vector<std::string>& words) {
     settings.set(setting.name(), parseSetting(setting, words, name), name);
-    return true;
   };
+  const std::string help = helpOf(setting);
   if (setting.type == SettingType::Flag) {
-    app.add_flag_callback(
-           names, [set] { set({"true"}); }, helpOf(setting))
-        ->group(titleOf(setting));
+    app.addFlag(
+           names, [set] { set({"true"}); }, help)
+        .group(titleOf(setting));
     return;
   }
-  if (!setting.bare.empty()) {  // --NAME[=ARGUMENT]: without =, the next word is not its argument
-    app.add_flag(names)
-        ->description(helpOf(setting))
-        ->each([&setting, set](const std::string& word) {
-          set({word == "true" ? std::string(setting.bare) : word});
-        })
-        ->type_name(fmt::format("[={}]", setting.argument))
-        ->group(titleOf(setting));
+  if (!setting.bare.empty()) {
+    const auto setOrBare = [&setting, set](const std::string& word) {
+      set({word == "true" ? std::string(setting.bare) : word});
+    };
+    app.addFlagWithValue(names, setOrBare, help)
+        .typeName(fmt::format("[={}]", setting.argument))
+        .group(titleOf(setting));
     return;
   }
-  CLI::Option* option = app.add_option(names, set, helpOf(setting));
-  option->type_name(std::string(setting.argument))->group(titleOf(setting));
-  if (isList(setting)) option->take_all();
+  Option option = app.addParsedOption(names, set, help);
+  option.typeName(std::string(setting.argument)).group(titleOf(setting));
+  if (isList(setting)) option.takesAll();
 }
 
 }  // namespace
@@ -126,14 +125,14 @@ bool SceneOptions::showsProgress() const {
   return settings.get<bool>("progress") || (ProgressBar::isTerminal() && !quiet());
 }
 
-void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command) {
-  app.add_option("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
-      ->type_name("SCENE")
-      ->required();
+void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
+  app.addOption("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
+      .typeName("SCENE")
+      .required();
   for (const Setting& setting : settingTable())
     if (!setting.option.empty() && isOf(command, setting))
-      addOption(app, setting, options.settings);
-  app.get_formatter()->column_width(32);
+      addSettingOption(app, setting, options.settings);
+  app.widerNames();
 }
 
 std::string optionText(const Setting& setting, const std::string& value) {

@@ -2,7 +2,7 @@
 // The options of the commands that render a scene, from the table of settings.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command.h"
 
 #include "base/error.h"
 #include "job/settings.h"
@@ -22,7 +22,7 @@ struct SceneOptions {
 enum class SceneCommand { Render, Compare, Bake, Basis };
 
 // `options` is filled when the command line is parsed; it must outlive `app`.
-void addSceneOptions(CLI::App& app, SceneOptions& options, SceneCommand command);
+void addSceneOptions(Command app, SceneOptions& options, SceneCommand command);
 
 // "--probe-scale R[,G,B]", or with a value "--probe-scale 2".
 std::string optionText(const Setting& setting, const std::string& value = "");
