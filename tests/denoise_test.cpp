@@ -252,10 +252,10 @@ TEST(Denoise, LimitsFireflies) {
     EXPECT_NEAR(channel, 1, 0.1);
 
   double added = 0;
-  for (int y = 1; y < kHeight; y += 3)
-    for (int x = 1; x < kWidth; x += 3) {
+  for (int y = 1; y < kHeight; y += 2)
+    for (int x = 1; x < kWidth; x += 2) {
       const float radiance = 40 * random(uint64_t(y * kWidth + x), 11);
-      addFirefly(x, y, radiance, (x + y) % 2 ? 1 : -1);
+      addFirefly(x, y, radiance, (x + y) % 4 ? 1 : -1);
       added += radiance / 2;
     }
   input.parts[0].mean.setRgb(40, 25, Rgb(1));
@@ -265,6 +265,22 @@ TEST(Denoise, LimitsFireflies) {
   for (size_t i = 0; i < denoised.color.texels.size(); i += 3)
     found += denoised.color.texels[i] - 1;
   EXPECT_NEAR(found / added, 1, 0.1);
+}
+
+// Nor does it where a bright object is in the filter's window: the dark pixels between both stay
+// dark.
+TEST(Denoise, LimitsFirefliesBesideBrightPixels) {
+  DenoiseInput input = noisy(0.02f, [](int x, int) { return x < kWidth / 2 ? 0.2f : 8.0f; });
+  HalvedImage& color = input.parts[0];
+  for (int y = 4; y < kHeight; y += 9) {
+    const int x = kWidth / 2 - 4;
+    color.mean.setRgb(x, y, color.mean.rgb(x, y) + 15.0f);
+    color.half.setRgb(x, y, color.half.rgb(x, y) + (y % 2 ? 15.0f : -15.0f));
+  }
+  const Denoised denoised = run(input);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = kWidth / 2 - 10; x < kWidth / 2 - 1; ++x)
+      EXPECT_NEAR(denoised.color.at(x, y)[1], 0.2f, 0.2f) << x << " " << y;
 }
 
 // The light that the limit of fireflies removes is no error of pixels around them that have no

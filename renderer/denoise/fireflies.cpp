@@ -6,9 +6,11 @@
 namespace chromeball {
 namespace {
 
-constexpr int kReach = TileWeights::kReach;
-constexpr int kFireflyBiasReach = 3 * kReach;
-constexpr float kFireflyWindow = (2 * kReach + 1) * (2 * kReach + 1);
+// Of the window that must hold as much light in the other half. One that is as wide as the filter's
+// has light of other objects, which says nothing of this pixel.
+constexpr int kFireflyReach = 2;
+constexpr float kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
+constexpr int kFireflyBiasReach = 3 * TileWeights::kReach;
 
 Plane energyOf(const RgbPlanes& image) {
   return makePlane(image[0].width(), image[0].height(), [&](int x, int y) {
@@ -20,7 +22,7 @@ Plane energyOf(const RgbPlanes& image) {
 
 // The factors of the pixels of a half with `energy`.
 Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
-  const Plane support = boxMean(otherEnergy, kReach);
+  const Plane support = boxMean(otherEnergy, kFireflyReach);
   return makePlane(energy.width(), energy.height(), [&](int x, int y) {
     const float limit = kFireflyWindow * support.at(x, y);
     return energy.at(x, y) > limit ? std::sqrt(limit / energy.at(x, y)) : 1.0f;
