@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/for_ranges.h"
 #include "image/io/encode_png.h"
+#include "image/io/lost_light.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/write_exr.h"
@@ -72,20 +73,27 @@ void checkWritable(const fs::path& path) {
   checkReplaceable(path);
 }
 
-void writeImage(const fs::path& path, const OutputImage& output,
-                const DisplayTransform& transform) {
+Messages writeImage(const fs::path& path, const OutputImage& output,
+                    const DisplayTransform& transform) {
   checkWritable(path);
   const std::string kind = extension(path);
-  if (kind == ".exr") return writeExr(path, output);
+  if (kind == ".exr") {
+    writeExr(path, output);
+    return {};
+  }
   const Image color = withColor(output.layers.front().image);
-  if (kind == ".hdr") return writeRadianceHdr(path, color);
-  if (kind == ".pfm") return writePfm(path, color);
-  writeFile(path, encodeColor(color, transform));
+  if (kind == ".hdr")
+    writeRadianceHdr(path, color);
+  else if (kind == ".pfm")
+    writePfm(path, color);
+  else
+    writeFile(path, encodeColor(color, transform));
+  return lostLight(path, color);
 }
 
-void writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
-  writeImage(path, OutputImage{{{"", letters, color}}, {}, {}, {}}, transform);
+  return writeImage(path, OutputImage{{{"", letters, color}}, {}, {}, {}}, transform);
 }
 
 }  // namespace chromeball
