@@ -8,8 +8,8 @@
 #include "exif_block.h"
 #include "image/io/encode_png.h"
 #include "image/io/exif.h"
+#include "image/io/lost_light.h"
 #include "image/io/read_image.h"
-#include "image/io/uncovered_light.h"
 #include "image/io/write_image.h"
 #include "image/orientation.h"
 #include "image/tonemap.h"
@@ -207,13 +207,31 @@ TEST(ImageHeaders, UncoveredLightIsCounted) {
   const std::array<std::array<float, 4>, 4> texels = {
       {{0, 0, 0, 0}, {5, 5, 5, 1}, {3, 3, 3, 0.75f}, {2, 2, 2, 0}}};
   for (int x = 0; x < 4; ++x) std::copy_n(texels[size_t(x)].begin(), 4, image.at(x, 0));
-  const auto warning = uncoveredLightWarning("a.png", image);
-  ASSERT_TRUE(warning);
-  EXPECT_NE(warning->text.find("25% of the pixels, 20% of the image's"), std::string::npos)
-      << warning->text;
-  EXPECT_FALSE(uncoveredLightWarning("a.exr", image));
+  const Messages warnings = lostLight("a.png", image);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].text.find("25% of the pixels, 20% of the image's"), std::string::npos)
+      << warnings[0].text;
+  EXPECT_TRUE(lostLight("a.exr", image).empty());
   std::fill_n(image.at(3, 0), 4, 0.0f);
-  EXPECT_FALSE(uncoveredLightWarning("a.png", image));
+  EXPECT_TRUE(lostLight("a.png", image).empty());
+}
+
+// An image that does not fit into the process's memory is refused by its header, at once.
+TEST(SlowImageHeaders, ImagesLargerThanTheMemoryAreRefused) {
+  const TemporaryFolder folder;
+  const std::string pfm = folder / "a.pfm", hdr = folder / "a.hdr", exr = folder / "a.exr";
+  std::ofstream(pfm) << "PF\n12000 6000\n-1\n";
+  std::filesystem::resize_file(pfm, std::filesystem::file_size(pfm) + 12ull * 12000 * 6000);
+  std::ofstream(hdr) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 6000 +X 12000\n";
+  std::filesystem::resize_file(hdr, std::filesystem::file_size(hdr) + 4ull * 12000 * 6000);
+  const CommandLimits limits{.memory = 1'500'000'000};
+  for (const std::string& file : {pfm, hdr})
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"image", "view", file, folder / "o.png"},
+                                               {"probe", "info", file},
+                                               {"probe", "convert", file, exr, "--to", "angular"},
+                                               {"image", "error", file, file}})
+      expectError(words, "12000 x 6000 texels with 3 channels take 2.59 GB", limits);
 }
 
 }  // namespace

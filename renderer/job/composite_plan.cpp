@@ -116,9 +116,7 @@ void planComposite(RenderJob& job) {
   composite.mode = s.get<std::string>("composite.mode") == "ratio" ? CompositeMode::Ratio
                                                                    : CompositeMode::Difference;
   const std::string path = s.get<std::string>("composite.plate");
-  Messages ofPlate;
-  const Image plate = readPlate(path, &ofPlate);
-  for (Message& message : ofPlate) job.file.warnings.push_back(std::move(message.text));
+  const Image plate = readPlate(path, &composite.messages);
   if (!job.size) job.size = ImageSize{plate.width, plate.height};
   composite.plate = scaledPlate(plate, job.size->width, job.size->height, path);
 

@@ -2,6 +2,7 @@
 // The part of a job that composites objects into a photograph.
 #pragma once
 
+#include "base/message.h"
 #include "composite/compose.h"
 #include "composite/render_composite.h"
 #include "job/scene_file.h"
@@ -20,6 +21,7 @@ struct CompositePlan {
   int iterations = 1;               // of Reflectance::Plate
   Passes passes = Passes::One;
   std::vector<std::string> layers;  // names of all that were requested
+  Messages messages;                // of the plate's reader
 };
 
 // Reads the plate of the job's [composite] section. The image takes the plate's size unless the job

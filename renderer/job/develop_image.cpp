@@ -76,7 +76,8 @@ Messages writeOutputs(const RenderJob& job, const OutputImage& image) {
   for (const std::string& path : job.outputs) {
     const bool isShown = lowerExtension(path) == ".png" && !job.develop.isEmpty();
     if (isShown && !shown) shown = developed(job, image, messages);
-    writeImage(path, isShown ? *shown : image, job.display);
+    const Messages lost = writeImage(path, isShown ? *shown : image, job.display);
+    messages.insert(messages.end(), lost.begin(), lost.end());
   }
   return messages;
 }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/image_memory.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -31,14 +28,6 @@ double imageBytes(const RenderSettings& settings) {
       settings.denoise ? denoiseBytes(window.width, window.height, kMaxParts) : 0;
   return double(window.width) * window.height * (double(Film::bytesPerPixel()) + sums + maximum) +
          denoising;
-}
-
-double memoryBudget() {
-  double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    memory = std::min(memory, double(limit.rlim_cur));
-  return 0.8 * memory;
 }
 
 }  // namespace chromeball

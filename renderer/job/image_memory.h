@@ -2,6 +2,7 @@
 // Estimates the memory of a render before it is allocated.
 #pragma once
 
+#include "base/memory_budget.h"
 #include "integrate/render.h"
 
 namespace chromeball {
@@ -11,8 +12,5 @@ inline constexpr double kProcessBytes = 3e7;
 
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
-
-// The default limit: 0.8 times the machine's memory, or the process's limit if that is less. Bytes.
-double memoryBudget();
 
 }  // namespace chromeball

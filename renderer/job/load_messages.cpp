@@ -13,6 +13,7 @@ class Collector {
  public:
   void note(std::string text) { messages_.push_back({Message::Kind::Note, std::move(text)}); }
   void warn(std::string text) { messages_.push_back({Message::Kind::Warning, std::move(text)}); }
+  void add(const Messages& more) { messages_.insert(messages_.end(), more.begin(), more.end()); }
   Messages take() { return std::move(messages_); }
 
  private:
@@ -110,6 +111,7 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   Collector messages;
   for (const std::string& line : job.file.warnings) messages.warn(line);
+  if (job.composite) messages.add(job.composite->messages);
   for (const std::string& line : loaded.modelWarnings) messages.warn(line);
   for (const std::string& line : scene.notes) messages.note(line);
   if (!scene.lights.empty() && hasBodies(scene))

@@ -5,7 +5,6 @@
 
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
-#include "image/io/uncovered_light.h"
 #include "job/scene_lighting.h"
 
 namespace chromeball {
@@ -89,9 +88,6 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
       warningsOf(*finished.composite, job.file.settings.get<std::vector<double>>("probe.scale"));
   if (loaded.plateScale)  // nothing better is known
     for (Message& message : messages) message.remedy.reset();
-  for (const std::string& output : job.outputs)
-    if (auto warning = uncoveredLightWarning(output, finished.image.layers.front().image))
-      messages.push_back(*std::move(warning));
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 

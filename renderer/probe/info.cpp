@@ -7,32 +7,35 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/long_array.h"
 #include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {
 
-double fluxOf(const Image& image, int x, int y) {
-  return luminance(image.rgb(x, y)) * texelSolidAngle(y, image.width, image.height);
-}
-
 std::vector<BrightestTexels> brightestTexels(const Image& image) {
-  const size_t count = size_t(image.width) * image.height;
-  std::vector<double> flux(count);
-  std::vector<float> brightness(count);
-  for (size_t i = 0; i < count; ++i) {
-    const int x = int(i % image.width), y = int(i / image.width);
-    flux[i] = fluxOf(image, x, y);
-    brightness[i] = luminance(image.rgb(x, y));
+  const size_t width = size_t(image.width), count = width * size_t(image.height);
+  // Of large maps memory costs most of the time: only what the order needs is kept.
+  std::vector<float> brightness = longArray<float>(count);
+  std::vector<double> solidAngles;
+  double total = 0;
+  for (int y = 0; y < image.height; ++y) {
+    solidAngles.push_back(texelSolidAngle(y, image.width, image.height));
+    for (int x = 0; x < image.width; ++x) {
+      const float l = luminance(image.rgb(x, y));
+      brightness[size_t(y) * width + size_t(x)] = l;
+      total += l * solidAngles.back();
+    }
   }
+  const auto flux = [&](uint32_t i) { return brightness[i] * solidAngles[i / width]; };
   // A total order, so that each set contains the smaller ones: ties go to the texel with more flux.
-  std::vector<size_t> order(count);
-  std::iota(order.begin(), order.end(), size_t(0));
-  const auto isBrighter = [&](size_t a, size_t b) {
-    return std::tuple(brightness[b], flux[b], a) < std::tuple(brightness[a], flux[a], b);
+  std::vector<uint32_t> order = longArray<uint32_t>(count);
+  std::iota(order.begin(), order.end(), 0u);
+  const auto isBrighter = [&](uint32_t a, uint32_t b) {
+    if (brightness[a] != brightness[b]) return brightness[a] > brightness[b];
+    return std::tuple(flux(b), a) < std::tuple(flux(a), b);
   };
-  const double total = std::accumulate(flux.begin(), flux.end(), 0.0);
 
   const size_t percent = std::max<size_t>(1, count / 100);
   std::vector<BrightestTexels> sets;
@@ -43,7 +46,7 @@ std::vector<BrightestTexels> brightestTexels(const Image& image) {
     if (brightest > count) continue;
     std::nth_element(order.begin(), order.begin() + (brightest - 1), order.end(), isBrighter);
     double sum = 0;
-    for (size_t i = 0; i < brightest; ++i) sum += flux[order[i]];
+    for (size_t i = 0; i < brightest; ++i) sum += flux(order[i]);
     sets.push_back({brightest, total > 0 ? sum / total : 0});
   }
   return sets;

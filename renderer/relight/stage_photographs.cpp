@@ -129,7 +129,7 @@ std::vector<StagePhotograph> readPhotographs(const fs::path& csv) {
 }
 
 LightStage stageOf(const fs::path& folder, const std::vector<StagePhotograph>& photographs,
-                   float irradiance, double memory) {
+                   float irradiance, double memory, Messages& messages) {
   std::vector<vec3> directions;
   for (const StagePhotograph& photograph : photographs) {
     checkReadable(folder / photograph.file);
@@ -139,7 +139,7 @@ LightStage stageOf(const fs::path& folder, const std::vector<StagePhotograph>& p
   const std::vector<double> solidAngles = cellSolidAngles(stage.basis);
   for (size_t i = 0; i < photographs.size(); ++i) {
     const fs::path path = folder / photographs[i].file;
-    const Image image = readImage(path);
+    const Image image = readImage(path, IntegerTexels::Srgb, &messages);
     if (i == 0) {
       checkInMemory(stage.basis, image.width, image.height, memory, path.string());
       stage.elements = Image(image.width, image.height, 3 * stage.basis.size());

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "base/message.h"
 #include "relight/light_stage.h"
 
 namespace chromeball {
@@ -23,10 +24,10 @@ std::vector<StagePhotograph> readPhotographs(const std::filesystem::path& csv);
 // Each image shows the subject under distant light that puts `irradiance` on a surface that faces
 // it. It stands for the light of its Voronoi cell on the sphere: the element is the image x the
 // cell's solid angle / irradiance. Images are linear; files with integers are decoded as sRGB.
-// Throws InputError for images of different size or with values that are not finite, and if the
-// stage takes more than `memory` bytes.
+// `messages` gets the readers'. Throws InputError for images of different size or with values that
+// are not finite, and if the stage takes more than `memory` bytes.
 LightStage stageOf(const std::filesystem::path& folder,
-                   const std::vector<StagePhotograph>& photographs, float irradiance,
-                   double memory);
+                   const std::vector<StagePhotograph>& photographs, float irradiance, double memory,
+                   Messages& messages);
 
 }  // namespace chromeball

@@ -20,8 +20,9 @@ Reference meanOfParts(const std::vector<Image>& parts) {
   return reference;
 }
 
-Reference readReference(const std::string& path, int width, int height) {
+Reference readReference(const std::string& path, int width, int height, Messages* messages) {
   const ImageFile file = readImageFile(path);
+  if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
   const std::optional<Image> color = findColor(file);
   if (!color) throwInput("--reference: {}: has no colour", path);
   if (color->width != width || color->height != height)
@@ -33,8 +34,10 @@ Reference readReference(const std::string& path, int width, int height) {
 
 }  // namespace
 
-Reference loadReference(const Study& study, const RenderStore& store, int width, int height) {
-  if (!study.referenceFile.empty()) return readReference(study.referenceFile, width, height);
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height,
+                        Messages* messages) {
+  if (!study.referenceFile.empty())
+    return readReference(study.referenceFile, width, height, messages);
   std::vector<Image> parts;
   for (int part = 0; part < Study::kReferenceParts; ++part)
     parts.push_back(store.find(study.referencePart(part)).value().image);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assemble_options.h"
+#include "input_image.h"
 
 #include "base/error.h"
 #include "base/file.h"
@@ -165,7 +166,7 @@ BlindFill parseFill(const std::string& text) {
   std::error_code ignored;
   if (!std::filesystem::exists(text, ignored))
     throwInput("--fill: `{}` should be inpaint, black, R,G,B or the file of a probe", text);
-  return {.map = loadProbe(text).latLong};
+  return {.map = openProbe(text, "auto", "--fill").latLong};
 }
 
 AssemblyTarget parseTarget(const AssembleArguments& arguments,

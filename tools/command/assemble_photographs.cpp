@@ -101,9 +101,10 @@ std::vector<AssemblyPhotograph> loadPhotographs(const AssembleArguments& argumen
     photograph.file = arguments.photographs[i];
     photograph.camera = cameras[i];
     LoadedPhotograph loaded = loadPhotograph(photograph.file);
-    for (const std::string& warning : loaded.warnings) warn(warning);
     photograph.image = std::move(loaded.image);
-    if (!masks.empty()) photograph.mask = loadMask(masks[i], photograph.image, photograph.file);
+    if (!masks.empty())
+      photograph.mask = loadMask(masks[i], photograph.image, photograph.file, loaded.messages);
+    print(loaded.messages, false);
     setCircle(circles[i], arguments.isFisheye(), photograph);
   }
   return photographs;

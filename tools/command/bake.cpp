@@ -87,7 +87,9 @@ class Bake {
     describe(file, baked);
     file.extras["chromeball"]["lightmap"] = path.filename().string();
     file.extras["chromeball"]["texelsPerMetre"] = atlas.density;
-    writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}});
+    print(
+        writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}}),
+        false);
     writeBaked(options_.output, loaded_.scene, lightmappedGeometry(meshes_, charts, atlas),
                pageOf(map, file), file);
     summary_ =

@@ -144,12 +144,13 @@ void writePreview(const std::string& path, const Scene& scene, const Solution& s
     marks.cross(point.pixel, kPicked);
     if (const auto seen = view.at(point.position)) marks.circle(size * seen->position, kSeen);
   }
-  writeImage(path, picture);
+  print(writeImage(path, picture), false);
 }
 
 void run(const CameraSolveArguments& a) {
   check(a);
-  Image plate = readPlate(a.plate);
+  Messages messages;
+  Image plate = readPlate(a.plate, &messages);
   const Scene scene = loadModels(a.model);
   const Solution solution = solve(a, {plate.width, plate.height});
   const std::vector<std::string> lines = reportLines(solution.report());
@@ -158,10 +159,10 @@ void run(const CameraSolveArguments& a) {
   comments.insert(comments.end(), lines.begin(), lines.end());
   if (!a.preview.empty()) writePreview(a.preview, scene, solution, std::move(plate));
   writeCameraFile(a.output, solution.camera, comments);
-  Messages messages = doubtsAbout(solution.points, solution.camera.size);
   const auto add = [&](const Messages& more) {
     messages.insert(messages.end(), more.begin(), more.end());
   };
+  add(doubtsAbout(solution.points, solution.camera.size));
   if (solution.fit) add(doubtsAbout(*solution.fit));
   add(doubtsAbout(solution.camera, bounds(scene)));
   print(messages, false);

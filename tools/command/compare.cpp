@@ -188,8 +188,10 @@ void compare(const CompareArguments& a) {
   study.referenceSamples = planReferenceSamples(a, study.shownBudgets);
   StudyRun run(study, store, loaded, job.settings);
   checkReference(run, study);
+  Messages ofReference;
   if (!study.referenceFile.empty())
-    loadReference(study, store, job.settings.width, job.settings.height);
+    loadReference(study, store, job.settings.width, job.settings.height, &ofReference);
+  print(ofReference, a.scene.quiet());
   print(loaded.messages, a.scene.quiet());
   if (hadComposite)
     warn(

@@ -6,12 +6,13 @@
 
 #include "base/error.h"
 #include "denoise/denoise.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/denoised_image.h"
 #include "job/image_memory.h"
 #include "job/output_file.h"
+#include "messages.h"
 #include "progress_bar.h"
 
 namespace chromeball {
@@ -79,7 +80,7 @@ void checkMemory(const std::string& path, const Image& color) {
 void run(const ImageDenoiseArguments& arguments) {
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, {arguments.input});
-  ImageFile file = readImageFile(arguments.input);
+  ImageFile file = openImageFile(arguments.input);
   const Reader reader{arguments.input, file};
   const HalvedImage color{reader.color(), reader.layer("denoise.half", 3)};
   const DenoiseInput input{.parts = directAndIndirect(color, reader.halved("direct", 3)),
@@ -99,7 +100,7 @@ void run(const ImageDenoiseArguments& arguments) {
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
   const double noise = addDenoised(std::move(denoised), noiseOf(output.metadata), output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
-  writeImage(arguments.output, output);
+  print(writeImage(arguments.output, output), false);
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
                std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",

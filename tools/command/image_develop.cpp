@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/develop_image.h"
 #include "job/develop_text.h"
@@ -45,7 +45,7 @@ struct ImageDevelopArguments {
 };
 
 Image readFalloff(const std::string& path) {
-  Image falloff = readImage(path);
+  Image falloff = openImage(path);
   for (const float texel : falloff.texels)
     if (!(texel >= 0) || !std::isfinite(texel))
       throwInput("--vignette: {}: has texels that are negative, infinite or NaN; they are factors",
@@ -129,7 +129,7 @@ struct Input {
 };
 
 Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
-  const ImageFile file = readImageFile(arguments.in);
+  const ImageFile file = openImageFile(arguments.in);
   Image color = colorToDevelop(file, arguments.in);
   Input input;
   input.frame = frameOf(arguments, file, color, settings);
@@ -155,7 +155,7 @@ void run(const ImageDevelopArguments& arguments) {
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
     note(fmt::format("{}: its color alone is developed and written; without the layers {}",
                      arguments.in, fmt::join(input.otherLayers, ", ")));
-  writeImage(arguments.out, input.image, transform);
+  print(writeImage(arguments.out, input.image, transform), false);
 }
 
 }  // namespace

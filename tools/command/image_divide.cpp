@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "image/flat_field.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/output_file.h"
 #include "messages.h"
 
@@ -21,8 +21,8 @@ struct ImageDivideArguments {
 void run(const ImageDivideArguments& arguments) {
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
-  ImageFile file = readImageFile(arguments.a);
-  const Image b = readImage(arguments.b);
+  ImageFile file = openImageFile(arguments.a);
+  const Image b = openImage(arguments.b);
   OutputImage output;
   std::optional<Image> clipped = findLayer(file, "clipped");
   Image a = colorOf(std::move(file), arguments.a);
@@ -40,7 +40,7 @@ void run(const ImageDivideArguments& arguments) {
         arguments.a, invalid, arguments.b);
   output.layers.push_back({"", "RGB", std::move(a)});
   if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
-  writeImage(arguments.output, output);
+  print(writeImage(arguments.output, output), false);
 }
 
 }  // namespace

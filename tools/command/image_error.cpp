@@ -8,13 +8,14 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/suggest.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/output_file.h"
 #include "measure/false_color.h"
 #include "measure/flip.h"
 #include "measure/image_error.h"
+#include "messages.h"
 
 namespace chromeball {
 namespace {
@@ -71,7 +72,7 @@ struct Side {
   std::optional<Image> variance;
 
   explicit Side(const std::string& path) {
-    const ImageFile file = readImageFile(path);
+    const ImageFile file = openImageFile(path);
     std::optional<Image> found = findColor(file);
     if (!found) throwInput("{}: has no color", path);
     color = *std::move(found);
@@ -107,7 +108,7 @@ void writeMap(const ImageErrorArguments& arguments, const Image& map) {
           heatColor(logarithmic ? logLevel(number, maximum, kDecades) : number / maximum);
       for (int c = 0; c < 3; ++c) colors.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
     }
-  writeImage(arguments.output, colors);
+  print(writeImage(arguments.output, colors), false);
   if (!arguments.json)
     fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
                logarithmic ? "logarithmic" : "linear",

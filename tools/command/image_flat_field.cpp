@@ -4,9 +4,9 @@
 
 #include "base/error.h"
 #include "image/flat_field.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "json_values.h"
@@ -39,7 +39,7 @@ Series measure(const ImageFlatFieldArguments& arguments) {
   Series series;
   for (size_t i = 0; i < arguments.files.size(); ++i) {
     const std::string& file = arguments.files[i];
-    ImageFile read = readImageFile(file);
+    ImageFile read = openImageFile(file);
     const bool hasWhite = read.integers;
     const Image image = colorOf(std::move(read), file);
     if (i == 0) series.size = {image.width, image.height};
@@ -118,7 +118,7 @@ void run(const ImageFlatFieldArguments& arguments) {
     fmt::print("{}\n", toJson(field, series).dump(2));
   else
     print(field, series);
-  writeImage(arguments.output, field.image(width, height));
+  print(writeImage(arguments.output, field.image(width, height)), false);
 }
 
 }  // namespace

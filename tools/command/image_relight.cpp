@@ -7,11 +7,12 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
+#include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
@@ -119,7 +120,7 @@ Image neededLayer(const ImageFile& file, const std::string& path, const std::str
 }
 
 Image lightMap(const ImageRelightArguments& arguments) {
-  Image map = loadProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
+  Image map = openProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
   map = Probe(map, {}, parseColor(arguments.scale, "--scale")).latLong();
   return arguments.leavesSunsOut ? extractSuns(map).remainder : map;
 }
@@ -131,14 +132,14 @@ void checkFinite(const Image& color, const std::string& path) {
 }
 
 void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
-  const ImageFile file = readImageFile(arguments.in);
+  const ImageFile file = openImageFile(arguments.in);
   const OcclusionLayers layers{
       neededLayer(file, arguments.in, "albedo", 3),
       neededLayer(file, arguments.in, arguments.bent ? "bent_normal" : "normal", 3),
       neededLayer(file, arguments.in, "ao", 1)};
   Image color = relit(layers, lightMap(arguments), arguments.rotation);
   if (!arguments.added.empty()) {
-    const Image added = colorOfData(readImageFile(arguments.added), arguments.added);
+    const Image added = colorOfData(openImageFile(arguments.added), arguments.added);
     if (added.width != color.width || added.height != color.height)
       throwInput("{}: has {} x {} pixels; {} has {} x {}", arguments.added, added.width,
                  added.height, arguments.in, color.width, color.height);
@@ -149,12 +150,12 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   output.metadata = file.metadata;
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
-  writeImage(arguments.out, output, transform);
+  print(writeImage(arguments.out, output, transform), false);
 }
 
 void runGains(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
   const std::map<std::string, Rgb> given = parseGains(arguments.gains);
-  const ImageFile file = readImageFile(arguments.in);
+  const ImageFile file = openImageFile(arguments.in);
   Groups groups = readGroups(file, arguments.in);
   const std::vector<Rgb> gains = gainsOf(groups, given);
   for (size_t i = 0; i < gains.size(); ++i) groups.layers[i] = scaled(groups.layers[i], gains[i]);
@@ -166,7 +167,7 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
-  writeImage(arguments.out, output, transform);
+  print(writeImage(arguments.out, output, transform), false);
 }
 
 void run(const ImageRelightArguments& arguments) {

@@ -5,10 +5,9 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "image/io/read_image.h"
-#include "image/io/uncovered_light.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "job/id_manifest.h"
 #include "job/output_file.h"
 #include "layer_view.h"
@@ -46,15 +45,8 @@ void printLegend(const Image& ids, const std::map<int, std::string>& names) {
   if (present.size() > kMax) fmt::print("and {} more\n", present.size() - kMax);
 }
 
-Image colorOf(const std::string& path) {
-  ImageFile file = readImageFile(path);
-  print(file.messages, false);
-  if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
-  return colorOfData(std::move(file), path);
-}
-
 Image viewOf(const std::string& path, const std::string& layer) {
-  const ImageFile file = readImageFile(path);
+  const ImageFile file = openImageFile(path);
   std::optional<Image> image = findLayer(file, layer);
   if (!image) {
     const std::vector<std::string> names = layerNames(file);
@@ -72,10 +64,10 @@ void run(const ImageViewArguments& arguments) {
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
   if (!std::isfinite(transform.exposure))
     throwInput("--exposure: must be a finite number of stops");
-  const Image shown =
-      arguments.layer.empty() ? colorOf(arguments.in) : viewOf(arguments.in, arguments.layer);
-  if (const auto warning = uncoveredLightWarning(arguments.out, shown)) warn(warning->text);
-  writeImage(arguments.out, shown, transform);
+  const Image shown = arguments.layer.empty()
+                          ? colorAndAlphaOfData(openImageFile(arguments.in), arguments.in)
+                          : viewOf(arguments.in, arguments.layer);
+  print(writeImage(arguments.out, shown, transform), false);
 }
 
 }  // namespace

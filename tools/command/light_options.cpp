@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "base/suggest.h"
+#include "input_image.h"
 #include "messages.h"
 #include "probe/edit.h"
 #include "probe/solid_angle.h"
@@ -17,8 +18,7 @@ void LightsProbe::checkMask() const {
 }
 
 LoadedProbe LightsProbe::loadWithFile() const {
-  LoadedProbe probe = loadProbe(file, mapping, "--mapping");
-  print(probeMessages(probe, file), false);
+  LoadedProbe probe = openProbe(file, mapping, "--mapping");
   if (mask == "below-horizon") {
     replaceBelowHorizon(probe.latLong, Rgb(0));
     if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))

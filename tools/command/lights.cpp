@@ -105,7 +105,7 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
   const Rgb ambient = made.ambient.value_or(Rgb(0));
   const IrradianceSpheres spheres{subdivisions, exactIrradiance(latLong, normals),
                                   irradianceOf(made.lights, ambient, normals), made.ambient};
-  writeImage(file, irradianceSpheres(spheres));
+  print(writeImage(file, irradianceSpheres(spheres)), false);
   const LightError error = lightError(spheres.lights, spheres.probe);
   const auto mean = [](const std::vector<dvec3>& all) {
     return std::accumulate(all.begin(), all.end(), dvec3(0)) / double(all.size());
@@ -190,10 +190,11 @@ void run(LightsArguments arguments) {
               format);
   warnOfLosses(arguments, made, format);
   if (!arguments.preview.empty())
-    writeImage(arguments.preview,
-               arguments.regions
-                   ? lightPreview(latLong, lights, method.lights.regions(latLong, request))
-                   : lightPreview(latLong, lights));
+    print(writeImage(arguments.preview,
+                     arguments.regions
+                         ? lightPreview(latLong, lights, method.lights.regions(latLong, request))
+                         : lightPreview(latLong, lights)),
+          false);
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
   if (!arguments.sphere.empty()) writeSphere(arguments.sphere, latLong, made, subdivisions);

@@ -79,8 +79,9 @@ void runPolygons(const PolygonRequest& request) {
                 request.format);
   }
   if (!request.preview.empty())
-    writeImage(request.preview,
-               lightPreview(probe.latLong, lights, {partitionOf(probe.latLong, sources), {}}));
+    print(writeImage(request.preview, lightPreview(probe.latLong, lights,
+                                                   {partitionOf(probe.latLong, sources), {}})),
+          false);
   fmt::print("polygons    {}\n", sources.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     const Rgb& e = lights[i].irradiance;

@@ -4,7 +4,6 @@
 
 #include "commands.h"
 #include "image/io/read_image.h"
-#include "image/io/uncovered_light.h"
 #include "image/io/write_image.h"
 #include "image_noise_text.h"
 #include "job/id_manifest.h"
@@ -54,11 +53,11 @@ void run(const MergeArguments& arguments) {
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
   finished.image.metadata.merge(wholeMetadata(parts));
-  for (const std::string& output : arguments.outputs) writeImage(output, finished.image);
   Messages messages;
-  for (const std::string& output : arguments.outputs)
-    if (auto warning = uncoveredLightWarning(output, finished.image.layers.front().image))
-      messages.push_back(*std::move(warning));
+  for (const std::string& output : arguments.outputs) {
+    const Messages lost = writeImage(output, finished.image);
+    messages.insert(messages.end(), lost.begin(), lost.end());
+  }
   addExcluded(whole.result, messages);
   print(messages, arguments.quiet);
   if (!arguments.quiet)

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/output_file.h"
 #include "messages.h"
 #include "probe/align.h"
@@ -82,8 +83,7 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
 }
 
 Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {
-  LoadedProbe probe = loadProbe(file, mapping, option);
-  print(probeMessages(probe, file), false);
+  LoadedProbe probe = openProbe(file, mapping, option);
   return std::move(probe.latLong);
 }
 

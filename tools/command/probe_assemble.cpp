@@ -78,7 +78,7 @@ void print(const Report& report) {
              mappingName(report.target.mapping));
 }
 
-constexpr double kLargestDoubt = 0.15;  // of a circle, in pixels
+constexpr double kLargestDoubt = 0.1;  // of a circle, in pixels
 
 // Luminance below the horizon over that above it.
 double brightnessBelow(const Image& latLong) {
@@ -122,8 +122,9 @@ void warnOf(const Report& report) {
                        100 * (1 - inside)));
     if (p.found && p.found->standardError > kLargestDoubt)
       warn(fmt::format(
-          "{}: its circle is found to {:.2g} pixels only; see --preview, or give --circle", p.file,
-          p.found->standardError));
+          "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, or give "
+          "--circle X,Y,RADIUS",
+          p.file, p.found->standardError));
     if (i == 0) continue;
     if (!report.arguments.keepAzimuth && !match.turned)
       warn(
@@ -171,7 +172,7 @@ void run(const AssembleArguments& arguments) {
   const Report report{arguments, photographs, views, matches, assembly, target};
   warnOf(report);
   writeProbe(arguments.out, probe, target.mapping);
-  if (!arguments.preview.empty()) writeImage(arguments.preview, preview(report));
+  if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)), false);
   if (arguments.json)
     fmt::print("{}\n", toJson(report).dump(2, ' ', false, Json::error_handler_t::replace));
   else

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -54,8 +55,7 @@ void run(const ProbeConvertArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
   const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
-  LoadedProbe probe = loadProbe(arguments.in, arguments.from, "--from");
-  print(probeMessages(probe, arguments.in), false);
+  LoadedProbe probe = openProbe(arguments.in, arguments.from, "--from");
   warnOfSource(probe, arguments);
   if (arguments.flip) mirrorLeftAndRight(probe.latLong);
   const auto [mapping, size] = target(arguments, probe.latLong);

@@ -8,6 +8,7 @@
 #include "busy_line.h"
 #include "image/io/write_image.h"
 #include "image/io/write_ktx2.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -101,8 +102,7 @@ void run(const ProbeConvolveArguments& arguments) {
   check(arguments);
   std::optional<ZonalKernel> kernel;
   if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
-  LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  print(probeMessages(probe, arguments.in), false);
+  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
   if (!arguments.fromSize.empty()) probe.latLong = reduced(arguments, probe.latLong);
   if (!kernel) {
     writeLevels(arguments, probe.latLong);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -142,8 +143,7 @@ void run(const ProbeEditArguments& arguments) {
   const Edits edits = parse(arguments);
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
-  LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  print(probeMessages(probe, arguments.in), false);
+  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
   apply(edits, arguments.in, probe.latLong);
   writeProbe(arguments.out, probe.latLong);
 }

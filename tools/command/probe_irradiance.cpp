@@ -6,6 +6,7 @@
 #include "base/suggest.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "messages.h"
@@ -32,8 +33,7 @@ void run(const ProbeIrradianceArguments& arguments) {
                didYouMean(arguments.method, {"exact", "sh"}));
   const ImageSize given =
       arguments.size.empty() ? ImageSize{0, 0} : parseSize(arguments.size, "--size");
-  const LoadedProbe probe = loadProbe(arguments.in, arguments.mapping, "--mapping");
-  print(probeMessages(probe, arguments.in), false);
+  const LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
   const ImageSize size =
       given.width > 0 ? given : ImageSize{probe.latLong.width, probe.latLong.height};
   std::optional<BusyLine> busy("irradiance of the probe");

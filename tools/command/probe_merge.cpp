@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/output_file.h"
 #include "json_values.h"
 #include "messages.h"
@@ -100,17 +100,18 @@ void merge(const MergeArguments& arguments) {
   checkDistinct({arguments.output, arguments.responseOutput}, inputs);
 
   MergedPhotographs merged = mergePhotographs(series);
-  print(merged.warnings, false);
+  print(merged.messages, false);
   if (arguments.json)
     fmt::print("{}\n", toJson(series, merged).dump(2, ' ', false, Json::error_handler_t::replace));
   else
     print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
-  writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
-                                            {"clipped", "", std::move(merged.image.clipped)}},
-                                           {},
-                                           {},
-                                           {}});
+  print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
+                                                  {"clipped", "", std::move(merged.image.clipped)}},
+                                                 {},
+                                                 {},
+                                                 {}}),
+        false);
 }
 
 void calibrate(const MergeArguments& arguments) {
@@ -118,7 +119,7 @@ void calibrate(const MergeArguments& arguments) {
   if (!arguments.files.empty() || !arguments.output.empty())
     throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
   const auto read = [](const std::string& path) {
-    ImageFile file = readImageFile(path);
+    ImageFile file = openImageFile(path);
     std::optional<Image> clipped = findLayer(file, "clipped");
     return std::pair{colorOf(std::move(file), path), std::move(clipped)};
   };

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "lighting/row_distribution.h"
@@ -53,8 +54,7 @@ void run(const ProbePlotArguments& arguments) {
   if (arguments.elevation && !(std::fabs(*arguments.elevation) <= 90))
     throwInput("--elevation: {} should be -90 to 90 degrees", *arguments.elevation);
   const AzimuthRange range = parseAzimuthRange(arguments.azimuth);
-  const LoadedProbe loaded = loadProbe(arguments.file, arguments.mapping, "--mapping");
-  print(probeMessages(loaded, arguments.file), false);
+  const LoadedProbe loaded = openProbe(arguments.file, arguments.mapping, "--mapping");
   const Probe probe(loaded.latLong);
   const Importance importance(probe, arguments.compensated);
   const RowDistribution row =

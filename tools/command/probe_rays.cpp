@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "math/icosphere.h"
 #include "messages.h"
@@ -118,8 +119,7 @@ void run(const ProbeRaysArguments& arguments) {
                kMinError);
   const std::optional<ImageSize> size =
       arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
-  LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
-  print(probeMessages(probe, arguments.file), false);
+  LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const Normals normals(probe.latLong, arguments.rotation);
   if (arguments.json)

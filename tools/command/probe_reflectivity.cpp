@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "image/io/read_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "json_values.h"
 #include "messages.h"
@@ -30,7 +30,7 @@ struct Photograph {
 // Integer files are clipped at white, half floats at 65504.
 Photograph loadPhotograph(const std::string& file, const std::optional<double>& saturation) {
   constexpr double kWhite = 1, kLargestHalf = 65504;
-  ImageFile read = readImageFile(file);
+  ImageFile read = openImageFile(file);
   const bool hasIntegers = read.integers;
   if (hasIntegers)
     warn(fmt::format(

@@ -11,6 +11,7 @@
 #include "light_options.h"
 #include "lighting/light_file.h"
 #include "lighting/light_list.h"
+#include "messages.h"
 #include "probe/sky.h"
 #include "probe/sun_extraction.h"
 #include "probe_commands.h"
@@ -40,7 +41,7 @@ void splitProbe(const SplitArguments& arguments) {
   for (const Sun& sun : extraction.suns)
     rig.lights.push_back(
         {vec3(sun.direction), Rgb(sun.irradiance), float(arguments.angle.value_or(sun.angle))});
-  writeImage(arguments.rest, extraction.remainder);
+  print(writeImage(arguments.rest, extraction.remainder), false);
   writeLights(arguments.suns, rig);
   fmt::print("suns        {}\n", extraction.suns.size());
   for (const DirectionalLight& light : rig.lights)
@@ -72,7 +73,7 @@ void addSuns(const AddArguments& arguments) {
     if (!std::isfinite(texel))
       throwInput("{}: with {} a texel exceeds the largest float, 3.4e38", arguments.lights,
                  arguments.probe.file);
-  writeImage(arguments.out, map);
+  print(writeImage(arguments.out, map), false);
 }
 
 }  // namespace

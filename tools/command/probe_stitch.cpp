@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "busy_line.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "job/tile_file.h"
@@ -26,7 +26,7 @@ struct ProbeStitchArguments {
 std::vector<Tile> loadTiles(const std::vector<TileEntry>& entries) {
   std::vector<Tile> tiles;
   for (const TileEntry& entry : entries) {
-    tiles.push_back({entry.file, readImage(entry.file), Rotation::ofAngles(entry.pose), entry.fov});
+    tiles.push_back({entry.file, openImage(entry.file), Rotation::ofAngles(entry.pose), entry.fov});
     for (const float channel : tiles.back().image.texels)
       if (!std::isfinite(channel)) throwInput("{}: has invalid pixels", entry.file);
   }

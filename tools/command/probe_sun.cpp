@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "input_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"
 #include "json_values.h"
@@ -61,7 +61,7 @@ Image excludedPixels(const ProbeSunArguments& arguments, const ImageFile& file,
   constexpr float kSaturated = 0.98f;
   const std::optional<Image> clipped = findLayer(file, "clipped");
   Image mask;
-  if (!arguments.mask.empty()) mask = readImage(arguments.mask, IntegerTexels::Linear);
+  if (!arguments.mask.empty()) mask = openImage(arguments.mask, IntegerTexels::Linear);
   if (!mask.empty() && (mask.width != photograph.width || mask.height != photograph.height))
     throwInput("{}: is {} x {}, but {} is {} x {}; a mask has the photograph's size",
                arguments.mask, mask.width, mask.height, arguments.ball, photograph.width,
@@ -78,7 +78,7 @@ Image excludedPixels(const ProbeSunArguments& arguments, const ImageFile& file,
 }
 
 BallSamples readBall(const ProbeSunArguments& arguments, const DiffuseBall& ball) {
-  const ImageFile file = readImageFile(arguments.ball);
+  const ImageFile file = openImageFile(arguments.ball);
   const Image photograph = colorOf(ImageFile(file), arguments.ball);
   if (file.integers)
     warn(fmt::format("{}: has integer texels, decoded as sRGB; a merged .exr is linear",
@@ -132,7 +132,7 @@ void writeResidual(const std::string& path, const SunFromBall& result, const Bal
     for (float& channel : image.texels)
       channel = srgbToLinear(std::clamp(0.5f + 5 * channel / mean, 0.0f, 1.0f));
   }
-  writeImage(path, image);
+  print(writeImage(path, image), false);
 }
 
 Json toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
@@ -181,8 +181,7 @@ void run(const ProbeSunArguments& arguments) {
   checkDistinct({arguments.output, arguments.lights, arguments.residual},
                 {arguments.probe, arguments.ball, arguments.mask});
 
-  LoadedProbe probe = loadProbe(arguments.probe, arguments.mapping, "--mapping");
-  print(probeMessages(probe, arguments.probe), false);
+  LoadedProbe probe = openProbe(arguments.probe, arguments.mapping, "--mapping");
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);

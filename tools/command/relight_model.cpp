@@ -92,6 +92,7 @@ class RelightModel {
 
   std::vector<Rgb> coefficients() {
     const LoadedProbe loaded = loadProbe(options_.probe, options_.mapping, "--mapping");
+    print(loaded.messages, false);
     for (const auto& lines :
          {warnings(loaded, options_.probe), lightWarnings(loaded, options_.probe)})
       warnings_.insert(warnings_.end(), lines.begin(), lines.end());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight_stage.h"
+#include "input_image.h"
 
 #include <filesystem>
 
@@ -46,7 +47,10 @@ LightStage readPhotographsOf(const RelightOptions& a) {
   for (const StagePhotograph& photograph : photographs)
     inputs.push_back((std::filesystem::path(a.images) / photograph.file).string());
   if (!a.out.empty()) checkDistinct({a.out}, inputs);
-  return stageOf(a.images, photographs, float(irradiance), memoryOf(a));
+  Messages messages;
+  LightStage stage = stageOf(a.images, photographs, float(irradiance), memoryOf(a), messages);
+  print(messages, false);
+  return stage;
 }
 
 StageBands openStage(const RelightOptions& a) {
@@ -78,8 +82,7 @@ glm::ivec2 parsePixel(const std::string& text, const StageBands& stage) {
 }
 
 Image loadLight(const RelightOptions& a, const std::string& path) {
-  const LoadedProbe loaded = loadProbe(path, a.mapping, "--mapping");
-  print(probeMessages(loaded, path), false);
+  const LoadedProbe loaded = openProbe(path, a.mapping, "--mapping");
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
 }
 
@@ -97,7 +100,7 @@ void writePicture(const RelightOptions& a, const Image& picture, const Direction
                      {"stage", a.source()},
                      {"basis", basis.name()}};
   if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
-  writeImage(a.out, output, transform);
+  print(writeImage(a.out, output, transform), false);
 }
 
 // "": all was kept.

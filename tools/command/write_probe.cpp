@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/file.h"
+#include "image/io/lost_light.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/write_image.h"
 #include "messages.h"
@@ -25,16 +26,6 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping)));
 }
 
-void warnOfNegative(const std::string& file, const Image& map) {
-  const auto negative =
-      std::ranges::count_if(map.texels, [](float channel) { return channel < 0; });
-  if (negative > 0)
-    warn(fmt::format(
-        "{}: {:.3g}% of the channels are negative, down to {:.3g}, and become 0; an .exr holds "
-        "them",
-        file, 100. * double(negative) / double(map.texels.size()), std::ranges::min(map.texels)));
-}
-
 void warnOfClipping(const std::string& file, const Image& map) {
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });
@@ -47,12 +38,12 @@ void warnOfClipping(const std::string& file, const Image& map) {
 
 void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
   const std::string kind = lowerExtension(file), name = mappingName(mapping);
-  if (kind == ".png" || kind == ".hdr") warnOfNegative(file, map);
   if (kind == ".hdr") {
     checkWritable(file);
-    return writeRadianceHdr(file, map, {{kMappingAttribute, name}});
+    writeRadianceHdr(file, map, {{kMappingAttribute, name}});
+    return print(lostLight(file, map), false);
   }
-  writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}});
+  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}), false);
   if (kind == ".exr") return;
   warnOfLostMapping(file, map, mapping);
   if (kind == ".png") warnOfClipping(file, map);

@@ -54,6 +54,7 @@ Image readPfm(const std::filesystem::path& path) {
 
   const int channels = magic == "PF" ? 3 : 1;
   checkImageSize(path, width, height, channels);
+  checkImageMemory(path, width, height, channels);
   const size_t rowBytes = size_t(width) * channels * sizeof(float);
   if (bytes.size() < begin || bytes.size() - begin < rowBytes * height)
     throwInput("{}: {} x {} texels need {} bytes, but the file has {}", path.string(), width,

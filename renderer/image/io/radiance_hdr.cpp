@@ -75,6 +75,7 @@ class Reader {
     bottomUp_ = ySign == '+';
     rightToLeft_ = xSign == '-';
     checkImageSize(path_, width_, height_, 3);
+    checkImageMemory(path_, width_, height_, 3);
   }
 
   void addComment(std::string_view text) {

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "base/file.h"
-#include "image/io/color_channels.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"
@@ -45,6 +44,7 @@ ImageFile readExr(const fs::path& path) {
   file.part = input.part();
   file.primaries = input.primaries();
   if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
+  checkImageMemory(path, input.width(), input.height(), int64_t(input.channels().size()));
   file.image = Image(input.width(), input.height(), int(input.channels().size()));
   input.read(0, input.height(), file.image.texels.data());
   return file;
@@ -106,6 +106,7 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   const std::vector<uint8_t> bytes = readFile(path);
   const auto check = [&](const SampleLayout& layout) {
     checkImageSize(path, layout.width, layout.height, layout.channels);
+    checkImageMemory(path, layout.width, layout.height, layout.channels);
     // Small images may have any ratio.
     constexpr uint64_t kAlwaysAllowed = 64 << 20;
     const uint64_t decoded =
@@ -140,6 +141,7 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   file.channels = header.channels;
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
+  checkImageMemory(path, header.width, header.height, int64_t(header.channels.size()));
   file.image = Image(header.width, header.height, int(header.channels.size()));
   image->read(file.image.texels.data());
   if (file.integers && integers == IntegerTexels::Srgb)
@@ -149,61 +151,6 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   if (header.unassociatedAlpha) associate(file.image, header.alphaChannel);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
-}
-
-Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
-  Image out(file.image.width, file.image.height, int(channels.size()));
-  const size_t stride = file.image.channels, texelCount = size_t(out.width) * out.height;
-  for (size_t i = 0; i < texelCount; ++i)
-    for (size_t c = 0; c < channels.size(); ++c)
-      out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
-  return out;
-}
-
-// The first three channels are the file's colour.
-Image inRec709(Image color, const ImageFile& file) {
-  if (!file.primaries || isRec709(*file.primaries)) return color;
-  const auto matrix = toRec709(*file.primaries);  // checked by readImageFile()
-  if (matrix) convertColor(color, *matrix);
-  return color;
-}
-
-// Black around the data. Throws InputError if the window exceeds the limits, or has no data.
-Image inDisplayWindow(const Image& data, const Placement& p, const fs::path& path) {
-  checkImageSize(path, p.width, p.height, data.channels);
-  const int64_t left = std::max(p.x, 0), top = std::max(p.y, 0);
-  const int64_t right = std::min<int64_t>(p.width, int64_t(p.x) + data.width),
-                bottom = std::min<int64_t>(p.height, int64_t(p.y) + data.height);
-  if (left >= right || top >= bottom)
-    throwInput("{}: its data window lies outside of its display window", path.string());
-  Image window(p.width, p.height, data.channels);
-  for (int64_t y = top; y < bottom; ++y)
-    std::copy_n(data.at(int(left - p.x), int(y - p.y)), size_t(right - left) * data.channels,
-                window.at(int(left), int(y)));
-  return window;
-}
-
-// "A, Z and 3 more"; names in a damaged file may hold any bytes.
-std::string listOf(const std::vector<std::string>& channels) {
-  constexpr size_t kMost = 8, kMostLetters = 40;
-  std::string text;
-  for (size_t i = 0; i < std::min(channels.size(), kMost); ++i)
-    text += (i ? ", " : "") + channels[i].substr(0, kMostLetters);
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return channels.size() > kMost ? fmt::format("{} and {} more", text, channels.size() - kMost)
-                                 : text;
-}
-
-std::optional<Image> findChannels(const ImageFile& file, const std::string& prefix,
-                                  std::initializer_list<const char*> names) {
-  std::vector<size_t> indices;
-  for (const char* name : names) {
-    const auto found = std::find(file.channels.begin(), file.channels.end(), prefix + name);
-    if (found == file.channels.end()) return std::nullopt;
-    indices.push_back(found - file.channels.begin());
-  }
-  return extract(file, indices);
 }
 
 }  // namespace
@@ -243,65 +190,15 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
         path.string(), file.primaries->red.x, file.primaries->red.y, file.primaries->green.x,
         file.primaries->green.y, file.primaries->blue.x, file.primaries->blue.y,
         file.primaries->white.x, file.primaries->white.y);
+  if (file.primaries && !isRec709(*file.primaries))
+    file.messages.push_back(
+        {Message::Kind::Note,
+         fmt::format("{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
+                     "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
+                     path.string(), file.primaries->red.x, file.primaries->red.y,
+                     file.primaries->green.x, file.primaries->green.y, file.primaries->blue.x,
+                     file.primaries->blue.y, file.primaries->white.x, file.primaries->white.y)});
   return file;
-}
-
-std::optional<Image> findColor(const ImageFile& file) {
-  const PartChannels part{file.part, file.channels};
-  const std::optional<ColorChannels> found = findColorChannels({&part, 1});
-  if (!found) return {};
-  const std::vector<std::string>& names = found->channels;
-  if (names.size() == 1) return findChannels(file, names[0], {"", "", ""});
-  std::optional<Image> color =
-      findChannels(file, "", {names[0].c_str(), names[1].c_str(), names[2].c_str()});
-  return inRec709(*std::move(color), file);
-}
-
-std::optional<Image> findColorAndAlpha(const ImageFile& file) {
-  if (auto color = findChannels(file, "", {"R", "G", "B", "A"}))
-    return inRec709(*std::move(color), file);
-  return findColor(file);
-}
-
-std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
-  const std::string prefix = name + ".";
-  for (const std::array letters : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
-    if (auto image = findChannels(file, prefix, {letters[0], letters[1], letters[2]})) return image;
-  if (auto image = findChannels(file, name, {""})) return image;
-  const auto belongs = [&](const std::string& channel) { return channel.starts_with(prefix); };
-  const auto first = std::find_if(file.channels.begin(), file.channels.end(), belongs);
-  if (first != file.channels.end()) return extract(file, {size_t(first - file.channels.begin())});
-  return name == "alpha" ? findChannels(file, "A", {""}) : std::nullopt;
-}
-
-std::vector<std::string> layerNames(const ImageFile& file) {
-  constexpr std::array kColorChannels = {"R", "G", "B", "A", "X", "Y", "Z"};
-  std::vector<std::string> names;
-  for (const std::string& channel : file.channels) {
-    if (std::find(kColorChannels.begin(), kColorChannels.end(), channel) != kColorChannels.end())
-      continue;
-    const std::string name = channel.substr(0, channel.rfind('.'));
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return names;
-}
-
-Image colorOfData(ImageFile&& file, const fs::path& path) {
-  if (file.channels == std::vector<std::string>{"R", "G", "B"} && file.part.empty())
-    return inRec709(std::move(file.image), file);
-  std::optional<Image> color = findColor(file);
-  if (!color)
-    throwInput(
-        "{}: has no colour; it needs channels R, G and B, or Y, or a single channel of light; it "
-        "has {}",
-        path.string(), listOf(file.channels));
-  return *std::move(color);
-}
-
-Image colorOf(ImageFile&& file, const fs::path& path) {
-  const std::optional<Placement> placement = file.placement;
-  Image color = colorOfData(std::move(file), path);
-  return placement ? inDisplayWindow(color, *placement, path) : color;
 }
 
 Image readImage(const fs::path& path, IntegerTexels integers, Messages* messages) {

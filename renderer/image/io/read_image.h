@@ -78,7 +78,9 @@ Image colorOf(ImageFile&& file, const std::filesystem::path& path);
 Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb,
                 Messages* messages = nullptr);  // gets the file's
 
-// Without the display window: the texels that the file has.
+// Without the display window: the texels that the file has. Also with alpha as a fourth channel, if
+// the file has R, G, B and A.
 Image colorOfData(ImageFile&& file, const std::filesystem::path& path);
+Image colorAndAlphaOfData(ImageFile&& file, const std::filesystem::path& path);
 
 }  // namespace chromeball

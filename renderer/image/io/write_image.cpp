@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/for_ranges.h"
 #include "image/io/encode_png.h"
+#include "image/io/lost_light.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/write_exr.h"
@@ -45,19 +46,32 @@ std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& tra
   return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
 }
 
-// Repeats grey in three channels; returns other images unchanged.
-Image withColor(const Image& image) {
-  if (image.channels >= 3) return image;
-  Image color(image.width, image.height, 3);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) color.setRgb(x, y, Rgb(*image.at(x, y)));
+// Repeats grey in three channels.
+Image repeated(const Image& grey) {
+  Image color(grey.width, grey.height, 3);
+  for (int y = 0; y < grey.height; ++y)
+    for (int x = 0; x < grey.width; ++x) color.setRgb(x, y, Rgb(*grey.at(x, y)));
   return color;
+}
+
+// The formats that hold the colour alone.
+Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  if (color.channels < 3) return writeColor(path, repeated(color), transform);
+  const std::string kind = extension(path);
+  if (kind == ".hdr")
+    writeRadianceHdr(path, color);
+  else if (kind == ".pfm")
+    writePfm(path, color);
+  else
+    writeFile(path, encodeColor(color, transform));
+  return lostLight(path, color);
 }
 
 }  // namespace
 
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
-  return encodeColor(withColor(color), transform);
+  if (color.channels < 3) return encodeColor(repeated(color), transform);
+  return encodeColor(color, transform);
 }
 
 void checkImageName(const fs::path& path) {
@@ -72,20 +86,20 @@ void checkWritable(const fs::path& path) {
   checkReplaceable(path);
 }
 
-void writeImage(const fs::path& path, const OutputImage& output,
-                const DisplayTransform& transform) {
+Messages writeImage(const fs::path& path, const OutputImage& output,
+                    const DisplayTransform& transform) {
   checkWritable(path);
-  const std::string kind = extension(path);
-  if (kind == ".exr") return writeExr(path, output);
-  const Image color = withColor(output.layers.front().image);
-  if (kind == ".hdr") return writeRadianceHdr(path, color);
-  if (kind == ".pfm") return writePfm(path, color);
-  writeFile(path, encodeColor(color, transform));
+  if (extension(path) != ".exr") return writeColor(path, output.layers.front().image, transform);
+  writeExr(path, output);
+  return {};
 }
 
-void writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  checkWritable(path);
+  if (extension(path) != ".exr") return writeColor(path, color, transform);
   const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
-  writeImage(path, OutputImage{{{"", letters, color}}, {}, {}, {}}, transform);
+  writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
+  return {};
 }
 
 }  // namespace chromeball

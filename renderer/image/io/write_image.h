@@ -40,15 +40,16 @@ void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
 // colour after `transform`, 8 bits, sRGB, with unassociated alpha (the layer's colour is associated
-// and is divided by alpha first). Throws as checkWritable() does, and RunError if writing fails.
-void writeImage(const std::filesystem::path& path, const OutputImage& output,
-                const DisplayTransform& transform = {});
+// and is divided by alpha first). Returns warnings of what the file cannot hold (lost_light.h).
+// Throws as checkWritable() does, and RunError if writing fails.
+Messages writeImage(const std::filesystem::path& path, const OutputImage& output,
+                    const DisplayTransform& transform = {});
 
 // The bytes of that .png. An image of one channel is grey.
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
 
 // Writes the colour alone.
-void writeImage(const std::filesystem::path& path, const Image& color,
-                const DisplayTransform& transform = {});
+Messages writeImage(const std::filesystem::path& path, const Image& color,
+                    const DisplayTransform& transform = {});
 
 }  // namespace chromeball

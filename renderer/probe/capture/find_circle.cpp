@@ -19,8 +19,9 @@ constexpr double kAligned = 0.95;      // cosine between an edge's normal and th
 constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
-// Of the arcs of the final fit: of random edges, a fifth would agree. And in pixels.
-constexpr double kLeastOutline = 0.3, kLargestError = 0.5;
+// Of the final fit: places without a ball have at most 0.55 of a circle on edges, and a third of
+// its arcs agree; and in pixels.
+constexpr double kLeastAgreement = 0.95, kLargestError = 1;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
@@ -227,7 +228,8 @@ std::optional<FoundCircle> findCircle(const Image& image) {
     circle.centre *= finer, circle.radius *= finer;
   }
   const std::optional<Outline> outline = fitOutline(image, circle);
-  if (!outline || outline->support < kLeastOutline || !(outline->standardError < kLargestError))
+  if (!outline || found->support + outline->support < kLeastAgreement ||
+      !(outline->standardError < kLargestError))
     return std::nullopt;
   return FoundCircle{outline->circle, outline->support, outline->standardError};
 }

@@ -20,10 +20,7 @@ struct FoundCircle {
 // which the best is fitted by least squares to edges across it, first in the copy and then in the
 // picture itself; at last to a fraction of a pixel (outline.h). Parts of the circle may be outside
 // the picture. nullopt if no circle of at least 5% of the picture's shorter side in radius has half
-// of its outline on edges, or if fewer than 30% of the arcs of the final fit agree on it, or only
-// to more than half a pixel. Where the rim of a ball is as bright as what is behind it, as a
-// rendered ball's of reflectance 1 in front of a distant probe, the circle may be half a pixel too
-// small, of which the standard error does not tell.
+// of its outline on edges, if few arcs of the final fit agree on it, or only to more than a pixel.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 }  // namespace chromeball

@@ -65,11 +65,11 @@ class FlatFields {
   }
 
   const Image* of(size_t photograph) const { return ofPhotograph_[photograph]; }
+  const Messages& messages() const { return messages_; }  // of the readers
 
  private:
-  static Image read(const std::string& file, const PhotographSeries& series,
-                    const Image& photograph) {
-    Image image = readImage(file);
+  Image read(const std::string& file, const PhotographSeries& series, const Image& photograph) {
+    Image image = readImage(file, IntegerTexels::Srgb, &messages_);
     if (image.width != photograph.width || image.height != photograph.height)
       throwInput("{}: is {} x {}, but {} is {} x {}; a flat field has the photographs' size", file,
                  image.width, image.height, series.files.front(), photograph.width,
@@ -82,6 +82,7 @@ class FlatFields {
 
   std::map<std::string, Image> images_;
   std::vector<const Image*> ofPhotograph_;
+  Messages messages_;
 };
 
 // Each exposure with the next longer one.
@@ -117,7 +118,7 @@ ResponseCurve responseOf(const PhotographSeries& series, int bits,
 void addWarnings(const PhotographSeries& series, MergedPhotographs& merged) {
   constexpr double kTolerance = 0.03;
   const auto warn = [&](std::string text) {
-    merged.warnings.push_back({Message::Kind::Warning, std::move(text)});
+    merged.messages.push_back({Message::Kind::Warning, std::move(text)});
   };
   for (const ExposureAgreement& agreement : merged.agreements) {
     const std::string &longer = series.files[agreement.longer],
@@ -146,6 +147,9 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   PhotographLevels photographs = readLevels(series.files, series.white, series.resizes);
   merged.white = photographs.white;
   const FlatFields flatFields(series, merged.settings, photographs.levels.front());
+  merged.messages = std::move(photographs.messages);
+  merged.messages.insert(merged.messages.end(), flatFields.messages().begin(),
+                         flatFields.messages().end());
   std::vector<Exposure> exposures;
   for (size_t i = 0; i < series.files.size(); ++i)
     exposures.push_back(
@@ -165,7 +169,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   addWarnings(series, merged);
   for (size_t i = 0; i < series.files.size(); ++i)
     if (photographs.invalid[i] > 0)
-      merged.warnings.push_back(
+      merged.messages.push_back(
           {Message::Kind::Warning, fmt::format("{}: {} channels are NaN or negative; they count as "
                                                "black",
                                                series.files[i], photographs.invalid[i])});

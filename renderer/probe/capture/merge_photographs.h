@@ -45,7 +45,7 @@ struct MergedPhotographs {
   ResponseCurve response = ResponseCurve::linear();
   std::string responseName;
   float white = 1;
-  Messages warnings;
+  Messages messages;
 };
 
 // Throws InputError if files, settings or options do not fit together, if the exposures are all the

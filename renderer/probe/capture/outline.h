@@ -15,18 +15,18 @@ struct Outline {
   double support;        // the share of the arcs in the picture that the circle fits, 0 to 1
 };
 
-// Fits a circle to the outline of a ball in a picture of one channel, linear luminance. `start` is
-// within about two pixels.
+// Fits a circle to the outline of a ball in a linear picture. `start` is within about two pixels.
 //
-// Each of many short arcs gives one point. Around it, at the distance d from the outline and t
-// along it, in pixels, luminance is that of a background, b0 + b1 d + b2 t, or, inside, of a ball:
-// a0 + a1 s + a2 s^2 + a3 t, where s = sqrt(-d). For the cosine of the angle of incidence on the
-// ball, and with it what it reflects and its Fresnel reflectance, is a smooth function of s: the
-// reflected scene is compressed towards the rim. Each pixel shows the mean over its square. The
-// position of the outline with the least squared error over the pixels is the arc's; the curvature
-// of that error gives its variance. (This is the slanted edge of ISO 12233, with a model of what is
-// inside.) Then a circle is fitted to the points by least squares, each weighed by its variance;
-// those far from it do not count (Tukey's biweight). nullopt if too few arcs show an edge.
+// Each of many short arcs of 10 pixels has a likelihood of its position (rim_arc.h); the circle is
+// the one that all arcs together make likeliest. An arc counts up to a bound, so that one which
+// shows another edge, or none, has little to say. The blur of the picture is the likeliest.
+//
+// Where the ball's rim continues the background, the position depends on how the rim is modelled:
+// without a step there, the outline is found further outside. Unless a step is much likelier, the
+// circle is between the two. The standard error has two parts: that of the jackknife over twelfths
+// of the outline, and half of the distance between the two models' circles. Errors have the
+// variances, one or two, with which more arcs agree. Weights and bounds are empirical
+// (find_circle_test.cpp). nullopt if too few arcs are in the picture.
 std::optional<Outline> fitOutline(const Image& image, const Circle& start);
 
 }  // namespace chromeball

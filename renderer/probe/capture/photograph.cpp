@@ -12,22 +12,25 @@ namespace chromeball {
 LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
   ImageFile file = readImageFile(path);
   LoadedPhotograph photograph;
+  photograph.messages = file.messages;
   if (file.integers)
-    photograph.warnings.push_back(fmt::format(
-        "{}: has integer texels: decoded from sRGB, without the response of the camera, "
-        "and clipped at white; use an HDR image",
-        path.string()));
+    photograph.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: has integer texels: decoded from sRGB, without the response of the "
+                     "camera, and clipped at white; use an HDR image",
+                     path.string())});
   photograph.image = colorOf(std::move(file), path);
   const RepairReport repaired = repair(photograph.image, false);
   if (repaired.total() > 0)
-    photograph.warnings.push_back(
-        fmt::format("{}: repaired {}", path.string(), describe(repaired)));
+    photograph.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: repaired {}", path.string(), describe(repaired))});
   return photograph;
 }
 
 Image loadMask(const std::filesystem::path& path, const Image& photograph,
-               const std::filesystem::path& photographPath) {
-  const Image color = readImage(path, IntegerTexels::Linear);
+               const std::filesystem::path& photographPath, Messages& messages) {
+  const Image color = readImage(path, IntegerTexels::Linear, &messages);
   if (color.width != photograph.width || color.height != photograph.height)
     throwInput("{}: {} x {} texels should be {} x {}, as in {}", path.string(), color.width,
                color.height, photograph.width, photograph.height, photographPath.string());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/message.h"
 #include "image/image.h"
 #include "probe/capture/circle.h"
 
@@ -14,15 +15,16 @@ namespace chromeball {
 // The linear colour of a file, three channels, finite and not negative.
 struct LoadedPhotograph {
   Image image;
-  std::vector<std::string> warnings;  // each "FILE: ..."; often none
+  Messages messages;  // of its reader and about it, each "FILE: ..."; often none
 };
 // Throws InputError.
 LoadedPhotograph loadPhotograph(const std::filesystem::path& path);
 
 // The weights of the pixels, one channel from 0 to 1: the brightest channel of an 8-bit image, as
-// stored. Throws InputError unless it has the size of `photograph`, read from `photographPath`.
+// stored. `messages` gets the reader's. Throws InputError unless it has the size of `photograph`,
+// read from `photographPath`.
 Image loadMask(const std::filesystem::path& path, const Image& photograph,
-               const std::filesystem::path& photographPath);
+               const std::filesystem::path& photographPath, Messages& messages);
 
 // The disc of a photograph, as a function of position.
 class PhotographDisc {

@@ -39,6 +39,7 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
   for (const std::string& file : files) {
     ImageFile read = readImageFile(file, IntegerTexels::Linear);
     const int bits = read.bits;
+    result.messages.insert(result.messages.end(), read.messages.begin(), read.messages.end());
     Image image = colorOf(std::move(read), file);
     if (result.levels.empty()) {
       result.bits = bits;

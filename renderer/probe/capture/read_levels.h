@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/message.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -15,6 +16,7 @@ struct PhotographLevels {
   int bits = 0;                 // of the files' channels; 0: floats
   float white = 1;              // the texel of the files that is level 1
   std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
+  Messages messages;            // of the readers
 };
 
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled

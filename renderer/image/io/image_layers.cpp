@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// The colour and the layers of a file that was read.
+#include <algorithm>
+#include <array>
+
+#include "image/io/color_channels.h"
+#include "image/io/read_image.h"
+#include "image/size_limits.h"
+
+namespace chromeball {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
+  Image out(file.image.width, file.image.height, int(channels.size()));
+  const size_t stride = file.image.channels, texelCount = size_t(out.width) * out.height;
+  for (size_t i = 0; i < texelCount; ++i)
+    for (size_t c = 0; c < channels.size(); ++c)
+      out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
+  return out;
+}
+
+// Of the three channels, or more, of the file's colour. Grey has no primaries.
+Image inRec709(Image color, const std::vector<size_t>& channels, const ImageFile& file) {
+  const bool isGrey = channels[0] == channels[1];
+  if (isGrey || !file.primaries || isRec709(*file.primaries)) return color;
+  const auto matrix = toRec709(*file.primaries);  // checked by readImageFile()
+  if (matrix) convertColor(color, *matrix);
+  return color;
+}
+
+// Black around the data. Throws InputError if the window exceeds the limits, or has no data.
+Image inDisplayWindow(const Image& data, const Placement& p, const fs::path& path) {
+  checkImageSize(path, p.width, p.height, data.channels);
+  checkImageMemory(path, p.width, p.height, data.channels);
+  const int64_t left = std::max(p.x, 0), top = std::max(p.y, 0);
+  const int64_t right = std::min<int64_t>(p.width, int64_t(p.x) + data.width),
+                bottom = std::min<int64_t>(p.height, int64_t(p.y) + data.height);
+  if (left >= right || top >= bottom)
+    throwInput("{}: its data window lies outside of its display window", path.string());
+  Image window(p.width, p.height, data.channels);
+  for (int64_t y = top; y < bottom; ++y)
+    std::copy_n(data.at(int(left - p.x), int(y - p.y)), size_t(right - left) * data.channels,
+                window.at(int(left), int(y)));
+  return window;
+}
+
+// "A, Z and 3 more"; names in a damaged file may hold any bytes.
+std::string listOf(const std::vector<std::string>& channels) {
+  constexpr size_t kMost = 8, kMostLetters = 40;
+  std::string text;
+  for (size_t i = 0; i < std::min(channels.size(), kMost); ++i)
+    text += (i ? ", " : "") + channels[i].substr(0, kMostLetters);
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return channels.size() > kMost ? fmt::format("{} and {} more", text, channels.size() - kMost)
+                                 : text;
+}
+
+using ChannelIndices = std::vector<size_t>;
+
+std::optional<ChannelIndices> indicesOf(const ImageFile& file, const std::string& prefix,
+                                        std::initializer_list<const char*> names) {
+  ChannelIndices indices;
+  for (const char* name : names) {
+    const auto found = std::find(file.channels.begin(), file.channels.end(), prefix + name);
+    if (found == file.channels.end()) return std::nullopt;
+    indices.push_back(size_t(found - file.channels.begin()));
+  }
+  return indices;
+}
+
+std::optional<Image> findChannels(const ImageFile& file, const std::string& prefix,
+                                  std::initializer_list<const char*> names) {
+  if (const auto indices = indicesOf(file, prefix, names)) return extract(file, *indices);
+  return std::nullopt;
+}
+
+// As extract(), of a file whose image is no longer needed: in its place, where the result is not
+// larger.
+Image taken(ImageFile& file, const ChannelIndices& channels) {
+  const size_t stride = size_t(file.image.channels), count = channels.size();
+  if (count > stride) return extract(file, channels);
+  Image image = std::move(file.image);
+  bool isWhole = count == stride;
+  for (size_t c = 0; c < count; ++c) isWhole = isWhole && channels[c] == c;
+  if (isWhole) return image;
+  const size_t texelCount = image.texels.size() / stride;
+  std::vector<float> texel(count);
+  float* to = image.texels.data();
+  for (const float* from = to; from != image.texels.data() + texelCount * stride; from += stride) {
+    for (size_t c = 0; c < count; ++c) texel[c] = from[channels[c]];
+    to = std::copy(texel.begin(), texel.end(), to);
+  }
+  image.channels = int(count);
+  image.texels.resize(texelCount * count);
+  return image;
+}
+
+std::optional<ChannelIndices> colorIndices(const ImageFile& file) {
+  const PartChannels part{file.part, file.channels};
+  const std::optional<ColorChannels> found = findColorChannels({&part, 1});
+  if (!found) return {};
+  const std::vector<std::string>& names = found->channels;
+  if (names.size() == 1) return indicesOf(file, names[0], {"", "", ""});
+  return indicesOf(file, "", {names[0].c_str(), names[1].c_str(), names[2].c_str()});
+}
+
+}  // namespace
+
+std::optional<Image> findColor(const ImageFile& file) {
+  const auto indices = colorIndices(file);
+  if (!indices) return {};
+  return inRec709(extract(file, *indices), *indices, file);
+}
+
+std::optional<Image> findColorAndAlpha(const ImageFile& file) {
+  if (const auto indices = indicesOf(file, "", {"R", "G", "B", "A"}))
+    return inRec709(extract(file, *indices), *indices, file);
+  return findColor(file);
+}
+
+std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
+  const std::string prefix = name + ".";
+  for (const std::array letters : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
+    if (auto image = findChannels(file, prefix, {letters[0], letters[1], letters[2]})) return image;
+  if (auto image = findChannels(file, name, {""})) return image;
+  const auto belongs = [&](const std::string& channel) { return channel.starts_with(prefix); };
+  const auto first = std::find_if(file.channels.begin(), file.channels.end(), belongs);
+  if (first != file.channels.end()) return extract(file, {size_t(first - file.channels.begin())});
+  return name == "alpha" ? findChannels(file, "A", {""}) : std::nullopt;
+}
+
+std::vector<std::string> layerNames(const ImageFile& file) {
+  constexpr std::array kColorChannels = {"R", "G", "B", "A", "X", "Y", "Z"};
+  std::vector<std::string> names;
+  for (const std::string& channel : file.channels) {
+    if (std::find(kColorChannels.begin(), kColorChannels.end(), channel) != kColorChannels.end())
+      continue;
+    const std::string name = channel.substr(0, channel.rfind('.'));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+Image colorOfData(ImageFile&& file, const fs::path& path) {
+  const auto indices = colorIndices(file);
+  if (!indices)
+    throwInput(
+        "{}: has no colour; it needs channels R, G and B, or Y, or a single channel of light; it "
+        "has {}",
+        path.string(), listOf(file.channels));
+  return inRec709(taken(file, *indices), *indices, file);
+}
+
+Image colorAndAlphaOfData(ImageFile&& file, const fs::path& path) {
+  const auto indices = indicesOf(file, "", {"R", "G", "B", "A"});
+  if (!indices) return colorOfData(std::move(file), path);
+  return inRec709(taken(file, *indices), *indices, file);
+}
+
+Image colorOf(ImageFile&& file, const fs::path& path) {
+  const std::optional<Placement> placement = file.placement;
+  Image color = colorOfData(std::move(file), path);
+  return placement ? inDisplayWindow(color, *placement, path) : color;
+}
+
+}  // namespace chromeball

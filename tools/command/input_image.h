@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the images of a command, and prints what their readers have to say: which channels were
+// chosen, which fields of the header were applied, that colours were converted.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "image/io/read_image.h"
+#include "probe/load.h"
+
+namespace chromeball {
+
+// As readImageFile(), readImage() and loadProbe().
+ImageFile openImageFile(const std::filesystem::path& path,
+                        IntegerTexels integers = IntegerTexels::Srgb);
+Image openImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
+LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
+
+}  // namespace chromeball
