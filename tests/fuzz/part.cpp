@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kMaxPixels = 1024;  // of images that are made
 constexpr uint32_t kMaxSamples = 16;
+constexpr size_t kMaxBlocks = 16;
 
 // What a checkpoint is restored for: a quad under a gradient, with guides.
 struct SmallWorld {
@@ -110,7 +111,7 @@ std::string fileOf(std::span<const uint8_t> contents) {
     contents = contents.subspan(bytes.size());
     return bytes;
   };
-  std::vector<size_t> lengths(number());
+  std::vector<size_t> lengths(number() % kMaxBlocks);
   for (size_t& length : lengths) length = number();
   const size_t head = number();
   std::vector<std::span<const uint8_t>> blocks;
