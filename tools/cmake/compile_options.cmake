@@ -15,7 +15,7 @@ if(CHROMEBALL_WERROR)
 endif()
 if(CHROMEBALL_SANITIZE)  # -fno-sanitize-recover: a finding of UBSan fails the test that caused it
   list(APPEND chromeball_compile_options -fsanitize=${CHROMEBALL_SANITIZE}
-       -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+       -fno-sanitize-recover=undefined,float-cast-overflow -fno-omit-frame-pointer)
   list(APPEND chromeball_link_options -fsanitize=${CHROMEBALL_SANITIZE})
 endif()
 if(CHROMEBALL_FUZZ)
