@@ -105,7 +105,7 @@ TEST(DecodeImage, WebpKeepsTheColourOfTransparentTexels) {
 }
 
 TEST(DecodeImage, DamagedWebpIsRejectedOrRead) {
-  for (size_t i = 12; i < kWebp.size(); ++i) {
+  for (size_t i = 0; i < kWebp.size(); ++i) {
     Bytes cut(kWebp.begin(), kWebp.begin() + long(i)), turned = kWebp;
     turned[i] = uint8_t(~turned[i]);
     EXPECT_NE(errorMessage(cut), "");

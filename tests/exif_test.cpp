@@ -83,6 +83,20 @@ TEST(Exif, DamagedBlocksAreHarmless) {
   }
 }
 
+// A BigTIFF whose pointer to the directory of EXIF, of 64 bits, has no integer that equals it as a
+// double. A sanitizer sees the conversion.
+TEST(Exif, AnEndlessPointerIsHarmless) {
+  const TemporaryFolder folder;
+  const auto word = [](uint64_t value) {
+    std::string reversed = bigEndian(value, 8);
+    return std::string(reversed.rbegin(), reversed.rend());
+  };
+  const std::string entry("\x69\x87\x10\0", 4);  // the tag; LONG8
+  const std::string file = std::string("II\x2b\0\x8\0\0\0", 8) + word(16) + word(1) + entry +
+                           word(1) + word(~uint64_t(0)) + word(0);
+  EXPECT_FALSE(exifOf(file, folder).iso);
+}
+
 TEST(Exif, RealPhotographs) {
   const auto folder = sharedData("reference/differential_rendering/kartikagrawal27/Materials");
   if (!folder) GTEST_SKIP() << "no real photographs";

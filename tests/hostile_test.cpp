@@ -11,6 +11,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "instrumented.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -24,11 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-#ifdef __SANITIZE_ADDRESS__
-const CommandLimits kGibibyte;  // the sanitizer reserves terabytes of address space
-#else
-const CommandLimits kGibibyte{.memory = size_t(1) << 30};
-#endif
+const CommandLimits kGibibyte{.memory = kIsInstrumented ? 0 : size_t(1) << 30};
 
 std::vector<fs::path> filesBelow(const fs::path& root, const std::set<std::string>& extensions) {
   std::vector<fs::path> files;

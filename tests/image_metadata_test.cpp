@@ -8,6 +8,7 @@
 #include "image/io/decode_image.h"
 #include "image/io/read_image.h"
 #include "image/io/sample_reader.h"
+#include "instrumented.h"
 #include "run_command.h"
 #include "shared_data.h"
 
@@ -17,11 +18,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using Words = std::vector<std::string>;
 
-#ifdef __SANITIZE_ADDRESS__
-const CommandLimits kSmall;  // the sanitizer reserves terabytes of address space
-#else
-const CommandLimits kSmall{.memory = size_t(1) << 30};
-#endif
+const CommandLimits kSmall{.memory = kIsInstrumented ? 0 : size_t(1) << 30};
 
 Bytes seed(const std::string& name) {
   const std::string text =

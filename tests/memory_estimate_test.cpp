@@ -10,6 +10,7 @@
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"
 #include "image/io/write_image.h"
+#include "instrumented.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -59,14 +60,15 @@ class SlowMemoryEstimate : public testing::Test {
   std::string model_, probe_;
 };
 
-#ifndef __SANITIZE_ADDRESS__
 TEST_F(SlowMemoryEstimate, OfImages) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   expectStated(model_, probe_,
                {"--size", "1000x600", "--aov",
                 "albedo,normal,depth,alpha,variance,samples,material,node,invalid,denoise"});
 }
 
 TEST_F(SlowMemoryEstimate, OfAProbe) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   const std::string probe = (small_.folder() / "large.exr").string();
   writeImage(probe, constantProbe({4096, 2048}, Rgb(1)));
   expectStated(model_, probe, {"--size", "8x8"});
@@ -74,6 +76,7 @@ TEST_F(SlowMemoryEstimate, OfAProbe) {
 }
 
 TEST_F(SlowMemoryEstimate, OfGeometry) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   constexpr int kSide = 1000;
   std::vector<float> positions;
   std::vector<uint32_t> indices;
@@ -93,7 +96,6 @@ TEST_F(SlowMemoryEstimate, OfGeometry) {
   expectStated(model, probe_, {"--size", "8x8"});
   expectRefused(model, probe_, {"--memory", "0.2", "--size", "8x8"}, "geometry");
 }
-#endif
 
 TEST_F(SlowMemoryEstimate, TexturesAreRefusedByTheirHeaders) {
   constexpr int kSide = 4096;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scripts behind tools/build.sh, tools/test.sh and tools/lint.sh.
+// The scripts behind tools/build.sh, tools/test.sh and tools/lint.sh, and
+// tools/scripts/sanitize.sh.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <string>
 
 #include "run_command.h"
@@ -79,6 +81,72 @@ TEST_F(SlowScripts, SkippedTestsAreNamed) {
   EXPECT_EQ(script("skipped_tests.sh log").out,
             "A.b: no cluster\n"
             "All/A.d/0: no reason given\n");
+}
+
+// A repository in which three tests pass under sanitizers, and one is skipped.
+class SlowSanitize : public SlowScripts {
+ protected:
+  void SetUp() override {
+    if (shell("git --version").status != 0) GTEST_SKIP() << "no Git";
+    write("bin/cmake", "#!/bin/sh\n");
+    write("tools/scripts/run_tests.sh",
+          "#!/bin/sh\n"
+          "printf '[ RUN      ] A.b\\na.cpp:1: Skipped\\nno disk\\n[  SKIPPED ] A.b\\n' > "
+          "$1/tests-0.log\n"
+          "[ ! -e race ] || cp race $1/reports/report.1\n"
+          "echo '3 passed, 0 failed'\n");
+    write("tests/sanitizers/passed.txt", "# Comment\n");
+    write("build/thread/onetbb/libtbb.so.12", "");
+    write(".gitignore", "build\nrace\n");
+    for (const char* name : {"sanitize.sh", "skipped_tests.sh"})
+      std::filesystem::copy(std::string(kSourceDir) + "/tools/scripts/" + name,
+                            folder_ / "tools/scripts/");
+    EXPECT_EQ(shell("chmod +x bin/cmake tools/scripts/*.sh; git init -q").status, 0);
+    commit();
+  }
+  void commit() const {
+    EXPECT_EQ(shell("git add -A && git -c user.name=a -c user.email=a@b commit -qm change").status,
+              0);
+  }
+  CommandResult sanitize(const std::string& arguments) const {
+    return shell("PATH=$PWD/bin:$PATH tools/scripts/sanitize.sh " + arguments);
+  }
+  // With "N" for dates and commits.
+  std::string recorded() const {
+    const std::string text = fileContents(folder_ / "tests/sanitizers/passed.txt");
+    return std::regex_replace(text, std::regex("[0-9-]{10}|commit [0-9a-f]{12}"), "N");
+  }
+};
+
+TEST_F(SlowSanitize, RecordsWhenAllTestsPassed) {
+  const std::string comment = "# Comment\n\n", all = "address, all tests: 3 passed, N, N\n",
+                    out = "  left out: A.b: no disk\n",
+                    some = "thread, --gtest_filter=-Slow*: 3 passed, N, N\n";
+  EXPECT_EQ(sanitize("address").out, "3 passed, 0 failed\n3 passed, 0 failed\n");
+  EXPECT_EQ(recorded(), comment + all + out);
+  commit();
+  EXPECT_EQ(sanitize("thread --gtest_filter='-Slow*'").status, 0);
+  EXPECT_EQ(recorded(), comment + all + out + "\n" + some + out);
+  EXPECT_EQ(sanitize("address").status, 0);
+  EXPECT_EQ(recorded(), comment + some + out + "\n" + all + out);
+  commit();
+  const std::string status = sanitize("status").out;
+  EXPECT_TRUE(std::regex_match(
+      status, std::regex("thread, --gtest_filter=-Slow\\*: 3 passed, .*, 1 commits ago\n"
+                         "address, all tests: 3 passed, .*, 1 commits ago\n")))
+      << status;
+}
+
+TEST_F(SlowSanitize, AReportOrAnUncommittedChangeIsNotRecorded) {
+  write("race", "data race\n");
+  const CommandResult reported = sanitize("address");
+  EXPECT_EQ(reported.status, 1);
+  EXPECT_EQ(reported.error, "data race\n");
+  EXPECT_EQ(reported.out, "3 passed, 0 failed\n3 passed, 1 failed\n");
+  std::filesystem::remove(folder_ / "race");
+  write("tools/scripts/skipped_tests.sh", "#!/bin/sh\n");
+  EXPECT_EQ(sanitize("address").status, 0);
+  EXPECT_EQ(recorded(), "# Comment\n");
 }
 
 // render.cpp includes light.h through scene.h, and the unused math.h is included by nothing.

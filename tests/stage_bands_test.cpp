@@ -2,6 +2,7 @@
 // Light stages in bands of rows are, bit for bit, those in one piece.
 #include <gtest/gtest.h>
 
+#include "image/io/write_image.h"
 #include "relight/keep_largest.h"
 #include "relight/relit_stage.h"
 #include "relight/stage_bands.h"
@@ -160,6 +161,20 @@ TEST(StageBands, RefuseWhatTheyCannotRead) {
   for (const double rows : {1, 16, 100})
     EXPECT_NE(error(rows).find("pixel 3, 32 has values that are not finite"), std::string::npos)
         << error(rows);
+}
+
+TEST(StageFile, QuotesAnUnknownBasisInOneLine) {
+  const TemporaryFolder folder;
+  writeImage(
+      folder / "s.exr",
+      OutputImage{
+          {{"", "RGB", Image(4, 4, 3)}}, {{"basis", std::string("lat-long\n:2x1")}}, {}, {}});
+  try {
+    StageReader(folder / "s.exr");
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& refused) {
+    EXPECT_NE(std::string(refused.what()).find("`lat-long :2x1` is not"), std::string::npos);
+  }
 }
 
 TEST(StageSize, ExceedsNoFileAndNoMemory) {

@@ -10,6 +10,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "instrumented.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -184,8 +185,8 @@ TEST_F(SlowStarved, TooLargeImagesAreRejectedBeforeAllocation) {
   EXPECT_EQ(runCommand(words(out / "a.exr", {"--size", "1x1"})).status, 0);
 }
 
-#ifndef __SANITIZE_ADDRESS__
 TEST_F(SlowStarved, OutOfMemoryIsOneLine) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   const TemporaryFolder out;
   const CommandLimits limits{.memory = size_t(1) << 30};
   const CommandResult result = runExecutable(
@@ -193,7 +194,6 @@ TEST_F(SlowStarved, OutOfMemoryIsOneLine) {
   expectFailed(result, "out of memory");
   EXPECT_EQ(out.files(), Words{});
 }
-#endif
 
 }  // namespace
 }  // namespace chromeball::starved_test

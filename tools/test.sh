@@ -6,52 +6,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-arguments=() maySkip=1
+arguments=()
 for argument in "$@"; do
   case $argument in
     --quick) arguments+=('--gtest_filter=-Slow*:*/Slow*') ;;
-    --no-skips) maySkip=0 ;;
     *) arguments+=("$argument") ;;
   esac
 done
 
 tools/build.sh
-
-# A process on each core, up to four, runs its part of the tests: many tests use one thread.
-processes=$(nproc 2>/dev/null || echo 1)
-((processes <= 4)) || processes=4
-run() { GTEST_TOTAL_SHARDS=$processes GTEST_SHARD_INDEX=$1 build/tests "${arguments[@]}"; }
-
-rm -f build/tests-*.log
-begin=$SECONDS
-running=()
-for ((part = 0; part < processes; ++part)); do
-  (run "$part" | tee "build/tests-$part.log") &
-  running+=($!)
-done
-status=0
-for process in "${running[@]}"; do wait "$process" || status=$?; done
-
-# The sum of GoogleTest's totals; a part that crashed prints none.
-total() {
-  sed -nE "s/^\[  $1  ?\] ([0-9]+) tests?[.,].*/\1/p" build/tests-*.log |
-    awk '{ sum += $1 } END { print sum + 0 }'
-}
-passed=$(total PASSED) failed=$(total FAILED)
-if (($(grep -l '^\[  PASSED  \]' build/tests-*.log | wc -l) < processes)); then
-  echo "The tests stopped early (exit status $status)." >&2
-  passed=$(cat build/tests-*.log | grep -c '^\[       OK \]' || true)
-  ((failed)) || failed=1
-fi
-skipped=$(tools/scripts/skipped_tests.sh build/tests-*.log)
-if [[ -n $skipped ]]; then
-  echo "Skipped (tools/scripts/test_needs.sh installs what most tests need):"
-  echo "$skipped"
-  if ((!maySkip)); then
-    failed=$((failed + $(wc -l <<<"$skipped")))
-    status=1
-  fi
-fi
-echo "The tests took $((SECONDS - begin)) s."
-echo "$passed passed, $failed failed"
-exit "$status"
+exec tools/scripts/run_tests.sh build "${arguments[@]}"

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace chromeball {
 namespace {
@@ -43,7 +44,7 @@ DirectionBasis basisOf(const std::filesystem::path& path, const Metadata& metada
   const auto found = metadata.find(kBasisName);
   const auto* name = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
   if (!name) throwInput("{}: is not a light stage; `chromeball basis` writes one", path.string());
-  return {*name, path.string()};
+  return {printable(*name), path.string()};  // which quotes what it does not know
 }
 
 // The channels with these names; nullopt if one is missing.

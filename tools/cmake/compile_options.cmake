@@ -15,14 +15,15 @@ if(CHROMEBALL_WERROR)
 endif()
 if(CHROMEBALL_SANITIZE)  # -fno-sanitize-recover: a finding of UBSan fails the test that caused it
   list(APPEND chromeball_compile_options -fsanitize=${CHROMEBALL_SANITIZE}
-       -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+       -fno-sanitize-recover=undefined,float-cast-overflow -fno-omit-frame-pointer)
   list(APPEND chromeball_link_options -fsanitize=${CHROMEBALL_SANITIZE})
 endif()
 if(CHROMEBALL_FUZZ)
-  list(APPEND chromeball_compile_options -fsanitize=fuzzer-no-link,address,undefined
-       -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+  list(APPEND chromeball_compile_options
+       -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow
+       -fno-sanitize-recover=undefined,float-cast-overflow -fno-omit-frame-pointer
        -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/ignored.txt)
-  list(APPEND chromeball_link_options -fsanitize=address,undefined)
+  list(APPEND chromeball_link_options -fsanitize=address,undefined,float-cast-overflow)
 endif()
 
 # GCC without optimisation rejects Eigen's use of intrinsics where headers are precompiled.

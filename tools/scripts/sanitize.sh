@@ -1,26 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the program under sanitizers, in builds of its own (presets asan and tsan; tests/ENVELOPE.md):
-#   tools/scripts/sanitize.sh address [GOOGLETEST ARGUMENT...]  AddressSanitizer and UBSan: all tests,
-#                                                               and the command where they run it
-#   tools/scripts/sanitize.sh thread [MODEL...]                 ThreadSanitizer: renders, and the other
-#                                                               commands that use threads
-# Both need the packages that tools/build.sh installs.
+# Runs all tests, and the commands that they start, under sanitizers, in builds of its own (presets asan
+# and tsan; tests/ENVELOPE.md):
+#   sanitize.sh address [GOOGLETEST ARGUMENT...]  AddressSanitizer, LeakSanitizer and UBSan
+#   sanitize.sh thread [GOOGLETEST ARGUMENT...]   ThreadSanitizer, with an instrumented oneTBB
+#   sanitize.sh status                            when each last passed
+# The last line is "N passed, N failed"; a report of a sanitizer, which is shown, counts as a failed test.
+# If none failed, tests/sanitizers/passed.txt says so, by sanitizer and arguments, to be committed. The
+# packages are those that tools/build.sh installs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-mode=${1:?address or thread}
-shift
-build=$PWD/build/$mode
-suppressions=$PWD/tests/sanitizers
-
-configureAndBuild() {  # PRESET TARGET
-  cmake --preset "$1" >/dev/null
-  cmake --build "$build" --parallel "$(nproc)" --target "$2"
-}
+record=tests/sanitizers/passed.txt
 
 # oneTBB from Debian's sources, instrumented: ThreadSanitizer must see how it synchronises threads.
-buildOneTbb() {
-  local work=$build/onetbb
+buildOneTbb() {  # FOLDER
+  local work=$1
   [[ -e $work/libtbb.so.12 ]] && return
   mkdir -p "$work"/{parts,lists}
   sed 's/^Types: deb$/Types: deb-src/' /etc/apt/sources.list.d/debian.sources >"$work/parts/src.sources"
@@ -34,44 +28,67 @@ buildOneTbb() {
   cp "$(find "$work/build" -name libtbb.so.12)" "$work/"
 }
 
+# Replaces the paragraph of this sanitizer and these arguments.
+writeRecord() {  # NAME COMMIT PASSED SKIPPED_TESTS
+  local rest
+  rest=$(awk -v name="$1:" 'BEGIN { RS = ""; ORS = "\n\n" } index($0, name) != 1' "$record")
+  {
+    [[ -z $rest ]] || printf '%s\n\n' "$rest"
+    echo "$1: $3 passed, $(date +%F), commit $2"
+    [[ -z $4 ]] || sed 's/^/  left out: /' <<<"$4"
+  } >"$record.new"
+  mv "$record.new" "$record"
+}
+
+mode=${1:?address, thread or status}
+shift
 case $mode in
-address)
-  configureAndBuild asan tests
-  LSAN_OPTIONS=suppressions=$suppressions/leak.txt UBSAN_OPTIONS=print_stacktrace=1 \
-    "$build/tests" "$@"
-  ;;
-thread)
-  buildOneTbb
-  configureAndBuild tsan chromeball
-  out=$build/out
-  mkdir -p "$out"
-  export LD_LIBRARY_PATH=$build/onetbb
-  # Reports go to files: our readers redirect standard error, which would hide them.
-  export TSAN_OPTIONS="suppressions=$suppressions/thread.txt log_path=$out/report"
-  rm -f "$out"/report*
-  render() { "$build/chromeball" render "$@" --threads 4 --samples 4 --quiet -o "$out/a.exr"; }
-  probe=$out/probe.exr
-  "$build/chromeball" probe synth sun-sky "$probe" --size 256x128
-  for model in scenes/models/still-life.glb "$@"; do
-    render "$model" --probe "$probe" --size 96x72 --aov albedo,normal,depth,variance
-  done
-  for strategy in bsdf uniform suns product median-cut:16 irradiance-fit:4 kollig-keller:8; do
-    render scenes/models/pillars.gltf --probe "$probe" --size 96x72 --strategy "$strategy"
-  done
-  render scenes/terrace.toml
-  "$build/chromeball" probe convert "$probe" "$out/b.exr" --to angular
-  "$build/chromeball" probe irradiance "$probe" "$out/b.exr" --size 64x32
-  "$build/chromeball" lights-error "$probe" --methods median-cut,penrose --counts 2,4 --normals 1280
-  "$build/chromeball" compare scenes/models/pillars.gltf --probe "$probe" --size 32x24 --quiet \
-    --strategies importance,uniform --samples 1,4 --repeats 3 --reference-samples 16 -o "$out/compare"
-  if compgen -G "$out/report*" >/dev/null; then
-    cat "$out"/report* >&2
-    exit 1
-  fi
-  echo "No data race."
-  ;;
-*)
-  echo "address or thread, not $mode" >&2
-  exit 2
-  ;;
+  address) preset=asan ;;
+  thread) preset=tsan ;;
+  status)
+    grep -v '^ ' "$record" | while read -r line; do
+      [[ -z $line || $line == '#'* ]] ||
+        echo "$line, $(git rev-list --count "${line##* }..HEAD") commits ago"
+    done
+    exit
+    ;;
+  *)
+    echo "address, thread or status, not $mode" >&2
+    exit 2
+    ;;
 esac
+
+commit=$(git rev-parse --short=12 HEAD)
+git diff --quiet HEAD -- CMakeLists.txt renderer tools tests ":!$record" || commit+="+changes"
+build=$PWD/build/$mode
+suppressions=$PWD/tests/sanitizers
+if [[ $mode == thread ]]; then
+  buildOneTbb "$build/onetbb"
+  export LD_LIBRARY_PATH=$build/onetbb
+fi
+cmake --preset "$preset" >/dev/null
+cmake --build "$build" --parallel "$(nproc)" --target tests
+
+# Reports go to files: tests redirect the standard error of commands, which would hide them. (GCC's UBSan
+# has no such option; its findings end the process, so that the test fails.)
+reports=$build/reports
+rm -rf "$reports"
+mkdir -p "$reports"
+export ASAN_OPTIONS=log_path=$reports/report
+export LSAN_OPTIONS=suppressions=$suppressions/leak.txt
+export UBSAN_OPTIONS=print_stacktrace=1
+export TSAN_OPTIONS=suppressions=$suppressions/thread.txt:log_path=$reports/report
+
+tools/scripts/run_tests.sh "$build" "$@" | tee "$build/tests.log" || true
+read -r passed _ failed _ < <(tail -n 1 "$build/tests.log")
+for report in "$reports"/*; do
+  [[ -e $report ]] || continue
+  cat "$report" >&2
+  failed=$((failed + 1))
+done
+if ((failed == 0 && passed > 0)) && [[ $commit != *+changes ]]; then
+  writeRecord "$mode, ${*:-all tests}" "$commit" "$passed" \
+    "$(tools/scripts/skipped_tests.sh "$build"/tests-*.log)"
+fi
+echo "$passed passed, $failed failed"
+((failed == 0))

@@ -99,9 +99,10 @@ std::span<const uint8_t> blockOf(std::span<const uint8_t> file) {
 }
 
 Exif parse(const Block& block) {
+  constexpr double kMostBytes = 0x1p53;  // of a file, so that a double tells its positions
   if (!block.isTiff()) return {};
   const auto pointer = block.find(block.firstDirectory(), kExifDirectory);
-  if (!pointer) return {};
+  if (!pointer || *pointer > kMostBytes) return {};
   const auto find = [&](Tag tag) { return block.find(uint64_t(*pointer), tag); };
   return {find(kExposureTime), find(kFNumber), find(kPhotographicSensitivity),
           find(kFocalLengthIn35mmFilm)};

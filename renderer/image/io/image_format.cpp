@@ -21,7 +21,10 @@ ImageFormat imageFormat(std::span<const uint8_t> firstBytes) {
   const std::string_view bytes(reinterpret_cast<const char*>(firstBytes.data()), firstBytes.size());
   for (const auto& [magic, format] : kMagic)
     if (bytes.starts_with(magic)) return format;
-  if (bytes.starts_with("RIFF") && bytes.substr(8).starts_with("WEBP")) return ImageFormat::Webp;
+  constexpr size_t kTypeAt = 8;  // after the size
+  if (bytes.starts_with("RIFF") && bytes.size() > kTypeAt &&
+      bytes.substr(kTypeAt).starts_with("WEBP"))
+    return ImageFormat::Webp;
   return ImageFormat::Unknown;
 }
 
