@@ -39,6 +39,8 @@ template Option Command::addOption(const std::string&, std::vector<std::string>&
 template Option Command::addOption(const std::string&, float&, const std::string&);
 template Option Command::addOption(const std::string&, double&, const std::string&);
 template Option Command::addOption(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::addOption(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::addOption(const std::string&, std::optional<int>&, const std::string&);
 template Option Command::addOption(const std::string&, std::optional<int64_t>&, const std::string&);
 template Option Command::addOption(const std::string&, std::optional<uint64_t>&,
                                    const std::string&);
