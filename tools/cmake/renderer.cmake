@@ -50,7 +50,10 @@ foreach(target chromeball_planning chromeball_renderer)
   target_include_directories(${target} PRIVATE renderer)
   target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
-  chromeball_unity(${target} 32)
+  # Each takes as long as a group: Eigen's decompositions, which nothing else instantiates.
+  set_source_files_properties(renderer/math/dense_solvers.cpp renderer/math/dense_decompositions.cpp
+                              PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  chromeball_unity(${target} 24)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
