@@ -220,18 +220,18 @@ TEST(ImageHeaders, UncoveredLightIsCounted) {
 TEST(SlowImageHeaders, ImagesLargerThanTheMemoryAreRefused) {
   const TemporaryFolder folder;
   const std::string pfm = folder / "a.pfm", hdr = folder / "a.hdr", exr = folder / "a.exr";
-  std::ofstream(pfm) << "PF\n12000 6000\n-1\n";
-  std::filesystem::resize_file(pfm, std::filesystem::file_size(pfm) + 12ull * 12000 * 6000);
-  std::ofstream(hdr) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 6000 +X 12000\n";
-  std::filesystem::resize_file(hdr, std::filesystem::file_size(hdr) + 4ull * 12000 * 6000);
-  const CommandLimits limits{.memory = 1'500'000'000};
+  std::ofstream(pfm) << "PF\n6000 3000\n-1\n";
+  std::filesystem::resize_file(pfm, std::filesystem::file_size(pfm) + 12ull * 6000 * 3000);
+  std::ofstream(hdr) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 3000 +X 6000\n";
+  std::filesystem::resize_file(hdr, std::filesystem::file_size(hdr) + 4ull * 6000 * 3000);
+  const CommandLimits limits{.memory = 700'000'000};
   for (const std::string& file : {pfm, hdr})
     for (const std::vector<std::string>& words :
          std::vector<std::vector<std::string>>{{"image", "view", file, folder / "o.png"},
                                                {"probe", "info", file},
                                                {"probe", "convert", file, exr, "--to", "angular"},
                                                {"image", "error", file, file}})
-      expectError(words, "12000 x 6000 texels with 3 channels take 2.59 GB", limits);
+      expectError(words, "6000 x 3000 texels with 3 channels take 0.648 GB", limits);
 }
 
 }  // namespace

@@ -36,14 +36,14 @@ std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const s
     if (image.width > kMaxImageSide || image.height > kMaxImageSide)
       throwInput("{}: {} x {} texels with {} channels; the limit is {} x {}", name, image.width,
                  image.height, image.channels, kMaxImageSide, kMaxImageSide);
-    constexpr double kTextureCopies = 1.5;  // itself and its smaller levels
-    checkImageMemory(name, image.width, image.height, 4, image.bits > 8 ? sizeof(float) : 1,
-                     kTextureCopies);
     // A texel of a PNG takes at least one bit.
     if (format == ImageFormat::Png &&
         uint64_t(image.width) * uint64_t(image.height) > file.size() * 8 * kMaxDeflateRatio)
       throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
                  image.height, file.size());
+    constexpr double kTextureCopies = 1.5;  // itself and its smaller levels
+    checkImageMemory(name, image.width, image.height, 4, image.bits > 8 ? sizeof(float) : 1,
+                     kTextureCopies);
   };
   return format == ImageFormat::Png ? openPng(file, check) : openJpeg(file, check);
 }
