@@ -87,7 +87,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
       "renderer/lighting/light_file.cpp", "renderer/scene/gltf/", "renderer/scene/solve/",
       "renderer/study/", "tools/", "tests/"}},
     {"Eigen/",
-     {"renderer/math/dense_solvers.", "renderer/math/least_squares.cpp", "renderer/lighting/fit/",
+     {"renderer/math/dense_", "renderer/math/least_squares.cpp", "renderer/lighting/fit/",
       "renderer/scene/solve/", "renderer/relight/clustered_pca.cpp"}},
     {"boost/", {"renderer/measure/"}},
     {"CLI/", {"tools/command/command.cpp", "tools/command/command_line.cpp"}},

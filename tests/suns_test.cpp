@@ -120,7 +120,10 @@ TEST(Suns, WithoutSunsEqualsImportance) {
     ASSERT_EQ(sample.size(), 1u);
     EXPECT_EQ(sample[0].wi, b.take(i)[0].wi);
     EXPECT_EQ(sample[0].pdf, importance.pdf(sample[0].wi));
-    EXPECT_EQ(suns.background({}, sample[0].wi), probe.radiance(sample[0].wi));
+    const Rgb background = suns.background({}, sample[0].wi),
+              radiance = probe.radiance(sample[0].wi);
+    for (int c = 0; c < 3; ++c)  // two compilations of the same interpolation round differently
+      EXPECT_FLOAT_EQ(background[c], radiance[c]);
   }
   const Probe black(constantProbe({8, 4}, Rgb(0)));
   EXPECT_TRUE(Samples(Suns(black, false), {0, 1, 0}).take(0).empty());

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "denoise/denoise.h"
+#include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
-#include "input_image.h"
 #include "job/denoised_image.h"
 #include "job/image_memory.h"
 #include "job/output_file.h"
@@ -80,13 +80,14 @@ void checkMemory(const std::string& path, const Image& color) {
 void run(const ImageDenoiseArguments& arguments) {
   checkWritable(arguments.output);
   checkDistinct({arguments.output}, {arguments.input});
-  ImageFile file = openImageFile(arguments.input);
+  ImageFile file = readImageFile(arguments.input);
   const Reader reader{arguments.input, file};
   const HalvedImage color{reader.color(), reader.layer("denoise.half", 3)};
   const DenoiseInput input{.parts = directAndIndirect(color, reader.halved("direct", 3)),
                            .albedo = reader.halved("albedo", 3, kMaxUnit),
                            .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
+  print(file.messages, false);  // not of a file that lacks layers: that is said instead
   checkMemory(arguments.input, color.mean);
   const std::atomic<bool> never = false;
   Denoised denoised = [&] {
