@@ -7,11 +7,11 @@
 namespace chromeball {
 
 // A pixel of one half of the samples, the sum of whose squared channels exceeds that of the 5 x 5
-// pixels around it in the other half, is scaled down to that sum. Rare bright paths are then missing
-// from the image; where they are frequent, both halves have them, and nothing changes. Returns an
-// estimate of the squared bias of each channel: the product of the mean light that either half
-// loses around a pixel. (The square of the loss of both would overestimate it: the rarer the paths,
-// the more.)
+// pixels around it in the other half, is scaled down to that sum. Rare bright paths are then
+// missing from the image; where they are frequent, both halves have them, and nothing changes.
+// Returns an estimate of the squared bias of each channel: the product of the mean light that
+// either half loses around a pixel. (The square of the loss of both would overestimate it: the
+// rarer the paths, the more.)
 Plane limitFireflies(HalfPlanes& halves);
 
 }  // namespace chromeball

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: here once. The
-// first two are in dense_decompositions.cpp.
+// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: here once.
+// The first two are in dense_decompositions.cpp.
 #pragma once
 
 #include <Eigen/Core>
