@@ -178,7 +178,7 @@ TEST(SlowSceneSuns, GiveHighlightsUnderEveryStrategy) {
 }
 
 // A white Lambertian floor under a sun of 46,700: E = pi sin^2(0.5323 / 2 degrees) 46,700 = 1.0077
-// pi, so its radiance is 1.0077 cos(theta) (HDRI book, 9.6.1).
+// pi, so its radiance is 1.0077 cos(theta) (HDRI book, 9.3.5).
 TEST(SceneSuns, AFloorThroughTheCommand) {
   GltfWriter w;
   w.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
