@@ -142,6 +142,8 @@ TEST(Image, PfmBigEndianAndGrey) {
   const Image image = readImage(folder / "big.pfm");  // big-endian, grey, bottom row first
   EXPECT_EQ(image.rgb(0, 0), Rgb(2));
   EXPECT_EQ(image.rgb(0, 1), Rgb(1));
+  write(folder / "dos.pfm", "Pf\r\n1 2\r\n1.0\r\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
+  EXPECT_EQ(readImage(folder / "dos.pfm").texels, image.texels);
   write(folder / "short.pfm", "PF\n2 2\n-1\n1234");
   expectInputError(folder / "short.pfm", "need");
   write(folder / "huge.pfm", "PF\n2000000000 2000000000\n-1\n1234");

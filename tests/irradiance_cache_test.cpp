@@ -298,6 +298,18 @@ TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
 }
 
+// A tent seen from above through the hidden backs of its roof: records are as dense as pixels ask
+// for, however far the camera is from the roof.
+TEST(SlowIrradianceCache, SeesThroughHiddenBacks) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.7f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  Material roof = lambert({0.8f, 0.2f, 0.2f});
+  roof.doubleSided = false;
+  addQuad(scene, addMaterial(scene, roof), {-1, 0.8f, -1}, {2, 0, 0}, {0, 0, 2});
+  const Image sky = constantProbe({32, 16}, Rgb(1));
+  EXPECT_NEAR(changeByCache(scene, sky, smallRender(48, 48, 128, 4)), 0, 0.02);
+}
+
 // What rough glass and mirrors throw onto the floor is in the records alone.
 TEST(SlowIrradianceCache, LosesNoLightBehindRoughGlass) {
   Scene scene;

@@ -121,6 +121,8 @@ std::vector<Case> whiteCases(const std::vector<float>& roughnesses) {
       MaterialPoint brushedMetal = dielectric(r);
       brushedMetal.metallic = 1;
       cases.push_back({"brushed metal" + by, brushedMetal, brushed(strength)});
+      brushedMetal.metallic = 0.5f;
+      cases.push_back({"brushed half metal" + by, brushedMetal, brushed(strength)});
     }
     for (const auto& [filmIor, thickness] :
          {std::pair(1.3f, 250.0f), {1.8f, 300.0f}, {2.2f, 500.0f}}) {

@@ -76,14 +76,15 @@ class CacheFiller {
     const glm::uvec2 pixel(x, y);
     context.sampler.startPixel(pixel.x, pixel.y, 0);
     context.sampler.startSample(0);
+    const Ray ray = cameraRay(float(x) + 0.5f, float(y) + 0.5f);
     PathState state;
-    state.ray = cameraRay(float(x) + 0.5f, float(y) + 0.5f);
+    state.ray = ray;
     const auto first =
         firstSurface(tracer_, state, tracer_.closestHit(state.ray, context), context);
     if (!first || !hasRecords(*first->surface.material)) return;
     const Ray next = cameraRay(float(x) + 1.5f, float(y) + 0.5f);
-    const float pixelWidth = glm::length(next.origin + state.length * next.direction -
-                                         state.ray.origin - state.length * state.ray.direction);
+    const float pixelWidth = glm::length(next.origin + state.length * next.direction - ray.origin -
+                                         state.length * ray.direction);
     const Bsdf bsdf = first->bsdf(tracer_, state);
     uint64_t count = 0;
     for (const MapLobe& lobe : bsdf.mapLobes())

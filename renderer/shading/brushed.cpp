@@ -14,28 +14,29 @@ Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
     : frame_(normalThatReflects(surface.normal, surface.geometricNormal, wo), tangent),
       geometricNormal_(surface.geometricNormal),
       wo_(frame_.toLocal(wo)),
-      alpha_(ggx::anisotropicAlpha(m.roughness, strength)),
-      f0_(glm::mix(m.dielectricF0, metalF0, m.metallic)),
-      f90_(glm::mix(m.dielectricF90, 1.0f, m.metallic)) {
+      alpha_(ggx::anisotropicAlpha(m.roughness, strength)) {
   wo_.z = std::max(wo_.z, 1e-6f);
   lambdaO_ = ggx::lambda(wo_, alpha_);
   narrow_ = std::max(alpha_.x, alpha_.y) < mirrorAlpha;
   const SpecularAlbedo once = tables.anisotropic->albedo(wo_, m.roughness, strength);
   const float white = once.a + once.b;
   const auto gain = [white](const auto& f0) { return 1.0f + f0 * ((1 - white) / white); };
-  gain_ = gain(f0_);
+  // Each part with its own gain: that of the mixture would be less than the mixture of both.
+  const Rgb dielectricGain = gain(m.dielectricF0), metalGain = gain(metalF0);
+  f0_ = glm::mix(m.dielectricF0 * dielectricGain, metalF0 * metalGain, m.metallic);
+  f90_ = glm::mix(m.dielectricF90 * dielectricGain, metalGain, m.metallic);
 
   const float dielectricF0 = maxComponent(m.dielectricF0);
   surfaceAlbedo_ = (dielectricF0 * once.a + m.dielectricF90 * once.b) * gain(dielectricF0);
   diffuse_ = diffuse * (1 - surfaceAlbedo_);
-  specularAlbedo_ = (f0_ * once.a + f90_ * once.b) * gain_;
+  specularAlbedo_ = f0_ * once.a + f90_ * once.b;
   const float specular = luminance(specularAlbedo_);
   albedo_ = specular + luminance(diffuse_);
   specularProbability_ = albedo_ > 0 ? specular / albedo_ : 1;
 }
 
 Rgb Brushed::fresnel(float cosine) const {
-  return fresnelSchlick(f0_, f90_, std::min(cosine, 1.0f)) * gain_;
+  return fresnelSchlick(f0_, f90_, std::min(cosine, 1.0f));
 }
 
 BsdfValue Brushed::evaluate(const vec3& wi, Lobes lobes) const {

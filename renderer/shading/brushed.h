@@ -43,9 +43,8 @@ class Brushed {
   vec2 alpha_;
   float lambdaO_;
   bool narrow_;
-  Rgb f0_, f90_;
-  Rgb gain_;     // of the specular lobe, for multiple scattering
-  Rgb diffuse_;  // times the fraction that passes the surface
+  Rgb f0_, f90_;  // of the specular lobe, times its gain for multiple scattering
+  Rgb diffuse_;   // times the fraction that passes the surface
   Rgb specularAlbedo_;
   float specularProbability_;  // of sampling the specular lobe
   float albedo_, surfaceAlbedo_;

@@ -50,12 +50,13 @@ Image readPfm(const std::filesystem::path& path) {
     throwInput("{}: the scale of a PFM, {}, should be a number below or above 0", path.string(),
                scale);
   const bool littleEndian = scale < 0;
-  const size_t begin = position + 1;
+  size_t begin = position + 1;  // one white space, or a line's end of two
 
   const int channels = magic == "PF" ? 3 : 1;
   checkImageSize(path, width, height, channels);
   checkImageMemory(path, width, height, channels);
   const size_t rowBytes = size_t(width) * channels * sizeof(float);
+  if (text.substr(position, 2) == "\r\n" && bytes.size() == begin + 1 + rowBytes * height) ++begin;
   if (bytes.size() < begin || bytes.size() - begin < rowBytes * height)
     throwInput("{}: {} x {} texels need {} bytes, but the file has {}", path.string(), width,
                height, begin + rowBytes * height, bytes.size());
