@@ -179,6 +179,7 @@ TEST_F(CommandCamera, RefusesBadLists) {
                     "bad.csv:2: `px` is `nan`; it should be a finite number");
   expectPointsError(head + "a,0,inf,0,2,5\n", "bad.csv:2: `y` is `inf`");
   expectPointsError(head + "a,0,1e999,0,2,5\n", "bad.csv:2: `y` is `1e999`");
+  expectPointsError(head + "a,0,0,0,1e160,5\n", "bad.csv:2: `px` is `1e160`; it should be between");
   expectPointsError(head + "a,0,,0,2,5\n", "bad.csv:2: `y` is ``");
   expectPointsError(head + "\na,0,1,0,2\n",
                     "bad.csv:3: has the columns `a,0,1,0,2`; they should be name,x,y,z,px,py");

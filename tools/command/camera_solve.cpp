@@ -2,6 +2,8 @@
 // chromeball camera solve MODEL PLATE --points P.csv | --lines L.csv | --fspy F.json -o camera.toml
 #include <cstdio>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "camera_commands.h"
 #include "camera_report.h"
@@ -69,6 +71,9 @@ Scene loadModels(const std::string& path) {
 
 dvec2 pairOf(const std::string& text, const char* option) {
   const std::vector<double> numbers = parseNumbers(text, 2, option);
+  for (const double number : numbers)
+    if (std::fabs(number) > 1e9)
+      throwInput("{}: {} should be between -1e9 and 1e9", option, number);
   return {numbers[0], numbers[1]};
 }
 
