@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball camera solve MODEL PLATE --points P.csv | --lines L.csv | --fspy F.json -o camera.toml
-#include <cstdio>
-
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "camera_commands.h"
