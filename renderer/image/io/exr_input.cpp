@@ -140,12 +140,14 @@ class ExrInput::Part {
       const bool isInteger = header().channels()[channels[c].c_str()].type == Imf::UINT;
       if (isInteger) integers[c].resize(width * size_t(count));
       const size_t stride = isInteger ? sizeof(uint32_t) : channels.size() * sizeof(float);
-      // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row.
+      // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row. The base
+      // of a window far from 0 is no address, so it is a number.
       const ptrdiff_t offset = (ptrdiff_t(width) * first + window.min.x) * ptrdiff_t(stride);
       char* begin = isInteger ? reinterpret_cast<char*>(integers[c].data())
                               : reinterpret_cast<char*>(texels + c);
-      buffer.insert(channels[c], Imf::Slice(isInteger ? Imf::UINT : Imf::FLOAT, begin - offset,
-                                            stride, stride * width));
+      char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(begin) - uintptr_t(offset));
+      buffer.insert(channels[c],
+                    Imf::Slice(isInteger ? Imf::UINT : Imf::FLOAT, base, stride, stride * width));
     }
     if (!part_) part_.emplace(file_, selected_);
     part_->setFrameBuffer(buffer);
