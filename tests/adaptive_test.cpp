@@ -3,8 +3,7 @@
 // samples; and more accurate at the same mean number.
 #include <gtest/gtest.h>
 
-#include <tbb/global_control.h>
-
+#include "base/parallel.h"
 #include "film/allocation.h"
 #include "integrate/render.h"
 #include "measure/statistics.h"
@@ -192,7 +191,7 @@ TEST(SlowAdaptive, TheNumberOfThreadsChangesNothing) {
   const Probe probe(named.probe);
   std::vector<Image> images;
   for (const size_t threads : {1, 2, 5}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     const RenderResult r =
         renderScene(named.scene, camera, probe, "importance", adaptiveRender(50, 40, 20));
     EXPECT_TRUE(r.adaptive);

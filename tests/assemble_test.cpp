@@ -3,8 +3,8 @@
 #include "probe/capture/assemble.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
 #include "capture_photographs.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
@@ -196,7 +196,7 @@ TEST(SlowAssemble, IsTheSameForAnyNumberOfThreads) {
     return assembly;
   };
   const Assembly many = assembled();
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const Assembly single = assembled();
   EXPECT_EQ(many.latLong.texels, single.latLong.texels);
   EXPECT_EQ(many.blindShare, single.blindShare);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Baked light against closed forms.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "bake/fill_page.h"
 #include "bake/lightmap.h"
 #include "bake/texel_filter.h"
 #include "bake/vertex_light.h"
 #include "bake_scenes.h"
+#include "base/parallel.h"
 #include "probe/synth.h"
 #include "small_scenes.h"
 
@@ -135,7 +135,7 @@ TEST(Bake, OcclusionOfABoxOnAFloor) {
 TEST(Bake, SameBitsForAnyNumberOfThreads) {
   const NamedScene scene = threeScenes()[0];
   const auto bakedBy = [&](size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     const Baked baked(scene.scene, scene.probe, "importance", 48, {.samples = 4});
     return filteredLight(baked.points, baked.result, 48);
   };

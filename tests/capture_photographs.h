@@ -3,11 +3,10 @@
 // reflected: without the formulas of probe/capture/optics.h.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <functional>
 #include <limits>
 
+#include "base/parallel.h"
 #include "math/icosphere.h"
 #include "probe/capture/capture_view.h"
 #include "probe/irradiance.h"
@@ -60,7 +59,7 @@ inline dvec3 ballRadiance(const BallScene& scene, const dvec2& p) {
 inline Image photographOf(const std::function<dvec3(const dvec2&)>& radiance, int width, int height,
                           const Circle& circle, int samples) {
   Image image(width, height, 3);
-  tbb::parallel_for(0, height, [&](int y) {
+  parallelFor(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       dvec3 sum(0);
       for (int j = 0; j < samples; ++j)

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tbb/global_control.h>
-
+#include "base/parallel.h"
 #include "composite/render_composite.h"
 #include "integrate/guide_gain.h"
 #include "integrate/trace_photons.h"
@@ -298,7 +297,7 @@ TEST(CausticGuide, TheNumberOfThreadsChangesNothing) {
   const Scene scene = balls();
   std::vector<Image> images;
   for (const size_t threads : {1, 2, 5}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     const RenderResult r =
         renderScene(scene, above(), lamp(), "importance", guidedRender(50, 40, 32, Guiding::Auto));
     EXPECT_GT(r.causticFraction, 0);

@@ -4,10 +4,10 @@
 #include "denoise/denoise.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "denoise/regression.h"
 #include "denoise/vector8.h"
 #include "integrate/render.h"
@@ -207,7 +207,7 @@ TEST(Denoise, AcceptsAnySize) {
 TEST(Denoise, DoesNotDependOnThreads) {
   const DenoiseInput input = noisy(0.3f, [](int x, int) { return 1 + 0.05f * float(x); });
   const auto with = [&](size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     return run(input);
   };
   const Denoised one = with(1), three = with(3);

@@ -3,11 +3,11 @@
 #include "image/develop/develop.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
 #include "image/develop/glare.h"
 #include "image/develop/vignette.h"
 
@@ -323,7 +323,7 @@ TEST(Develop, SameBitsForAnyNumberOfThreads) {
                                  .vignette = 0.5};
   Image all = image, one = image;
   develop(all, settings, &depth, {0, 0, 257, 129, 50});
-  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit single(1);
   develop(one, settings, &depth, {0, 0, 257, 129, 50});
   EXPECT_EQ(all.texels, one.texels);
 }

@@ -2,8 +2,8 @@
 // Environment mapping and ambient occlusion as integrators: right on convex objects, furnaces, and
 // what they miss elsewhere.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
 #include "integrate/environment_map.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
@@ -227,7 +227,7 @@ TEST(EnvironmentMap, BearsExtremesAndAnyThreadCount) {
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-3, -1, 3}, {6, 0, 0}, {0, 0, -6});
   for (const char* row : {"importance+environment-map", "suns+ambient-occlusion"}) {
     const auto picture = [&](float scale, size_t threads) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const ThreadLimit limit(threads);
       const Probe probe(spot(64, 32, 40, 6, 500 * scale, 0.2f * scale));
       const RenderResult result = renderRow(row, scene, towardsOrigin(), probe, 8);
       EXPECT_EQ(result.invalid.total(), 0u);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Matrices of glossy transfer: against diffuse transfer and path-traced radiance, and in a file.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
 #include "relight/clustered_pca.h"
 #include "relight/glossy_transfer.h"
 #include "small_scenes.h"
@@ -106,7 +106,7 @@ TEST(GlossyTransfer, SameBitsForAnyNumberOfThreads) {
   const Scene scene = sphereOf(lambert(Rgb(0.5f)));
   const Estimated e(scene, {.samples = 4});
   const auto valuesOf = [&](size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     return e.glossy().matrices.values;
   };
   EXPECT_EQ(valuesOf(1), valuesOf(3));

@@ -3,8 +3,7 @@
 // elsewhere.
 #include <gtest/gtest.h>
 
-#include <tbb/global_control.h>
-
+#include "base/parallel.h"
 #include "composite/render_composite.h"
 #include "integrate/guiding/light_guide.h"
 #include "lighting/combined_light.h"
@@ -391,7 +390,7 @@ TEST(Guide, TheNumberOfThreadsChangesNothing) {
   const Scene scene = room();
   std::vector<Image> images;
   for (const size_t threads : {1, 2, 5}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     const RenderResult r = renderScene(scene, inside(), sunBehind(), "importance",
                                        guidedRender(50, 40, 32, Guiding::Auto));
     EXPECT_GT(r.guidedRegions, 0u);

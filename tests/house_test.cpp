@@ -90,6 +90,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
      {"renderer/math/dense_", "renderer/math/least_squares.cpp", "renderer/lighting/fit/",
       "renderer/scene/solve/", "renderer/relight/clustered_pca.cpp"}},
     {"boost/", {"renderer/measure/"}},
+    {"tbb/", {"renderer/base/parallel.cpp"}},
     {"CLI/", {"tools/command/command.cpp", "tools/command/command_line.cpp"}},
     {"httplib.h", {"tools/command/viewers/"}},
 };

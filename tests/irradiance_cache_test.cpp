@@ -2,9 +2,9 @@
 // The irradiance cache: exact where the light is even, gradients against differences, its bias
 // against path tracing, and its records.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "base/memory_archive.h"
+#include "base/parallel.h"
 #include "integrate/fill_cache.h"
 #include "integrate/gather_irradiance.h"
 #include "probe/synth.h"
@@ -219,7 +219,7 @@ TEST(IrradianceCache, ArchivesItsRecords) {
 TEST(IrradianceCache, DoesNotDependOnThreads) {
   const Image sky = overcastProbe({32, 16}, Rgb(1), 0.3);
   const auto withThreads = [&](size_t threads) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit control(threads);
     return renderRow("importance+irradiance-cache:0.5", room(), inRoom(), sky,
                      smallRender(40, 30, 2, 4))
         .film.mean();

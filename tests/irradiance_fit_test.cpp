@@ -3,12 +3,12 @@
 #include "lighting/fit/irradiance_fit.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "lighting/fit/cosine_pattern.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/fit/light_error.h"
@@ -249,7 +249,7 @@ TEST(IrradianceFit, ScalesWithTheProbe) {
 TEST(IrradianceFit, IsIndependentOfTheNumberOfThreads) {
   const Image probe = studioProbe(kSize);
   const IrradianceFit many = fitIrradiance(probe, {.count = 4});
-  tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const IrradianceFit single = fitIrradiance(probe, {.count = 4});
   for (size_t i = 0; i < many.lights.size(); ++i) {
     EXPECT_EQ(many.lights[i].direction, single.lights[i].direction);

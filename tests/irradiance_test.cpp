@@ -4,10 +4,10 @@
 #include "probe/irradiance.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <random>
 
+#include "base/parallel.h"
 #include "image/io/read_image.h"
 #include "math/icosphere.h"
 #include "probe/load.h"
@@ -177,7 +177,7 @@ TEST(Irradiance, IsIndependentOfThreadsAndOtherNormals) {
   const std::vector<vec3> normals = icosphereNormals(3);
   const auto together = exactIrradiance(probe, normals);
   {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimit one(1);
     EXPECT_EQ(exactIrradiance(probe, normals), together);
   }
   for (const size_t count : {size_t(0), size_t(1), size_t(17)}) {

@@ -3,10 +3,9 @@
 // weighted sum is the scene under a probe.
 #include <gtest/gtest.h>
 
-#include <tbb/global_control.h>
-
 #include <cmath>
 
+#include "base/parallel.h"
 #include "math/frame.h"
 #include "measure/agreement.h"
 #include "measure/statistics.h"
@@ -374,7 +373,7 @@ TEST(LightStage, FileKeepsItsElements) {
 TEST(LightStage, IsTheSameForAnyNumberOfThreads) {
   const Scene scene = threeScenes()[0].scene;
   const BasisRender all = stageOf(scene, "cube:2", settingsOf(4));
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const BasisRender alone = stageOf(scene, "cube:2", settingsOf(4));
   EXPECT_EQ(all.stage.elements.texels, alone.stage.elements.texels);
 }

@@ -2,8 +2,8 @@
 // Ways of rendering (guide, regularisation, straight shadows of glass, denoising) and their
 // combinations: determinism, extremes of radiance, limits of noise.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
 #include "job/denoised_image.h"
 #include "probe/synth.h"
 #include "scene/thin_wall.h"
@@ -70,7 +70,7 @@ Probe sunny(float scale) { return Probe(spot(64, 32, 40, 6, 500 * scale, 0.2f * 
 TEST(SlowModes, DoNotDependOnThreads) {
   for (const char* row : kRows) {
     const auto with = [&](size_t threads) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const ThreadLimit limit(threads);
       return renderRow(row, sunny(1), 24).image.texels;
     };
     EXPECT_EQ(with(1), with(3)) << row;

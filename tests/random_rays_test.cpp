@@ -3,12 +3,12 @@
 #include "probe/random_rays.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-
 #include <nlohmann/json.hpp>
+
 #include <numeric>
 #include <random>
 
+#include "base/parallel.h"
 #include "image/io/write_image.h"
 #include "math/frame.h"
 #include "math/icosphere.h"
@@ -110,7 +110,7 @@ TEST(RandomRays, SameBitsForAnyNumberOfThreadsAndOtherNormals) {
   const Image probe = studioProbe({32, 16});
   const std::vector<vec3> normals = icosphereNormals(1);
   const std::vector<RayVariance> together = rayVariances(probe, normals);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const std::vector<RayVariance> few = rayVariances(probe, std::span(normals).last(5));
   for (size_t i = 0; i < few.size(); ++i)
     EXPECT_EQ(few[i].cosine, together[normals.size() - 5 + i].cosine);

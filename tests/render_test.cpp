@@ -3,8 +3,8 @@
 #include "integrate/render.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
 #include "measure/statistics.h"
 #include "probe/mapping.h"
 #include "probe/sky.h"
@@ -157,7 +157,7 @@ TEST(Render, sameBitsForAnyNumberOfThreads) {
   settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Node};
   std::vector<std::vector<float>> images;
   for (int threads : {1, 2, 3}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    const ThreadLimit limit(size_t(threads));
     const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "importance", settings);
     std::vector<float> all = r.film.mean().texels;
     for (float x : varianceImage(r.film.errors()).texels) all.push_back(x);

@@ -5,11 +5,10 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-
 #include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"
 #include "image/io/read_image.h"
@@ -81,7 +80,7 @@ TEST(SlowTexelFile, ThreadsReadTheSameWhileTilesAreDiscarded) {
     file.add(kWidth, kHeight, texels8(size_t(kWidth) * kHeight, i << 32));
   EXPECT_GT(file.byteCount(), 6 * file.cacheBytes());
   std::atomic<int> wrong = 0;
-  tbb::parallel_for(0, 64, [&](int task) {
+  parallelFor(0, 64, [&](int task) {
     for (uint64_t i = 0; i < 4000; ++i) {
       const uint64_t random = hash(uint64_t(task) << 32 | i);
       const int image = int(random % kImages), x = int(random >> 8) & (kWidth - 1),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Transfer at vertices against irradiance in closed form and against path-traced bakes.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "bake/bake.h"
+#include "base/parallel.h"
 #include "probe/irradiance.h"
 #include "probe/spherical_harmonics.h"
 #include "probe/synth.h"
@@ -187,7 +187,7 @@ TEST(Transfer, LampsAndEmissionAreApart) {
 TEST(Transfer, SameBitsForAnyNumberOfThreads) {
   const NamedScene scene = threeScenes()[1];
   const auto valuesOf = [&](size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     return Transferred(scene.scene, "haar:2", {.samples = 16}).transfer.values;
   };
   EXPECT_EQ(valuesOf(1), valuesOf(3));

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/bake.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <bit>
 #include <mutex>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -78,25 +76,21 @@ BakeResult bake(const World& world, const LightSource& lighting,
   const Baker baker(tracer, meshes, settings);
   BakeResult result;
   result.points.resize(points.size());
-  tbb::enumerable_thread_specific<Worker> workers([&] { return baker.makeWorker(); });
+  PerThread<Worker> workers([&] { return baker.makeWorker(); });
   std::atomic<size_t> finished = 0;
   std::mutex reporting;
   constexpr size_t kGrain = 64;
-  tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, points.size(), kGrain),
-      [&](const tbb::blocked_range<size_t>& range) {
-        Worker& worker = workers.local();
-        for (size_t i = range.begin(); i < range.end(); ++i)
-          result.points[i] = baker.bake(points[i], worker);
-        const size_t count = finished += range.size();
-        if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-          progress(double(count) / double(points.size()));
-      },
-      tbb::simple_partitioner());
-  for (const Worker& worker : workers) {
+  parallelRanges(points.size(), kGrain, [&](size_t begin, size_t end) {
+    Worker& worker = workers.local();
+    for (size_t i = begin; i < end; ++i) result.points[i] = baker.bake(points[i], worker);
+    const size_t count = finished += end - begin;
+    if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+      progress(double(count) / double(points.size()));
+  });
+  workers.forEach([&](const Worker& worker) {
     result.invalid.add(worker.invalid);
     result.rays.add(worker.context.counts);
-  }
+  });
   world.scene.checkTexels();
   return result;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/bake_points.h"
 
-#include <tbb/parallel_for.h>
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -72,7 +72,7 @@ std::vector<BakePoint> texelPoints(const std::vector<PlacedMesh>& meshes,
                                    const std::vector<Chart>& charts, const Atlas& atlas) {
   constexpr float kOffEdge = 1e-3f;
   std::vector<std::vector<BakePoint>> byChart(charts.size());
-  tbb::parallel_for(size_t(0), charts.size(), [&](size_t i) {
+  parallelFor(size_t(0), charts.size(), [&](size_t i) {
     const Chart& chart = charts[i];
     const ChartTexels texels(meshes[size_t(chart.instance)], chart, atlas, i);
     texels.forCovered([&](int x, int y, const Nearest& nearest) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/fill_page.h"
 
-#include <tbb/parallel_for.h>
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -82,8 +82,8 @@ void fillPage(Image& page, std::vector<uint8_t> isBaked, const Atlas& atlas) {
     for (size_t c = 0; c < sums.size(); ++c) sums[c] += page.texels[i * sums.size() + c];
     ++count;
   }
-  tbb::parallel_for(size_t(0), atlas.places.size(),
-                    [&](size_t i) { PlaceFiller(page, isBaked, atlas.places[i]).fill(); });
+  parallelFor(size_t(0), atlas.places.size(),
+              [&](size_t i) { PlaceFiller(page, isBaked, atlas.places[i]).fill(); });
   for (size_t i = 0; i < isBaked.size() && count > 0; ++i)
     for (size_t c = 0; c < sums.size() && !isBaked[i]; ++c)
       page.texels[i * sums.size() + c] = float(sums[c] / count);

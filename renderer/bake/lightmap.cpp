@@ -5,7 +5,7 @@
 
 #include "bake/fill_page.h"
 #include "bake/shown_color.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 

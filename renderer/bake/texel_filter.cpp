@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/texel_filter.h"
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

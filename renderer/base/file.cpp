@@ -2,7 +2,6 @@
 #include "base/file.h"
 
 #include <fcntl.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/long_array.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 
@@ -53,7 +53,7 @@ FileBytes::FileBytes(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   constexpr size_t kBlock = 8 << 20;
   std::atomic<bool> isWhole = file >= 0;
-  tbb::parallel_for(size_t(0), (size_ + kBlock - 1) / kBlock, [&](size_t block) {
+  parallelFor(size_t(0), (size_ + kBlock - 1) / kBlock, [&](size_t block) {
     const size_t end = std::min(size_, (block + 1) * kBlock);
     for (size_t at = block * kBlock; at < end && isWhole;) {
       const ssize_t count = pread(file, data_.get() + at, end - at, off_t(at));

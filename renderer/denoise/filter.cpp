@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/filter.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
+#include "base/parallel.h"
 #include "denoise/vector8.h"
 
 namespace chromeball {
@@ -24,7 +23,7 @@ void forTiles(int width, int height, const std::atomic<bool>& stop, const Visit&
     const int px = phase % kColumnPhases, py = phase / kColumnPhases;
     const int columns = along(width, kWidth, px, kColumnPhases);
     const int rows = along(height, kHeight, py, kRowPhases);
-    tbb::parallel_for(0, columns * rows, [&](int i) {
+    parallelFor(0, columns * rows, [&](int i) {
       if (stop) return;
       visit((i % columns * kColumnPhases + px) * kWidth, (i / columns * kRowPhases + py) * kHeight);
     });
@@ -82,7 +81,7 @@ void copyTile(const std::vector<Plane>& from, int left, int top, int right, int 
 HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop) {
   const int width = halves[0].values[0].width(), height = halves[0].values[0].height();
   HalfChannels results;
-  tbb::enumerable_thread_specific<TileWeights> tileWeights;
+  PerThread<TileWeights> tileWeights;
   for (size_t half = 0; half < 2; ++half) {
     const std::vector<Plane>& channels = halves[half].values;
     std::vector<Plane>& means = results[half];
@@ -124,7 +123,7 @@ std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
                                                  const std::atomic<bool>& stop) {
   const int width = component.variance[0].width(), height = component.variance[0].height();
   std::array<HalfPlanes, kBandwidths> results;
-  tbb::enumerable_thread_specific<TileWeights> tileWeights;
+  PerThread<TileWeights> tileWeights;
   for (size_t half = 0; half < 2; ++half) {
     std::array<Predictions, kBandwidths> predictions{Predictions(width, height),
                                                      Predictions(width, height)};

@@ -16,8 +16,8 @@ void Plane::extend() {
 }
 
 void Plane::clear() {
-  tbb::parallel_for(-kMargin, height_ + kMargin,
-                    [&](int y) { std::fill_n(row(y) - kMargin, stride_, 0.0f); });
+  parallelFor(-kMargin, height_ + kMargin,
+              [&](int y) { std::fill_n(row(y) - kMargin, stride_, 0.0f); });
 }
 
 Plane planeOf(const Image& image, int channel) {

@@ -2,14 +2,13 @@
 // Images as separate planes with a margin, so that windows around any pixel can be read.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
+#include "base/parallel.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -51,7 +50,7 @@ using RgbPlanes = std::array<Plane, 3>;
 template <class Value>
 Plane makePlane(int width, int height, const Value& value) {
   Plane plane(width, height);
-  tbb::parallel_for(0, height, [&](int y) {
+  parallelFor(0, height, [&](int y) {
     float* row = plane.row(y);
     for (int x = 0; x < width; ++x) row[x] = value(x, y);
   });

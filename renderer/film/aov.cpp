@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
 #include "base/long_array.h"
+#include "base/parallel.h"
 #include "base/suggest.h"
 
 namespace chromeball {

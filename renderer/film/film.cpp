@@ -5,8 +5,8 @@
 #include <cassert>
 #include <limits>
 
-#include "base/for_ranges.h"
 #include "base/long_array.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "base/for_ranges.h"
 #include "base/long_array.h"
+#include "base/parallel.h"
 #include "film/window.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "math/least_squares.h"
 
 namespace chromeball {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/fill_cache.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 
+#include "base/parallel.h"
 #include "integrate/first_surface.h"
 #include "integrate/gather_irradiance.h"
 #include "scene/camera.h"
@@ -46,7 +45,7 @@ class CacheFiller {
   std::vector<CachePoint> pointsOf(int spacing) {
     const int rows = (settings_.height + spacing - 1) / spacing;
     std::vector<std::vector<CachePoint>> found(static_cast<size_t>(rows));
-    tbb::parallel_for(0, rows, [&](int row) {
+    parallelFor(0, rows, [&](int row) {
       const int y = row * spacing;
       for (int x = 0; x < settings_.width; x += spacing) {
         const bool isOld = spacing < kCoarsest && x % (2 * spacing) == 0 && y % (2 * spacing) == 0;
@@ -61,7 +60,7 @@ class CacheFiller {
   // Tries a group of points: adds a record for each one that lacks one.
   void tryOut(std::span<const CachePoint> points) {
     std::vector<std::optional<IrradianceRecord>> made(points.size());
-    tbb::parallel_for(size_t(0), points.size(), [&](size_t i) {
+    parallelFor(size_t(0), points.size(), [&](size_t i) {
       if (!isCovered(points[i])) made[i] = recordOf(points[i]);
     });
     for (const auto& record : made)

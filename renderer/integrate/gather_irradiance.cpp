@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/gather_irradiance.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "film/invalid.h"
 #include "math/frame.h"
 #include "trace/surface_ray.h"
@@ -177,10 +175,10 @@ std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const
   const PathTracer sources(tracer.world(), tracer.lighting(), sourcesAlone(tracer.settings()));
   const GatheredPath path(tracer, sources);
   std::atomic<bool> valid = true;
-  tbb::parallel_for(tbb::blocked_range<int>(0, strata.elevations), [&](const auto& range) {
+  parallelAdaptiveRanges(size_t(strata.elevations), [&](size_t begin, size_t end) {
     PathContext& context = contexts.local();
     context.sampler.startPixel(pixel.x, pixel.y, block);
-    for (int j = range.begin(); j < range.end(); ++j)
+    for (int j = int(begin); j < int(end); ++j)
       for (int k = 0; k < strata.azimuths; ++k) {
         context.sampler.startSample(uint32_t(j * strata.azimuths + k));
         context.sampler.startVertex(0);

@@ -2,8 +2,7 @@
 // Makes a record of the irradiance cache: samples the hemisphere above a point.
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
+#include "base/parallel.h"
 #include "integrate/irradiance_cache/record.h"
 #include "integrate/path.h"
 
@@ -20,7 +19,7 @@ struct Strata {
 // About `samples` of them, nearly square: azimuths = pi elevations.
 Strata strataOf(float samples);
 
-using PathContexts = tbb::enumerable_thread_specific<PathContext>;
+using PathContexts = PerThread<PathContext>;
 
 // The settings of paths from a camera that see a surface and the light of sources that it reflects:
 // all that records lack.

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/render.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <mutex>
 
+#include "base/parallel.h"
 #include "integrate/guide_training.h"
 #include "integrate/pixel_renderer.h"
 #include "integrate/render_state.h"
@@ -60,18 +57,15 @@ class Renderer {
     const Beam beam = beamOfPass(state_.wanted);
     std::atomic<size_t> finished = tiles_.count() - open.size();
     std::mutex reporting;
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, open.size(), 1),
-        [&](const tbb::blocked_range<size_t>& range) {
-          PixelWorker& worker = workers_.local();
-          for (size_t i = range.begin(); i < range.end() && !isDone(); ++i) {
-            renderTile(worker, open[i], beam);
-            const size_t count = ++finished;
-            if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-              progress(double(count) / double(tiles_.count()));
-          }
-        },
-        tbb::simple_partitioner());
+    parallelRanges(open.size(), 1, [&](size_t begin, size_t end) {
+      PixelWorker& worker = workers_.local();
+      for (size_t i = begin; i < end && !isDone(); ++i) {
+        renderTile(worker, open[i], beam);
+        const size_t count = ++finished;
+        if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+          progress(double(count) / double(tiles_.count()));
+      }
+    });
     gather();
   }
 
@@ -137,12 +131,12 @@ class Renderer {
   // Moves what the threads have counted to the result.
   void gather() {
     RenderResult& result = state_.result;
-    for (PixelWorker& worker : workers_) {
+    workers_.forEach([&](PixelWorker& worker) {
       result.rays.add(std::exchange(worker.context.counts, {}));
       result.depthCut.add(std::exchange(worker.context.depthCut, {}));
       result.clamped.add(worker.context.clamp.takeClamped());
       result.invalid.add(std::exchange(worker.invalid, {}));
-    }
+    });
   }
 
   const Integrator& integrator_;
@@ -152,7 +146,7 @@ class Renderer {
   RenderState& state_;
   TileGrid tiles_;
   PixelRenderer pixels_;
-  tbb::enumerable_thread_specific<PixelWorker> workers_;
+  PerThread<PixelWorker> workers_;
   bool trains_ = false;  // the pass in progress is part of the guides' training
 };
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/trace_photons.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "integrate/media.h"
 #include "math/frame.h"
 #include "math/warp.h"
@@ -235,7 +234,7 @@ std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting
   size_t rays = 0;
   for (size_t begin = 0, end = std::min<size_t>(tasks, 1); begin < end;) {
     std::vector<Traced> found(end - begin);
-    tbb::parallel_for(begin, end, [&](size_t task) {
+    parallelFor(begin, end, [&](size_t task) {
       const size_t last = std::min(budget.paths, (task + 1) * kPathsPerTask);
       for (size_t i = task * kPathsPerTask; i < last; ++i) {
         Traced& out = found[task - begin];

@@ -2,7 +2,6 @@
 #include "job/job_description.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <filesystem>
 
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "job/file_hash.h"
 #include "job/job_changes.h"
 #include "job/json_text.h"
@@ -161,8 +161,7 @@ Metadata toMetadata(const Json& description) {
 std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   for (const char* name : kVariedByComparisons) identity.erase(name);
-  identity["threads"] =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  identity["threads"] = threadCount();
   return jsonText(identity);
 }
 

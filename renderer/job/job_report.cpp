@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_report.h"
 
-#include <tbb/global_control.h>
-
 #include <cmath>
 
+#include "base/parallel.h"
 #include "job/id_manifest.h"
 #include "job/job_description.h"
 #include "job/machine.h"
@@ -74,7 +73,7 @@ json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
       {"max_transmission_depth", job.settings.maxTransmissionDepth},
-      {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
+      {"threads", threadCount()},
       {"seconds",
        {{"load", seconds.load},
         {"build", seconds.build},

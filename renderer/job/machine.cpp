@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <tbb/global_control.h>
 
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -67,8 +68,7 @@ Machine thisMachine() {
   char date[32];
   std::strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", std::gmtime(&now));
   machine.date = date;
-  machine.threads =
-      int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  machine.threads = threadCount();
   machine.command = commandLine();
   return machine;
 }

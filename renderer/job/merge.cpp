@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/merge.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <optional>
 #include <tuple>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/io/exr_state.h"
 #include "job/image_memory.h"
 #include "job/job_description.h"
@@ -156,7 +155,7 @@ void addPart(const std::string& path, MergedParts& whole) {
     whole.addSamples(settings.shard, totals.samples);
 
     const Bands bands{window.width, window.height};
-    tbb::enumerable_thread_specific<std::optional<RenderResult>> films;  // of one band each
+    PerThread<std::optional<RenderResult>> films;  // of one band each
     a.blocks(bands.count(), [&](Archive& block, size_t index) {
       const Rows rows = bands.rows(index);
       std::optional<RenderResult>& band = films.local();

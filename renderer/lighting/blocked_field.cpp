@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/blocked_field.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -34,7 +34,7 @@ BlockedField::BlockedField(const Probe& probe)
       columnSums_(size_t(columns_) * (probe.cellRows() + 1)),
       rowSums_(size_t(probe.cellRows()) * (probe.width() + 1)) {
   const int height = probe.cellRows(), width = probe.width();
-  tbb::parallel_for(0, height, [&](int row) {
+  parallelFor(0, height, [&](int row) {
     double* sums = &rowSums_[size_t(row) * (width + 1)];
     for (int x = 0; x < width; ++x) sums[x + 1] = sums[x] + field_.integral(x, row);
   });

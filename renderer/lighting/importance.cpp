@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/importance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <cassert>
 #include <numeric>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -49,7 +49,7 @@ Importance::Importance(const Probe& probe, bool compensated)
 // Fills both levels of the distribution; returns the sum of all cells' weights.
 double Importance::tabulate() {
   std::vector<double> rowWeights(probe_.cellRows());
-  tbb::parallel_for(0, probe_.cellRows(), [&](int row) {
+  parallelFor(0, probe_.cellRows(), [&](int row) {
     std::vector<double> cells(probe_.width());
     for (int x = 0; x < probe_.width(); ++x) cells[x] = field_.integral(x, row);
     rowWeights[row] = columns_.setRow(row, cells);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/irradiance_spheres.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "image/tonemap.h"
 #include "math/icosphere.h"
 
@@ -20,7 +19,7 @@ constexpr int kSubpixelRow = kDiameter * kSubpixels;
 // The face under each subpixel of a disc, row by row, seen from +Z (side 1) or -Z (-1); -1 outside.
 std::vector<int> facesOf(float side, int subdivisions) {
   std::vector<int> faces(size_t(kSubpixelRow) * kSubpixelRow, -1);
-  tbb::parallel_for(0, kSubpixelRow, [&](int y) {
+  parallelFor(0, kSubpixelRow, [&](int y) {
     for (int x = 0; x < kSubpixelRow; ++x) {
       const vec2 p = (vec2(x, y) + 0.5f) * (2.0f / kSubpixelRow) - 1.0f;
       const float height = 1 - dot(p, p);
@@ -34,7 +33,7 @@ std::vector<int> facesOf(float side, int subdivisions) {
 
 void drawDisc(Image& picture, int left, int top, const std::vector<int>& faces,
               const std::vector<Rgb>& colors) {
-  tbb::parallel_for(0, kDiameter, [&](int y) {
+  parallelFor(0, kDiameter, [&](int y) {
     for (int x = 0; x < kDiameter; ++x) {
       Rgb sum(0);
       for (int j = kSubpixels * y; j < kSubpixels * (y + 1); ++j)

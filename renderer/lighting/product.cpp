@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/product.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -67,7 +67,7 @@ Product::Product(const Probe& probe)
   std::vector<std::vector<vec3>> directions(field_.blocks());
   for (int block = 0; block < field_.blocks(); ++block)
     directions[block] = field_.directions(block);
-  tbb::parallel_for(0, kBins, [&](int bin) {
+  parallelFor(0, kBins, [&](int bin) {
     const std::vector<vec3> normals = normalsOf(bin);
     std::vector<double> cosines;
     for (const auto& block : directions) cosines.push_back(meanCosine(block, normals) + kMinCosine);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/align.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "math/frame.h"
 #include "math/icosphere.h"
 #include "probe/log_map.h"
@@ -85,7 +84,7 @@ bool fitsAsWell(const Candidate& candidate, const Candidate& best, double least)
 // Refined with these maps; without those that fit worse, best first.
 std::vector<Candidate> refined(const MapPair& maps, std::vector<Candidate> candidates, int height,
                                double leastResidual) {
-  tbb::parallel_for(size_t(0), candidates.size(), [&](size_t i) {
+  parallelFor(size_t(0), candidates.size(), [&](size_t i) {
     candidates[i].rotation = maps.refined(candidates[i].rotation);
     candidates[i].correlation = maps.correlation(candidates[i].rotation);
   });
@@ -101,7 +100,7 @@ std::vector<Candidate> search(const MapPair& maps) {
   constexpr size_t kCount = 64;
   constexpr double kApart = 15;  // degrees
   std::vector<Candidate> candidates = grid();
-  tbb::parallel_for(size_t(0), candidates.size(), [&](size_t i) {
+  parallelFor(size_t(0), candidates.size(), [&](size_t i) {
     candidates[i].correlation = maps.correlation(candidates[i].rotation);
   });
   return distinct(std::move(candidates), kApart, kCount);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/convolve.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <limits>
 #include <optional>
 
+#include "base/parallel.h"
 #include "probe/irradiance.h"
 #include "probe/map_moments.h"
 #include "probe/spherical_harmonics.h"
@@ -111,11 +109,8 @@ std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
   const MapMoments map(latLong);
   const Lobe lobe(kernel, error);
   std::vector<dvec3> means(directions.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, directions.size(), 16),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i < range.end(); ++i)
-                        means[i] = KernelSum(map, lobe, directions[i]).mean();
-                    });
+  parallelFor(size_t(0), directions.size(),
+              [&](size_t i) { means[i] = KernelSum(map, lobe, directions[i]).mean(); });
   return means;
 }
 

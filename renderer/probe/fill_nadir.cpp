@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-
 #include <complex>
 #include <vector>
 
+#include "base/parallel.h"
 #include "probe/edit.h"
 
 namespace chromeball {
@@ -16,7 +15,7 @@ class RowSeries {
       : coefficients_(size_t(image.width + 1) / 2), turn_(size_t(image.width)) {
     const auto width = size_t(image.width);
     for (size_t i = 0; i < width; ++i) turn_[i] = std::polar(1.0, 2 * kPiD * double(i) / width);
-    tbb::parallel_for(size_t(0), coefficients_.size(), [&](size_t m) {
+    parallelFor(size_t(0), coefficients_.size(), [&](size_t m) {
       std::complex<double> sum = 0;
       for (size_t x = 0; x < width; ++x)
         sum += double(image.at(int(x), row)[channel]) * std::conj(turn_[m * x % width]);
@@ -56,7 +55,7 @@ int fillNadir(Image& latLong, double radius) {
   const double rim = std::tan(0.5 * angle(first - 1));
   for (int channel = 0; channel < 3; ++channel) {
     const RowSeries series(latLong, first - 1, channel);
-    tbb::parallel_for(first, latLong.height, [&](int y) {
+    parallelFor(first, latLong.height, [&](int y) {
       for (int x = 0; x < latLong.width; ++x)
         latLong.at(x, y)[channel] = series.inside(std::tan(0.5 * angle(y)) / rim, x);
     });

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/irradiance.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <optional>
 
+#include "base/parallel.h"
 #include "probe/arc_integrals.h"
 #include "probe/spherical_harmonics.h"
 
@@ -47,16 +45,15 @@ std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> n
   for (int first = 0; first < height; first += bandRows) {
     const int count = std::min(bandRows, height - first);
     std::vector<std::optional<Row>> rows(static_cast<size_t>(count));
-    tbb::parallel_for(0, count, [&](int i) { rows[size_t(i)] = rowOf(latLong, first + i, table); });
-    const auto addTo = [&](const tbb::blocked_range<size_t>& range) {
+    parallelFor(0, count, [&](int i) { rows[size_t(i)] = rowOf(latLong, first + i, table); });
+    parallelRanges(normals.size(), kNormalsOfTask, [&](size_t begin, size_t end) {
       for (int i = 0; i < count * parts; ++i) {
         const double part = kPiD / (double(height) * parts), theta = part * (first * parts + i);
         const PolarMoments moments(theta, theta + part);
-        for (size_t n = range.begin(); n < range.end(); ++n)
+        for (size_t n = begin; n < end; ++n)
           irradiance[n] += irradianceFrom(*rows[size_t(i / parts)], moments, horizons[n]);
       }
-    };
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, normals.size(), kNormalsOfTask), addTo);
+    });
   }
   return irradiance;
 }

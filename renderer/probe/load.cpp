@@ -8,7 +8,7 @@
 #include <new>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/detect_mapping.h"

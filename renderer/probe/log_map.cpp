@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
 

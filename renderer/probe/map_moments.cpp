@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/map_moments.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "probe/arc_integrals.h"
 
 namespace chromeball {
@@ -48,7 +47,7 @@ MapMoments::MapMoments(const Image& latLong) : map_(&latLong) {
   for (int level = 1; columnsOf(level - 1) > 1 || rowsOf(level - 1) > 1; ++level) {
     const int columns = columnsOf(level);
     std::vector<Stored> nodes(size_t(columns) * rowsOf(level), Stored{RectangleGeometry({})});
-    tbb::parallel_for(0, rowsOf(level), [&](int y) {
+    parallelFor(0, rowsOf(level), [&](int y) {
       for (int x = 0; x < columns; ++x)
         nodes[size_t(y) * columns + x] = sumOfChildren({level, x, y});
     });

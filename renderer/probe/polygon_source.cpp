@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "probe/bright_region.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"

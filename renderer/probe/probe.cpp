@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

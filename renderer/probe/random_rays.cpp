@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/random_rays.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "probe/arc_integrals.h"
 #include "probe/solid_angle.h"
 
@@ -64,12 +62,12 @@ std::vector<Sums> integrate(const Image& latLong, std::span<const vec3> normals)
   std::vector<Sums> sums(normals.size());
   for (int y = 0; y < height; ++y) {
     const RaysRow row = raysRowOf(latLong, y, table);
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, normals.size(), 64), [&](const auto& range) {
+    parallelRanges(normals.size(), 64, [&](size_t begin, size_t end) {
       for (int part = 0; part < parts; ++part) {
         const double step = kPiD / (double(height) * parts), theta = step * (y * parts + part);
         const PolarMoments m(theta, theta + step);
         const SquareMoments m2(theta, theta + step);
-        for (size_t i = range.begin(); i < range.end(); ++i) sums[i].add(row, m, m2, horizons[i]);
+        for (size_t i = begin; i < end; ++i) sums[i].add(row, m, m2, horizons[i]);
       }
     });
   }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/rasterize.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <vector>
 
+#include "base/parallel.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
@@ -41,7 +40,7 @@ Image rasterizeLatLong(const ImageSize& size, int samplesPerSide,
   const int n = samplesPerSide;
   const std::vector<dvec2> phi = sinesAndCosines(n * size.width, -kPiD, kPiD);
   const std::vector<dvec2> theta = sinesAndCosines(n * size.height, 0, kPiD);
-  tbb::parallel_for(0, size.height, [&](int y) {
+  parallelFor(0, size.height, [&](int y) {
     for (int x = 0; x < size.width; ++x) {
       Mean mean;
       for (int j = n * y; j < n * (y + 1); ++j)
@@ -72,7 +71,7 @@ Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
       }
     return mean;
   };
-  tbb::parallel_for(0, size.height, [&](int y) {
+  parallelFor(0, size.height, [&](int y) {
     for (int x = 0; x < size.width; ++x) out.setRgb(x, y, meanOverTexel(x, y));
   });
   return out;

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

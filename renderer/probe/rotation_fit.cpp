@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "math/icosphere.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"

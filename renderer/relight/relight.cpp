@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "base/suggest.h"
 #include "relight/dct.h"
 #include "relight/haar.h"

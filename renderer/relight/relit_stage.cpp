@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/relit_stage.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <atomic>
 #include <thread>
 #include <utility>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "relight/keep_largest.h"
 
 namespace chromeball {
@@ -30,13 +28,13 @@ void forPixels(const LightStage& band, RelightDomain domain, const Visit& visit)
 }
 
 size_t leastBinOf(StageBands& stage, RelightDomain domain, double share) {
-  tbb::enumerable_thread_specific<Magnitudes> parts;
+  PerThread<Magnitudes> parts;
   stage.forEach([&](const LightStage& band, int) {
     forPixels(band, domain,
               [&](int, int, std::span<const float> numbers) { parts.local().add(numbers); });
   });
   Magnitudes all;
-  for (const Magnitudes& part : parts) all.add(part);
+  parts.forEach([&](const Magnitudes& part) { all.add(part); });
   return all.leastBin(share);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/render_basis.h"
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -2,11 +2,10 @@
 // Sums over the texels of a lat-long grid, on all threads.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <vector>
 
+#include "base/parallel.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
@@ -20,7 +19,7 @@ std::vector<T> sumOverSphere(const ImageSize& grid, size_t count, const Add& add
   std::vector<dvec3> columns(static_cast<size_t>(grid.width));  // directions of the equator
   for (int x = 0; x < grid.width; ++x) columns[size_t(x)] = texelDirection({grid.width, 1}, x, 0);
   std::vector<std::vector<T>> parts(kParts, std::vector<T>(count, T(0)));
-  tbb::parallel_for(0, kParts, [&](int part) {
+  parallelFor(0, kParts, [&](int part) {
     for (int y = grid.height * part / kParts; y < grid.height * (part + 1) / kParts; ++y) {
       const double solidAngle = texelSolidAngle(y, grid.width, grid.height);
       const dvec3 row = texelDirection({1, grid.height}, 0, y);

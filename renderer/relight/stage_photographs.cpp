@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "image/io/read_image.h"
 #include "math/unit_direction.h"
 

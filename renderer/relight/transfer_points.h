@@ -2,15 +2,12 @@
 // Calls an estimate at every point of a scene, on all threads.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <bit>
 #include <mutex>
 
 #include "bake/point_light.h"
+#include "base/parallel.h"
 #include "relight/escaping_path.h"
 #include "relight/vertex_transfer.h"
 
@@ -40,30 +37,27 @@ class TransferPoints {
   template <class Estimate>
   void forPoints(VertexTransfer& result, const Progress& progress, const Estimate& estimate) const {
     result.isBuried.assign(points_.size(), 0);
-    tbb::enumerable_thread_specific<TransferWorker> workers([&] {
+    PerThread<TransferWorker> workers([&] {
       return TransferWorker{
           {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp()}, {}, {}};
     });
     std::atomic<size_t> finished = 0;
     std::mutex reporting;
     constexpr size_t kGrain = 16;
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, points_.size(), kGrain),
-        [&](const tbb::blocked_range<size_t>& range) {
-          TransferWorker& worker = workers.local();
-          for (size_t i = range.begin(); i < range.end(); ++i) {
-            const BakePoint& point = points_[i];
-            const Surface surface = light_.surfaceAt(point);
-            worker.context.sampler.startPixel(point.x, point.y, kProbingBlock);
-            result.isBuried[i] = light_.isBuried(point, surface, meshes_, worker.context);
-            if (!result.isBuried[i]) estimate(i, surface, worker);
-          }
-          const size_t count = finished += range.size();
-          if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-            progress(double(count) / double(points_.size()));
-        },
-        tbb::simple_partitioner());
-    for (const TransferWorker& worker : workers) result.invalid.add(worker.invalid);
+    parallelRanges(points_.size(), kGrain, [&](size_t begin, size_t end) {
+      TransferWorker& worker = workers.local();
+      for (size_t i = begin; i < end; ++i) {
+        const BakePoint& point = points_[i];
+        const Surface surface = light_.surfaceAt(point);
+        worker.context.sampler.startPixel(point.x, point.y, kProbingBlock);
+        result.isBuried[i] = light_.isBuried(point, surface, meshes_, worker.context);
+        if (!result.isBuried[i]) estimate(i, surface, worker);
+      }
+      const size_t count = finished += end - begin;
+      if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+        progress(double(count) / double(points_.size()));
+    });
+    workers.forEach([&](const TransferWorker& worker) { result.invalid.add(worker.invalid); });
   }
 
   // For each sample, with its random numbers set: add(trace()), but for invalid paths. Returns how

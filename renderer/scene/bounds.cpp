@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/bounds.h"
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 template <class Place>
 Bounds boundsOf(const std::vector<vec3>& points, const Place& place) {
   return joinRanges(
-      points.size(), Bounds(),
+      points.size(), kElementsOfTask, Bounds(),
       [&](size_t begin, size_t end, Bounds& box) {
         for (size_t i = begin; i < end; ++i) box.add(place(points[i]));
       },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/framing.h"
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "scene/bounds.h"
 #include "scene/interior_view.h"
 
@@ -103,10 +103,11 @@ Camera framingCamera(const Scene& scene, float aspectRatio) {
         part.upwards.add(glm::dot(p, up), z);
       }
     };
-    fit = joinRanges(positions.size(), fit, addVertices, [](ImageFit& to, const ImageFit& other) {
-      to.across.add(other.across);
-      to.upwards.add(other.upwards);
-    });
+    fit = joinRanges(positions.size(), kElementsOfTask, fit, addVertices,
+                     [](ImageFit& to, const ImageFit& other) {
+                       to.across.add(other.across);
+                       to.upwards.add(other.upwards);
+                     });
   }
   const double distance = std::max(fit.across.distance(), fit.upwards.distance());
   camera.position =

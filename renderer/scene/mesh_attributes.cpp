@@ -6,7 +6,7 @@
 #include <mutex>
 #include <utility>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

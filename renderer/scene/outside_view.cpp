@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/outside_view.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "scene/placed_triangles.h"
 
 namespace chromeball {
@@ -19,20 +17,19 @@ double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 void addInstance(const Scene& scene, const Instance& instance, const OutsideViews& empty,
                  OutsideViews& views) {
   constexpr size_t kGrain = 1 << 18;
-  const auto withTriangles = [&](const tbb::blocked_range<size_t>& range, OutsideViews to) {
-    forTriangles(scene, instance, range.begin(), range.end(), [&](const Corners& c) {
+  const auto addTriangles = [&](size_t begin, size_t end, OutsideViews& to) {
+    forTriangles(scene, instance, begin, end, [&](const Corners& c) {
       for (AxisView& view : to) view.add(c);
     });
-    return to;
   };
-  const auto joined = [](OutsideViews to, const OutsideViews& later) {
+  const auto join = [](OutsideViews& to, const OutsideViews& later) {
     for (size_t i = 0; i < to.size(); ++i) to[i].add(later[i]);
-    return to;
   };
-  const tbb::blocked_range<size_t> all(0, triangleCount(scene, instance), kGrain);
-  views = all.size() <= kGrain
-              ? withTriangles(all, std::move(views))
-              : joined(std::move(views), tbb::parallel_reduce(all, empty, withTriangles, joined));
+  const size_t count = triangleCount(scene, instance);
+  if (count <= kGrain)
+    addTriangles(0, count, views);
+  else
+    join(views, joinRanges(count, kGrain, empty, addTriangles, join));
 }
 
 }  // namespace

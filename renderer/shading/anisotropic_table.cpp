@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/anisotropic_table.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "shading/albedo_quadrature.h"
 
 namespace chromeball {
@@ -16,7 +15,7 @@ float fraction(int i, int count) { return float(i) / float(count - 1); }
 // Roughness and angle go as t^2, as in albedo_quadrature.h; symmetry leaves a quarter of a turn.
 AnisotropicTable::AnisotropicTable() {
   const std::vector<vec2> points = quadraturePoints(512);
-  tbb::parallel_for(0, kRoughnesses * kStrengths, [&](int row) {
+  parallelFor(0, kRoughnesses * kStrengths, [&](int row) {
     const int r = row / kStrengths, s = row % kStrengths;
     const float t = fraction(r, kRoughnesses);
     const vec2 alpha = ggx::anisotropicAlpha(t * t, fraction(s, kStrengths));

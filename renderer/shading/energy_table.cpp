@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/energy_table.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "shading/albedo_quadrature.h"
 
 namespace chromeball {
@@ -35,7 +34,7 @@ SpecularAlbedo average(const GridTable<SpecularAlbedo, kAngles>& line) {
 
 EnergyTable::EnergyTable() {
   const std::vector<vec2> points = quadraturePoints(4096);
-  tbb::parallel_for(0, kRoughnesses, [&](int r) {
+  parallelFor(0, kRoughnesses, [&](int r) {
     const float roughness = roughnessNode(r, kRoughnesses), alpha = roughness * roughness;
     GridTable<SpecularAlbedo, kAngles> line;
     for (int i = 0; i < kAngles; ++i) {

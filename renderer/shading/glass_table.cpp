@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/glass_table.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "shading/albedo_quadrature.h"
 #include "shading/fresnel.h"
 
@@ -56,7 +55,7 @@ std::array<GlassAlbedo, kEtas> integrateGlass(float mu, float alpha, std::span<c
 
 GlassTable::GlassTable() {
   const std::vector<vec2> points = quadraturePoints(1024);
-  tbb::parallel_for(0, kRoughnesses * kAngles, [&](int location) {
+  parallelFor(0, kRoughnesses * kAngles, [&](int location) {
     const int r = location / kAngles, i = location % kAngles;
     const float roughness = roughnessNode(r, kRoughnesses);
     const auto albedos =

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/sheen_table.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "math/warp.h"
 #include "shading/albedo_quadrature.h"
 #include "shading/charlie.h"
@@ -24,7 +23,7 @@ float integrateSheen(float mu, float alpha, std::span<const vec2> points) {
 
 SheenTable::SheenTable() {
   const std::vector<vec2> points = quadraturePoints(2048);
-  tbb::parallel_for(0, kRoughnesses, [&](int r) {
+  parallelFor(0, kRoughnesses, [&](int r) {
     const float roughness = kMinRoughness + (1 - kMinRoughness) * float(r) / (kRoughnesses - 1);
     for (int i = 0; i < kAngles; ++i)
       grid_.node({r, i}) = integrateSheen(angleNode(i, kAngles), roughness * roughness, points);

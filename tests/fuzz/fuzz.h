@@ -2,7 +2,6 @@
 // Helpers of the fuzz targets: the readers need files, the fuzzer provides bytes.
 #pragma once
 
-#include <oneapi/tbb/global_control.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -12,11 +11,12 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 
 // One thread is faster for such small inputs, and deterministic.
-inline const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+inline const ThreadLimit oneThread(1);
 
 // Writes the bytes to a file in a folder of this process; every call overwrites the same file.
 inline std::string fuzzFile(const uint8_t* bytes, size_t size, const std::string& name) {

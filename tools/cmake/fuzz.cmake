@@ -7,7 +7,6 @@ foreach(source ${fuzz_sources})
   cmake_path(GET source STEM name)
   add_executable(fuzz_${name} ${source})
   chromeball_internal_target(fuzz_${name})
-  target_link_libraries(fuzz_${name} PRIVATE TBB::tbb)
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/corpus/${name})  # where the fuzzer keeps what it finds
   add_test(NAME fuzz_${name} COMMAND fuzz_${name} -max_total_time=60 -timeout=10 -rss_limit_mb=2048

@@ -5,8 +5,8 @@ file(GLOB test_sources CONFIGURE_DEPENDS tests/*.cpp)
 add_executable(tests ${test_sources})
 chromeball_internal_target(tests)
 target_include_directories(tests PRIVATE tests)
-target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json TBB::tbb OpenEXR::OpenEXR
-                      PNG::PNG JPEG::JPEG GTest::gtest GTest::gtest_main)
+target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG
+                      JPEG::JPEG GTest::gtest GTest::gtest_main)
 chromeball_optimize_less(tests)
 chromeball_unity(tests 32)  # each file of tests has a namespace of its name
 # What a third of the tests include, and parse for seconds.

@@ -198,7 +198,7 @@ class Bake {
 
 void run(const BakeOptions& options) {
   checkBakeOptions(options);
-  const ThreadLimit threads(options.settings);
+  const ThreadLimit threads = threadLimit(options.settings);
   Bake(options).run();
 }
 

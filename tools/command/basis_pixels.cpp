@@ -84,7 +84,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const Stopwatch watch;
   const DirectionBasis basis(own.directions, "--directions");
   checkOutputFile(own.out, {".exr"});
-  const ThreadLimit threads(options.settings);
+  const ThreadLimit threads = threadLimit(options.settings);
   RenderJob job = basisJob(options, "light stage");
   const LoadedScene loaded = loadBasisScene(job);
   checkDistinct({own.out}, loaded.files);

@@ -160,7 +160,7 @@ class BasisVertices {
 
 void runBasisVertices(const SceneOptions& options, const BasisVerticesOptions& own) {
   check(options, own);
-  const ThreadLimit threads(options.settings);
+  const ThreadLimit threads = threadLimit(options.settings);
   BasisVertices(options, own).run();
 }
 

@@ -175,7 +175,7 @@ void compare(const CompareArguments& a) {
     if (setting.renderOnly) scene.settings.erase(setting.name());
   RenderJob job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
-  const ThreadLimit threads(a.scene.settings);
+  const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(job);
   const ReportFiles files(a.folder);
   checkOutputs(files, a, loaded);

@@ -92,7 +92,7 @@ void addState(const RenderJob& job, const LoadedScene& loaded, std::optional<Ren
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderJob job = planJob(scene, options.settings);
   const Messages outputMessages = checkOutputs(job);
-  const ThreadLimit threads(options.settings);
+  const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
 
   Stopwatch watch;
@@ -136,7 +136,7 @@ void printNew(const Messages& messages, std::set<std::string>& printed, bool qui
 
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   const std::vector<int>& frames = sequence.numbers();
-  const ThreadLimit threads(options.settings);
+  const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
   catchInterrupts();
   FrameScene scene;

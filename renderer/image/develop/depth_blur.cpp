@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -32,7 +32,7 @@ class GaussianLine {
   // Replaces the line by the filtered one. `scratch` is resized as needed.
   void apply(std::span<double> line, std::vector<double>& scratch) const;
 
-  size_t work() const { return work_; }  // per pixel, as a number of elements (base/for_ranges.h)
+  size_t work() const { return work_; }  // per pixel, as a number of elements (base/parallel.h)
 
  private:
   void applyTaps(std::span<const double> extended, std::span<double> filtered) const;

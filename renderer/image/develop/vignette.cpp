@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory_archive.h"
+#include "base/parallel.h"
 #include "image/io/exr_state.h"
 
 namespace chromeball {
@@ -103,7 +103,7 @@ class StateReader : public MemoryReader {
 
   void blocks(size_t count, const std::function<void(Archive&, size_t)>& block) override {
     check(count <= layout_.table.size() - next_);
-    tbb::parallel_for(size_t(0), count, [&](size_t i) { readBlock(next_ + i, i, block); });
+    parallelFor(size_t(0), count, [&](size_t i) { readBlock(next_ + i, i, block); });
     next_ += count;
   }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/memory_archive.h"
+#include "base/parallel.h"
 #include "image/io/exr_state.h"
 
 namespace chromeball {
@@ -37,7 +36,7 @@ class StateWriter : public MemoryWriter {
     for (size_t begin = 0; begin < count; begin += kAtOnce) {
       std::vector<BlockWriter> some(std::min(kAtOnce, count - begin));
       std::vector<uint64_t> sums(some.size());
-      tbb::parallel_for(size_t(0), some.size(), [&](size_t i) {
+      parallelFor(size_t(0), some.size(), [&](size_t i) {
         block(some[i], begin + i);
         sums[i] = checksum(some[i].contents);
       });

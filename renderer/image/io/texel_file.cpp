@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/texel_file.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "image/io/tile_cache.h"
 
 namespace chromeball {
@@ -89,7 +88,7 @@ struct TexelFile::State {
   const uint64_t id = nextId();
   TileCache cache;
   std::vector<StoredImage> images;
-  tbb::enumerable_thread_specific<RecentTiles> threads{&cache};
+  PerThread<RecentTiles> threads{[this] { return RecentTiles(&cache); }};
 };
 
 TexelFile::TexelFile(size_t cacheBytes)

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "image/io/encode_png.h"
 #include "image/io/lost_light.h"
 #include "image/io/pfm.h"

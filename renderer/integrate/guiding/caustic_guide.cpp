@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/guiding/caustic_guide.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {
@@ -17,7 +17,7 @@ CausticGuide::CausticGuide(std::vector<Photon> photons) {
   std::vector<std::span<Photon>> regions;
   tree_ = RegionTree(std::span(photons), kMinPhotons, regions);
   regions_.assign(regions.size(), {});
-  tbb::parallel_for(size_t(0), regions.size(), [&](size_t i) {
+  parallelFor(size_t(0), regions.size(), [&](size_t i) {
     if (regions[i].size() >= kMinPhotonsToGuide) regions_[i] = CausticLobes(regions[i]);
   });
   if (std::all_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.empty(); }))

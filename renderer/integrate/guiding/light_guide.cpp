@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrate/guiding/light_guide.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "math/warp.h"
 
 namespace chromeball {
@@ -64,8 +63,7 @@ void LightGuide::learn(std::vector<LightRecord> records) {
   std::vector<std::span<LightRecord>> regions;
   tree_ = RegionTree(std::span(records), kMinRecords, regions);
   regions_.assign(regions.size(), {});
-  tbb::parallel_for(size_t(0), regions.size(),
-                    [&](size_t i) { regions_[i] = GuideRegion(regions[i]); });
+  parallelFor(size_t(0), regions.size(), [&](size_t i) { regions_[i] = GuideRegion(regions[i]); });
 }
 
 size_t LightGuide::guidedRegions() const {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/texel_table.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
 
@@ -59,7 +58,7 @@ TexelTable::TexelTable(const Image& latLong, size_t maxCells)
     const double azimuth = 2 * kPiD * (x + 0.5) / mapWidth_;
     column[x] = {-std::sin(azimuth), std::cos(azimuth)};
   }
-  tbb::parallel_for(0, height_, [&](int row) {
+  parallelFor(0, height_, [&](int row) {
     for (int y = row * block_; y < std::min((row + 1) * block_, mapHeight_); ++y) {
       const double theta = kPiD * (y + 0.5) / mapHeight_;
       const double sine = std::sin(theta), cosine = std::cos(theta);

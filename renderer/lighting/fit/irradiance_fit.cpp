@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/irradiance_fit.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "lighting/fit/cosine_pattern.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/fit/light_error.h"
@@ -39,15 +38,15 @@ class Candidates {
   explicit Candidates(const RadiancePoints& probe) {
     for (const vec3& normal : icosphereNormals(3)) directions_.push_back(normalize(dvec3(normal)));
     products_.resize(directions_.size());
-    tbb::parallel_for(size_t(0), directions_.size(),
-                      [&](size_t i) { products_[i] = probe.productWith(directions_[i]).product; });
+    parallelFor(size_t(0), directions_.size(),
+                [&](size_t i) { products_[i] = probe.productWith(directions_[i]).product; });
   }
 
   // At most `count` directions in which one more light reduces the misfit most, the best first.
   // None if no light reduces it.
   std::vector<dvec3> best(const FittedLights& lights, int count) const {
     std::vector<double> gains(directions_.size());
-    tbb::parallel_for(size_t(0), directions_.size(), [&](size_t i) {
+    parallelFor(size_t(0), directions_.size(), [&](size_t i) {
       const dvec3 missing = max(residualProduct(i, lights), dvec3(0));
       gains[i] = dot(missing, missing);
     });
@@ -122,8 +121,7 @@ class Search {
 
  private:
   void descendAll(std::vector<FittedLights>& all, const RadiancePoints& probe, int steps) const {
-    tbb::parallel_for(size_t(0), all.size(),
-                      [&](size_t i) { descend(all[i], probe, ambient_, steps); });
+    parallelFor(size_t(0), all.size(), [&](size_t i) { descend(all[i], probe, ambient_, steps); });
   }
 
   static void keepBest(std::vector<FittedLights>& all) {

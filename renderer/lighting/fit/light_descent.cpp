@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/light_descent.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "lighting/fit/cosine_pattern.h"
 #include "lighting/fit/nonnegative.h"
 
@@ -24,8 +23,8 @@ constexpr double kRidge = 1e-12;
 
 Products productsWith(const RadiancePoints& probe, const std::vector<dvec3>& directions) {
   Products products(directions.size());
-  tbb::parallel_for(size_t(0), directions.size(),
-                    [&](size_t i) { products[i] = probe.productWith(directions[i]); });
+  parallelFor(size_t(0), directions.size(),
+              [&](size_t i) { products[i] = probe.productWith(directions[i]); });
   return products;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/assemble.h"
 
-#include <tbb/parallel_for.h>
-
+#include "base/parallel.h"
 #include "probe/probe.h"
 #include "probe/solid_angle.h"
 
@@ -16,7 +15,7 @@ Assembly assemble(const std::vector<CaptureView>& views, const ImageSize& size) 
 
   Assembly assembly{Image(size.width, size.height, 3), Image(size.width, size.height, 1)};
   std::vector<double> blind(size_t(size.height));  // solid angle by row
-  tbb::parallel_for(0, size.height, [&](int y) {
+  parallelFor(0, size.height, [&](int y) {
     for (int x = 0; x < size.width; ++x) {
       dvec3 sum(0);
       double shown = 0, all = 0;

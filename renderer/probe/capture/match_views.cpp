@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/match_views.h"
 
-#include <tbb/parallel_for.h>
-
 #include <functional>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
@@ -24,7 +23,7 @@ struct LuminanceMap {
 
   explicit LuminanceMap(const std::function<CaptureView::Sample(const dvec3&)>& sample)
       : luminance(size_t(kSize.width) * kSize.height), weight(luminance.size()) {
-    tbb::parallel_for(0, kSize.height, [&](int y) {
+    parallelFor(0, kSize.height, [&](int y) {
       for (int x = 0; x < kSize.width; ++x) {
         const CaptureView::Sample seen = sample(texelDirection(kSize, x, y));
         luminance[at(x, y)] = chromeball::luminance(seen.radiance);
@@ -79,7 +78,7 @@ Correlation correlation(const LuminanceMap& reference, const LuminanceMap& view,
 
 void findTurn(const LuminanceMap& reference, const LuminanceMap& view, ViewMatch& match) {
   std::vector<double> values(2 * kLargestShift + 1);
-  tbb::parallel_for(-kLargestShift, kLargestShift + 1, [&](int shift) {
+  parallelFor(-kLargestShift, kLargestShift + 1, [&](int shift) {
     values[size_t(shift + kLargestShift)] = correlation(reference, view, shift).value();
   });
   const auto best = std::max_element(values.begin(), values.end());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "image/io/read_image.h"
 #include "image/resample.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/tile_overlaps.h"
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
 

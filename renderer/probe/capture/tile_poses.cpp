@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/resample.h"
 #include "math/least_squares.h"
 #include "math/quantile.h"
@@ -78,7 +77,7 @@ std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dv
 std::vector<Difference> differencesAt(const std::vector<TileView>& views,
                                       const std::vector<Overlap>& overlaps) {
   std::vector<Difference> all(overlaps.size());
-  tbb::parallel_for(size_t(0), overlaps.size(), [&](size_t i) {
+  parallelFor(size_t(0), overlaps.size(), [&](size_t i) {
     const Overlap& o = overlaps[i];
     const TileView &a = views[size_t(o.first)], &b = views[size_t(o.second)];
     const dvec3 ofFirst(a.at(o.direction).radiance), ofSecond(b.at(o.direction).radiance);

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "base/for_ranges.h"
 #include "base/long_array.h"
+#include "base/parallel.h"
 
 namespace chromeball {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/decode_images.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 
+#include "base/parallel.h"
 #include "image/io/decode_image.h"
 #include "image/io/texel_file.h"
 #include "scene/mip_chain.h"
@@ -83,8 +82,7 @@ void decodeInParallel(std::vector<Source>& sources, const GltfFile& file) {
   std::sort(sources.begin(), sources.end(),
             [](const Source& a, const Source& b) { return a.length > b.length; });
   std::atomic<size_t> next = 0;
-  tbb::parallel_for(size_t(0), sources.size(),
-                    [&](size_t) { decode(sources[next++], file, nullptr); });
+  parallelFor(size_t(0), sources.size(), [&](size_t) { decode(sources[next++], file, nullptr); });
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/environment.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "image/io/decode_image.h"
 #include "probe/convert.h"
 #include "probe/repair.h"
@@ -64,7 +63,7 @@ Rgb radianceAt(const TexelGrid& grid, int x, int y) {
 // degrees, and the top and bottom faces not.
 Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
   std::array<TexelGrid, kFaces> grids;
-  tbb::parallel_for(0, kFaces, [&](int i) {
+  parallelFor(0, kFaces, [&](int i) {
     const int image = faces[size_t(i)];
     Bytes storage;
     const std::string name = file.describeImage(image);

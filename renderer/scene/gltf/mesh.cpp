@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/pose.h"
 #include "scene/mesh_attributes.h"

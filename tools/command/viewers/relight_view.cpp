@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/for_ranges.h"
+#include "base/parallel.h"
 #include "image/resample.h"
 #include "relight/light_weights.h"
 #include "relight/relight.h"

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+namespace chromeball {
+namespace {
+
+using SizeRange = tbb::blocked_range<size_t>;
+
+}  // namespace
+
+void parallelRanges(size_t count, size_t size, RangeBody body) {
+  tbb::parallel_for(
+      SizeRange(0, count, size), [&](const SizeRange& range) { body(range.begin(), range.end()); },
+      tbb::simple_partitioner());
+}
+
+void parallelAdaptiveRanges(size_t count, RangeBody body) {
+  tbb::parallel_for(SizeRange(0, count),
+                    [&](const SizeRange& range) { body(range.begin(), range.end()); });
+}
+
+struct ThreadSlots::Slots {
+  tbb::enumerable_thread_specific<void*> addresses{nullptr};
+};
+
+ThreadSlots::ThreadSlots() : slots_(std::make_unique<Slots>()) {}
+ThreadSlots::~ThreadSlots() = default;
+
+void*& ThreadSlots::local() { return slots_->addresses.local(); }
+
+struct ThreadLimit::Control : tbb::global_control {
+  using global_control::global_control;
+};
+
+ThreadLimit::ThreadLimit(size_t count) {
+  if (count > 0)
+    control_ = std::make_unique<Control>(tbb::global_control::max_allowed_parallelism, count);
+}
+ThreadLimit::~ThreadLimit() = default;
+
+int threadCount() {
+  return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+}  // namespace chromeball
