@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/dense_solvers.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
+
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 
@@ -15,10 +14,6 @@ Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& matrix) { return matrix.inverse
 
 Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   return matrix.ldlt().solve(right);
-}
-
-Eigen::VectorXd solveLeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
-  return matrix.colPivHouseholderQr().solve(right);
 }
 
 }  // namespace chromeball

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: here once.
-// The first two are in dense_decompositions.cpp.
+// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: here once,
+// in a file each of dense_*.cpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,6 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen eigenOfSymmetric(const Eigen::MatrixXd& matrix);
-
-// Of a matrix of at least as many rows as columns: descending singular values, and right singular
-// vectors as columns.
-struct SingularVectors {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd right;
-};
-SingularVectors singularVectors(const Eigen::MatrixXd& matrix);
 
 // J^T J.
 Eigen::MatrixXd normalMatrix(const Eigen::MatrixXd& jacobian);

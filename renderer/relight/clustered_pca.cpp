@@ -20,8 +20,7 @@ using Eigen::VectorXf;
 // is rounding alone are left out.
 MatrixXf principalVectors(const MatrixXd& centred, int most) {
   const bool isWide = centred.cols() > centred.rows();
-  const MatrixXd product =
-      isWide ? MatrixXd(centred * centred.transpose()) : MatrixXd(centred.transpose() * centred);
+  const MatrixXd product = normalMatrix(isWide ? MatrixXd(centred.transpose()) : centred);
   const SymmetricEigen eigen = eigenOfSymmetric(product);
   const Eigen::Index size = product.rows();
   const double least = 1e-14 * std::max(eigen.values[size - 1], 0.0);

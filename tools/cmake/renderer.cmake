@@ -41,6 +41,12 @@ set(chromeball_private_libraries
   # Headers only: a static library's consumers need not find them.
   $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+# Each takes as long as a group, for what it instantiates of a library.
+set_source_files_properties(
+  renderer/math/dense_eigen.cpp renderer/math/dense_least_squares.cpp
+  renderer/math/dense_solvers.cpp renderer/relight/clustered_pca.cpp renderer/lighting/light_file.cpp
+  renderer/scene/gltf/draco.cpp
+  PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 foreach(target chromeball_planning chromeball_renderer)
   chromeball_compile(${target})
   # GLM's definitions decide what its vectors declare, so consumers need the same.
@@ -50,9 +56,6 @@ foreach(target chromeball_planning chromeball_renderer)
   target_include_directories(${target} PRIVATE renderer)
   target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
-  # Each takes as long as a group: Eigen's decompositions, which nothing else instantiates.
-  set_source_files_properties(renderer/math/dense_solvers.cpp renderer/math/dense_decompositions.cpp
-                              PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   chromeball_unity(${target} 24)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE

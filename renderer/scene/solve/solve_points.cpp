@@ -2,6 +2,7 @@
 #include "scene/solve/solve_points.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "scene/solve/levenberg_marquardt.h"
@@ -36,10 +37,10 @@ struct Extents {
     for (size_t i = 0; i < points.size(); ++i)
       for (int axis = 0; axis < 3; ++axis)
         positions(Eigen::Index(i), axis) = points[i].position[axis];
-    const SingularVectors svd = singularVectors(positions);
+    const SymmetricEigen eigen = eigenOfSymmetric(normalMatrix(positions));
     for (int axis = 0; axis < 3; ++axis) {
-      lengths[axis] = svd.values[axis];
-      normal[axis] = svd.right(axis, 2);
+      lengths[axis] = std::sqrt(std::max(eigen.values[2 - axis], 0.0));
+      normal[axis] = eigen.vectors(axis, 0);
     }
   }
 };
