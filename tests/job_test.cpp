@@ -6,6 +6,7 @@
 
 #include <climits>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "image/io/write_image.h"
 #include "job/job_changes.h"

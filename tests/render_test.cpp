@@ -157,7 +157,7 @@ TEST(Render, sameBitsForAnyNumberOfThreads) {
   settings.aovs = {Aov::Albedo, Aov::Depth, Aov::Node};
   std::vector<std::vector<float>> images;
   for (int threads : {1, 2, 3}) {
-    const ThreadLimit limit(size_t(threads));
+    const ThreadLimit limit{size_t(threads)};
     const RenderResult r = renderScene(scene, topCamera(4, 50), probe, "importance", settings);
     std::vector<float> all = r.film.mean().texels;
     for (float x : varianceImage(r.film.errors()).texels) all.push_back(x);

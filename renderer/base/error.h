@@ -37,14 +37,17 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+[[noreturn]] void throwFormattedInput(fmt::string_view format, fmt::format_args arguments);
+[[noreturn]] void throwFormattedRun(fmt::string_view format, fmt::format_args arguments);
+
 template <class... Args>
 [[noreturn]] void throwInput(fmt::format_string<Args...> format, Args&&... args) {
-  throw InputError(fmt::format(format, std::forward<Args>(args)...));
+  throwFormattedInput(format, fmt::make_format_args(args...));
 }
 
 template <class... Args>
 [[noreturn]] void throwRun(fmt::format_string<Args...> format, Args&&... args) {
-  throw RunError(fmt::format(format, std::forward<Args>(args)...));
+  throwFormattedRun(format, fmt::make_format_args(args...));
 }
 
 }  // namespace chromeball

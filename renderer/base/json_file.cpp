@@ -2,6 +2,7 @@
 #include "base/json_file.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"

@@ -7,6 +7,7 @@
 #include <climits>
 #include <cmath>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 
 #include "base/hash.h"
 #include "job/check_job.h"

@@ -2,7 +2,7 @@
 // What a program has changed in a job after planJob(): values that its settings do not tell.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

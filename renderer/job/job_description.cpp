@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/hash.h"
 #include "base/parallel.h"

@@ -2,6 +2,7 @@
 #include "job/job_report.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/parallel.h"
 #include "job/id_manifest.h"

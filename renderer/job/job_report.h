@@ -2,7 +2,7 @@
 // The statistics of a render, and the attributes of its EXR file.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "job/run_job.h"
 

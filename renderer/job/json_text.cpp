@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/json_text.h"
 
+#include <nlohmann/json.hpp>
+
 namespace chromeball {
 
 using Json = nlohmann::ordered_json;

@@ -2,7 +2,7 @@
 // JSON as text, and from text that may be damaged.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace chromeball {

@@ -2,7 +2,7 @@
 // The results of a comparison as CSV, JSON and text.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "job/machine.h"

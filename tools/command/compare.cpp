@@ -2,6 +2,7 @@
 // chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "commands.h"

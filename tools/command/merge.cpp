@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
 #include <atomic>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "image/io/read_image.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "scene/gltf/gltf_file.h"

@@ -2,7 +2,7 @@
 // What is checked and mended in a glTF file's JSON before tinygltf reads it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 

@@ -2,7 +2,7 @@
 // The images and maps of a report, in the form that report.js reads.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "study/render_store.h"
 #include "study/results.h"
