@@ -158,7 +158,7 @@ TEST(SlowLayeredBsdf, samplesItsPdfOverTheGrid) {
             if (!bsdf.sample(random2(i, 0), random1(i, 2), s)) return std::nullopt;
             return s.wi;
           },
-          [&](const vec3& wi) { return bsdf.evaluate(wi).pdf; }, 40000, 3);
+          [&](const vec3& wi) { return bsdf.evaluate(wi).pdf; }, 40000);
       EXPECT_LT(test.totalProbability, 1 + 3e-3) << c.name << " angle " << angle;
       EXPECT_GT(test.chiSquare.pValue, sidak(1e-3, tests)) << c.name << " angle " << angle;
     }

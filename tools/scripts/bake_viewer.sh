@@ -9,14 +9,14 @@
 # Needs chromium, npm and python3; installs the packages of tests/npm, three among them, in the folder,
 # unless they are there.
 # CHROMEBALL is the command (default build/chromeball); MODEL, CAMERA and PROBE another scene;
-# SAMPLES those of each texel, vertex and pixel (256).
+# SAMPLES those of each texel, vertex and pixel (256); TEXELS the side of the lightmaps (1024).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 chromeball=${CHROMEBALL:-build/chromeball}
 model=${MODEL:-scenes/models/pillars.gltf} probe=${PROBE:-probes/noon.exr}
 camera=${CAMERA-Front}
-samples=${SAMPLES:-256} width=480 height=320
+samples=${SAMPLES:-256} texels=${TEXELS:-1024} width=480 height=320
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) ||
   { echo "bake_viewer.sh: needs chromium" >&2; exit 2; }
 keeps=$#
@@ -39,9 +39,9 @@ light=(--probe "$probe" --quiet)
 view=()
 [ -z "$camera" ] || view=(--camera "$camera")
 bake() { "$chromeball" bake "$model" "${light[@]}" "${view[@]}" --samples "$samples" "${@:2}" -o "$folder/$1"; }
-bake lightmap.glb --size 1024
+bake lightmap.glb --size "$texels"
 bake vertices.glb --to vertices
-bake kept.glb --size 1024 --keep-materials
+bake kept.glb --size "$texels" --keep-materials
 scaleOf() {
   python3 - "$folder/$1" <<'PY'
 import json, struct, sys
