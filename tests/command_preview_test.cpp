@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render --preview: what the server answers.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <thread>
 
 #include "preview_render.h"
+#include "tcp.h"
 
 namespace chromeball::command_preview_test {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball basis and relight with stages that exceed --memory.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <sys/wait.h>
 

@@ -7,6 +7,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdlib>
+#include <fstream>
+
+#include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "gltf_writer.h"
