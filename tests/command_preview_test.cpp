@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render --preview: what the server answers.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "image/io/read_image.h"
 #include "preview_render.h"
 #include "tcp.h"
 
