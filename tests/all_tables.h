@@ -6,17 +6,6 @@
 
 namespace chromeball {
 
-inline const BsdfTables& allTables() {
-  static const BsdfTables tables = [] {
-    Material material;
-    material.extended.emplace();
-    material.extended->transmission = 1;
-    material.extended->thinWalled = false;
-    material.extended->sheenColor = Rgb(1);
-    material.extended->anisotropy = 1;
-    return BsdfTables(std::span(&material, 1));
-  }();
-  return tables;
-}
+const BsdfTables& allTables();
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "capture_photographs.h"
+#include "paths.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/load.h"

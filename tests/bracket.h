@@ -2,12 +2,10 @@
 // Photographs that a perfect camera takes of known radiance.
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "image/tonemap.h"
 #include "probe/capture/exposure.h"
 
 namespace chromeball {
@@ -15,42 +13,18 @@ namespace chromeball {
 // The level, 0 to 1, of an exposure.
 using Encoding = std::function<double(double)>;
 
-inline double encodeSrgb(double exposure) { return linearToSrgb(float(exposure)); }
+double encodeSrgb(double exposure);
 inline double encodeLinear(double exposure) { return exposure; }
 
 // Clipped at white and rounded to a multiple of 1 / steps (255: 8 bits; 0: not rounded).
-inline Image photographed(const Image& radiance, const dvec3& factor,
-                          const Encoding& encode = encodeSrgb, int steps = 255) {
-  Image levels(radiance.width, radiance.height, 3);
-  for (size_t i = 0; i < levels.texels.size(); ++i) {
-    const double level =
-        std::min(encode(std::min(radiance.texels[i] * factor[int(i % 3)], 1.0)), 1.0);
-    levels.texels[i] = float(steps > 0 ? std::round(level * steps) / steps : level);
-  }
-  return levels;
-}
+Image photographed(const Image& radiance, const dvec3& factor, const Encoding& encode = encodeSrgb,
+                   int steps = 255);
 
-inline std::vector<Exposure> bracket(const Image& radiance, const std::vector<double>& factors,
-                                     const Encoding& encode = encodeSrgb, int steps = 255) {
-  std::vector<Exposure> exposures;
-  for (size_t i = 0; i < factors.size(); ++i)
-    exposures.push_back({std::to_string(i + 1),
-                         photographed(radiance, dvec3(factors[i]), encode, steps),
-                         dvec3(factors[i])});
-  return exposures;
-}
+std::vector<Exposure> bracket(const Image& radiance, const std::vector<double>& factors,
+                              const Encoding& encode = encodeSrgb, int steps = 255);
 
 // Radiance from `low` to `high`, evenly distributed by its logarithm, in another order in each
 // channel: along columns in red, and in small waves that cover the image.
-inline Image ramp(int width, int height, double low, double high) {
-  Image image(width, height, 3);
-  const auto at = [&](double part) { return float(low * std::pow(high / low, part)); };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const double u = (x + (y + 0.5) / height) / width;
-      image.setRgb(x, y, {at(u), at(1 - u), at(0.5 + 0.5 * std::sin(9.0 * u + 12.0 * y / height))});
-    }
-  return image;
-}
+Image ramp(int width, int height, double low, double high);
 
 }  // namespace chromeball

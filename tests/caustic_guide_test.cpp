@@ -13,6 +13,7 @@
 #include "lighting/polygon_lights.h"
 #include "lighting/split_probe.h"
 #include "measure/statistics.h"
+#include "probe/synth.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
 #include "test_probes.h"

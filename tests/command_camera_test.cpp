@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `chromeball camera solve`, and cameras of files in renders.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -2,6 +2,7 @@
 // chromeball probe merge, and probe sun: from photographs to a probe with its sun.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "bracket.h"

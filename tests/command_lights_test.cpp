@@ -2,6 +2,7 @@
 // chromeball lights, lights-error and probe irradiance.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "image/io/read_image.h"

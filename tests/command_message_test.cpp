@@ -2,6 +2,8 @@
 // Messages of the command: typing errors, options of other renderers, warnings, notes.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render --shard, --crop, --checkpoint, --resume, and chromeball merge.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render --preview: what the server answers.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <thread>
 
+#include "image/io/read_image.h"
 #include "preview_render.h"
+#include "tcp.h"
 
 namespace chromeball::command_preview_test {
 namespace {

@@ -2,6 +2,7 @@
 // chromeball probe info, convert and synth; and errors in the command line itself.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "image/io/read_image.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"

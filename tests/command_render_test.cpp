@@ -2,7 +2,9 @@
 // chromeball render, from the command line to the files it writes.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 

@@ -2,6 +2,7 @@
 // Rotations and scales of probes from the command line and scene files; chromeball probe align.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "gltf_writer.h"

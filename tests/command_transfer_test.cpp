@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/custom_data.h"
+#include "scene/gltf/load_gltf.h"
 #include "small_model.h"
 
 namespace chromeball::command_transfer_test {

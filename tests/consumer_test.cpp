@@ -3,6 +3,7 @@
 // installed copy and configured with this source tree as a subdirectory.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md: the rows about geometry.
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <functional>
 
@@ -7,6 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "probe/synth.h"
 #include "run_command.h"
 
 namespace chromeball::envelope_geometry_test {

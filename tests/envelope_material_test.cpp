@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md: the rows about materials, emission and path depth.
+#include <gtest/gtest.h>
+
 #include "envelope.h"
+#include "probe/synth.h"
 
 namespace chromeball::envelope_material_test {
 namespace {

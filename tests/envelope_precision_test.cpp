@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md, "Measured errors": the renderer's arithmetic compared with long double. Each
 // test prints the errors that the table lists and checks their bounds.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -8,6 +10,7 @@
 #include "envelope.h"
 #include "math/cdf.h"
 #include "probe/solid_angle.h"
+#include "probe/synth.h"
 #include "scene/surface.h"
 
 namespace chromeball::envelope_precision_test {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md: the rows about probes.
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "probe/load.h"
 #include "probe/repair.h"
 #include "probe/solid_angle.h"
+#include "probe/synth.h"
 
 namespace chromeball::envelope_probe_test {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tests/ENVELOPE.md: the rows about the number of triangles and of samples per pixel.
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
+#include "probe/synth.h"
 #include "run_command.h"
 
 namespace chromeball::envelope_size_test {

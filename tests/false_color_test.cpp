@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "image/io/encode_png.h"
 #include "image/io/read_image.h"

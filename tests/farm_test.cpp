@@ -2,6 +2,7 @@
 // tools/scripts/farm_slurm.sh on a real Slurm cluster: $SLURM_CONF, such as
 // tools/scripts/one_machine_slurm.sh starts; skipped without one.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 

@@ -10,6 +10,7 @@
 #include "capture_photographs.h"
 #include "image/io/read_image.h"
 #include "image/tonemap.h"
+#include "paths.h"
 #include "probe/capture/assemble.h"
 #include "probe/convert.h"
 #include "probe/load.h"

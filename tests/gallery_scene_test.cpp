@@ -2,6 +2,7 @@
 // The models of the gallery: closed forms of their shapes, and what every model needs to be lit
 // right.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <array>
 #include <cstdlib>

@@ -2,7 +2,9 @@
 // Animations at a given time: closed forms of each interpolation, and rejected input.
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "gltf_writer.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball::gltf_animation_test {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "gltf_writer.h"
 #include "scene/bounds.h"
+#include "scene/gltf/load_gltf.h"
 #include "shared_data.h"
 
 namespace chromeball::gltf_compression_test {

@@ -9,6 +9,7 @@
 #include "probe/probe.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "scene/gltf/load_gltf.h"
 
 namespace chromeball::gltf_environment_test {
 namespace {

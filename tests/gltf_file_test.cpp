@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 
+#include "base/error.h"
 #include "gltf_writer.h"
+#include "scene/gltf/load_gltf.h"
 #include "temporary_folder.h"
 
 namespace chromeball::gltf_file_test {

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "gltf_writer.h"
+#include "scene/gltf/load_gltf.h"
 #include "scene/surface.h"
 
 namespace chromeball::gltf_material_test {

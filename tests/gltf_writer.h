@@ -2,42 +2,27 @@
 // Writes small glTF files for tests, each into its own folder, which the destructor removes.
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "scene/gltf/load_gltf.h"
+#include "scene/scene.h"
 
 namespace chromeball {
 
 enum ComponentType { kByte = 5120, kUByte, kShort, kUShort, kUInt = 5125, kFloat };
 
-// A 2 x 1 RGB PNG: (255 0 0) (0 128 255).
-inline const std::vector<uint8_t> kPng = {
-    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
-    0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7b,
-    0x40, 0xe8, 0xdd, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8,
-    0xcf, 0xc0, 0xc0, 0xd0, 0xf0, 0x1f, 0x00, 0x08, 0x00, 0x02, 0x7f, 0x9c, 0x45, 0x40, 0x4e,
-    0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+extern const std::vector<uint8_t> kPng;  // a 2 x 1 RGB PNG: (255 0 0) (0 128 255)
 
 class GltfWriter {
  public:
   nlohmann::json root = {{"asset", {{"version", "2.0"}}}};
   std::vector<std::string> warnings;  // of the last load()
 
-  GltfWriter() {
-    static int count = 0;
-    folder_ = std::filesystem::temp_directory_path() /
-              ("chromeball-gltf-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(folder_);
-  }
-  ~GltfWriter() { std::filesystem::remove_all(folder_); }
+  GltfWriter();
+  ~GltfWriter();
   GltfWriter(const GltfWriter&) = delete;
   GltfWriter& operator=(const GltfWriter&) = delete;
 
@@ -46,84 +31,39 @@ class GltfWriter {
   // Appends bytes to the buffer; returns the index of their buffer view.
   template <class T>
   int view(const std::vector<T>& elements, int stride = 0) {
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    const size_t offset = bytes_.size(), size = elements.size() * sizeof(T);
-    const auto* from = reinterpret_cast<const uint8_t*>(elements.data());
-    bytes_.insert(bytes_.end(), from, from + size);
-    nlohmann::json v = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}};
-    if (stride) v["byteStride"] = stride;
-    return add("bufferViews", v);
+    return bytesView(elements.data(), elements.size() * sizeof(T), stride);
   }
 
   int accessor(int view, ComponentType component, const std::string& type, size_t count,
-               size_t offset = 0, bool normalized = false) {
-    nlohmann::json a = {{"componentType", component}, {"type", type}, {"count", count}};
-    if (view >= 0) a["bufferView"] = view;
-    if (offset) a["byteOffset"] = offset;
-    if (normalized) a["normalized"] = true;
-    return add("accessors", a);
-  }
+               size_t offset = 0, bool normalized = false);
 
-  int vec3s(const std::vector<float>& f) { return accessor(view(f), kFloat, "VEC3", f.size() / 3); }
-  int vec2s(const std::vector<float>& f) { return accessor(view(f), kFloat, "VEC2", f.size() / 2); }
-  int indices(const std::vector<uint16_t>& i) {
-    return accessor(view(i), kUShort, "SCALAR", i.size());
-  }
+  int vec3s(const std::vector<float>& f);
+  int vec2s(const std::vector<float>& f);
+  int indices(const std::vector<uint16_t>& i);
 
   // Appends to an array of the root; returns the index.
-  int add(const std::string& array, const nlohmann::json& element) {
-    root[array].push_back(element);
-    return int(root[array].size()) - 1;
-  }
+  int add(const std::string& array, const nlohmann::json& element);
 
-  int mesh(const nlohmann::json& primitive) {
-    return add("meshes", {{"primitives", nlohmann::json::array({primitive})}});
-  }
+  int mesh(const nlohmann::json& primitive);
 
-  void write(const std::string& name, const std::vector<uint8_t>& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-  }
+  void write(const std::string& name, const std::vector<uint8_t>& bytes) const;
 
-  std::string save() {
-    if (!bytes_.empty()) {
-      root["buffers"] = {{{"byteLength", bytes_.size()}, {"uri", "data.bin"}}};
-      write("data.bin", bytes_);
-    }
-    std::ofstream(folder_ / "model.gltf") << root;
-    return (folder_ / "model.gltf").string();
-  }
+  std::string save();
 
-  Scene load(const Transform& placement = {}) {
-    warnings.clear();
-    return loadGltf(save(), placement, [this](const std::string& w) { warnings.push_back(w); });
-  }
+  Scene load(const Transform& placement = {});
 
   // The message with which the file is rejected, without the path; "" if it loads.
-  std::string errorMessage() {
-    const std::string path = save();
-    try {
-      loadGltf(path, {}, nullptr);
-    } catch (const InputError& e) {
-      const std::string message = e.what();
-      return message.starts_with(path + ": ") ? message.substr(path.size() + 2) : message;
-    }
-    return "";
-  }
+  std::string errorMessage();
 
  private:
+  int bytesView(const void* data, size_t size, int stride);
+
   std::filesystem::path folder_;
   std::vector<uint8_t> bytes_;
 };
 
 // A node that shows a mesh of one triangle, (0,0,0) (1,0,0) (0,1,0), with the given additions.
-inline int addTriangle(GltfWriter& w, const nlohmann::json& primitive = {},
-                       const nlohmann::json& node = {}) {
-  nlohmann::json p = {{"attributes", {{"POSITION", w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0})}}}};
-  if (!primitive.is_null()) p.merge_patch(primitive);
-  nlohmann::json n = {{"mesh", w.mesh(p)}};
-  if (!node.is_null()) n.merge_patch(node);
-  return w.add("nodes", n);
-}
+int addTriangle(GltfWriter& w, const nlohmann::json& primitive = {},
+                const nlohmann::json& node = {});
 
 }  // namespace chromeball

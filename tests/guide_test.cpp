@@ -12,6 +12,7 @@
 #include "lighting/split_probe.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
+#include "probe/synth.h"
 #include "small_scenes.h"
 
 namespace chromeball::guide_test {

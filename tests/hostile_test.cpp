@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
+#include "base/error.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
@@ -16,6 +18,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/framing.h"
+#include "scene/gltf/load_gltf.h"
 #include "shared_data.h"
 #include "test_scene.h"
 

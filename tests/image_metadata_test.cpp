@@ -3,6 +3,8 @@
 // allocated.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/error.h"
 #include "gltf_writer.h"
 #include "image/io/decode_image.h"

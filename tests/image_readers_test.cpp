@@ -5,6 +5,7 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <fstream>
 #include <random>
 #include <stdexcept>
 

@@ -10,6 +10,7 @@
 #include "measure/agreement.h"
 #include "measure/statistics.h"
 #include "probe/spherical_harmonics.h"
+#include "probe/synth.h"
 #include "relight/keep_largest.h"
 #include "relight/light_weights.h"
 #include "relight/reflectance_function.h"

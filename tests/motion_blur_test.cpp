@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
@@ -10,6 +11,7 @@
 #include "math/sampler.h"
 #include "measure/agreement.h"
 #include "measure/statistics.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "scene/moving_camera.h"
 #include "shared_data.h"

@@ -5,6 +5,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "job/job.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "temporary_folder.h"
 #include "test_probes.h"

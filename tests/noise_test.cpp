@@ -5,6 +5,7 @@
 
 #include "probe/load.h"
 #include "probe/sky.h"
+#include "probe/synth.h"
 #include "shared_data.h"
 #include "small_scenes.h"
 

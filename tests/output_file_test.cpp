@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <fstream>
+
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"

@@ -6,6 +6,7 @@
 
 #include "integrate/trace_photons.h"
 #include "paths.h"
+#include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"
 

@@ -2,18 +2,13 @@
 // A small render with --preview, and requests to its server.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <functional>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "image/io/write_image.h"
 #include "run_command.h"
-#include "small_model.h"
-#include "tcp.h"
 
 namespace chromeball {
 
@@ -26,68 +21,25 @@ class PreviewRender {
  public:
   TemporaryFolder folder;
 
-  PreviewRender() : port_(freePort()) {
-    writeSmallModel(folder / "m.gltf");
-    Image probe(4, 2, 3);
-    probe.texels.assign(probe.texels.size(), 0.7f);
-    probe.setRgb(1, 0, Rgb(9, 4, 1));
-    writeImage(folder / "probe.pfm", probe);
-  }
+  PreviewRender();
 
-  void start(const std::vector<std::string>& more, const std::string& out = "o.exr") {
-    out_ = folder / out;
-    std::vector<std::string> words{"render",
-                                   folder / "m.gltf",
-                                   "--probe",
-                                   folder / "probe.pfm",
-                                   "--size",
-                                   "40x30",
-                                   "-o",
-                                   out_,
-                                   fmt::format("--preview={}", port_)};
-    words.insert(words.end(), more.begin(), more.end());
-    command_ = std::async(std::launch::async, [words] { return runCommand(words); });
-  }
+  void start(const std::vector<std::string>& more, const std::string& out = "o.exr");
   CommandResult result() { return command_.get(); }
 
   int port() const { return port_; }
   const std::string& out() const { return out_; }
 
   HttpAnswer get(const std::string& target,
-                 const std::string& headers = "Host: 127.0.0.1\r\n") const {
-    return exchange("GET " + target + " HTTP/1.1\r\n" + headers + "Connection: close\r\n\r\n");
-  }
+                 const std::string& headers = "Host: 127.0.0.1\r\n") const;
   HttpAnswer post(const std::string& target, const std::string& headers = "Host: 127.0.0.1\r\n",
-                  const std::string& body = "") const {
-    return exchange(
-        fmt::format("POST {} HTTP/1.1\r\n{}Content-Length: {}\r\n"
-                    "Connection: close\r\n\r\n{}",
-                    target, headers, body.size(), body));
-  }
+                  const std::string& body = "") const;
 
   // Asks for the status until `holds`; fails after half a minute.
-  void waitUntil(const std::function<bool(const nlohmann::json&)>& holds) const {
-    HttpAnswer answer;
-    for (int i = 0; i < 1500; ++i, usleep(20'000)) {
-      answer = get("/status.json");
-      if (answer.status == 200 && holds(nlohmann::json::parse(answer.body))) return;
-    }
-    ADD_FAILURE() << "waited in vain; the last status: " << answer.status << ' ' << answer.body;
-  }
-  void waitForImage() const {
-    waitUntil([](const nlohmann::json& status) { return status["image"] > 0; });
-  }
+  void waitUntil(const std::function<bool(const nlohmann::json&)>& holds) const;
+  void waitForImage() const;
 
  private:
-  HttpAnswer exchange(const std::string& request) const {
-    const Socket socket = connectTo(port_);
-    if (!socket.isOpen()) return {};
-    socket.write(request);
-    const std::string answer = socket.read(100'000'000);
-    const size_t end = answer.find("\r\n\r\n");
-    if (end == std::string::npos) return {};
-    return {std::stoi(answer.substr(answer.find(' '))), answer.substr(end + 4)};
-  }
+  HttpAnswer exchange(const std::string& request) const;
 
   int port_;
   std::string out_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lighting/importance.h"
+#include "probe/synth.h"
 #include "sphere_test.h"
 #include "test_probes.h"
 

@@ -13,6 +13,7 @@
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "scene/gltf/load_gltf.h"
 #include "test_scene.h"
 
 namespace chromeball::punctual_test {

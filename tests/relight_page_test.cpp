@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of chromeball relight --preview in a browser, if one is installed.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <future>
 #include <iostream>
+#include <sstream>
 
 #include "browser.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image/tonemap.h"
 #include "probe/synth.h"
+#include "run_command.h"
 #include "small_model.h"
 #include "tcp.h"
 

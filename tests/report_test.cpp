@@ -2,6 +2,7 @@
 // The report of `chromeball compare` in a browser, if one is installed.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <regex>
 
 #include "browser.h"

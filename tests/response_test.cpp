@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 
 #include "base/error.h"
 #include "bracket.h"
+#include "image/tonemap.h"
 #include "probe/capture/merge_photographs.h"
 #include "probe/capture/solve_response.h"
 #include "run_command.h"

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "floor_in_surroundings.h"
+#include "probe/synth.h"
 
 namespace chromeball::room_test {
 namespace {

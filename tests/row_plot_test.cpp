@@ -9,6 +9,7 @@
 #include "image/io/write_image.h"
 #include "probe/load.h"
 #include "probe/mapping.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"
 #include "study/report/row_plot.h"

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "base/error.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "integrate/mis.h"

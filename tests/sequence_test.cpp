@@ -2,6 +2,8 @@
 // chromeball render --frames: each frame is the still at its time, bit for bit.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "job/frame_scene.h"

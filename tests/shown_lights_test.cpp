@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "floor_in_surroundings.h"
 #include "image/io/write_image.h"
 #include "lighting/area/region_areas.h"

@@ -2,6 +2,8 @@
 // Single-sided surfaces: visibility of their backs to camera and mirrors, and their shadows.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "gltf_writer.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -2,6 +2,7 @@
 // Cameras found from lines along the axes of the scene, and those of fSpy.
 #include "scene/solve/solve_lines.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball basis and relight with stages that exceed --memory.
+#include <fcntl.h>
 #include <gtest/gtest.h>
-
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>

@@ -2,12 +2,16 @@
 // What a start costs: the shared libraries that the command loads, and when it loads the module
 // libchromeball_imageio.so.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "test_probes.h"
 

@@ -3,7 +3,10 @@
 // documented exit status, and no partially written file.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"

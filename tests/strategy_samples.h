@@ -11,17 +11,9 @@ namespace chromeball {
 // Independent samples at one point: the first hit, or a later one.
 class Samples {
  public:
-  Samples(const LightSource& strategy, const vec3& normal, int depth = 0)
-      : strategy_(strategy), point_{{}, normal, nullptr, depth} {}
+  Samples(const LightSource& strategy, const vec3& normal, int depth = 0);
 
-  const std::vector<DirectionSample>& take(int i) {
-    sampler_.startPixel(uint32_t(i), 0, 0);
-    sampler_.startSample(0);
-    sampler_.startVertex(0);
-    samples_.clear();
-    strategy_.sample(point_, sampler_, samples_);
-    return samples_;
-  }
+  const std::vector<DirectionSample>& take(int i);
   const LightPoint& point() const { return point_; }
 
  private:

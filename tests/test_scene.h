@@ -8,89 +8,27 @@
 
 namespace chromeball {
 
-inline Material lambert(Rgb albedo) {
-  Material m;
-  m.baseColor = vec4(albedo, 1);
-  m.metallic = 0;
-  m.specular = 0;
-  m.doubleSided = true;
-  return m;
-}
-
-inline int addMaterial(Scene& scene, const Material& material) {
-  scene.materials.push_back(material);
-  return int(scene.materials.size()) - 1;
-}
-
-inline void addMesh(Scene& scene, int material, Mesh mesh) {
-  if (scene.nodeNames.empty()) scene.nodeNames.push_back("node");
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({int(scene.meshes.size()) - 1, material, 0, {}});
-}
+Material lambert(Rgb albedo);
+int addMaterial(Scene& scene, const Material& material);
+void addMesh(Scene& scene, int material, Mesh mesh);
 
 // corner + u a + v b, u and v in [0, 1]; faces along cross(a, b).
-inline void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b) {
-  Mesh mesh;
-  mesh.positions = {corner, corner + a, corner + a + b, corner + b};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  addMesh(scene, material, std::move(mesh));
-}
+void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b);
 
 // A sphere of 2 n^2 x 2 triangles; faces outwards, or inwards for a negative radius. `smooth`: with
 // the sphere's normals.
-inline void addSphere(Scene& scene, int material, vec3 centre, float radius, int n = 32,
-                      bool smooth = true) {
-  Mesh mesh;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= 2 * n; ++j) {
-      const float theta = kPi * float(i) / float(n);
-      const float phi = kPi * float(j % (2 * n)) / float(n);  // no crack along the seam
-      vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
-      if (i == 0 || i == n) d = {0, i == 0 ? 1.0f : -1.0f, 0};
-      mesh.positions.push_back(centre + radius * d);
-      if (smooth) mesh.normals.push_back(radius < 0 ? -d : d);
-    }
-  const auto index = [&](int i, int j) { return uint32_t(i * (2 * n + 1) + j); };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < 2 * n; ++j) {
-      if (i > 0) mesh.triangles.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
-      if (i < n - 1)
-        mesh.triangles.push_back({index(i, j + 1), index(i + 1, j), index(i + 1, j + 1)});
-    }
-  addMesh(scene, material, std::move(mesh));
-}
+void addSphere(Scene& scene, int material, vec3 centre, float radius, int n = 32,
+               bool smooth = true);
 
 // Looks down at the origin from `height`; -Z is up in the image.
-inline Camera topCamera(float height, float fovDegrees) {
-  return Camera::lookAt({0, height, 0}, {0, 0, 0}, {0, 0, -1}, fovDegrees * kPi / 180);
-}
+Camera topCamera(float height, float fovDegrees);
 
-inline RenderResult renderScene(const Scene& scene, const Camera& camera, const Probe& probe,
-                                const std::string& strategy, const RenderSettings& settings) {
-  const World world(scene, {}, allTables());
-  const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
-  const std::atomic<bool> stop = false;
-  return render(
-      world, camera, *lighting, settings, [](double) {}, stop);
-}
+RenderResult renderScene(const Scene& scene, const Camera& camera, const Probe& probe,
+                         const std::string& strategy, const RenderSettings& settings);
 
-inline RenderSettings smallRender(int width, int height, uint32_t samples, int maxDepth,
-                                  uint64_t seed = 0) {
-  RenderSettings s;
-  s.width = width;
-  s.height = height;
-  s.samples = samples;
-  s.maxDepth = maxDepth;
-  s.seed = seed;
-  s.adaptive = false;
-  return s;
-}
+RenderSettings smallRender(int width, int height, uint32_t samples, int maxDepth,
+                           uint64_t seed = 0);
 
-inline Rgb meanColor(const Image& image) {
-  glm::dvec3 sum(0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) sum += glm::dvec3(image.rgb(x, y));
-  return Rgb(sum / (double(image.width) * image.height));
-}
+Rgb meanColor(const Image& image);
 
 }  // namespace chromeball

@@ -11,6 +11,7 @@
 #include "measure/statistics.h"
 #include "probe/convert.h"
 #include "probe/irradiance.h"
+#include "probe/synth.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_probes.h"

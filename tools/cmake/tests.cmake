@@ -13,7 +13,7 @@ chromeball_unity(tests 32)  # each file of tests has a namespace of its name
 set(tests_dir ${PROJECT_SOURCE_DIR}/tests)
 target_precompile_headers(tests PRIVATE
   <filesystem> <fstream> <gtest/gtest.h> <nlohmann/json.hpp> <fmt/format.h>
-  ${tests_dir}/run_command.h ${tests_dir}/temporary_folder.h ${tests_dir}/test_scene.h
+  ${tests_dir}/test_scene.h
   ${PROJECT_SOURCE_DIR}/renderer/image/io/read_image.h
   ${PROJECT_SOURCE_DIR}/renderer/image/io/write_image.h
   ${PROJECT_SOURCE_DIR}/renderer/scene/gltf/load_gltf.h)
