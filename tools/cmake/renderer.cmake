@@ -45,7 +45,8 @@ set(chromeball_private_libraries
 set_source_files_properties(
   renderer/math/dense_eigen.cpp renderer/math/dense_least_squares.cpp
   renderer/math/dense_solvers.cpp renderer/relight/clustered_pca.cpp renderer/lighting/light_file.cpp
-  renderer/scene/gltf/draco.cpp
+  renderer/lighting/fit/light_descent.cpp renderer/lighting/fit/nonnegative.cpp
+  renderer/scene/gltf/draco.cpp renderer/scene/gltf/gltf_file.cpp renderer/bake/gltf_document.cpp
   PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 foreach(target chromeball_planning chromeball_renderer)
   chromeball_compile(${target})
@@ -56,7 +57,7 @@ foreach(target chromeball_planning chromeball_renderer)
   target_include_directories(${target} PRIVATE renderer)
   target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
-  chromeball_unity(${target} 24)
+  chromeball_unity(${target} 20)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
