@@ -3,6 +3,7 @@
 // against path tracing, and its records.
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "base/memory_archive.h"
 #include "base/parallel.h"
 #include "integrate/fill_cache.h"

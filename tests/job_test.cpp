@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "image/io/write_image.h"
 #include "job/job_changes.h"
 #include "job/job_description.h"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "math/frame.h"
 #include "measure/agreement.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/memory_archive.h"
 #include "integrate/sample_sequence.h"
 #include "job/finish.h"

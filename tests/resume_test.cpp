@@ -2,6 +2,7 @@
 // Renders that stop between tiles and go on from what was stored.
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "base/memory_archive.h"
 #include "integrate/render_state.h"
 #include "small_scenes.h"

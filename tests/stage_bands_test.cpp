@@ -2,6 +2,7 @@
 // Light stages in bands of rows are, bit for bit, those in one piece.
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "image/io/write_image.h"
 #include "relight/keep_largest.h"
 #include "relight/relit_stage.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/bake.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "probe/irradiance.h"
 #include "probe/spherical_harmonics.h"

@@ -11,8 +11,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/error.h"
-
 namespace chromeball {
 
 class Archive {
@@ -24,7 +22,7 @@ class Archive {
   virtual uint64_t left() const { return 0; }      // its bytes that are not read yet
   // What a damaged file would do otherwise must be checked after reading. Throws InputError.
   void check(bool holds) const {
-    if (reads() && !holds) throwInput("{}: damaged: its parts do not fit together", name());
+    if (reads() && !holds) throwDamaged();
   }
 
   template <class T>
@@ -104,6 +102,7 @@ class Archive {
   }
 
  protected:
+  [[noreturn]] void throwDamaged() const;
   virtual void bytes(void* data, size_t count) = 0;
   // `count` items of `size` bytes each.
   virtual void itemBytes(void* data, size_t count, size_t size) { bytes(data, count * size); }

@@ -8,14 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace chromeball {
+#include "base/remedy.h"
 
-// The setting that resolves what an error or a message is about, by its name in the table of
-// settings (job/setting_table.h: "probe.scale"). The command prints the option that sets it.
-struct Remedy {
-  std::string setting;
-  std::string value;  // one that would do; empty: unknown
-};
+namespace chromeball {
 
 // The user's input is wrong: arguments, scene, model, probe (exit status 2). The message reads
 // "FILE[:LINE]: the mistake, and valid input".

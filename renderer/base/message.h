@@ -2,10 +2,11 @@
 // Messages of the library to its user. The library itself prints nothing.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/remedy.h"
 
 namespace chromeball {
 

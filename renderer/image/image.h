@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/long_array.h"
 #include "math/vec.h"
 
 namespace chromeball {
@@ -17,8 +16,7 @@ struct Image {
   std::vector<float> texels;
 
   Image() = default;
-  Image(int w, int h, int c)
-      : width(w), height(h), channels(c), texels(longArray<float>(size_t(w) * h * c)) {}
+  Image(int w, int h, int c);  // of zeros
 
   bool empty() const { return texels.empty(); }
   float* at(int x, int y) { return &texels[(size_t(y) * width + x) * channels]; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "image/io/exr_state.h"
 #include "image/io/write_exr.h"
 #include "job/develop_image.h"

@@ -9,6 +9,7 @@
 // All of these throw InputError or RunError (base/error.h); none prints or writes anything.
 #pragma once
 
+#include "base/error.h"
 #include "job/load_scene.h"
 #include "job/render_job.h"
 #include "job/run_job.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "image/io/exr_state.h"
 
 namespace chromeball {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file.h"
 
+#include "base/error.h"
 #include "base/file.h"
 #include "job/arguments.h"
 #include "job/scene_file_camera.h"

@@ -4,6 +4,8 @@
 #include <array>
 #include <span>
 
+#include "base/error.h"
+
 namespace chromeball {
 namespace {
 

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "base/error.h"
 #include "job/output_file.h"
 #include "job/toml_section.h"
 

@@ -3,6 +3,7 @@
 
 #include <cfloat>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "job/setting_table.h"
 #include "job/toml_keys.h"

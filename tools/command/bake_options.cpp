@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/atlas.h"
+#include "base/error.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
 #include "job/output_file.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basis_job.h"
 
+#include "base/error.h"
+
 namespace chromeball {
 
 RenderJob basisJob(const SceneOptions& options, const char* what) {

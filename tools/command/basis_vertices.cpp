@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bake/baked_file.h"
+#include "base/error.h"
 #include "base/stopwatch.h"
 #include "basis_job.h"
 #include "job/memory_estimate.h"

@@ -3,6 +3,7 @@
 
 #include <charconv>
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "input_image.h"
 #include "messages.h"

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "image/io/color_channels.h"
 #include "image/io/exr_header.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/error.h"
 #include "image/io/color_channels.h"
 #include "image/io/read_image.h"
 #include "image/size_limits.h"

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"

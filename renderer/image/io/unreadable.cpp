@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/unreadable.h"
 
+#include "base/error.h"
+
 namespace chromeball {
 
 // Text before the path is dropped, since our message starts with the path, unless the path comes

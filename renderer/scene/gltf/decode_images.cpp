@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "image/io/decode_image.h"
 #include "image/io/texel_file.h"

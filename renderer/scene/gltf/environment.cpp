@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "image/io/decode_image.h"
 #include "probe/convert.h"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"

@@ -3,6 +3,8 @@
 
 #include <cctype>
 
+#include "base/error.h"
+
 namespace chromeball {
 namespace {
 

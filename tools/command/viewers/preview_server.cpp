@@ -3,6 +3,7 @@
 
 #include <future>
 
+#include "base/error.h"
 #include "viewers/local_server.h"
 #include "viewers/preview_image.h"
 #include "viewers/watched_render.h"

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "image/io/write_image.h"
 #include "image/resample.h"
 #include "job/arguments.h"

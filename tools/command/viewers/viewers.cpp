@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/viewers.h"
 
+#include "base/error.h"
 #include "viewers/preview_server.h"
 #include "viewers/tev_display.h"
 
