@@ -89,7 +89,7 @@ IrradianceRecord recordAt(const Traced& traced, const vec3& above, const vec3& n
   const Scene& scene = traced.world.scene;
   const Surface surface =
       surfaceAt(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric, {0, 1, 0});
-  const Strata strata = strataOf(samples);
+  const HemisphereStrata strata = hemisphereStrata(samples);
   const SobolTable table(std::bit_ceil(uint32_t(strata.count())), 60, 1);
   PathContexts contexts(
       [&] { return PathContext{.sampler = PixelSampler(table, 1), .clamp = Clamp(std::nullopt)}; });

@@ -33,7 +33,7 @@ class CacheFiller {
         tracer_(tracer),
         settings_(settings),
         cameraRays_(camera, float(settings.width) / float(settings.height)),
-        strata_(strataOf(64 / (cache.error() * cache.error()))),
+        strata_(hemisphereStrata(64 / (cache.error() * cache.error()))),
         table_(std::bit_ceil(uint32_t(strata_.count())),
                dimension::tabulated(dimension::kTabulatedVertices), settings.seed),
         contexts_([this] {
@@ -129,7 +129,7 @@ class CacheFiller {
   const PathTracer& tracer_;
   const RenderSettings& settings_;
   CameraRays cameraRays_;
-  Strata strata_;
+  HemisphereStrata strata_;
   SobolTable table_;
   PathContexts contexts_;
 };

@@ -21,7 +21,7 @@ struct Seen {
 
 class Hemisphere {
  public:
-  Hemisphere(const Strata& strata) : strata_(strata), seen_(size_t(strata.count())) {}
+  Hemisphere(const HemisphereStrata& strata) : strata_(strata), seen_(size_t(strata.count())) {}
 
   Seen& at(int elevation, int azimuth) {
     return seen_[size_t(elevation * strata_.azimuths + azimuth)];
@@ -34,7 +34,7 @@ class Hemisphere {
   }
 
  private:
-  Strata strata_;
+  HemisphereStrata strata_;
   std::vector<Seen> seen_;
 };
 
@@ -114,7 +114,7 @@ Rgb change(const Seen& to, const Seen& from) {
 //                     + sum_k v sum_j (sin(theta_above) - sin(theta_below)) / min(r) (L_k -
 //                     L_(k-1))
 // with u towards an azimuth and v = n x u. Axes of rotation are n_i x n.
-IrradianceRecord integrate(Hemisphere& seen, const Strata& strata, const Frame& frame) {
+IrradianceRecord integrate(Hemisphere& seen, const HemisphereStrata& strata, const Frame& frame) {
   IrradianceRecord record;
   const auto horizontal = [&](double azimuth) {  // in units of strata
     const double phi = 2 * double(kPi) * azimuth / strata.azimuths;
@@ -161,13 +161,13 @@ PathSettings sourcesAlone(PathSettings settings) {
   return settings;
 }
 
-Strata strataOf(float samples) {
+HemisphereStrata hemisphereStrata(float samples) {
   const int elevations = std::max(int(std::lround(std::sqrt(samples / kPi))), 2);
   return {elevations, int(std::lround(kPi * float(elevations)))};
 }
 
 std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const Surface& surface,
-                                                 const vec3& normal, const Strata& strata,
+                                                 const vec3& normal, const HemisphereStrata& strata,
                                                  glm::uvec2 pixel, uint64_t block,
                                                  PathContexts& contexts) {
   Hemisphere hemisphere(strata);
@@ -200,7 +200,7 @@ std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const
 
 float meanDistance(const PathTracer& tracer, const Surface& surface, const vec3& normal,
                    PathContext& context) {
-  constexpr Strata kFew{4, 12};
+  constexpr HemisphereStrata kFew{4, 12};
   const Frame frame(normal);
   double inverse = 0;
   for (int j = 0; j < kFew.elevations; ++j)

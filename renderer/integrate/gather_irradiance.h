@@ -10,14 +10,14 @@ namespace chromeball {
 
 // Equal parts of the hemisphere as the cosine weighs it: sin^2 of the angle to the normal and the
 // azimuth are divided evenly.
-struct Strata {
+struct HemisphereStrata {
   int elevations, azimuths;
 
   int count() const { return elevations * azimuths; }
 };
 
 // About `samples` of them, nearly square: azimuths = pi elevations.
-Strata strataOf(float samples);
+HemisphereStrata hemisphereStrata(float samples);
 
 using PathContexts = PerThread<PathContext>;
 
@@ -32,7 +32,7 @@ PathSettings sourcesAlone(PathSettings settings);
 // Heckbert 1992 (equations 4 and 5). radius is the harmonic mean distance, or less where the
 // irradiance changes faster than it tells. Nullopt if a path's radiance is not valid.
 std::optional<IrradianceRecord> gatherIrradiance(const PathTracer& tracer, const Surface& surface,
-                                                 const vec3& normal, const Strata& strata,
+                                                 const vec3& normal, const HemisphereStrata& strata,
                                                  glm::uvec2 pixel, uint64_t block,
                                                  PathContexts& contexts);
 
