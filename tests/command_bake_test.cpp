@@ -157,9 +157,9 @@ TEST(SlowBake, ThreeJsShowsTheRender) {
   if (findChromium().empty()) GTEST_SKIP() << kNoChromium;
   const TemporaryFolder folder;
   if (!linkNpmPackages(folder / "")) GTEST_SKIP() << kNoNpmPackages;
-  const std::string command = "cd '" + std::string(kSourceDir) + "' && SAMPLES=16 TEXELS=512 CHROMEBALL='" +
-                              kCommand + "' tools/scripts/bake_viewer.sh '" + folder / "" +
-                              "' > '" + folder / "found" + "' 2>&1";
+  const std::string command =
+      "cd '" + std::string(kSourceDir) + "' && SAMPLES=16 TEXELS=512 CHROMEBALL='" + kCommand +
+      "' tools/scripts/bake_viewer.sh '" + folder / "" + "' > '" + folder / "found" + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << fileContents(folder / "found");
 }
 
