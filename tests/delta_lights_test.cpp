@@ -103,9 +103,11 @@ TEST(DeltaLights, perfectMirrorsReflectTheProbeAndNoLights) {
   const Probe probe(studioProbe({64, 32}), 40);
   const RenderSettings settings = smallRender(16, 16, 4, 3);
   const Image expected = renderScene(scene, camera, probe, "bsdf", settings).film.mean();
-  for (const char* strategy : {"median-cut:16", "irradiance-fit-ambient:2"})
-    EXPECT_EQ(renderScene(scene, camera, probe, strategy, settings).film.mean().texels,
-              expected.texels);
+  for (const char* strategy : {"median-cut:16", "irradiance-fit-ambient:2"}) {
+    const Image seen = renderScene(scene, camera, probe, strategy, settings).film.mean();
+    for (size_t i = 0; i < expected.texels.size(); ++i)  // compiled elsewhere: but for rounding
+      EXPECT_NEAR(seen.texels[i], expected.texels[i], 1e-6f * expected.texels[i]) << strategy;
+  }
 }
 
 // On a nearly perfect mirror, directional lights would show only as bright dots. Up to noise, the
