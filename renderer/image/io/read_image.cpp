@@ -17,6 +17,8 @@
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/sample_reader.h"
+#include "image/io/tiff_block.h"
+#include "image/io/tiff_picture.h"
 #include "image/io/unreadable.h"
 #include "image/orientation.h"
 #include "image/size_limits.h"
@@ -133,11 +135,24 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   return file;
 }
 
+// The file with its picture as the first image, which is the one that the module reads.
+std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path& path,
+                                      Messages& messages) {
+  const TiffBlock tiff(bytes);
+  const uint64_t picture = pictureDirectory(bytes);
+  if (picture == tiff.firstDirectory()) return bytes;
+  messages.push_back({Message::Kind::Note,
+                      fmt::format("{}: its first image is a thumbnail or a mask; the first full "
+                                  "one is read",
+                                  path.string())});
+  return tiff.withFirstDirectory(picture);
+}
+
 ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
-  const std::vector<uint8_t> bytes = readFile(path);
+  ImageFile file;
+  const std::vector<uint8_t> bytes = withPictureFirst(readFile(path), path, file.messages);
   const std::unique_ptr<ModuleImage> image = openModuleImage("tiff", bytes, path);
   const ModuleImageHeader& header = image->header();
-  ImageFile file;
   file.channels = header.channels;
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
