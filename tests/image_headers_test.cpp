@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "exif_block.h"
@@ -115,6 +117,57 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
   expectNear(read(p3, IntegerTexels::Linear), fraction);  // raw levels are not light
   // That of a file of light: GIMP and others write the one of sRGB.
   expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
+}
+
+// Code points of ITU-T H.273: primaries, transfer, matrix, full range.
+std::string codePoints(uint8_t primaries, uint8_t transfer, uint8_t matrix = 0, uint8_t full = 1) {
+  return chunk("cICP", {uint32_t(primaries) << 24 | uint32_t(transfer) << 16 |
+                        uint32_t(matrix) << 8 | full});
+}
+
+TEST(ImageHeaders, CodePointsOfAPng) {
+  const TemporaryFolder folder;
+  const std::array<uint8_t, 3> texel = {200, 100, 10};
+  const auto file = [&](const std::string& chunks) {
+    return saved(folder / "a.png", png(texel, chunks));
+  };
+  const auto expectTexel = [&](const std::string& chunks, const Rgb& expected) {
+    const Rgb read = readImage(file(chunks)).rgb(0, 0);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], expected[c], 2e-6f);
+  };
+  Rgb srgb, fraction, rec709;
+  for (int c = 0; c < 3; ++c) {
+    const float v = fraction[c] = float(texel[size_t(c)]) / 255;
+    srgb[c] = srgbToLinear(v);
+    rec709[c] = v < 0.0812429f ? v / 4.5f : std::pow((v + 0.0992968f) / 1.0992968f, 1 / 0.45f);
+  }
+  expectTexel(codePoints(1, 13), srgb);
+  expectTexel(codePoints(2, 2), srgb);
+  expectTexel(codePoints(1, 8), fraction);
+  for (const uint8_t transfer : {1, 6, 14, 15}) expectTexel(codePoints(1, transfer), rec709);
+  expectTexel(codePoints(1, 13) + chunk("gAMA", {100000}), srgb);  // which it overrides
+  const std::string displayP3 =
+      chunk("cHRM", {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000});
+  expectTexel(codePoints(12, 13), readImage(file(displayP3)).rgb(0, 0));
+  Image wide(1, 1, 3);
+  wide.setRgb(0, 0, fraction);
+  convertColor(wide, *toRec709({{0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}}));
+  expectTexel(codePoints(9, 8), wide.rgb(0, 0));
+  for (const auto& [chunks, reason] :
+       {std::pair{codePoints(9, 16), "the transfer PQ"},
+        {codePoints(9, 18), "the transfer HLG"},
+        {codePoints(9, 99), "a transfer that is not known, 99"},
+        {codePoints(77, 13), "primaries that are not known here, 77"},
+        {codePoints(1, 13, 9), "not RGB"},
+        {codePoints(1, 13, 0, 0), "of the full range"}}) {
+    try {
+      readImage(file(chunks));
+      ADD_FAILURE() << reason;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+    EXPECT_NO_THROW(readImage(file(chunks), IntegerTexels::Linear));  // raw levels are no light
+  }
 }
 
 // The texel in the upper left of the picture, by where the orientation says that it is stored.

@@ -62,9 +62,6 @@ void associate(Image& image, int alphaChannel) {
     }
 }
 
-// The linear number that a sample, a fraction of the largest, stands for.
-using DecodeSample = std::function<float(float)>;
-
 template <class Sample>
 void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image) {
   constexpr float kUnit = 1.0f / std::numeric_limits<Sample>::max();
@@ -87,12 +84,9 @@ void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image)
 DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
                            IntegerTexels integers, ImageFile& file) {
   if (integers == IntegerTexels::Linear) return [](float sample) { return sample; };
-  const PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
+  PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
   file.primaries = color.primaries;
-  if (!color.exponent) return srgbToLinear;
-  return [exponent = *color.exponent](float sample) {
-    return float(std::pow(double(sample), exponent));
-  };
+  return std::move(color.decode);
 }
 
 ImageFile readHdr(const fs::path& path) {
