@@ -177,11 +177,11 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
       case ImageFormat::RadianceHdr:
         return readHdr(path);
       case ImageFormat::Pfm: {
-        Image image = readPfm(path);
-        const bool isGrey = image.channels == 1;
-        return {std::move(image),
-                isGrey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"},
-                {}};
+        ImageFile pfm;
+        pfm.image = readPfm(path, pfm.messages);
+        pfm.channels = pfm.image.channels == 1 ? std::vector<std::string>{"Y"}
+                                               : std::vector<std::string>{"R", "G", "B"};
+        return pfm;
       }
       case ImageFormat::Png:
       case ImageFormat::Jpeg:
