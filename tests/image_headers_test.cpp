@@ -68,6 +68,30 @@ TEST(ImageHeaders, RadianceLinesAreAppliedOrNamed) {
     EXPECT_THROW(readImage(saved(folder / "a.hdr", hdr(lines))), InputError) << lines;
 }
 
+TEST(ImageHeaders, RepeatedLinesAreSaidOnce) {
+  const TemporaryFolder folder;
+  std::string lines;
+  for (int i = 0; i < 5000; ++i) lines += "VIEW= -vtv\nGAMMA=2\n";
+  const ImageFile file = readImageFile(saved(folder / "a.hdr", hdr(lines + "PIXASPECT=2\n")));
+  ASSERT_EQ(file.messages.size(), 3u);
+  for (const Message& message : file.messages)
+    EXPECT_EQ(message.text.ends_with("(5000 lines)"),
+              message.text.find("PIXASPECT") == std::string::npos)
+        << message.text;
+}
+
+// Sides beyond 32 and 64 bits.
+TEST(ImageHeaders, SidesOfAnHdrDoNotWrap) {
+  const TemporaryFolder folder;
+  for (const char* side : {"4294967297", "18446744073709551617", "99999999999999999999999999"}) {
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", texel = "\x80\x40\x20\x81";
+    for (const std::string& sides :
+         {std::string("-Y 1 +X ") + side, std::string("-Y ") + side + " +X 1"})
+      EXPECT_THROW(readImage(saved(folder / "a.hdr", head + sides + "\n" + texel)), InputError)
+          << sides;
+  }
+}
+
 // A PNG of one texel with these chunks.
 std::string png(const std::array<uint8_t, 3>& texel, const std::string& chunks) {
   const std::vector<uint8_t> bytes = encodePng(1, 1, 3, texel);
