@@ -11,6 +11,7 @@
 #include "image/io/encode_png.h"
 #include "image/io/exif.h"
 #include "image/io/lost_light.h"
+#include "image/io/radiance_hdr.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image/orientation.h"
@@ -280,6 +281,27 @@ TEST(ImageHeaders, NegativeChannelsAreCounted) {
               std::string(name) != "a.exr")
         << result.error;
   }
+}
+
+// RGBE ends before float does, and has no infinity.
+TEST(ImageHeaders, NumbersBeyondRgbeAreCounted) {
+  const TemporaryFolder folder;
+  Image image(5, 2, 3);
+  image.setRgb(0, 0, Rgb(kMaxRgbe, 1, 0));
+  EXPECT_TRUE(writeImage(folder / "a.hdr", image).empty());
+  EXPECT_EQ(readImage(folder / "a.hdr").rgb(0, 0).x, kMaxRgbe);
+  image.setRgb(1, 0, Rgb(3e38f));
+  image.setRgb(2, 1, Rgb(std::numeric_limits<float>::quiet_NaN(), 0, -1));
+  const Messages warnings = writeImage(folder / "a.hdr", image);
+  ASSERT_EQ(warnings.size(), 3u);
+  const auto has = [&](size_t i, const char* text) {
+    EXPECT_NE(warnings[i].text.find(text), std::string::npos) << warnings[i].text;
+  };
+  has(0, "3.33% of the channels are negative, down to -1, and become 0");
+  has(1, "10% of the channels are above 1.69e+38, up to 3e+38, and are cut");
+  has(2, "3.33% of the channels are NaN or infinite, and become 0");
+  EXPECT_EQ(readImage(folder / "a.hdr").rgb(1, 0).x, kMaxRgbe);
+  EXPECT_TRUE(writeImage(folder / "a.exr", image).empty());
 }
 
 // Light beyond alpha is lost in a .png where nothing covers the background.
