@@ -127,7 +127,7 @@ TEST_F(SlowHostileMessage, LongAndLoopingPaths) {
   const std::string name(100000, 'n');
   expectRefusal({"render", name + ".gltf", "-o", folder / "o.exr"}, "too long");
   const std::string scene = file("long.toml", "model = \"" + name + "\"\n");
-  expectRefusal({"render", scene, "-o", folder / "o.exr"}, "no such file");
+  expectRefusal({"render", scene, "-o", folder / "o.exr"}, "too long");
   expectRefusal({"probe", "info", folder / std::string(300, 'n')}, "too long");
   std::filesystem::create_symlink("loop.exr", folder / "loop.exr");
   expectRefusal({"probe", "info", folder / "loop.exr"}, "symbolic links");
