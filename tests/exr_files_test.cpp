@@ -129,6 +129,46 @@ TEST(ExrFiles, TheColourIsChosenByName) {
     EXPECT_EQ(layerOf(none), "none") << none.front();
 }
 
+// By words of the names that renderers give to their layers, wherever they are.
+TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
+  const auto isColor = [](const Names& channels) {
+    const PartChannels part{"", channels};
+    return findColorChannels({&part, 1}).has_value();
+  };
+  const auto ofLayer = [](const std::string& layer) {
+    return Names{layer + ".B", layer + ".G", layer + ".R"};
+  };
+  for (const char* layer :
+       {"ViewLayer.Denoising Albedo", "ViewLayer.CryptoObject00", "crypto_material01", "DiffCol",
+        "diffuse_albedo", "View.Position", "bent_normal", "shadow.lamp", "VRayZDepth", "ObjectID",
+        "ID mask", "UVMap", "lineardepth", "motionvector", "Shadow Catcher", "denoise.albedo",
+        "invalid", "View.N"})
+    EXPECT_FALSE(isColor(ofLayer(layer))) << layer;
+  for (const char* channel :
+       {"depth.Y", "ViewLayer.Depth.V", "distance", "object id", "ZBack", "mask", "clipped", "N.X",
+        "ViewLayer.Mist.Z", "Debug Sample Count", "samples", "View.IndexOB.X", "denoise_error.Y"})
+    EXPECT_FALSE(isColor({channel})) << channel;
+  for (const char* layer : {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined",
+                            "noisy", "left", "P3.spec", "panorama", "image", "candid"})
+    EXPECT_TRUE(isColor(ofLayer(layer))) << layer;
+  for (const char* channel : {"luminance", "light.Y", "grey", "L", "Y"})
+    EXPECT_TRUE(isColor({channel})) << channel;
+}
+
+// As a mask, the channel of that name is what is wanted.
+TEST(ExrFiles, MasksAreNoLight) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  for (const char* name : {"mask", "A", "matte.Z"}) {
+    writeParts(path, {{"", {{name, 0.25f}}}});
+    EXPECT_NE(problemOf(path).find(std::string("it has ") + name), std::string::npos)
+        << problemOf(path);
+    EXPECT_EQ(maskOf(readImageFile(path), path).rgb(7, 3), Rgb(0.25f));
+  }
+  writeParts(path, {colored("", Rgb(1, 2, 3))});
+  EXPECT_EQ(maskOf(readImageFile(path), path).rgb(7, 3), Rgb(1, 2, 3));
+}
+
 TEST(ExrFiles, TheColourIsChosenAmongParts) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.exr";
