@@ -56,6 +56,17 @@ TEST_F(CommandDenoise, WritesBothImagesAndTheError) {
   EXPECT_LT(json["denoised"]["noise"], json["noise"]);
 }
 
+TEST_F(CommandDenoise, ACropStaysInItsPlace) {
+  const std::string crop = folder_ / "crop.exr", exr = folder_ / "o.exr", pfm = folder_ / "o.pfm";
+  run(render(crop, {"--aov", "denoise", "--crop", "8,4,24,20"}));
+  run({"image", "denoise", crop, exr});
+  run({"image", "denoise", crop, pfm});
+  ASSERT_TRUE(readImageFile(exr).placement);
+  EXPECT_EQ(readImageFile(exr).placement->x, 8);
+  EXPECT_EQ(readImage(pfm).texels, readImage(exr).texels);
+  EXPECT_EQ(readImage(pfm).width, 48);
+}
+
 TEST_F(CommandDenoise, OfAFileIsThatOfTheRender) {
   const std::string kept = folder_ / "kept.exr", later = folder_ / "later.exr",
                     again = folder_ / "again.exr", out = folder_ / "out.exr";

@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <gtest/gtest.h>
@@ -127,6 +128,79 @@ TEST(ExrFiles, TheColourIsChosenByName) {
         Names{"AO.B", "AO.G", "AO.R"}, Names{"BY", "RY", "Y", "id"}, Names{"X", "Y", "Z"},
         Names{"N.X", "N.Y", "N.Z"}, Names{"depth.Z"}, Names{"a.R", "b.G", "c.B"}})
     EXPECT_EQ(layerOf(none), "none") << none.front();
+}
+
+// By words of the names that renderers give to their layers, wherever they are.
+TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
+  const auto isColor = [](const Names& channels) {
+    const PartChannels part{"", channels};
+    return findColorChannels({&part, 1}).has_value();
+  };
+  const auto ofLayer = [](const std::string& layer) {
+    return Names{layer + ".B", layer + ".G", layer + ".R"};
+  };
+  for (const char* layer :
+       {"ViewLayer.Denoising Albedo", "ViewLayer.CryptoObject00", "crypto_material01", "DiffCol",
+        "diffuse_albedo", "View.Position", "bent_normal", "shadow.lamp", "VRayZDepth", "ObjectID",
+        "ID mask", "UVMap", "lineardepth", "motionvector", "Shadow Catcher", "denoise.albedo",
+        "invalid", "View.N"})
+    EXPECT_FALSE(isColor(ofLayer(layer))) << layer;
+  for (const char* channel :
+       {"depth.Y", "ViewLayer.Depth.V", "distance", "object id", "ZBack", "mask", "clipped", "N.X",
+        "ViewLayer.Mist.Z", "Debug Sample Count", "samples", "View.IndexOB.X", "denoise_error.Y"})
+    EXPECT_FALSE(isColor({channel})) << channel;
+  for (const char* layer : {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined",
+                            "noisy", "left", "P3.spec", "panorama", "image", "candid"})
+    EXPECT_TRUE(isColor(ofLayer(layer))) << layer;
+  for (const char* channel : {"luminance", "light.Y", "grey", "L", "Y"})
+    EXPECT_TRUE(isColor({channel})) << channel;
+}
+
+// As a mask, the channel of that name is what is wanted.
+TEST(ExrFiles, MasksAreNoLight) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  for (const char* name : {"mask", "A", "matte.Z"}) {
+    writeParts(path, {{"", {{name, 0.25f}}}});
+    EXPECT_NE(problemOf(path).find(std::string("it has ") + name), std::string::npos)
+        << problemOf(path);
+    EXPECT_EQ(maskOf(readImageFile(path), path).rgb(7, 3), Rgb(0.25f));
+  }
+  writeParts(path, {colored("", Rgb(1, 2, 3))});
+  EXPECT_EQ(maskOf(readImageFile(path), path).rgb(7, 3), Rgb(1, 2, 3));
+}
+
+// Of 8 x 4 texels; chroma (0: grey) has half the resolution (ImfRgba.h).
+void writeLuminanceChroma(const std::string& path, Imf::PixelType type, float luminance) {
+  Imf::Header header(8, 4);
+  header.channels().insert("Y", Imf::Channel(type));
+  for (const char* chroma : {"RY", "BY"})
+    header.channels().insert(chroma, Imf::Channel(type, 2, 2));
+  std::vector<float> y(32, luminance), chroma(8, 0);
+  std::vector<half> halves(32, luminance), none(8, half(0));
+  const bool isHalf = type == Imf::HALF;
+  const size_t number = isHalf ? sizeof(half) : sizeof(float);
+  Imf::FrameBuffer buffer;
+  const auto add = [&](const char* name, void* texels, size_t width, int sampling) {
+    buffer.insert(name, Imf::Slice(type, static_cast<char*>(texels), number, number * width,
+                                   sampling, sampling));
+  };
+  add("Y", isHalf ? static_cast<void*>(halves.data()) : y.data(), 8, 1);
+  for (const char* name : {"RY", "BY"})
+    add(name, isHalf ? static_cast<void*>(none.data()) : chroma.data(), 4, 2);
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(buffer);
+  file.writePixels(4);
+}
+
+// OpenEXR converts luminance and chroma as 16 bits, in which 1e6 is infinite.
+TEST(ExrFiles, LuminanceAndChromaAreOf16Bits) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  writeLuminanceChroma(path, Imf::HALF, 2);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(readImage(path).rgb(5, 2)[c], 2, 0.01);
+  writeLuminanceChroma(path, Imf::FLOAT, 1e6f);
+  EXPECT_NE(problemOf(path).find("are read of 16 bits only"), std::string::npos) << problemOf(path);
 }
 
 TEST(ExrFiles, TheColourIsChosenAmongParts) {

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "base/error.h"
 #include "exif_block.h"
 #include "image/io/encode_png.h"
 #include "image/io/exif.h"
 #include "image/io/lost_light.h"
+#include "image/io/radiance_hdr.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image/orientation.h"
@@ -67,6 +70,30 @@ TEST(ImageHeaders, RadianceLinesAreAppliedOrNamed) {
     EXPECT_THROW(readImage(saved(folder / "a.hdr", hdr(lines))), InputError) << lines;
 }
 
+TEST(ImageHeaders, RepeatedLinesAreSaidOnce) {
+  const TemporaryFolder folder;
+  std::string lines;
+  for (int i = 0; i < 5000; ++i) lines += "VIEW= -vtv\nGAMMA=2\n";
+  const ImageFile file = readImageFile(saved(folder / "a.hdr", hdr(lines + "PIXASPECT=2\n")));
+  ASSERT_EQ(file.messages.size(), 3u);
+  for (const Message& message : file.messages)
+    EXPECT_EQ(message.text.ends_with("(5000 lines)"),
+              message.text.find("PIXASPECT") == std::string::npos)
+        << message.text;
+}
+
+// Sides beyond 32 and 64 bits.
+TEST(ImageHeaders, SidesOfAnHdrDoNotWrap) {
+  const TemporaryFolder folder;
+  for (const char* side : {"4294967297", "18446744073709551617", "99999999999999999999999999"}) {
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", texel = "\x80\x40\x20\x81";
+    for (const std::string& sides :
+         {std::string("-Y 1 +X ") + side, std::string("-Y ") + side + " +X 1"})
+      EXPECT_THROW(readImage(saved(folder / "a.hdr", head + sides + "\n" + texel)), InputError)
+          << sides;
+  }
+}
+
 // A PNG of one texel with these chunks.
 std::string png(const std::array<uint8_t, 3>& texel, const std::string& chunks) {
   const std::vector<uint8_t> bytes = encodePng(1, 1, 3, texel);
@@ -118,6 +145,57 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
   expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
 }
 
+// Code points of ITU-T H.273: primaries, transfer, matrix, full range.
+std::string codePoints(uint8_t primaries, uint8_t transfer, uint8_t matrix = 0, uint8_t full = 1) {
+  return chunk("cICP", {uint32_t(primaries) << 24 | uint32_t(transfer) << 16 |
+                        uint32_t(matrix) << 8 | full});
+}
+
+TEST(ImageHeaders, CodePointsOfAPng) {
+  const TemporaryFolder folder;
+  const std::array<uint8_t, 3> texel = {200, 100, 10};
+  const auto file = [&](const std::string& chunks) {
+    return saved(folder / "a.png", png(texel, chunks));
+  };
+  const auto expectTexel = [&](const std::string& chunks, const Rgb& expected) {
+    const Rgb read = readImage(file(chunks)).rgb(0, 0);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], expected[c], 2e-6f);
+  };
+  Rgb srgb, fraction, rec709;
+  for (int c = 0; c < 3; ++c) {
+    const float v = fraction[c] = float(texel[size_t(c)]) / 255;
+    srgb[c] = srgbToLinear(v);
+    rec709[c] = v < 0.0812429f ? v / 4.5f : std::pow((v + 0.0992968f) / 1.0992968f, 1 / 0.45f);
+  }
+  expectTexel(codePoints(1, 13), srgb);
+  expectTexel(codePoints(2, 2), srgb);
+  expectTexel(codePoints(1, 8), fraction);
+  for (const uint8_t transfer : {1, 6, 14, 15}) expectTexel(codePoints(1, transfer), rec709);
+  expectTexel(codePoints(1, 13) + chunk("gAMA", {100000}), srgb);  // which it overrides
+  const std::string displayP3 =
+      chunk("cHRM", {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000});
+  expectTexel(codePoints(12, 13), readImage(file(displayP3)).rgb(0, 0));
+  Image wide(1, 1, 3);
+  wide.setRgb(0, 0, fraction);
+  convertColor(wide, *toRec709({{0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}}));
+  expectTexel(codePoints(9, 8), wide.rgb(0, 0));
+  for (const auto& [chunks, reason] :
+       {std::pair{codePoints(9, 16), "the transfer PQ"},
+        {codePoints(9, 18), "the transfer HLG"},
+        {codePoints(9, 99), "a transfer that is not known, 99"},
+        {codePoints(77, 13), "primaries that are not known here, 77"},
+        {codePoints(1, 13, 9), "not RGB"},
+        {codePoints(1, 13, 0, 0), "of the full range"}}) {
+    try {
+      readImage(file(chunks));
+      ADD_FAILURE() << reason;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+    EXPECT_NO_THROW(readImage(file(chunks), IntegerTexels::Linear));  // raw levels are no light
+  }
+}
+
 // The texel in the upper left of the picture, by where the orientation says that it is stored.
 TEST(ImageHeaders, OrientationTurnsAsExifSays) {
   Image stored(3, 2, 1);
@@ -143,6 +221,10 @@ TEST(ImageHeaders, AllReadersTurnAlike) {
                 oriented(stored, orientation).texels)
           << name << orientation;
     }
+    // Some PNG files have the block with its name.
+    const std::string named = std::string("Exif\0\0", 6) + orientationBlock(orientation);
+    EXPECT_EQ(readImage(saved(folder / "b.png", withExif(seed("a.png"), named))).texels,
+              oriented(readImage(saved(folder / "b.png", seed("a.png"))), orientation).texels);
   }
 }
 
@@ -200,6 +282,27 @@ TEST(ImageHeaders, NegativeChannelsAreCounted) {
               std::string(name) != "a.exr")
         << result.error;
   }
+}
+
+// RGBE ends before float does, and has no infinity.
+TEST(ImageHeaders, NumbersBeyondRgbeAreCounted) {
+  const TemporaryFolder folder;
+  Image image(5, 2, 3);
+  image.setRgb(0, 0, Rgb(kMaxRgbe, 1, 0));
+  EXPECT_TRUE(writeImage(folder / "a.hdr", image).empty());
+  EXPECT_EQ(readImage(folder / "a.hdr").rgb(0, 0).x, kMaxRgbe);
+  image.setRgb(1, 0, Rgb(3e38f));
+  image.setRgb(2, 1, Rgb(std::numeric_limits<float>::quiet_NaN(), 0, -1));
+  const Messages warnings = writeImage(folder / "a.hdr", image);
+  ASSERT_EQ(warnings.size(), 3u);
+  const auto has = [&](size_t i, const char* text) {
+    EXPECT_NE(warnings[i].text.find(text), std::string::npos) << warnings[i].text;
+  };
+  has(0, "3.33% of the channels are negative, down to -1, and become 0");
+  has(1, "10% of the channels are above 1.69e+38, up to 3e+38, and are cut");
+  has(2, "3.33% of the channels are NaN or infinite, and become 0");
+  EXPECT_EQ(readImage(folder / "a.hdr").rgb(1, 0).x, kMaxRgbe);
+  EXPECT_TRUE(writeImage(folder / "a.exr", image).empty());
 }
 
 // Light beyond alpha is lost in a .png where nothing covers the background.

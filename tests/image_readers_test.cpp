@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The readers of PNG and JPEG against those of OpenImageIO, on files of every kind that these
-// formats have, whole and truncated.
+// formats have, whole and truncated. What is missing of a JPEG OpenImageIO makes up, and we refuse.
 #include <gtest/gtest.h>
 
 #include <csetjmp>
@@ -139,16 +139,22 @@ std::vector<float> byOurs(const Bytes& file, const TemporaryFolder& folder) try 
   return {};
 }
 
-// Whole, and cut at several places before `end`.
-void expectSameTexels(const char* format, const Bytes& file, size_t end, const std::string& what) {
+Bytes firstOf(const Bytes& file, size_t count) {
+  return {file.begin(), file.begin() + std::ptrdiff_t(count)};
+}
+
+void expectSameTexels(const char* format, const Bytes& file, const std::string& what) {
   const TemporaryFolder folder;
   const std::vector<float> texels = byOurs(file, folder);
   EXPECT_FALSE(texels.empty()) << what;
   EXPECT_EQ(texels, byModule(format, file)) << what;
-  for (size_t i = 1; i < 16; ++i) {
-    const Bytes cut(file.begin(), file.begin() + std::ptrdiff_t(end * i / 16));
-    EXPECT_EQ(byOurs(cut, folder), byModule(format, cut)) << what << ", " << cut.size() << " bytes";
-  }
+}
+
+// Cut at several places before `end`.
+std::vector<Bytes> cutFiles(const Bytes& file, size_t end) {
+  std::vector<Bytes> cuts;
+  for (size_t i = 1; i < 16; ++i) cuts.push_back(firstOf(file, end * i / 16));
+  return cuts;
 }
 
 TEST(ImageReaders, PngOfEveryKind) {
@@ -170,13 +176,16 @@ TEST(ImageReaders, PngOfEveryKind) {
       kind.interlaced = interlaced;
       const Bytes file = makePng(kind, 19, 13);
       constexpr size_t kEndChunk = 12;  // without which OpenImageIO refuses interlaced files only
-      expectSameTexels("png", file, file.size() - kEndChunk,
-                       fmt::format("colour {}, {} bits, interlaced {}, transparent {}", kind.color,
-                                   kind.bits, interlaced, kind.transparent));
+      const std::string what = fmt::format("colour {}, {} bits, interlaced {}, transparent {}",
+                                           kind.color, kind.bits, interlaced, kind.transparent);
+      expectSameTexels("png", file, what);
+      const TemporaryFolder folder;
+      for (const Bytes& cut : cutFiles(file, file.size() - kEndChunk))
+        EXPECT_EQ(byOurs(cut, folder), byModule("png", cut)) << what << ", " << cut.size();
     }
 }
 
-TEST(ImageReaders, JpegOfEveryKind) {
+std::vector<JpegKind> jpegKinds() {
   std::vector<JpegKind> kinds;
   for (const bool progressive : {false, true})
     for (const int restart : {0, 1}) {
@@ -188,12 +197,59 @@ TEST(ImageReaders, JpegOfEveryKind) {
         kinds.push_back({JCS_YCCK, 4, progressive, restart, sampling});
       }
     }
-  for (const JpegKind& kind : kinds) {
+  return kinds;
+}
+
+std::string inWords(const JpegKind& kind) {
+  return fmt::format("colour {}, progressive {}, restart {}, sampling {}", int(kind.stored),
+                     kind.progressive, kind.restart, kind.sampling);
+}
+
+TEST(ImageReaders, JpegOfEveryKind) {
+  for (const JpegKind& kind : jpegKinds())
+    expectSameTexels("jpeg", makeJpeg(kind, 37, 29), inWords(kind));
+}
+
+// Half a picture is none, of whatever kind, also as a texture.
+TEST(ImageReaders, TruncatedJpegIsRefused) {
+  const TemporaryFolder folder;
+  constexpr size_t kEndMarker = 2;
+  for (const JpegKind& kind : jpegKinds()) {
     const Bytes file = makeJpeg(kind, 37, 29);
-    expectSameTexels("jpeg", file, file.size(),
-                     fmt::format("colour {}, progressive {}, restart {}, sampling {}",
-                                 int(kind.stored), kind.progressive, kind.restart, kind.sampling));
+    std::vector<Bytes> cuts = cutFiles(file, file.size());
+    cuts.push_back(firstOf(file, file.size() - kEndMarker - 1));
+    for (const Bytes& cut : cuts) {
+      EXPECT_TRUE(byOurs(cut, folder).empty()) << inWords(kind) << ", " << cut.size();
+      EXPECT_THROW(decodeImage(cut, "a"), InputError);
+    }
   }
+}
+
+// With all bits of its one scan; of several, others might be missing.
+TEST(ImageReaders, JpegWithoutItsEndMarker) {
+  const TemporaryFolder folder;
+  constexpr size_t kEndMarker = 2;
+  for (const JpegKind& kind : jpegKinds()) {
+    const Bytes file = makeJpeg(kind, 37, 29);
+    EXPECT_EQ(byOurs(firstOf(file, file.size() - kEndMarker), folder),
+              kind.progressive ? std::vector<float>() : byOurs(file, folder))
+        << inWords(kind);
+  }
+}
+
+TEST(ImageReaders, DamagedJpegIsRefused) {
+  const TemporaryFolder folder;
+  const Bytes file = makeJpeg({JCS_YCbCr, 3}, 64, 64);
+  Bytes damaged = file;
+  damaged[file.size() / 2] = 0xff, damaged[file.size() / 2 + 1] = 0xd9;  // an end in the middle
+  EXPECT_TRUE(byOurs(damaged, folder).empty());
+  // Bytes that are skipped between segments, and after the end, are harmless.
+  Bytes padded = file;
+  constexpr size_t kStart = 2, kMarker = 2;
+  const size_t segment = kStart + kMarker + (size_t(file[4]) << 8 | file[5]);
+  padded.insert(padded.begin() + std::ptrdiff_t(segment), {0, 0, 0});
+  padded.insert(padded.end(), {1, 2, 3});
+  EXPECT_EQ(byOurs(padded, folder), byOurs(file, folder));
 }
 
 // glTF, 3.8.2: textures ignore colour spaces that an image states.

@@ -145,6 +145,18 @@ TEST(Image, PfmBigEndianAndGrey) {
   EXPECT_EQ(image.rgb(0, 1), Rgb(1));
   write(folder / "dos.pfm", "Pf\r\n1 2\r\n1.0\r\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
   EXPECT_EQ(readImage(folder / "dos.pfm").texels, image.texels);
+  // The magnitude of the scale is a factor, which is said.
+  for (const char* scale : {"2.0", "0.25", "1e10"}) {
+    write(folder / "scaled.pfm",
+          std::string("Pf\n1 2\n") + scale + "\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
+    const ImageFile scaled = readImageFile(folder / "scaled.pfm");
+    EXPECT_EQ(scaled.image.texels[1], std::stof(scale));
+    ASSERT_EQ(scaled.messages.size(), 1u);
+    EXPECT_NE(scaled.messages[0].text.find("multiplied by the scale"), std::string::npos);
+  }
+  EXPECT_TRUE(readImageFile(folder / "big.pfm").messages.empty());
+  write(folder / "scale.pfm", "Pf\n1 1\n-1e30\n1234");
+  expectInputError(folder / "scale.pfm", "the scale of a PFM");
   write(folder / "short.pfm", "PF\n2 2\n-1\n1234");
   expectInputError(folder / "short.pfm", "need");
   write(folder / "huge.pfm", "PF\n2000000000 2000000000\n-1\n1234");

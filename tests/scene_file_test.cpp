@@ -2,6 +2,7 @@
 #include "job/scene_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -55,6 +56,15 @@ class SceneFileTest : public testing::Test {
 
   fs::path root_;
 };
+
+TEST_F(SceneFileTest, FilesThatAreNoneAreNamed) {
+  ASSERT_EQ(mkfifo((root_ / "pipe").c_str(), 0600), 0);
+  for (const char* entry : {"[[light]]\nfile = ", "[probe]\nfile = ", "[camera]\nfile = "}) {
+    expectError(std::string(entry) + "'../pipe'", 3, {"`file`: ", "pipe: not a regular file"});
+    expectError(std::string(entry) + "'..'", 3, {"not a regular file"});
+    expectError(std::string(entry) + "'none'", 3, {"none: no such file", "relative to the scene"});
+  }
+}
 
 TEST_F(SceneFileTest, AModelAloneSetsNothingElse) {
   const SceneFile scene = readWithModel("");

@@ -212,7 +212,7 @@ TEST_F(CommandStitch, WrongListsAreExplained) {
   refuse("tile = [3]\n", "tiles.toml:1: `tile` must be a table, [[tile]]");
   refuse("[[tile]]\nfile = 'a.exr'\n", "tiles.toml:1: [[tile]] needs `fov`");
   refuse("fov = 50\n[[tile]]\nyaw = 3\n", "tiles.toml:2: [[tile]] needs `file`");
-  refuse("fov = 50\n[[tile]]\nfile = 'b.exr'\n", "`file`: no such file: ");
+  refuse("fov = 50\n[[tile]]\nfile = 'b.exr'\n", "b.exr: no such file (paths are relative");
   refuse("fov = 180\n[[tile]]\nfile = 'a.exr'\n",
          "tiles.toml:1: `fov` must be a number of degrees from 0.01 to 179");
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\nyaw = 'left'\n",

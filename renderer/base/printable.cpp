@@ -40,6 +40,17 @@ size_t characterLength(std::string_view text) {
   return 0;
 }
 
+// Characters that reorder a line (Unicode Standard Annex 9, tables of explicit and implicit marks):
+// U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069; and those that end one: U+2028,
+// U+2029.
+bool movesText(std::string_view character) {
+  const auto isBetween = [&](std::string_view first, std::string_view last) {
+    return character.size() == first.size() && character >= first && character <= last;
+  };
+  return character == "\xd8\x9c" || isBetween("\xe2\x80\x8e", "\xe2\x80\x8f") ||
+         isBetween("\xe2\x80\xa8", "\xe2\x80\xae") || isBetween("\xe2\x81\xa6", "\xe2\x81\xa9");
+}
+
 bool continuesCharacter(char c) { return (uint8_t(c) & 0xc0) == 0x80; }
 
 // The first and the last bytes of `text`, whole characters, at most `longest` in all.
@@ -59,7 +70,7 @@ std::string withoutControls(std::string_view text) {
     if (length == 0) {
       length = characterLength(text);
       if (length > 0)
-        result += text.substr(0, length);
+        result += movesText(text.substr(0, length)) ? "?" : text.substr(0, length);
       else
         result += text[0] == '\n' || text[0] == '\t' || text[0] == '\r' ? ' ' : '?';
     }

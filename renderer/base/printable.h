@@ -8,9 +8,10 @@
 namespace chromeball {
 
 // Valid UTF-8 of one line without control characters: a line break becomes a space, an escape
-// sequence of a terminal (ECMA-48: CSI and OSC) nothing, another control character or a byte that
-// is not UTF-8 `?`. What is long is shortened in its middle, with `...` there: each word of more
-// than 200 bytes, and the whole to 2000 bytes.
+// sequence of a terminal (ECMA-48: CSI and OSC) nothing, another control character, among them
+// those that turn the direction of a line (right-to-left override), or a byte that is not UTF-8
+// `?`. What is long is shortened in its middle, with `...` there: each word of more than 200 bytes,
+// and the whole to 2000 bytes.
 std::string printable(std::string_view text);
 
 }  // namespace chromeball

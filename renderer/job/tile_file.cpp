@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "job/output_file.h"
 #include "job/toml_section.h"
 
@@ -70,10 +71,11 @@ class TileReader {
     if (!own && !common)
       failAt(at(table), "[[tile]] needs `fov`, vertical, or the list one for all");
     const fs::path image = (fs::path(path_).parent_path() / *file).lexically_normal();
-    std::error_code ignored;
-    if (!fs::is_regular_file(image, ignored))
-      failAt(at(table), "`file`: no such file: {} (paths are relative to the list)",
-             image.string());
+    try {
+      checkReadable(image);
+    } catch (const InputError& error) {
+      failAt(at(table), "`file`: {} (paths are relative to the list)", error.what());
+    }
     return {image.string(),
             {angle("yaw"), angle("pitch"), angle("roll")},
             own ? *own : *common,

@@ -187,10 +187,12 @@ std::string resolvedPath(const Entry& entry) {
 
 std::string existingFile(const Entry& entry) {
   const std::string path = resolvedPath(entry);
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored))
-    failAt(entry.location(), "`{}`: no such file: {} (paths are relative to the scene file)",
-           entry.key, path);
+  try {
+    checkReadable(path);
+  } catch (const InputError& error) {
+    failAt(entry.location(), "`{}`: {} (paths are relative to the scene file)", entry.key,
+           error.what());
+  }
   return path;
 }
 

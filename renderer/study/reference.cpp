@@ -23,12 +23,13 @@ Reference meanOfParts(const std::vector<Image>& parts) {
 Reference readReference(const std::string& path, int width, int height, Messages* messages) {
   const ImageFile file = readImageFile(path);
   if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
-  const std::optional<Image> color = findColor(file);
+  std::optional<Image> color = findColor(file);
   if (!color) throwInput("--reference: {}: has no colour", path);
+  color = inDisplayWindow(*std::move(color), file.placement, path);
   if (color->width != width || color->height != height)
     throwInput("--reference: {} is {} x {}, but the renders are {} x {}; try --size {}x{}", path,
                color->width, color->height, width, height, color->width, color->height);
-  const std::optional<Image> variance = findLayer(file, "variance");
+  const std::optional<Image> variance = layerOf(file, "variance", path);
   return {*color, variance && variance->channels == 3 ? *variance : Image()};
 }
 

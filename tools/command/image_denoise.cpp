@@ -97,11 +97,12 @@ void run(const ImageDenoiseArguments& arguments) {
   }();
   OutputImage output;
   output.metadata = std::move(file.metadata);
+  output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
   const double noise = addDenoised(std::move(denoised), noiseOf(output.metadata), output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
-  print(writeImage(arguments.output, output), false);
+  print(writeInWindow(arguments.output, std::move(output), arguments.input), false);
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
                std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",

@@ -82,9 +82,9 @@ void checkEffects(const ImageDevelopArguments& arguments, const DevelopSettings&
     throwInput("--fov: has no effect without --vignette STRENGTH, --glare or --depth-blur");
 }
 
-ViewFrame frameOf(const ImageDevelopArguments& arguments, const ImageFile& file, const Image& color,
+ViewFrame frameOf(const ImageDevelopArguments& arguments, const ImageFile& file,
                   const DevelopSettings& settings) {
-  ViewFrame frame = viewFrame(color, file.placement, file.metadata);
+  ViewFrame frame = viewFrame(file.image, file.placement, file.metadata);
   if (arguments.fov) {
     if (!(*arguments.fov > 0 && *arguments.fov < 180))
       throwInput("--fov: {} should be between 0 and 180 degrees", *arguments.fov);
@@ -103,11 +103,6 @@ Image depthOf(const ImageFile& file, const std::string& path) {
   if (!depth || depth->channels != 1)
     throwInput("--depth-blur: {} has no layer `depth`; `render --aov depth` writes one", path);
   return *std::move(depth);
-}
-
-Image colorToDevelop(const ImageFile& file, const std::string& path) {
-  if (std::optional<Image> color = findColorAndAlpha(file)) return *std::move(color);
-  throwInput("{}: has no color", path);
 }
 
 // "bloom=.75:1,.25:32 vignette=.4", after what was done to the image before.
@@ -129,15 +124,15 @@ struct Input {
 };
 
 Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
-  const ImageFile file = openImageFile(arguments.in);
-  Image color = colorToDevelop(file, arguments.in);
+  ImageFile file = openImageFile(arguments.in);
   Input input;
-  input.frame = frameOf(arguments, file, color, settings);
+  input.frame = frameOf(arguments, file, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
   input.image.metadata = file.metadata;
   if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
   input.otherLayers = layerNames(file);
   input.image.placement = file.placement;
+  Image color = colorAndAlphaOfData(std::move(file), arguments.in);
   input.image.layers.push_back({"", color.channels == 4 ? "RGBA" : "RGB", std::move(color)});
   return input;
 }
@@ -155,7 +150,7 @@ void run(const ImageDevelopArguments& arguments) {
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
     note(fmt::format("{}: its color alone is developed and written; without the layers {}",
                      arguments.in, fmt::join(input.otherLayers, ", ")));
-  print(writeImage(arguments.out, input.image, transform), false);
+  print(writeInWindow(arguments.out, std::move(input.image), arguments.in, transform), false);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ void run(const ImageDivideArguments& arguments) {
   ImageFile file = openImageFile(arguments.a);
   const Image b = openImage(arguments.b);
   OutputImage output;
-  std::optional<Image> clipped = findLayer(file, "clipped");
+  std::optional<Image> clipped = layerOf(file, "clipped", arguments.a);
   Image a = colorOf(std::move(file), arguments.a);
   if (a.width != b.width || a.height != b.height)
     throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be divided",

@@ -72,11 +72,9 @@ struct Side {
   std::optional<Image> variance;
 
   explicit Side(const std::string& path) {
-    const ImageFile file = openImageFile(path);
-    std::optional<Image> found = findColor(file);
-    if (!found) throwInput("{}: has no color", path);
-    color = *std::move(found);
-    variance = findLayer(file, "variance");
+    ImageFile file = openImageFile(path);
+    variance = layerOf(file, "variance", path);
+    color = colorOf(std::move(file), path);
   }
   const Image* varianceOrNull() const { return variance ? &*variance : nullptr; }
 };

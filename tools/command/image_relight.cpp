@@ -139,10 +139,15 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
       neededLayer(file, arguments.in, "ao", 1)};
   Image color = relit(layers, lightMap(arguments), arguments.rotation);
   if (!arguments.added.empty()) {
-    const Image added = colorOfData(openImageFile(arguments.added), arguments.added);
+    ImageFile addedFile = openImageFile(arguments.added);
+    const bool isInPlace = addedFile.placement == file.placement;
+    const Image added = colorOfData(std::move(addedFile), arguments.added);
     if (added.width != color.width || added.height != color.height)
       throwInput("{}: has {} x {} pixels; {} has {} x {}", arguments.added, added.width,
                  added.height, arguments.in, color.width, color.height);
+    if (!isInPlace)
+      throwInput("{}: its pixels are at another place of the picture than those of {}",
+                 arguments.added, arguments.in);
     color = sumOf(std::array{std::move(color), added});
   }
   checkFinite(color, arguments.in);
@@ -150,7 +155,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   output.metadata = file.metadata;
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
-  print(writeImage(arguments.out, output, transform), false);
+  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
 }
 
 void runGains(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
@@ -167,7 +172,7 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
-  print(writeImage(arguments.out, output, transform), false);
+  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
 }
 
 void run(const ImageRelightArguments& arguments) {

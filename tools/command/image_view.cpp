@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "base/suggest.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
@@ -20,13 +21,6 @@ struct ImageViewArguments {
   std::string in, out, layer, tone = "none";
   float exposure = 0;
 };
-
-// The names in a damaged file may hold control characters.
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (uint8_t(c) < ' ' || c == 127) c = '?';
-  return text;
-}
 
 // Prints the color of each name.
 void printLegend(const Image& ids, const std::map<int, std::string>& names) {
@@ -55,7 +49,7 @@ Image viewOf(const std::string& path, const std::string& layer) {
                known.empty() ? "it has only its color" : didYouMean(layer, known));
   }
   if (isOfIds(layer)) printLegend(*image, readManifest(file.metadata, layer));
-  return layerView(layer, *std::move(image));
+  return inDisplayWindow(layerView(layer, *std::move(image)), file.placement, path);
 }
 
 void run(const ImageViewArguments& arguments) {
@@ -65,7 +59,7 @@ void run(const ImageViewArguments& arguments) {
   if (!std::isfinite(transform.exposure))
     throwInput("--exposure: must be a finite number of stops");
   const Image shown = arguments.layer.empty()
-                          ? colorAndAlphaOfData(openImageFile(arguments.in), arguments.in)
+                          ? colorAndAlphaOf(openImageFile(arguments.in), arguments.in)
                           : viewOf(arguments.in, arguments.layer);
   print(writeImage(arguments.out, shown, transform), false);
 }

@@ -120,7 +120,7 @@ void calibrate(const MergeArguments& arguments) {
     throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
   const auto read = [](const std::string& path) {
     ImageFile file = openImageFile(path);
-    std::optional<Image> clipped = findLayer(file, "clipped");
+    std::optional<Image> clipped = layerOf(file, "clipped", path);
     return std::pair{colorOf(std::move(file), path), std::move(clipped)};
   };
   const auto [with, clippedWith] = read(arguments.calibration[0]);

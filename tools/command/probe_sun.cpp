@@ -59,9 +59,10 @@ DiffuseBall parseBall(const ProbeSunArguments& arguments) {
 Image excludedPixels(const ProbeSunArguments& arguments, const ImageFile& file,
                      const Image& photograph) {
   constexpr float kSaturated = 0.98f;
-  const std::optional<Image> clipped = findLayer(file, "clipped");
+  const std::optional<Image> clipped = layerOf(file, "clipped", arguments.ball);
   Image mask;
-  if (!arguments.mask.empty()) mask = openImage(arguments.mask, IntegerTexels::Linear);
+  if (!arguments.mask.empty())
+    mask = maskOf(openImageFile(arguments.mask, IntegerTexels::Linear), arguments.mask);
   if (!mask.empty() && (mask.width != photograph.width || mask.height != photograph.height))
     throwInput("{}: is {} x {}, but {} is {} x {}; a mask has the photograph's size",
                arguments.mask, mask.width, mask.height, arguments.ball, photograph.width,

@@ -9,8 +9,9 @@
 namespace chromeball {
 namespace {
 
-// XMP, IPTC, Photoshop, EXIF, ICC, GPS, interoperability.
-constexpr std::array<uint64_t, 7> kMetadataTags = {700, 33723, 34377, 34665, 34675, 34853, 40965};
+// XMP, IPTC, Photoshop, EXIF, ICC, GPS, interoperability; orientation.
+constexpr std::array<uint64_t, 8> kMetadataTags = {700,   33723, 34377, 34665,
+                                                   34675, 34853, 40965, 274};
 
 uint64_t number(std::span<const uint8_t> bytes, bool bigEndian) {
   uint64_t value = 0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Removes metadata from TIFF files: colour profiles, EXIF, comments. We do not use them, and
 // OpenImageIO 2.4 does not parse damaged ones safely: it follows the tag table of an ICC profile
-// beyond the end of the profile.
+// beyond the end of the profile. Of the orientation libtiff applies a half, mirrored but with its
+// sides unswapped, to the images that it converts to RGB (YCbCr, JPEG), so that our reader, which
+// turns all alike, would turn these twice.
 #pragma once
 
 #include <cstdint>

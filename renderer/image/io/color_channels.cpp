@@ -15,23 +15,78 @@ std::string inLowerCase(std::string_view text) {
   return lower;
 }
 
-// "combined" of "ViewLayer.Combined".
-std::string lastWord(const std::string& layer) {
-  return inLowerCase(layer.substr(layer.rfind('.') + 1));
+// "ViewLayer" and "Combined" of "ViewLayer.Combined".
+std::vector<std::string_view> segmentsOf(std::string_view name) {
+  std::vector<std::string_view> segments;
+  for (size_t begin = 0; begin <= name.size();) {
+    const size_t end = std::min(name.find('.', begin), name.size());
+    segments.push_back(name.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return segments;
+}
+
+// In lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and "object" of
+// "CryptoObject00", "z" and "depth" of "ZDepth".
+std::vector<std::string> wordsOf(std::string_view segment) {
+  const auto is = [&](size_t i, int (*kind)(int)) {
+    return i < segment.size() && kind(static_cast<unsigned char>(segment[i])) != 0;
+  };
+  std::vector<std::string> words;
+  for (size_t i = 0; i < segment.size(); ++i) {
+    if (!is(i, std::isalpha)) continue;
+    const bool begins =
+        i == 0 || !is(i - 1, std::isalpha) ||
+        (is(i, std::isupper) && (is(i - 1, std::islower) || is(i + 1, std::islower)));
+    if (begins) words.emplace_back();
+    words.back() += char(std::tolower(static_cast<unsigned char>(segment[i])));
+  }
+  return words;
+}
+
+// By the names of our own layers and of those of Blender, Arnold, V-Ray, Cryptomatte and others.
+bool isNoLight(std::string_view segment) {
+  constexpr std::array kSegments = {"node",     "clipped",       "diffcol", "glosscol", "transcol",
+                                    "material", "subsurfacecol", "ratio",   "samples",  "variance",
+                                    "invalid",  "reflectance",   "zback"};
+  constexpr std::array kWords = {
+      "alpha",    "ao",        "occlusion", "mist",      "normal",      "normals", "position",
+      "pref",     "velocity",  "motion",    "vector",    "vectors",     "tangent", "uv",
+      "shadow",   "id",        "ids",       "index",     "mask",        "masks",   "matte",
+      "mattes",   "count",     "error",     "distance",  "coverage",    "opacity", "roughness",
+      "metallic", "metalness", "basecolor", "disparity", "motionvector"};
+  constexpr std::array kPartsOfWords = {"depth", "albedo", "crypto"};
+  const auto isIn = [](const auto& list, const std::string& word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+  };
+  if (isIn(kSegments, inLowerCase(segment))) return true;
+  return std::ranges::any_of(wordsOf(segment), [&](const std::string& word) {
+    return isIn(kWords, word) || std::ranges::any_of(kPartsOfWords, [&](const char* part) {
+             return word.find(part) != word.npos;
+           });
+  });
+}
+
+// Alpha, a normal, a position, a depth; also "N" of the channel "View.N.X". Elsewhere a letter says
+// nothing: the view "A".
+bool isLetterOfNoLight(const std::vector<std::string_view>& segments) {
+  const auto is = [](std::string_view segment) {
+    return segment.size() == 1 && std::string_view("anpzANPZ").find(segment) != segment.npos;
+  };
+  const size_t count = segments.size();
+  return is(segments.back()) ||
+         (count > 1 && segments.back().size() == 1 && is(segments[count - 2]));
 }
 
 // The least is the best; nullopt: no light.
 constexpr int kUnnamed = 0, kOtherLayer = 5, kGrey = 6;
 std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};
-  constexpr std::array kNoLight = {"a",        "alpha",  "ao",     "z",       "depth",  "mist",
-                                   "albedo",   "n",      "normal", "normals", "p",      "position",
-                                   "velocity", "motion", "vector", "uv",      "shadow", "id"};
   if (layer.empty()) return kUnnamed;
-  const std::string word = lastWord(layer);
-  const auto light = std::find(kLight.begin(), kLight.end(), word);
+  const std::vector<std::string_view> segments = segmentsOf(layer);
+  const auto light = std::find(kLight.begin(), kLight.end(), inLowerCase(segments.back()));
   if (light != kLight.end()) return 1 + int(light - kLight.begin());
-  if (std::find(kNoLight.begin(), kNoLight.end(), word) != kNoLight.end()) return {};
+  if (isLetterOfNoLight(segments) || std::ranges::any_of(segments, isNoLight)) return {};
   return kOtherLayer;
 }
 

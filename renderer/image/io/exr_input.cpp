@@ -216,6 +216,10 @@ void ExrInput::readHeader() {
   if (isLuminanceChroma(header.channels())) {
     if (parts.size() > 1)
       throwUnreadable(path_, "luminance and chroma in one of several parts are not supported");
+    if (numbers_ != Numbers::Half)  // the library's converter has no other
+      throwUnreadable(path_,
+                      "luminance and chroma (Y, RY, BY) are read of 16 bits only, not of 32, which "
+                      "would be rounded, and infinite above 65504: store R, G and B");
     return;
   }
   for (auto at = header.channels().begin(); at != header.channels().end(); ++at)

@@ -31,22 +31,6 @@ Image inRec709(Image color, const std::vector<size_t>& channels, const ImageFile
   return color;
 }
 
-// Black around the data. Throws InputError if the window exceeds the limits, or has no data.
-Image inDisplayWindow(const Image& data, const Placement& p, const fs::path& path) {
-  checkImageSize(path, p.width, p.height, data.channels);
-  checkImageMemory(path, p.width, p.height, data.channels);
-  const int64_t left = std::max(p.x, 0), top = std::max(p.y, 0);
-  const int64_t right = std::min<int64_t>(p.width, int64_t(p.x) + data.width),
-                bottom = std::min<int64_t>(p.height, int64_t(p.y) + data.height);
-  if (left >= right || top >= bottom)
-    throwInput("{}: its data window lies outside of its display window", path.string());
-  Image window(p.width, p.height, data.channels);
-  for (int64_t y = top; y < bottom; ++y)
-    std::copy_n(data.at(int(left - p.x), int(y - p.y)), size_t(right - left) * data.channels,
-                window.at(int(left), int(y)));
-  return window;
-}
-
 // "A, Z and 3 more"; names in a damaged file may hold any bytes.
 std::string listOf(const std::vector<std::string>& channels) {
   constexpr size_t kMost = 8, kMostLetters = 40;
@@ -145,6 +129,23 @@ std::vector<std::string> layerNames(const ImageFile& file) {
   return names;
 }
 
+Image inDisplayWindow(Image data, const std::optional<Placement>& placement, const fs::path& path) {
+  if (!placement) return data;
+  const Placement& p = *placement;
+  checkImageSize(path, p.width, p.height, data.channels);
+  checkImageMemory(path, p.width, p.height, data.channels);
+  const int64_t left = std::max(p.x, 0), top = std::max(p.y, 0);
+  const int64_t right = std::min<int64_t>(p.width, int64_t(p.x) + data.width),
+                bottom = std::min<int64_t>(p.height, int64_t(p.y) + data.height);
+  if (left >= right || top >= bottom)
+    throwInput("{}: its data window lies outside of its display window", path.string());
+  Image window(p.width, p.height, data.channels);
+  for (int64_t y = top; y < bottom; ++y)
+    std::copy_n(data.at(int(left - p.x), int(y - p.y)), size_t(right - left) * data.channels,
+                window.at(int(left), int(y)));
+  return window;
+}
+
 Image colorOfData(ImageFile&& file, const fs::path& path) {
   const auto indices = colorIndices(file);
   if (!indices)
@@ -163,8 +164,23 @@ Image colorAndAlphaOfData(ImageFile&& file, const fs::path& path) {
 
 Image colorOf(ImageFile&& file, const fs::path& path) {
   const std::optional<Placement> placement = file.placement;
-  Image color = colorOfData(std::move(file), path);
-  return placement ? inDisplayWindow(color, *placement, path) : color;
+  return inDisplayWindow(colorOfData(std::move(file), path), placement, path);
+}
+
+Image maskOf(ImageFile&& file, const fs::path& path) {
+  if (file.channels.size() > 1) return colorOf(std::move(file), path);
+  return inDisplayWindow(extract(file, {0, 0, 0}), file.placement, path);
+}
+
+std::optional<Image> layerOf(const ImageFile& file, const std::string& name, const fs::path& path) {
+  std::optional<Image> layer = findLayer(file, name);
+  if (layer) layer = inDisplayWindow(*std::move(layer), file.placement, path);
+  return layer;
+}
+
+Image colorAndAlphaOf(ImageFile&& file, const fs::path& path) {
+  const std::optional<Placement> placement = file.placement;
+  return inDisplayWindow(colorAndAlphaOfData(std::move(file), path), placement, path);
 }
 
 }  // namespace chromeball

@@ -6,6 +6,8 @@
 
 // needs size_t and FILE
 #include <jpeglib.h>
+// needs jpeglib.h
+#include <jerror.h>
 
 #include "image/io/sample_reader.h"
 #include "image/size_limits.h"
@@ -27,7 +29,7 @@ class JpegReader : public SampleReader {
     jpeg_.err = jpeg_std_error(&errors_);
     jpeg_.client_data = this;
     errors_.error_exit = onError;
-    errors_.output_message = [](j_common_ptr) {};
+    errors_.emit_message = onWarning;
     progress_.progress_monitor = onProgress;
     try {
       open(file, check);
@@ -59,6 +61,7 @@ class JpegReader : public SampleReader {
       jpeg_.progress = &progress_;
       jpeg_mem_src(&jpeg_, file.data(), file.size());
       jpeg_read_header(&jpeg_, TRUE);
+      isOneHuffmanScan_ = !jpeg_.arith_code && !jpeg_has_multiple_scans(&jpeg_);
     });
     if (jpeg_.num_components != 1 && jpeg_.num_components != 3 && jpeg_.num_components != 4)
       throw std::runtime_error("a JPEG has one, three or four components");
@@ -88,6 +91,25 @@ class JpegReader : public SampleReader {
     std::longjmp(self(jpeg).jump_, 1);
   }
 
+  // libjpeg only warns of texels that the file does not have, and makes them up. Other warnings are
+  // of bytes that it skips and of versions.
+  static void onWarning(j_common_ptr jpeg, int level) {
+    if (level >= 0) return;  // what it traces
+    switch (jpeg->err->msg_code) {
+      case JWRN_JPEG_EOF:
+        if (self(jpeg).isOneHuffmanScan_) break;  // then JWRN_HIT_MARKER tells of missing bits
+        [[fallthrough]];
+      case JWRN_HIT_MARKER:
+      case JWRN_HUFF_BAD_CODE:
+      case JWRN_ARITH_BAD_CODE:
+      case JWRN_MUST_RESYNC:
+        onError(jpeg);
+        break;
+      default:
+        break;
+    }
+  }
+
   // Called at least once for each row of blocks of each scan.
   static void onProgress(j_common_ptr jpeg) {
     if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMaxJpegScans) return;
@@ -98,6 +120,7 @@ class JpegReader : public SampleReader {
   jpeg_decompress_struct jpeg_ = {};
   jpeg_error_mgr errors_ = {};
   jpeg_progress_mgr progress_ = {};
+  bool isOneHuffmanScan_ = false;
   std::jmp_buf jump_ = {};
   char error_[JMSG_LENGTH_MAX] = {};
 };

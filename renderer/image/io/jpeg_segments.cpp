@@ -40,8 +40,7 @@ size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
 }  // namespace
 
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
-  constexpr std::string_view kName("Exif\0\0", 6);
-  constexpr size_t kLengthBytes = 2, kBlockAt = kLengthBytes + kName.size();
+  constexpr size_t kLengthBytes = 2, kBlockAt = kLengthBytes + kExifName.size();
   size_t at = 0;
   while (const uint8_t marker = nextMarker(file, at)) {
     if (marker == kSos || marker == kEoi) break;
@@ -49,7 +48,7 @@ std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
     at = endOfSegment(file, at, marker);
     const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
     if (marker == kApp1 && segment.size() > kBlockAt &&
-        std::equal(kName.begin(), kName.end(), segment.begin() + kLengthBytes))
+        std::equal(kExifName.begin(), kExifName.end(), segment.begin() + kLengthBytes))
       return segment.subspan(kBlockAt);
   }
   return {};

@@ -8,6 +8,9 @@
 
 namespace chromeball {
 
+// Before the EXIF block in its segment of a JPEG.
+inline constexpr std::string_view kExifName("Exif\0\0", 6);
+
 // The EXIF block (exif.h), a part of `file`; empty if there is none.
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
 std::span<const uint8_t> pngExif(std::span<const uint8_t> file);

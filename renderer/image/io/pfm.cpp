@@ -37,7 +37,7 @@ Number parse(const std::filesystem::path& path, std::string_view word) {
 
 }  // namespace
 
-Image readPfm(const std::filesystem::path& path) {
+Image readPfm(const std::filesystem::path& path, Messages& messages) {
   const std::vector<uint8_t> bytes = readFile(path);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
                               std::min<size_t>(bytes.size(), 256));
@@ -47,9 +47,15 @@ Image readPfm(const std::filesystem::path& path) {
   const int width = parse<int>(path, nextWord(text, position));
   const int height = parse<int>(path, nextWord(text, position));
   const double scale = parse<double>(path, nextWord(text, position));
-  if (!(std::isfinite(scale) && scale != 0))
-    throwInput("{}: the scale of a PFM, {}, should be a number below or above 0", path.string(),
-               scale);
+  const double factor = std::fabs(scale);
+  if (!(factor > 1e-20 && factor < 1e20))
+    throwInput("{}: the scale of a PFM, {}, should be a number below or above 0, 1e-20 to 1e20",
+               path.string(), scale);
+  if (factor != 1)
+    messages.push_back(
+        {Message::Kind::Note,
+         fmt::format("{}: its texels are multiplied by the scale of its header, {:g}",
+                     path.string(), factor)});
   const bool littleEndian = scale < 0;
   size_t begin = position + 1;  // one white space, or a line's end of two
 
@@ -68,6 +74,8 @@ Image readPfm(const std::filesystem::path& path) {
   if (!littleEndian)
     for (float& f : image.texels)
       f = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(f)));
+  if (factor != 1)
+    for (float& f : image.texels) f = float(f * factor);
   return image;
 }
 

@@ -21,6 +21,12 @@ std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_vie
   return {};
 }
 
-std::span<const uint8_t> pngExif(std::span<const uint8_t> file) { return pngChunk(file, "eXIf"); }
+// Some writers begin the block with the name that it has in a JPEG.
+std::span<const uint8_t> pngExif(std::span<const uint8_t> file) {
+  const std::span<const uint8_t> chunk = pngChunk(file, "eXIf");
+  const bool isNamed = chunk.size() >= kExifName.size() &&
+                       std::equal(kExifName.begin(), kExifName.end(), chunk.begin());
+  return isNamed ? chunk.subspan(kExifName.size()) : chunk;
+}
 
 }  // namespace chromeball

@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a PNG says of its colour (ISO/IEC 15948, 11.3.3), for images of light; textures of models
-// ignore it (glTF 2.0, 3.8.2).
+// What a PNG says of its colour (ISO/IEC 15948, 11.3.3; cICP: third edition), for images of light;
+// textures of models ignore it (glTF 2.0, 3.8.2).
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
 #include "image/chromaticities.h"
+#include "image/tonemap.h"
 
 namespace chromeball {
 
+// The linear number that a sample, a fraction of the largest, stands for.
+using DecodeSample = std::function<float(float)>;
+
 struct PngColor {
-  std::optional<double> exponent;           // a sample is decoded by this power; nullopt: by sRGB
-  std::optional<Chromaticities> primaries;  // nullopt: of sRGB
+  DecodeSample decode = srgbToLinear;
+  std::optional<Chromaticities> primaries = {};  // nullopt: of sRGB
 };
 
-// By the chunks gAMA and cHRM, which sRGB and iCCP override. An ICC profile is not read: sRGB.
+// By the chunk cICP, else by gAMA and cHRM, which sRGB and iCCP override. An ICC profile is not
+// read: sRGB. Throws std::runtime_error for a cICP whose samples cannot be decoded here, such as
+// those of PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

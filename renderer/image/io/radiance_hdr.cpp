@@ -57,6 +57,7 @@ class Reader {
     if (!line().starts_with("#?")) fail("not a Radiance HDR file");
     for (std::string_view text = line(); !text.empty() && text != "\r"; text = line())
       readVariable(text);
+    sayRepeated();
     if (!(exposure_ > 1e-20 && exposure_ < 1e20)) fail("EXPOSURE must be a positive number");
     if (exposure_ != 1)
       say(Message::Kind::Note, fmt::format("its texels are divided by EXPOSURE={:g}", exposure_));
@@ -69,14 +70,27 @@ class Reader {
       scale_[c] = 1 / exposure_ / correction_[c];
     }
 
-    const std::string resolution(line());
-    char ySign = 0, xSign = 0;
-    if (std::sscanf(resolution.c_str(), "%cY %d %cX %d", &ySign, &height_, &xSign, &width_) != 4)
-      fail("the resolution line should read: -Y height +X width");
+    readResolution(std::string(line()));
+  }
+
+  void readResolution(const std::string& text) {
+    char ySign = 0, xSign = 0, rows[32] = {}, columns[32] = {};
+    std::sscanf(text.c_str(), "%cY %31s %cX %31s", &ySign, rows, &xSign, columns);
+    const int64_t height = sideOf(rows), width = sideOf(columns);
+    checkImageSize(path_, width, height, 3);
+    checkImageMemory(path_, width, height, 3);
+    height_ = int(height);
+    width_ = int(width);
     bottomUp_ = ySign == '+';
     rightToLeft_ = xSign == '-';
-    checkImageSize(path_, width_, height_, 3);
-    checkImageMemory(path_, width_, height_, 3);
+  }
+
+  // A number beyond 64 bits becomes the nearest, which is too large as well.
+  int64_t sideOf(const char* word) const {
+    char* end = nullptr;
+    const int64_t side = std::strtoll(word, &end, 10);
+    if (end == word || *end) fail("the resolution line should read: -Y height +X width");
+    return side;
   }
 
   void addComment(std::string_view text) {
@@ -105,16 +119,18 @@ class Reader {
     } else if (name == "PRIMARIES") {
       const std::vector<double>& n = numbers;
       if (n.size() != 8)
-        return say(Message::Kind::Warning, "PRIMARIES, which are not eight numbers, are ignored");
+        return sayOnce(Message::Kind::Warning,
+                       "PRIMARIES, which are not eight numbers, are ignored");
       if (std::ranges::all_of(n, [](double number) { return number == 0; })) return;
       primaries_ = Chromaticities{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
     } else if (name == "GAMMA") {
-      if (!isOnly(1)) say(Message::Kind::Warning, "GAMMA is ignored: texels are taken as linear");
+      if (!isOnly(1))
+        sayOnce(Message::Kind::Warning, "GAMMA is ignored: texels are taken as linear");
     } else if (name == "PIXASPECT") {
       if (!isOnly(1))
-        say(Message::Kind::Warning, "PIXASPECT is ignored: texels are taken as square");
+        sayOnce(Message::Kind::Warning, "PIXASPECT is ignored: texels are taken as square");
     } else if (name == "VIEW") {
-      say(Message::Kind::Note, "VIEW is ignored: the mapping is not taken from it");
+      sayOnce(Message::Kind::Note, "VIEW is ignored: the mapping is not taken from it");
     }
   }
 
@@ -131,6 +147,14 @@ class Reader {
 
   void say(Message::Kind kind, const std::string& what) {
     messages_.push_back({kind, path_.string() + ": " + what});
+  }
+
+  // Of lines that the header may repeat without end: with their number, after the header.
+  void sayOnce(Message::Kind kind, const std::string& what) { ++repeated_[{kind, what}]; }
+
+  void sayRepeated() {
+    for (const auto& [said, lines] : repeated_)
+      say(said.first, lines == 1 ? said.second : fmt::format("{} ({} lines)", said.second, lines));
   }
 
   bool atRunLengthRow() const {
@@ -204,6 +228,7 @@ class Reader {
   double exposure_ = 1;  // the products of these lines
   glm::dvec3 correction_{1}, scale_{1};
   std::optional<Chromaticities> primaries_;
+  std::map<std::pair<Message::Kind, std::string>, int> repeated_;
   Messages messages_;
   HdrComments comments_;
 };

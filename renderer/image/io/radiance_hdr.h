@@ -28,8 +28,11 @@ struct RadianceHdr {
 // Texels are divided by the products of EXPOSURE and COLORCORR. Throws InputError.
 RadianceHdr readRadianceHdr(const std::filesystem::path& path);
 
+inline constexpr float kMaxRgbe = 255 * 0x1p119f;  // the largest channel of a texel, 1.7e38
+
 // Writes the first three channels, each rounded to the nearest mantissa for the texel's shared
-// exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0. Throws RunError.
+// exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0; what is above
+// kMaxRgbe becomes that. Throws RunError.
 void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
                       const HdrComments& comments = {});
 

@@ -18,6 +18,8 @@
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/sample_reader.h"
+#include "image/io/tiff_block.h"
+#include "image/io/tiff_picture.h"
 #include "image/io/unreadable.h"
 #include "image/orientation.h"
 #include "image/size_limits.h"
@@ -61,9 +63,6 @@ void associate(Image& image, int alphaChannel) {
     }
 }
 
-// The linear number that a sample, a fraction of the largest, stands for.
-using DecodeSample = std::function<float(float)>;
-
 template <class Sample>
 void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image) {
   constexpr float kUnit = 1.0f / std::numeric_limits<Sample>::max();
@@ -86,12 +85,9 @@ void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image)
 DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
                            IntegerTexels integers, ImageFile& file) {
   if (integers == IntegerTexels::Linear) return [](float sample) { return sample; };
-  const PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
+  PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
   file.primaries = color.primaries;
-  if (!color.exponent) return srgbToLinear;
-  return [exponent = *color.exponent](float sample) {
-    return float(std::pow(double(sample), exponent));
-  };
+  return std::move(color.decode);
 }
 
 ImageFile readHdr(const fs::path& path) {
@@ -134,11 +130,24 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   return file;
 }
 
+// The file with its picture as the first image, which is the one that the module reads.
+std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path& path,
+                                      Messages& messages) {
+  const TiffBlock tiff(bytes);
+  const uint64_t picture = pictureDirectory(bytes);
+  if (picture == tiff.firstDirectory()) return bytes;
+  messages.push_back({Message::Kind::Note,
+                      fmt::format("{}: its first image is a thumbnail or a mask; the first full "
+                                  "one is read",
+                                  path.string())});
+  return tiff.withFirstDirectory(picture);
+}
+
 ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
-  const std::vector<uint8_t> bytes = readFile(path);
+  ImageFile file;
+  const std::vector<uint8_t> bytes = withPictureFirst(readFile(path), path, file.messages);
   const std::unique_ptr<ModuleImage> image = openModuleImage("tiff", bytes, path);
   const ModuleImageHeader& header = image->header();
-  ImageFile file;
   file.channels = header.channels;
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
@@ -169,11 +178,11 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
       case ImageFormat::RadianceHdr:
         return readHdr(path);
       case ImageFormat::Pfm: {
-        Image image = readPfm(path);
-        const bool isGrey = image.channels == 1;
-        return {std::move(image),
-                isGrey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"},
-                {}};
+        ImageFile pfm;
+        pfm.image = readPfm(path, pfm.messages);
+        pfm.channels = pfm.image.channels == 1 ? std::vector<std::string>{"Y"}
+                                               : std::vector<std::string>{"R", "G", "B"};
+        return pfm;
       }
       case ImageFormat::Png:
       case ImageFormat::Jpeg:

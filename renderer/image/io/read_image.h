@@ -33,6 +33,7 @@ enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear, except a
 // contain the image.
 struct Placement {
   int x, y, width, height;
+  bool operator==(const Placement&) const = default;
 };
 
 // All contents of a file: its channels, interleaved in `image` in the file's order. Colour is
@@ -78,9 +79,23 @@ Image colorOf(ImageFile&& file, const std::filesystem::path& path);
 Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb,
                 Messages* messages = nullptr);  // gets the file's
 
-// Without the display window: the texels that the file has. Also with alpha as a fourth channel, if
-// the file has R, G, B and A.
+// Also with alpha as a fourth channel, if the file has R, G, B and A.
+Image colorAndAlphaOf(ImageFile&& file, const std::filesystem::path& path);
+
+// As colorOf(), of a file that is no light: its only channel counts whatever its name.
+Image maskOf(ImageFile&& file, const std::filesystem::path& path);
+
+// As findLayer(), in the display window of the file, which was read from `path`.
+std::optional<Image> layerOf(const ImageFile& file, const std::string& name,
+                             const std::filesystem::path& path);
+
+// Without the display window: the texels that the file has.
 Image colorOfData(ImageFile&& file, const std::filesystem::path& path);
 Image colorAndAlphaOfData(ImageFile&& file, const std::filesystem::path& path);
+
+// Texels of the file at `path` in its display window: the data in its place, 0 around it, the rest
+// cropped. Throws InputError if the window exceeds the limits, or has no data.
+Image inDisplayWindow(Image data, const std::optional<Placement>& placement,
+                      const std::filesystem::path& path);
 
 }  // namespace chromeball

@@ -94,6 +94,15 @@ Messages writeImage(const fs::path& path, const OutputImage& output,
   return {};
 }
 
+Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
+                       const DisplayTransform& transform) {
+  if (output.placement && extension(path) != ".exr") {
+    Image& color = output.layers.front().image;
+    color = inDisplayWindow(std::move(color), output.placement, source);
+  }
+  return writeImage(path, output, transform);
+}
+
 Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   checkWritable(path);
   if (extension(path) != ".exr") return writeColor(path, color, transform);

@@ -48,6 +48,11 @@ Messages writeImage(const std::filesystem::path& path, const OutputImage& output
 // The bytes of that .png. An image of one channel is grey.
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
 
+// The same of an image that was made of the data of `source`: all formats but .exr get its display
+// window (inDisplayWindow(), read_image.h).
+Messages writeInWindow(const std::filesystem::path& path, OutputImage output,
+                       const std::filesystem::path& source, const DisplayTransform& transform = {});
+
 // Writes the colour alone.
 Messages writeImage(const std::filesystem::path& path, const Image& color,
                     const DisplayTransform& transform = {});

@@ -55,7 +55,7 @@ std::vector<Region> regionsOf(const Image& marks) {
 
 std::optional<Image> loadClippedLayer(const std::filesystem::path& path, const LoadedProbe& probe) {
   if (lowerExtension(path) != ".exr") return std::nullopt;
-  const std::optional<Image> layer = findLayer(readImageFile(path), "clipped");
+  const std::optional<Image> layer = layerOf(readImageFile(path), "clipped", path);
   if (!layer) return std::nullopt;
   Image marks(layer->width, layer->height, 3);
   for (int y = 0; y < marks.height; ++y)

@@ -30,7 +30,9 @@ LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
 
 Image loadMask(const std::filesystem::path& path, const Image& photograph,
                const std::filesystem::path& photographPath, Messages& messages) {
-  const Image color = readImage(path, IntegerTexels::Linear, &messages);
+  ImageFile file = readImageFile(path, IntegerTexels::Linear);
+  messages.insert(messages.end(), file.messages.begin(), file.messages.end());
+  const Image color = maskOf(std::move(file), path);
   if (color.width != photograph.width || color.height != photograph.height)
     throwInput("{}: {} x {} texels should be {} x {}, as in {}", path.string(), color.width,
                color.height, photograph.width, photograph.height, photographPath.string());

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/tiff_block.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chromeball {
+namespace {
+
+// IFD is a LONG that points to a directory; LONG8 and IFD8 are BigTIFF's.
+enum TiffType : uint16_t {
+  kShort = 3,
+  kLong = 4,
+  kRational = 5,
+  kIfd = 13,
+  kLong8 = 16,
+  kIfd8 = 18
+};
+
+// Of an unsigned integer; 0: another type.
+uint64_t integerBytes(uint64_t type) {
+  switch (type) {
+    case kShort:
+      return 2;
+    case kLong:
+    case kIfd:
+      return 4;
+    case kLong8:
+    case kIfd8:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+std::optional<double> positiveOrNone(double number) {
+  return number > 0 && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
+  if (count > bytes_.size() || at > bytes_.size() - count) return 0;
+  uint64_t result = 0;
+  for (uint64_t i = 0; i < count; ++i)
+    result |= uint64_t(bytes_[at + i]) << 8 * (bigEndian_ ? count - 1 - i : i);
+  return result;
+}
+
+// No more than the file can have.
+uint64_t TiffBlock::entriesOf(uint64_t directory) const {
+  return std::min<uint64_t>(number(directory, countBytes()), bytes_.size() / entryBytes());
+}
+
+std::optional<uint64_t> TiffBlock::entryOf(uint64_t directory, uint16_t tag) const {
+  const uint64_t count = entriesOf(directory);
+  for (uint64_t i = 0; i < count; ++i) {
+    const uint64_t entry = directory + countBytes() + i * entryBytes();
+    if (number(entry, 2) == tag) return entry;
+  }
+  return std::nullopt;
+}
+
+uint64_t TiffBlock::nextDirectory(uint64_t directory) const {
+  return number(directory + countBytes() + entriesOf(directory) * entryBytes(), offsetBytes());
+}
+
+std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  if (!entry) return std::nullopt;
+  const uint64_t at = *entry + 4 + offsetBytes(), type = number(*entry + 2, 2);
+  if (type == kRational) {
+    const uint64_t rational = isBig_ ? at : number(at, 4);
+    return positiveOrNone(double(number(rational, 4)) / double(number(rational + 4, 4)));
+  }
+  return positiveOrNone(double(number(at, integerBytes(type))));
+}
+
+std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) const {
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;
+  if (bytes == 0) return {};
+  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / bytes);
+  const uint64_t field = *entry + 4 + offsetBytes();  // has the values if they fit into it
+  const uint64_t at = bytes * count <= offsetBytes() ? field : number(field, offsetBytes());
+  std::vector<uint64_t> values;
+  for (uint64_t i = 0; i < count; ++i) values.push_back(number(at + i * bytes, bytes));
+  return values;
+}
+
+std::vector<uint8_t> TiffBlock::withFirstDirectory(uint64_t directory) const {
+  std::vector<uint8_t> changed(bytes_.begin(), bytes_.end());
+  const uint64_t count = offsetBytes();
+  for (uint64_t i = 0; i < count; ++i)
+    changed[firstDirectoryAt() + i] = uint8_t(directory >> 8 * (bigEndian_ ? count - 1 - i : i));
+  return changed;
+}
+
+}  // namespace chromeball

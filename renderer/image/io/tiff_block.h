@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// TIFF 6.0 and BigTIFF, of which an EXIF block is one: directories of tagged entries.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace chromeball {
+
+// What the directories say, not the image. Bytes beyond the end read as 0. Offsets are from the
+// begin of the block.
+class TiffBlock {
+ public:
+  explicit TiffBlock(std::span<const uint8_t> bytes)
+      : bytes_(bytes), bigEndian_(!bytes.empty() && bytes[0] == 'M'), isBig_(number(2, 2) == 43) {}
+
+  bool isTiff() const { return isBig_ || number(2, 2) == 42; }
+  uint64_t firstDirectory() const { return number(firstDirectoryAt(), offsetBytes()); }
+  uint64_t nextDirectory(uint64_t directory) const;  // 0: none
+
+  bool has(uint64_t directory, uint16_t tag) const { return entryOf(directory, tag).has_value(); }
+
+  // The first value of the entry with this tag, if it is above 0 and finite.
+  std::optional<double> find(uint64_t directory, uint16_t tag) const;
+
+  // All values of an entry of unsigned integers, such as offsets; empty if there is none.
+  std::vector<uint64_t> integers(uint64_t directory, uint16_t tag) const;
+
+  // The bytes of the block with another directory as the first.
+  std::vector<uint8_t> withFirstDirectory(uint64_t directory) const;
+
+ private:
+  uint64_t firstDirectoryAt() const { return isBig_ ? 8 : 4; }
+  uint64_t offsetBytes() const { return isBig_ ? 8 : 4; }
+  uint64_t countBytes() const { return isBig_ ? 8 : 2; }
+  uint64_t entryBytes() const { return isBig_ ? 20 : 12; }
+  uint64_t number(uint64_t at, uint64_t count) const;
+  uint64_t entriesOf(uint64_t directory) const;
+  std::optional<uint64_t> entryOf(uint64_t directory, uint16_t tag) const;
+
+  std::span<const uint8_t> bytes_;
+  bool bigEndian_, isBig_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/io/tiff_picture.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "image/io/tiff_block.h"
+
+namespace chromeball {
+namespace {
+
+enum PictureTag : uint16_t {
+  kNewSubfileType = 254,
+  kSubfileType = 255,
+  kPhotometric = 262,
+  kStripOffsets = 273,
+  kStripLengths = 279,
+  kTileOffsets = 324,
+  kTileLengths = 325,
+  kSubDirectories = 330,
+  kDngVersion = 50706
+};
+
+// TIFF 6.0; TIFF/EP and DNG; libtiff's for LogLuv.
+enum Photometric {
+  kTransparencyMask = 4,
+  kColorFilterArray = 32803,
+  kLogL = 32844,
+  kLogLuv,
+  kLinearRaw = 34892
+};
+
+// In the order of the pages, each before those below it.
+std::vector<uint64_t> directoriesOf(const TiffBlock& tiff) {
+  constexpr size_t kMost = 256;
+  std::vector<uint64_t> found;
+  const auto isNew = [&](uint64_t directory) {
+    return directory != 0 && found.size() < kMost && std::ranges::count(found, directory) == 0;
+  };
+  for (uint64_t page = tiff.firstDirectory(); isNew(page); page = tiff.nextDirectory(page)) {
+    found.push_back(page);
+    for (const uint64_t below : tiff.integers(page, kSubDirectories))
+      if (isNew(below)) found.push_back(below);
+  }
+  return found;
+}
+
+int photometricOf(const TiffBlock& tiff, uint64_t directory) {
+  return int(std::min(tiff.find(directory, kPhotometric).value_or(0), 65535.0));
+}
+
+bool isSensorImage(const TiffBlock& tiff, uint64_t directory) {
+  const int photometric = photometricOf(tiff, directory);
+  return photometric == kColorFilterArray || photometric == kLinearRaw;
+}
+
+// The bits of NewSubfileType; SubfileType is what older files have.
+struct SubfileKind {
+  bool isReduced, isMask;
+};
+
+SubfileKind subfileKindOf(const TiffBlock& tiff, uint64_t directory) {
+  constexpr uint32_t kReducedBit = 1, kMaskBit = 4;
+  constexpr double kReduced = 2;
+  const auto bits = uint32_t(std::min(tiff.find(directory, kNewSubfileType).value_or(0), 1e9));
+  return {(bits & kReducedBit) != 0 || tiff.find(directory, kSubfileType) == kReduced,
+          (bits & kMaskBit) != 0 || photometricOf(tiff, directory) == kTransparencyMask};
+}
+
+// Canon's CR2 does not say of which kind the sensor's image is. Texels of other files may follow
+// the header, but not with the directory so near.
+bool isCr2(const TiffBlock& tiff, std::span<const uint8_t> file) {
+  constexpr size_t kMarkAt = 8, kDirectoryAt = 16;
+  return tiff.firstDirectory() == kDirectoryAt && file.size() > kDirectoryAt &&
+         file[kMarkAt] == 'C' && file[kMarkAt + 1] == 'R';
+}
+
+// OpenImageIO leaves what a truncated file lacks black.
+void checkWhole(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
+  for (const auto& [offsetTag, bytesTag] :
+       {std::pair(kStripOffsets, kStripLengths), {kTileOffsets, kTileLengths}}) {
+    const std::vector<uint64_t> offsets = tiff.integers(directory, offsetTag),
+                                bytes = tiff.integers(directory, bytesTag);
+    for (size_t i = 0; i < std::min(offsets.size(), bytes.size()); ++i)
+      if (bytes[i] > fileBytes || offsets[i] > fileBytes - bytes[i])
+        throw std::runtime_error("the file ends before its image");
+  }
+}
+
+}  // namespace
+
+uint64_t pictureDirectory(std::span<const uint8_t> file) {
+  const TiffBlock tiff(file);
+  const std::vector<uint64_t> directories = directoriesOf(tiff);
+  if (directories.empty()) return tiff.firstDirectory();  // which the library refuses
+  const bool hasThumbnailOfDng =
+      tiff.has(directories[0], kDngVersion) && subfileKindOf(tiff, directories[0]).isReduced;
+  if (hasThumbnailOfDng || isCr2(tiff, file) ||
+      std::ranges::any_of(directories, [&](uint64_t at) { return isSensorImage(tiff, at); }))
+    throw std::runtime_error(
+        "it is a camera's raw file (DNG, NEF, CR2, ...), whose colours are the sensor's: develop "
+        "it to linear .exr or .tif first");
+  const auto isPicture = [&](uint64_t at) {
+    const SubfileKind kind = subfileKindOf(tiff, at);
+    return !kind.isReduced && !kind.isMask;
+  };
+  const auto found = std::ranges::find_if(directories, isPicture);
+  const uint64_t picture = found == directories.end() ? directories[0] : *found;
+  if (subfileKindOf(tiff, picture).isMask)
+    throw std::runtime_error("it holds a transparency mask alone");
+  const int photometric = photometricOf(tiff, picture);
+  if (photometric == kLogL || photometric == kLogLuv)
+    throw std::runtime_error(
+        "its texels are LogL or LogLuv, of which only 8 bits would be read: convert it to .exr, "
+        ".hdr or a .tif of floats");
+  checkWhole(tiff, picture, file.size());
+  return picture;
+}
+
+}  // namespace chromeball

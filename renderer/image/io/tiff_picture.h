@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which image of a TIFF is its picture. A file may hold several: pages, thumbnails, masks, and in
+// directories below those (TIFF Technical Note 1, SubIFDs) the levels of a pyramid or what the
+// sensor of a camera recorded.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace chromeball {
+
+// The offset of the directory of the first image that is neither reduced nor a mask; of the first
+// image if there is no such one. Throws std::runtime_error for files whose picture OpenImageIO does
+// not show: those of cameras, which hold the numbers of a sensor and a thumbnail; masks alone;
+// LogLuv, which it clips to 8 bits; and truncated ones.
+uint64_t pictureDirectory(std::span<const uint8_t> tiff);
+
+}  // namespace chromeball

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which image of a TIFF is read, how it is turned, and which files are refused.
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "image/io/read_image.h"
+#include "image/orientation.h"
+#include "run_command.h"
+#include "tiff_file.h"
+
+namespace chromeball::tiff_test {
+namespace {
+
+constexpr int kWidth = 6, kHeight = 4;
+constexpr uint16_t kNewSubfileType = 254, kSubfileType = 255, kOrientation = 274,
+                   kYCbCrSubSampling = 530, kDngVersion = 50706;
+constexpr uint32_t kReduced = 1, kMaskBit = 4;
+
+// No two texels are alike.
+std::string texels(int width, int height, int samples) {
+  std::string bytes;
+  for (int i = 0; i < width * height; ++i)
+    for (int c = 0; c < samples; ++c) bytes += char(40 + 7 * i + 5 * c);
+  return bytes;
+}
+
+TiffImage rgb(const std::vector<TiffEntry>& more = {}) {
+  return {kWidth, kHeight, texels(kWidth, kHeight, 3), 2, 3, 8, 1, 1, more};
+}
+
+TiffImage thumbnail(const std::vector<TiffEntry>& more = {{kNewSubfileType, 4, {kReduced}}}) {
+  return {2, 1, std::string(6, '\x7f'), 2, 3, 8, 1, 1, more};
+}
+
+// Of `samples` numbers of 16 bits.
+TiffImage sensor(uint16_t photometric, uint16_t samples) {
+  return {kWidth,      kHeight, std::string(size_t(kWidth * kHeight * samples * 2), 'x'),
+          photometric, samples, 16};
+}
+
+class Tiff : public testing::Test {
+ protected:
+  ImageFile read(const std::string& file) const {
+    std::ofstream(path(), std::ios::binary) << file;
+    return readImageFile(path());
+  }
+  ImageFile read(const std::vector<TiffImage>& pages) const {
+    return read(TiffWriter::file(pages));
+  }
+  void refuse(const std::string& file, const std::string& reason) const {
+    try {
+      read(file);
+      ADD_FAILURE() << reason;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  }
+  void refuse(const std::vector<TiffImage>& pages, const std::string& reason) const {
+    refuse(TiffWriter::file(pages), reason);
+  }
+
+ private:
+  std::string path() const { return folder_ / "a.tif"; }
+  TemporaryFolder folder_;
+};
+
+// libtiff mirrors the images that it converts to RGB, so that these would be turned twice.
+TEST_F(Tiff, AllKindsAreTurnedOnce) {
+  const std::string jpeg = fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/a.jpg");
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.jpg", std::ios::binary) << jpeg;
+  const Image whole = readImage(folder / "a.jpg");
+  TiffImage plain = rgb(), luminanceChroma = rgb({{kYCbCrSubSampling, 3, {1, 1}}});
+  luminanceChroma.photometric = 6;
+  const TiffImage compressed{
+      whole.width, whole.height, jpeg, 6, 3, 8, 7, 1, {{kYCbCrSubSampling, 3, {2, 2}}}};
+  TiffImage grey{kWidth, kHeight, texels(kWidth, kHeight, 1), 1, 1};
+  for (const TiffImage& image : {plain, luminanceChroma, compressed, grey}) {
+    const Image stored = read({image}).image;
+    for (uint32_t orientation = 1; orientation <= 8; ++orientation) {
+      TiffImage turned = image;
+      turned.more.push_back({kOrientation, 3, {orientation}});
+      const Image seen = oriented(stored, int(orientation)), found = read({turned}).image;
+      EXPECT_EQ(found.width, seen.width);
+      EXPECT_EQ(found.texels, seen.texels) << image.photometric << " turned " << orientation;
+    }
+  }
+}
+
+TEST_F(Tiff, TheFirstFullImageIsRead) {
+  const Image picture = read({rgb()}).image;
+  const auto check = [&](const std::vector<TiffImage>& pages, bool isFirst) {
+    const ImageFile file = read(pages);
+    EXPECT_EQ(file.image.width, kWidth);
+    EXPECT_EQ(file.image.texels, picture.texels);
+    EXPECT_EQ(file.messages.empty(), isFirst);
+  };
+  const TiffImage mask{kWidth, kHeight, texels(kWidth, kHeight, 1),        4, 1, 8,
+                       1,      1,       {{kNewSubfileType, 4, {kMaskBit}}}};
+  TiffImage pyramid = rgb(), parent = thumbnail();
+  pyramid.below = {thumbnail()};
+  parent.below = {rgb()};
+  check({rgb(), thumbnail()}, true);
+  check({pyramid}, true);
+  check({thumbnail(), rgb()}, false);
+  check({thumbnail(), thumbnail(), mask, rgb(), thumbnail()}, false);
+  check({thumbnail({{kSubfileType, 3, {2}}}), rgb()}, false);
+  check({mask, rgb()}, false);
+  check({parent}, false);
+  EXPECT_EQ(read({thumbnail()}).image.width, 2) << "it is the only one";
+  refuse({mask}, "a transparency mask alone");
+}
+
+// The orientation is that of the image that is read.
+TEST_F(Tiff, EachPageHasItsOrientation) {
+  const TiffImage turned = rgb({{kOrientation, 3, {6}}});
+  EXPECT_EQ(read({thumbnail(), turned}).image.texels, read({turned}).image.texels);
+}
+
+TEST_F(Tiff, RawFilesOfCamerasAreRefused) {
+  constexpr uint16_t kColorFilterArray = 32803, kLinearRaw = 34892;
+  constexpr const char* kReason = "a camera's raw file";
+  TiffImage nef = thumbnail(), linear = thumbnail();
+  nef.below = {sensor(kColorFilterArray, 1)};
+  linear.below = {thumbnail(), sensor(kLinearRaw, 3)};
+  refuse({nef}, kReason);
+  refuse({linear}, kReason);
+  refuse({sensor(kColorFilterArray, 1)}, kReason);
+  refuse({sensor(kLinearRaw, 3)}, kReason);
+  refuse({rgb(), sensor(kColorFilterArray, 1)}, kReason);
+  refuse({thumbnail({{kNewSubfileType, 4, {kReduced}}, {kDngVersion, 4, {1}}})}, kReason);
+  // CR2: a mark and its version after the header, then the directory.
+  std::string cr2 = TiffWriter::file({rgb()}, std::string("CR\2\0\0\0\0\0", 8));
+  cr2[4] = 16, cr2[5] = 0;
+  refuse(cr2, kReason);
+  EXPECT_EQ(read(TiffWriter::file({rgb()}, "CR\2\1xxxx")).image.width, kWidth)
+      << "texels may have these bytes";
+}
+
+TEST_F(Tiff, LogLuvIsRefused) {
+  TiffImage color = rgb(), grey = rgb();
+  color.photometric = 32845;
+  grey.photometric = 32844;
+  for (TiffImage* image : {&color, &grey}) image->compression = 34676;
+  refuse({color}, "LogLuv");
+  refuse({grey}, "LogL");
+  refuse({thumbnail(), color}, "LogLuv");
+}
+
+TEST_F(Tiff, TruncatedFilesAreRefused) {
+  TiffImage luminanceChroma = rgb({{kYCbCrSubSampling, 3, {1, 1}}});
+  luminanceChroma.photometric = 6;
+  for (const TiffImage& image : {rgb(), luminanceChroma}) {
+    const std::string file = TiffWriter::file({image});  // the texels are its end
+    for (const size_t missing : {size_t(1), image.texels.size() / 2, image.texels.size()})
+      refuse(file.substr(0, file.size() - missing), "the file ends before its image");
+  }
+}
+
+// Directories that point to each other, and truncated ones.
+TEST_F(Tiff, DamagedDirectoriesAreHarmless) {
+  TiffImage parent = thumbnail();
+  parent.below = {rgb()};
+  const std::string file = TiffWriter::file({parent, thumbnail(), rgb()});
+  for (size_t length = 8; length < file.size(); length += 3) try {
+      read(file.substr(0, length));
+    } catch (const InputError&) {
+    }
+  for (size_t at = 4; at < file.size(); at += 5)
+    for (const char byte : {'\0', '\x8', '\x7f', '\xff'}) {
+      std::string damaged = file;
+      damaged[at] = byte;
+      try {
+        read(damaged);
+      } catch (const InputError&) {
+      }
+    }
+}
+
+}  // namespace
+}  // namespace chromeball::tiff_test
