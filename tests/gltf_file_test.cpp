@@ -197,6 +197,9 @@ TEST(GltfFile, BuffersByUri) {
     return errorMessageOf(w.folder() / "model.gltf");
   };
   EXPECT_EQ(errorMessage("sub dir/d\u00e9.bin"), "");
+  EXPECT_EQ(errorMessage("DATA:application/octet-stream;BASE64,"
+                         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
+            "");
   EXPECT_EQ(errorMessage("sub%20dir/d%C3%A9.bin"), "");
   EXPECT_EQ(errorMessage("./sub%20dir/d%C3%A9.bin"), "");
   EXPECT_EQ(errorMessage("data:application/octet-stream;base64,"

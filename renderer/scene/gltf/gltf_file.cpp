@@ -128,17 +128,17 @@ std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {
 
 std::string GltfFile::describeImage(int index) const {
   const std::string& uri = images[size_t(index)].uri;
-  const bool named = !uri.empty() && !uri.starts_with("data:");
+  const bool named = !uri.empty() && !isDataUri(uri);
   return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
 }
 
 void GltfFile::addToFiles(const std::string& uri) {
-  if (uri.empty() || uri.starts_with("data:")) return;
+  if (uri.empty() || isDataUri(uri)) return;
   files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
 }
 
 Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const {
-  if (uri.starts_with("data:")) {
+  if (isDataUri(uri)) {
     Bytes bytes;
     if (!decodeDataUri(uri, bytes)) fail("{}: invalid data URI", where);
     return bytes;

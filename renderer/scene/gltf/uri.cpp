@@ -28,12 +28,23 @@ int sextet(char c) {
   return -1;
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 }  // namespace
+
+bool isDataUri(std::string_view uri) {
+  constexpr std::string_view kScheme = "data:";
+  return lowerCase(uri.substr(0, kScheme.size())) == kScheme;
+}
 
 bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) return false;
-  if (!uri.substr(0, comma).ends_with(";base64")) {
+  if (!lowerCase(uri.substr(0, comma)).ends_with(";base64")) {
     const std::string text = decodePercent(uri.substr(comma + 1));
     bytes.assign(text.begin(), text.end());
     return true;
