@@ -268,6 +268,27 @@ TEST(GltfFile, RejectsOtherFiles) {
   const std::string deep(100000, '[');
   EXPECT_EQ(errorMessage("{\"extras\":" + deep + "}"), "nests deeper than 128 levels");
   const std::string brackets = "{\"asset\":{\"version\":\"2.0\"},\"extras\":\"\\\"" + deep + "\"}";
+TEST(GltfFile, LongNamesAndListsAreShortened) {
+  GltfWriter w;
+  addTriangle(w);
+  for (int i = 0; i < 1000; ++i)
+    w.root["extensionsUsed"].push_back(fmt::format("FOO{:03}", i) + std::string(5000, ' '));
+  w.load();
+  ASSERT_EQ(w.warnings.size(), 1u);
+  EXPECT_LE(w.warnings[0].size(), 6 * 202u + 200);
+  EXPECT_TRUE(w.warnings[0].ends_with(" and 994 more")) << w.warnings[0];
+  for (const std::string& part : {std::string("a"), std::string("a ")}) {
+    std::string uri;
+    while (uri.size() < 100000) uri += part;
+    w.root["buffers"][0]["uri"] = uri;
+    std::ofstream(w.folder() / "model.gltf") << w.root;
+    const std::string message = errorMessageOf(w.folder() / "model.gltf");
+    EXPECT_TRUE(message.starts_with("buffers[0].uri: \"a")) << message;
+    EXPECT_TRUE(message.ends_with("\" cannot be found: File name too long")) << message;
+    EXPECT_LE(message.size(), 300u);
+  }
+}
+
   EXPECT_EQ(errorMessage(brackets), "");
   EXPECT_EQ(errorMessageOf(w.folder() / "missing.gltf"), "no such file");
   EXPECT_EQ(errorMessageOf(w.folder()), "not a regular file");

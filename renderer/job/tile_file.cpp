@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "base/printable.h"
 #include "job/output_file.h"
 #include "job/toml_section.h"
 
@@ -40,7 +41,7 @@ class TileReader {
     for (const auto& [key, node] : table)
       if (std::ranges::count(keys, key.str()) == 0)
         failAt(fmt::format("{}:{}", path_, key.source().begin.line), "unknown key `{}`; {}",
-               key.str(), didYouMean(key.str(), keys));
+               printableName(key.str()), didYouMean(key.str(), keys));
   }
 
   // Nullopt if there is no such key.
@@ -72,7 +73,7 @@ class TileReader {
     std::error_code ignored;
     if (!fs::is_regular_file(image, ignored))
       failAt(at(table), "`file`: no such file: {} (paths are relative to the list)",
-             image.string());
+             printableName(image.string()));
     return {image.string(),
             {angle("yaw"), angle("pitch"), angle("roll")},
             own ? *own : *common,

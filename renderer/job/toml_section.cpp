@@ -4,6 +4,7 @@
 #include <cfloat>
 
 #include "base/file.h"
+#include "base/printable.h"
 #include "job/setting_table.h"
 #include "job/toml_keys.h"
 
@@ -15,7 +16,7 @@ constexpr size_t kMaxFileBytes = size_t(4) << 20;
 std::string describe(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", printableName(text->get()));
   if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
   if (node.is_table()) return "a table";
   if (node.is_boolean()) return "a boolean";
@@ -140,7 +141,8 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
-             key.str(), name_.empty() ? "" : " in " + heading(), didYouMean(key.str(), known));
+             printableName(key.str()), name_.empty() ? "" : " in " + heading(),
+             didYouMean(key.str(), known));
 }
 
 Entry Section::required(std::string_view key) const {
@@ -169,7 +171,7 @@ void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_v
   for (const auto& [key, node] : table_)
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
-             owner, key.str(), fmt::join(keys, ", "));
+             owner, printableName(key.str()), fmt::join(keys, ", "));
 }
 
 void Section::read(Settings& settings) const {
@@ -189,7 +191,7 @@ std::string existingFile(const Entry& entry) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
     failAt(entry.location(), "`{}`: no such file: {} (paths are relative to the scene file)",
-           entry.key, path);
+           entry.key, printableName(path));
   return path;
 }
 

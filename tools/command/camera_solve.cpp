@@ -58,7 +58,10 @@ void check(const CameraSolveArguments& a) {
   checkDistinct({a.output, a.preview}, {a.model, a.plate, a.points, a.lines, a.fspy});
 }
 
-Scene loadModels(const std::string& path) {
+Scene loadModels(const std::string& path, Messages& messages) {
+  const auto warn = [&](const std::string& line) {
+    messages.push_back({Message::Kind::Warning, line});
+  };
   Scene scene;
   for (const ModelEntry& model : openScene(path).models) {
     GltfChoice choice = model.choice;
@@ -155,7 +158,7 @@ void run(const CameraSolveArguments& a) {
   check(a);
   Messages messages;
   Image plate = readPlate(a.plate, &messages);
-  const Scene scene = loadModels(a.model);
+  const Scene scene = loadModels(a.model, messages);
   const Solution solution = solve(a, {plate.width, plate.height});
   const std::vector<std::string> lines = reportLines(solution.report());
   std::vector<std::string> comments{

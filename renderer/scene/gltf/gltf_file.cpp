@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
 #include "scene/gltf/uri.h"
@@ -33,7 +34,7 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
     json root = parseJson(chunks.json);
     checkVersion(root);
     if (const auto ignored = checkExtensions(root); !ignored.empty())
-      warnOnce(fmt::format("ignored extensions: {}", fmt::join(ignored, ", ")));
+      warnOnce("ignored extensions: " + firstNames({ignored.begin(), ignored.end()}));
     readBuffers(takeArray(root, "buffers"), chunks.binary);
     for (const json& image : takeArray(root, "images")) {
       const auto view = image.find("bufferView");
@@ -129,7 +130,8 @@ std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {
 std::string GltfFile::describeImage(int index) const {
   const std::string& uri = images[size_t(index)].uri;
   const bool named = !uri.empty() && !isDataUri(uri);
-  return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
+  return fmt::format("{}: images[{}]{}", path_, index,
+                     named ? " (" + printableName(uri) + ")" : "");
 }
 
 void GltfFile::addToFiles(const std::string& uri) {
@@ -149,7 +151,7 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
     checkFileName(name);
     if (external_ == ExternalFiles::Refuse) checkInside(folder, name);
   } catch (const std::exception& e) {
-    fail("{}: \"{}\" {}", where, name, e.what());
+    fail("{}: \"{}\" {}", where, printableName(name), e.what());
   }
   try {
     return readFile(folder / name);

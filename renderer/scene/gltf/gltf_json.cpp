@@ -7,7 +7,7 @@
 #include <climits>
 #include <stdexcept>
 
-#include "scene/gltf/gltf_file.h"
+#include "base/printable.h"
 
 namespace chromeball {
 namespace {
@@ -76,7 +76,7 @@ std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
     if (!kSupportedExtensions.contains(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
-                                           oneLine(name), adviceFor(name)));
+                                           printableName(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
   for (const std::string& name : kSupportedExtensions) ignored.erase(name);
   return ignored;

@@ -90,8 +90,10 @@ void checkInside(const fs::path& folder, const std::string& name) {
   if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
   if (std::find(path.begin(), path.end(), "..") != path.end())
     failUri("is outside of the model's folder by \"..\"; {}", kRemedy);
+  std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
-  const fs::path target = fs::weakly_canonical(root / path);
+  const fs::path target = fs::weakly_canonical(root / path, error);
+  if (error) failUri("cannot be found: {}", error.message());
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
   if (end != root.end()) failUri("is outside of the model's folder through a link; {}", kRemedy);
 }
