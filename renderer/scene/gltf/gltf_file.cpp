@@ -9,6 +9,7 @@
 #include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
+#include "scene/gltf/member_types.h"
 #include "scene/gltf/uri.h"
 
 namespace chromeball {
@@ -33,13 +34,12 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
     const GltfChunks chunks = splitContainer(file_.bytes());
     json root = parseJson(chunks.json);
     checkVersion(root);
+    checkMemberTypes(root);
     if (const auto ignored = checkExtensions(root); !ignored.empty())
       warnOnce("ignored extensions: " + firstNames({ignored.begin(), ignored.end()}));
     readBuffers(takeArray(root, "buffers"), chunks.binary);
     for (const json& image : takeArray(root, "images")) {
-      const auto view = image.find("bufferView");
-      const bool inView = view != image.end() && view->is_number_integer();
-      images.push_back({inView ? view->get<int>() : -1, stringMember(image, "uri")});
+      images.push_back({image.value("bufferView", -1), stringMember(image, "uri")});
       addToFiles(images.back().uri);
     }
     readModel(root);
@@ -74,7 +74,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
 }
 
 void GltfFile::readModel(json& root) {
-  checkSkins(root);
+  requireJoints(root);
   const int noView = fillGaps(root);
   keepLargeNumbers(root);
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
