@@ -60,8 +60,8 @@ class TileReader {
 
   TileEntry tile(const toml::table& table) const {
     check(table, {"file", "yaw", "pitch", "roll", "fov"});
-    const auto file = table["file"].value<std::string>();
-    if (!file || file->empty()) failAt(at(table), "[[tile]] needs `file`, the name of an image");
+    const Entry file{path_, "file", table.get("file")};
+    if (!file) failAt(at(table), "[[tile]] needs `file`, the name of an image");
     constexpr double kMost = 3600;
     const auto angle = [&](const char* key) {
       return number(table, key, -kMost, kMost).value_or(0);
@@ -69,7 +69,7 @@ class TileReader {
     const std::optional<double> own = fov(table), common = fov(table_);
     if (!own && !common)
       failAt(at(table), "[[tile]] needs `fov`, vertical, or the list one for all");
-    const fs::path image = (fs::path(path_).parent_path() / *file).lexically_normal();
+    const fs::path image = (fs::path(path_).parent_path() / file.text()).lexically_normal();
     std::error_code ignored;
     if (!fs::is_regular_file(image, ignored))
       failAt(at(table), "`file`: no such file: {} (paths are relative to the list)",

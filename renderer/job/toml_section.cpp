@@ -39,7 +39,10 @@ void Entry::mustBe(std::string_view what) const {
 
 std::string Entry::text() const {
   if (!node->is_string() || node->as_string()->get().empty()) mustBe("a string");
-  return node->as_string()->get();
+  const std::string& text = node->as_string()->get();
+  if (text.find('\0') != std::string::npos)  // it would end a file name
+    mustBe("a string without U+0000");
+  return text;
 }
 
 std::string Entry::choice() const {
