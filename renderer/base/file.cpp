@@ -88,7 +88,7 @@ void checkReplaceable(const fs::path& link) {
   const bool isTaken = fs::is_directory(path, error);
   if (error && error != std::errc::no_such_file_or_directory)
     throwInput("{}: {}", path.string(), error.message());
-  if (isTaken) throwRun("{}: cannot be written: it is a folder", path.string());
+  if (isTaken) throwInput("{}: cannot be written: it is a folder", path.string());
   if (access(folder.c_str(), W_OK) != 0)
     throwRun("{}: cannot write into {}: {}", path.string(), folder.string(), std::strerror(errno));
 }
