@@ -94,6 +94,28 @@ TEST_F(SlowStarved, UnwritablePathsAreReportedBeforeRendering) {
   EXPECT_EQ(out.files(), Words{"folder.exr"});
 }
 
+// The memory that a map of the size takes is known before it is made.
+TEST_F(SlowStarved, MapsBeyondTheMemoryAreRefusedWithTheirAmount) {
+  const TemporaryFolder out;
+  const CommandLimits limits{.memory = size_t(1) << 30};
+  const std::string map = out / "map.exr", size = "16384x8192";
+  const auto refuse = [&](const Words& arguments) {
+    const CommandResult result = expectError(arguments, map + ": ", limits);
+    EXPECT_NE(result.error.find(" GB of memory in all; 0.859 GB are allowed"), std::string::npos)
+        << result.error;
+  };
+  refuse({"probe", "irradiance", probe_, map, "--size", size});
+  refuse({"probe", "irradiance", probe_, map, "--size", size, "--method", "sh"});
+  refuse({"probe", "convert", probe_, map, "--to", "lat-long", "--size", size});
+  refuse({"probe", "convolve", probe_, map, "--kernel", "phong:10", "--size", size});
+  refuse({"probe", "synth", "constant", map, "--size", size});
+  EXPECT_EQ(out.files(), Words{});
+  EXPECT_EQ(
+      runExecutable({"probe", "irradiance", probe_, map, "--size", "64x32"}, "", SIGINT, limits)
+          .status,
+      0);
+}
+
 TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
   const TemporaryFolder out;
   const CommandLimits limits{.permissions = true};
