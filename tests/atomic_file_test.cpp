@@ -8,6 +8,8 @@
 
 #include <fstream>
 
+#include "base/error.h"
+#include "base/file.h"
 #include "run_command.h"
 
 namespace chromeball::atomic_file_test {
@@ -72,6 +74,36 @@ TEST(AtomicFile, IsOfOneWriter) {
   first.commit();
   EXPECT_EQ(fileContents(path), "first");
   EXPECT_EQ(folder.files(), Names{"a"});
+}
+
+// Each has a temporary file of its own, also of another process.
+TEST(AtomicFile, OfLongNames) {
+  const TemporaryFolder folder;
+  const std::string begin(253, 'a');
+  for (const char* end : {"", "b", "bb", "bc"}) {
+    const std::string path = folder / (begin + end);
+    AtomicFile file(path);
+    write(file, end);
+    AtomicFile other(folder / (begin + "xx")), second(path);
+    EXPECT_NE(other.temporary(), file.temporary());
+    EXPECT_NE(second.temporary(), file.temporary());
+    write(second, "second");
+    second.commit();
+    file.commit();
+    EXPECT_EQ(fileContents(path), end);
+  }
+  EXPECT_EQ(folder.files().size(), 4u);
+}
+
+// The system would take such a name for the part before it.
+TEST(FileNames, WithNulAreRefused) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << "text";
+  const std::string path = (folder / "a") + std::string("\0.exr", 5);
+  EXPECT_THROW(checkReadable(path), InputError);
+  EXPECT_THROW(readFile(path), InputError);
+  EXPECT_THROW(checkReplaceable(path), InputError);
+  EXPECT_NO_THROW(checkReplaceable(folder / "a"));
 }
 
 // Whether a process of another machine still exists is not known.

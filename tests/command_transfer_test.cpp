@@ -154,6 +154,8 @@ TEST_F(CommandTransfer, GlossyTransferIsSeenFromAPoint) {
   refusesRelight("t.gltf", {"--view", "1,2"}, "--view");
   refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["tables"].erase("vector0"); },
                  "tables has no vector", {"--view", "1,2,3"});
+  refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["origin"] = "0"; },
+                 "extras.chromeball.origin: must be three numbers", {"--view", "1,2,3"});
   refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["basis"] = "sh:3"; }, "elements",
                  {"--view", "1,2,3"});
   refusesChanged([](Json&, Json& a) { a["_PRT_0"] = a["POSITION"]; }, "is not a cluster, 0 to 0",

@@ -165,7 +165,7 @@ TEST(GltfCompression, InvalidMeshoptDataIsRejected) {
   EXPECT_TRUE(holds(errorMessage({{"buffer", 9}}), "buffers[9] does not exist"));
   EXPECT_TRUE(holds(errorMessage({{"buffer", 1}}), "buffers[1] does not exist"));
   EXPECT_TRUE(holds(errorMessage({{"byteLength", 4000}}), "which has"));
-  EXPECT_TRUE(holds(errorMessage({{"count", -1}}), "not a whole number"));
+  EXPECT_TRUE(holds(errorMessage({{"count", -1}}), "must be a whole number"));
   EXPECT_TRUE(holds(errorMessage({{"count", 2000000000}}), "out of proportion to the length"));
   EXPECT_TRUE(holds(errorMessage({{"count", 5000000}}), "damaged data"));
   EXPECT_TRUE(holds(errorMessage({{"count", 3}}), "do not fit"));

@@ -162,7 +162,8 @@ TEST(GltfEnvironment, InvalidEnvironmentsAreRejected) {
   expect("six faces", [&](auto& w) { light(w)["specularImages"][0].erase(5); });
   expect("six faces", [&](auto& w) { light(w).erase("specularImages"); });
   expect("images[99] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = 99; });
-  expect("images[-1] does not exist", [&](auto& w) { light(w)["specularImages"][0][2] = "a"; });
+  expect("specularImages[0][2]: must be a whole number",
+         [&](auto& w) { light(w)["specularImages"][0][2] = "a"; });
   expect("length 0", [&](auto& w) { light(w)["rotation"] = {0, 0, 0, 0}; });
   expect("must be square", [&](auto& w) { w.write("face3.png", kPng); });
   expect("is 1 x 1, but the first face is 32 x 32", [&](auto& w) {

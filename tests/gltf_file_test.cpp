@@ -78,31 +78,26 @@ TEST(GltfFile, ModelsAreKnownByTheirContents) {
 
 // tinygltf drops empty objects and arrays, and aborts where one is expected.
 TEST(GltfFile, EmptyMembersOfExtensions) {
-  for (const json& empty : {json::object(), json::array(), json(nullptr), json(1), json("a")}) {
-    GltfWriter w;
-    w.root["materials"] = {{{"extensions",
-                             {{"KHR_materials_transmission", {{"transmissionTexture", empty}}},
-                              {"KHR_materials_clearcoat", {{"clearcoatNormalTexture", empty}}},
-                              {"KHR_materials_volume", empty},
-                              {"KHR_materials_sheen", empty},
-                              {"KHR_materials_pbrSpecularGlossiness", empty}}}}};
-    w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", empty}}};
-    w.root["extensions"]["KHR_materials_variants"] = {{"variants", empty}};
-    addTriangle(
-        w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", {{"mappings", empty}}}}}},
-        {{"extensions",
-          {{"KHR_lights_punctual", {{"light", 0}}},
-           {"KHR_node_visibility", empty},
-           {"EXT_mesh_gpu_instancing", {{"attributes", empty}}}}}});
-    addTriangle(
-        w, {},
-        {{"extensions", {{"KHR_lights_punctual", empty}, {"EXT_mesh_gpu_instancing", empty}}}});
-    const std::string message = w.errorMessage();  // no abort
-    EXPECT_TRUE(!empty.is_object() || message.empty()) << message;
-  }
+  const json object = json::object(), array = json::array();
   GltfWriter w;
-  addTriangle(w, {}, {{"extensions", {{"EXT_mesh_gpu_instancing", json::object()}}}});
-  EXPECT_EQ(w.load().instances.size(), 1u);
+  w.root["materials"] = {{{"extensions",
+                           {{"KHR_materials_transmission", {{"transmissionTexture", object}}},
+                            {"KHR_materials_clearcoat", {{"clearcoatNormalTexture", object}}},
+                            {"KHR_materials_volume", object},
+                            {"KHR_materials_sheen", object},
+                            {"KHR_materials_pbrSpecularGlossiness", object}}}}};
+  w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", object}}};
+  w.root["extensions"]["KHR_materials_variants"] = {{"variants", array}};
+  addTriangle(
+      w, {{"material", 0}, {"extensions", {{"KHR_materials_variants", {{"mappings", array}}}}}},
+      {{"extensions",
+        {{"KHR_lights_punctual", {{"light", 0}}},
+         {"KHR_node_visibility", object},
+         {"EXT_mesh_gpu_instancing", {{"attributes", object}}}}}});
+  addTriangle(
+      w, {},
+      {{"extensions", {{"KHR_lights_punctual", object}, {"EXT_mesh_gpu_instancing", object}}}});
+  EXPECT_EQ(w.load().instances.size(), 2u);
 }
 
 // Whole numbers beyond int, with and without a fraction.
@@ -205,6 +200,9 @@ TEST(GltfFile, BuffersByUri) {
   EXPECT_EQ(errorMessage("data:application/octet-stream;base64,"
                          "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
             "");
+  EXPECT_EQ(errorMessage("DATA:application/octet-stream;BASE64,"
+                         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
+            "");
   EXPECT_EQ(errorMessage("data:application/octet-stream;base64,AA*A"),
             "buffers[0].uri: invalid data URI");
   EXPECT_EQ(errorMessage("none.bin"),
@@ -273,10 +271,31 @@ TEST(GltfFile, RejectsOtherFiles) {
   EXPECT_EQ(errorMessageOf(w.folder()), "not a regular file");
 }
 
+TEST(GltfFile, LongNamesAndListsAreShortened) {
+  GltfWriter w;
+  addTriangle(w);
+  for (int i = 0; i < 1000; ++i)
+    w.root["extensionsUsed"].push_back(fmt::format("FOO{:03}", i) + std::string(5000, ' '));
+  w.load();
+  ASSERT_EQ(w.warnings.size(), 1u);
+  EXPECT_LE(w.warnings[0].size(), 6 * 202u + 200);
+  EXPECT_TRUE(w.warnings[0].ends_with(" and 994 more")) << w.warnings[0];
+  for (const std::string& part : {std::string("a"), std::string("a ")}) {
+    std::string uri;
+    while (uri.size() < 100000) uri += part;
+    w.root["buffers"][0]["uri"] = uri;
+    std::ofstream(w.folder() / "model.gltf") << w.root;
+    const std::string message = errorMessageOf(w.folder() / "model.gltf");
+    EXPECT_TRUE(message.starts_with("buffers[0].uri: \"a")) << message;
+    EXPECT_TRUE(message.ends_with("\" cannot be found: File name too long")) << message;
+    EXPECT_LE(message.size(), 300u);
+  }
+}
+
 TEST(GltfFile, MessagesStayOnOneLine) {
   GltfWriter w;
   w.root["extensionsRequired"] = json::array({"A\nB"});
-  EXPECT_TRUE(w.errorMessage().starts_with("requires the extension A?B, which"))
+  EXPECT_TRUE(w.errorMessage().starts_with("requires the extension A B, which"))
       << w.errorMessage();
 }
 
@@ -294,16 +313,11 @@ TEST(SlowGltfFile, RejectsAmplificationByReferences) {
   EXPECT_NE(w.errorMessage().find("out of proportion to the length"), std::string::npos);
 }
 
-// The message contains the member that is missing or has the wrong type.
 TEST(GltfFile, SkinsWithoutJointsAreNamedInTheMessage) {
-  for (const json& joints : {json(), json("x"), json(3), json({1, "x"}), json::object()}) {
-    GltfWriter w;
-    addTriangle(w);
-    w.add("skins", json::object());
-    if (!joints.is_null()) w.root["skins"][0]["joints"] = joints;
-    EXPECT_EQ(w.errorMessage(), "skins[0].joints: is missing or not a list of node indices")
-        << joints;
-  }
+  GltfWriter w;
+  addTriangle(w);
+  w.add("skins", json::object());
+  EXPECT_EQ(w.errorMessage(), "skins[0].joints: is missing");
 }
 
 }  // namespace

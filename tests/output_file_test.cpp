@@ -91,9 +91,41 @@ TEST_F(SlowOutputFiles, RenderDoesNotOverwriteItsInputs) {
   std::ofstream(in("a.json")) << "old";
   fs::create_symlink(in("a.json"), in("b.exr"));
   expectErrorWithoutChanges(render(in("b.exr"), {"--stats", in("a.json")}), kOther);
+  // Likewise through links of which the last leads to no file yet.
+  fs::create_symlink("missing.exr", in("dangling.exr"));
+  fs::create_symlink(in("dangling.exr"), in("chain.exr"));
+  expectErrorWithoutChanges(render(in("missing.exr"), {"-o", in("chain.exr")}), kOther);
+  expectErrorWithoutChanges(render(in("dangling.exr"), {"-o", in("chain.exr")}), kOther);
+  const Words cached{
+      "render",          in("model.gltf"),     "--probe", in("probe.exr"), "-o",
+      in("missing.exr"), "--irradiance-cache", "0.1",     "--cache",       in("chain.exr")};
+  expectErrorWithoutChanges(cached, kOther);
   // Any other path is written.
   const CommandResult result = runCommand(render(in("fresh.exr"), {"--quiet"}));
   EXPECT_EQ(result.status, 0) << result.error;
+}
+
+// A file's name has at most 255 bytes; the temporary file has one where the file has.
+TEST_F(SlowOutputFiles, LongNamesAreWrittenOrRefusedBeforeRendering) {
+  const auto render = [&](size_t length) {
+    return Words{"render",
+                 in("model.gltf"),
+                 "--probe",
+                 in("probe.exr"),
+                 "--size",
+                 "8x8",
+                 "--samples",
+                 "1",
+                 "--quiet",
+                 "-o",
+                 in(std::string(length - 4, 'a') + ".exr")};
+  };
+  for (const size_t length : {190u, 192u, 240u, 244u, 255u}) {
+    const CommandResult result = runCommand(render(length));
+    EXPECT_EQ(result.status, 0) << length << ": " << result.error;
+    EXPECT_TRUE(fs::exists(render(length).back())) << length;
+  }
+  expectErrorWithoutChanges(render(256), "File name too long");
 }
 
 TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {

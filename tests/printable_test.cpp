@@ -7,6 +7,7 @@
 #include <fstream>
 #include <random>
 
+#include "base/condense.h"
 #include "run_command.h"
 
 namespace chromeball::printable_test {
@@ -59,6 +60,36 @@ TEST(Printable, LongWordsAndLinesAreShortened) {
   EXPECT_LE(cut.size(), 200);
   EXPECT_EQ(cut.find('?'), std::string::npos);
   EXPECT_EQ(printable(cut), cut);
+}
+
+TEST(Printable, NamesAndListsOfNames) {
+  std::string spaces;
+  for (int i = 0; i < 1000; ++i) spaces += "a ";
+  EXPECT_EQ(printableName(spaces).size(), 200u);
+  EXPECT_EQ(printableName("a\nb"), "a b");
+  EXPECT_EQ(firstNames({}), "");
+  EXPECT_EQ(firstNames({"a", "b\x1b"}), "a, b?");
+  EXPECT_EQ(firstNames(std::vector<std::string>(8, "a")), "a, a, a, a, a, a and 2 more");
+}
+
+// Messages of a kind differ in numbers and quoted names.
+TEST(Condensed, ManyOfAKindAreCounted) {
+  Messages messages;
+  const auto add = [&](Message::Kind kind, const std::string& text) {
+    messages.push_back({kind, text});
+  };
+  for (int i = 0; i < 5000; ++i) {
+    add(Message::Kind::Warning, fmt::format("m[{}].factor: {} is clamped to 1", i, -1.5e-7 * i));
+    add(Message::Kind::Note, fmt::format("camera \"{}\" is ignored", std::string(i % 9, 'a')));
+    if (i < 3) add(Message::Kind::Note, fmt::format("picture {} is dark", i));
+  }
+  const Messages few = condensed(messages);
+  ASSERT_EQ(few.size(), 5u);
+  EXPECT_EQ(few[0].text, "m[0].factor: -0 is clamped to 1 (and 4999 more of this kind)");
+  EXPECT_EQ(few[1].text, "camera \"\" is ignored (and 4999 more of this kind)");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(few[size_t(2 + i)].text, fmt::format("picture {} is dark", i));
+  EXPECT_EQ(condensed(few).size(), few.size());
 }
 
 // Whatever the bytes, the result is printable text that is not changed again.
@@ -135,6 +166,33 @@ TEST_F(SlowHostileMessage, LongAndLoopingPaths) {
   expectRefusal(
       {"probe", "convert", folder / "p.exr", folder / "loop.exr/x/o.exr", "--to", "angular"},
       "symbolic links");
+}
+
+TEST_F(SlowHostileMessage, ManyWarningsOfAKind) {
+  std::string materials, primitives;
+  for (int i = 0; i < 5000; ++i) {
+    materials += fmt::format(R"({}{{"pbrMetallicRoughness":{{"roughnessFactor":{}}}}})",
+                             i ? "," : "", 2 + i);
+    primitives +=
+        fmt::format(R"({}{{"attributes":{{"POSITION":0}},"material":{}}})", i ? "," : "", i);
+  }
+  const std::string model =
+      file("m.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"materials":[)" +
+                         materials + R"(],"meshes":[{"primitives":[)" + primitives +
+                         R"(]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,)"
+                         R"("type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+                         R"("buffers":[{"byteLength":36,"uri":"data:;base64,)"
+                         R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})");
+  ASSERT_EQ(runCommand({"probe", "synth", "constant", folder / "p.exr"}).status, 0);
+  const CommandResult result =
+      runCommand({"render", model, "--probe", folder / "p.exr", "-o", folder / "o.exr", "--size",
+                  "4x4", "--samples", "1", "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("roughnessFactor: 2 is clamped to the range 0 to 1 (and 4999 more of "
+                              "this kind)\n"),
+            std::string::npos)
+      << result.error.substr(0, 2000);
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1);
 }
 
 TEST_F(SlowHostileMessage, ScalesOfPfm) {

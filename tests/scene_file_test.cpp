@@ -252,6 +252,33 @@ TEST_F(SceneFileTest, UnknownKeyNamesItsLineAndTheNearestKey) {
   expectError("\"a\\nb\" = 3\n", 2, {"unknown key"});
 }
 
+// A file name ends at U+0000, so that a file other than the named one would be read or written.
+TEST_F(SceneFileTest, StringsWithNulAreRefused) {
+  const std::string reason = "must be a string without U+0000";
+  expectError("[output]\nfile = \"o.pfm\\u0000.exr\"\n", 3, {"`file`", reason});
+  expectError("[output]\nfile = ['a.exr', \"o.pfm\\u0000.exr\"]\n", 3, {"`file`", reason});
+  expectError("[probe]\nfile = \"../sky.exr\\u0000x\"\n", 3, {"`file`", reason});
+  expectError("[composite]\nplate = \"../sky.exr\\u0000\"\n", 3, {"`plate`", reason});
+  expectError("[camera]\nname = \"\\u0000\"\n", 3, {"`name`", reason});
+  expectError("[[light]]\ntype = 'list'\nfile = \"../sky.exr\\u0000x\"\n", 4, {"`file`", reason});
+  EXPECT_THROW(read("[[model]]\nfile = \"../ball.glb\\u0000x\"\n"), InputError);
+  EXPECT_THROW(read("model = \"../ball.glb\\u0000x\"\n"), InputError);
+}
+
+TEST_F(SceneFileTest, LongKeysAndValuesAreShortened) {
+  for (const std::string& part : {std::string("k"), std::string("k ")}) {
+    std::string text;
+    while (text.size() < 1000000) text += part;
+    for (const std::string& line :
+         {"[render]\n'" + text + "' = 1", "[render]\nsamples = '" + text + "'",
+          "[lighting]\nstrategy = '" + text + "'", "[probe]\nfile = '" + text + "'",
+          "[[light]]\ntype = 'sun'\n'" + text + "' = 1"}) {
+      const std::string error = errorOf(line);
+      EXPECT_LE(error.size(), 1500u) << error;
+    }
+  }
+}
+
 TEST_F(SceneFileTest, WrongTypeNamesKeyAndLine) {
   expectError("[render]\n\nsamples = '16'\n", 4, {"`samples`", "whole number", "\"16\""});
   expectError("[render]\nsamples = 1.5\n", 3, {"`samples`", "1.5"});

@@ -218,12 +218,19 @@ TEST_F(Fspy, RefusesOtherFiles) {
   };
   refuse("fspy\1\2", "is not JSON with the camera parameters of fSpy");
   refuse("[1, 2]", "is not JSON with the camera parameters of fSpy");
-  refuse("{}", "`imageWidth` should be a finite number");
+  refuse("{}", "`imageWidth` should be a number between 0 and 1e+06");
   refuse(fspyJson(truth, "1e99"), "`imageWidth` should be a number between 0 and 1e+06");
   refuse(fspyJson(truth, "0.2"), "`imageWidth` should be 1 or more");
   std::string skewed = good;
   skewed.replace(skewed.find("rows\":[[") + 8, 3, "9.9");
   refuse(skewed, "`cameraTransform` should be a rotation and a translation");
+  for (const char* number : {"1e160", "-1e300", "1e10"}) {  // whose squares may overflow
+    std::string far = good, shifted = good;
+    far.replace(far.find("],[0,0,0,1]]") - 1, 1, number);
+    refuse(far, "`cameraTransform/rows/2/3` should be a number between -1e+09 and 1e+09");
+    shifted.replace(shifted.find("\"y\":") + 4, 1, std::string(number) + ",\"unused\":");
+    refuse(shifted, "`principalPoint/y` should be a number between -1e+09 and 1e+09");
+  }
   EXPECT_THROW(readFspy(folder_ / "none.json", false), InputError);
 }
 

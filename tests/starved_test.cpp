@@ -90,11 +90,33 @@ TEST_F(SlowStarved, AFullDiskLeavesTheOldFile) {
 TEST_F(SlowStarved, UnwritablePathsAreReportedBeforeRendering) {
   const TemporaryFolder out;
   fs::create_directory(out / "folder.exr");
-  expectFailed(runCommand(words(out / "folder.exr")), "is a folder");
+  expectError(words(out / "folder.exr"), "is a folder");
   expectError(words(out / "none/a.exr"), "no folder");
   expectError(words(out / "a.exr", {"--stats", out / "none/a.json"}), "no folder");
   expectFailed(runCommand(words("/proc/a.exr")), "/proc/a.exr: cannot be written: ");
   EXPECT_EQ(out.files(), Words{"folder.exr"});
+}
+
+// The memory that a map of the size takes is known before it is made.
+TEST_F(SlowStarved, MapsBeyondTheMemoryAreRefusedWithTheirAmount) {
+  const TemporaryFolder out;
+  const CommandLimits limits{.memory = size_t(1) << 30};
+  const std::string map = out / "map.exr", size = "16384x8192";
+  const auto refuse = [&](const Words& arguments) {
+    const CommandResult result = expectError(arguments, map + ": ", limits);
+    EXPECT_NE(result.error.find(" GB of memory in all; 0.859 GB are allowed"), std::string::npos)
+        << result.error;
+  };
+  refuse({"probe", "irradiance", probe_, map, "--size", size});
+  refuse({"probe", "irradiance", probe_, map, "--size", size, "--method", "sh"});
+  refuse({"probe", "convert", probe_, map, "--to", "lat-long", "--size", size});
+  refuse({"probe", "convolve", probe_, map, "--kernel", "phong:10", "--size", size});
+  refuse({"probe", "synth", "constant", map, "--size", size});
+  EXPECT_EQ(out.files(), Words{});
+  EXPECT_EQ(
+      runExecutable({"probe", "irradiance", probe_, map, "--size", "64x32"}, "", SIGINT, limits)
+          .status,
+      0);
 }
 
 TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {

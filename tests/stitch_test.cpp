@@ -213,6 +213,8 @@ TEST_F(CommandStitch, WrongListsAreExplained) {
   refuse("[[tile]]\nfile = 'a.exr'\n", "tiles.toml:1: [[tile]] needs `fov`");
   refuse("fov = 50\n[[tile]]\nyaw = 3\n", "tiles.toml:2: [[tile]] needs `file`");
   refuse("fov = 50\n[[tile]]\nfile = 'b.exr'\n", "b.exr: no such file (paths are relative");
+  refuse("fov = 50\n[[tile]]\nfile = \"a.exr\\u0000b\"\n",
+         "tiles.toml:3: `file` must be a string without U+0000");
   refuse("fov = 180\n[[tile]]\nfile = 'a.exr'\n",
          "tiles.toml:1: `fov` must be a number of degrees from 0.01 to 179");
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\nyaw = 'left'\n",

@@ -34,6 +34,7 @@ TEST(Suggest, NoNameIsNearIfMostLettersDiffer) {
   EXPECT_EQ(nearestName("x", {"up", "fov"}), "");
   EXPECT_EQ(nearestName("probe", {}), "");
   EXPECT_EQ(nearestName("wattage", {"size", "seed"}), "");
+  EXPECT_EQ(nearestName(std::string(4 << 20, 's'), {"samples", "seed", "size"}), "");
 }
 
 TEST(Suggest, MessageHasTheNearestNameOrAllNames) {

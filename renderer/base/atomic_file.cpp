@@ -6,8 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -17,13 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A few letters, since the names of files are limited to 255.
+uint64_t hashOfText(std::string_view text) {
+  uint64_t sum = 0;
+  for (const char letter : text) sum = hash(sum ^ static_cast<unsigned char>(letter));
+  return sum;
+}
+
+// A few letters.
 std::string machineName() {
   std::array<char, 256> name{};
   gethostname(name.data(), name.size() - 1);
-  uint64_t sum = 0;
-  for (const char letter : name) sum = hash(sum ^ static_cast<unsigned char>(letter));
-  return fmt::format("{:08x}", uint32_t(sum));
+  return fmt::format("{:08x}", uint32_t(hashOfText({name.data(), name.size()})));
 }
 
 // Creates or empties a file that no other process has locked; -1 if that is not possible.
@@ -39,6 +45,17 @@ int openLocked(const fs::path& path) {
     return file;
   close(file);
   return -1;
+}
+
+// What a temporary name has of the file's: all of it, or of a long name the begin and a hash, so
+// that wherever the file can be, the temporary file can.
+std::string stemOf(const fs::path& file) {
+  constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  const size_t longest = size_t(std::max(pathconf(folder.c_str(), _PC_NAME_MAX), long(kRest)));
+  const std::string name = file.filename().string();
+  if (name.size() + kRest <= longest) return name;
+  return fmt::format("{}{:016x}", name.substr(0, longest - kRest), hashOfText(name));
 }
 
 }  // namespace
@@ -68,7 +85,7 @@ fs::path replaceableFile(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& target)
     : target_(replaceableFile(target)), temporary_(target_) {
-  const std::string name = fmt::format(".{}.{}", target_.filename().string(), machineName());
+  const std::string name = fmt::format(".{}.{}", stemOf(target_), machineName());
   temporary_.replace_filename(name + ".part");
   lock_ = openLocked(temporary_);
   if (lock_ >= 0) return;

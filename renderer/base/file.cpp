@@ -20,7 +20,18 @@ namespace chromeball {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// The system would take it for the file whose name ends there.
+void refuseNul(const fs::path& path) {
+  if (path.native().find('\0') != std::string::npos)
+    throwInput("{}: the file name contains U+0000", path.string());
+}
+
+}  // namespace
+
 void checkReadable(const fs::path& path) {
+  refuseNul(path);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throwInput("{}: no such file", path.string());
@@ -66,6 +77,7 @@ FileBytes::FileBytes(const fs::path& path) {
 }
 
 void checkReplaceable(const fs::path& link) {
+  refuseNul(link);
   const fs::path path = replaceableFile(link);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
@@ -76,7 +88,7 @@ void checkReplaceable(const fs::path& link) {
   const bool isTaken = fs::is_directory(path, error);
   if (error && error != std::errc::no_such_file_or_directory)
     throwInput("{}: {}", path.string(), error.message());
-  if (isTaken) throwRun("{}: cannot be written: it is a folder", path.string());
+  if (isTaken) throwInput("{}: cannot be written: it is a folder", path.string());
   if (access(folder.c_str(), W_OK) != 0)
     throwRun("{}: cannot write into {}: {}", path.string(), folder.string(), std::strerror(errno));
 }

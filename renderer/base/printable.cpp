@@ -93,4 +93,17 @@ std::string printable(std::string_view text) {
   return shortened(result, kLongest);
 }
 
+std::string printableName(std::string_view name) {
+  return shortened(withoutControls(name), kLongestWord);
+}
+
+std::string firstNames(const std::vector<std::string>& names) {
+  constexpr size_t kMost = 6;
+  std::string text;
+  for (size_t i = 0; i < std::min(kMost, names.size()); ++i)
+    text.append(i ? ", " : "").append(printableName(names[i]));
+  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
+  return text;
+}
+
 }  // namespace chromeball

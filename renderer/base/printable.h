@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace chromeball {
 
@@ -13,5 +14,11 @@ namespace chromeball {
 // `?`. What is long is shortened in its middle, with `...` there: each word of more than 200 bytes,
 // and the whole to 2000 bytes.
 std::string printable(std::string_view text);
+
+// Likewise a name within a message: at most 200 bytes, also if it has spaces.
+std::string printableName(std::string_view name);
+
+// "a, b, c, d, e, f and 994 more": the first names of a list, each as by printableName().
+std::string firstNames(const std::vector<std::string>& names);
 
 }  // namespace chromeball

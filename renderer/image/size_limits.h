@@ -31,17 +31,17 @@ inline void checkImageSize(const std::filesystem::path& path, int64_t width, int
 }
 
 // Throws InputError if an image with these numbers, of `bytes` each, and what is made of it do not
-// fit into the memory that the process may use: for readers of whole images, before they allocate.
-// `copies`: as read, as converted, and as written or prepared for look-ups. Small images are left
-// to the allocator.
+// fit into the memory that the process may use: for whole images that are read from a file or made
+// for one, before they are allocated. `copies`: as read, as converted, and as written or prepared
+// for look-ups. Small images are left to the allocator.
 inline void checkImageMemory(const std::filesystem::path& path, int64_t width, int64_t height,
                              int64_t channels, size_t bytes = sizeof(float), double copies = 3) {
   constexpr double kAlwaysAllowed = 64 << 20;
   const double image = double(width) * double(height) * double(channels) * double(bytes);
   if (image <= kAlwaysAllowed || copies * image <= memoryBudget()) return;
   throwInput(
-      "{}: {} x {} texels with {} channels take {:.3g} GB of memory to read and to use; {:.3g} "
-      "GB are allowed",
+      "{}: {} x {} texels with {} channels take {:.3g} GB of memory in all; {:.3g} GB are "
+      "allowed",
       path.string(), width, height, channels, 1e-9 * copies * image, 1e-9 * memoryBudget());
 }
 

@@ -51,7 +51,7 @@ Messages checkOutputs(const RenderJob& job) {
 void prepareOutputs(const RenderJob& job, std::vector<std::string> inputs) {
   inputs.push_back(job.file.path);
   std::vector<std::string> outputs = job.outputs;
-  for (const char* name : {"stats", "checkpoint"})
+  for (const char* name : {"stats", "checkpoint", "cache"})
     if (const auto file = job.file.settings.getIfGiven<std::string>(name)) outputs.push_back(*file);
   checkDistinct(outputs, inputs);
   if (job.makesOutputFolders)

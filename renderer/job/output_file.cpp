@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "image/io/write_image.h"
@@ -14,12 +15,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Compares existing files by device and inode, others by their canonical names.
+// Compares existing files by device and inode, missing ones by their canonical names.
 bool isSameFile(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
+  const bool exists = fs::exists(a, error);
+  if (exists != fs::exists(b, error)) return false;
+  if (exists) return fs::equivalent(a, b, error);
   const auto canonical = [&](const fs::path& path) {  // a missing file's relative path stays so
-    return fs::weakly_canonical(fs::absolute(path, error), error);
+    return fs::weakly_canonical(fs::absolute(replaceableFile(path), error), error);
   };
   const fs::path canonicalA = canonical(a);
   return !error && canonicalA == canonical(b) && !error;

@@ -2,6 +2,7 @@
 #include "job/place_models.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "job/job_changes.h"
@@ -82,8 +83,9 @@ AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCa
 Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
                  std::vector<std::string>& warnings) {
   Scene scene;
+  std::set<std::string> known(warnings.begin(), warnings.end());
   const auto add = [&](const std::string& line) {
-    if (std::ranges::find(warnings, line) == warnings.end()) warnings.push_back(line);
+    if (known.insert(line).second) warnings.push_back(line);
   };
   for (const ModelEntry& model : file.models) {
     GltfChoice choice = model.choice;

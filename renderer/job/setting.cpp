@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "base/suggest.h"
 #include "job/arguments.h"
 
@@ -43,13 +44,13 @@ bool parseWhole(std::string_view text, Number& number) {
 
 [[noreturn]] void refuse(const Setting& setting, std::string_view text,
                          const std::string& location) {
-  throwInput("{}: `{}` is not {}", location, text, expected(setting));
+  throwInput("{}: `{}` is not {}", location, printableName(text), expected(setting));
 }
 
 void checkChoice(const Setting& setting, const std::string& name, const std::string& location) {
   const std::vector<std::string_view> known = setting.choices();
   if (std::find(known.begin(), known.end(), name) == known.end())
-    throwInput("{}: `{}` is not known; {}", location, name, didYouMean(name, known));
+    throwInput("{}: `{}` is not known; {}", location, printableName(name), didYouMean(name, known));
 }
 
 // Splits words at commas; each word may contain several names.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/printable.h"
 #include "job/output_file.h"
 #include "job/toml_section.h"
 
@@ -42,7 +43,7 @@ class TileReader {
     for (const auto& [key, node] : table)
       if (std::ranges::count(keys, key.str()) == 0)
         failAt(fmt::format("{}:{}", path_, key.source().begin.line), "unknown key `{}`; {}",
-               key.str(), didYouMean(key.str(), keys));
+               printableName(key.str()), didYouMean(key.str(), keys));
   }
 
   // Nullopt if there is no such key.
@@ -61,8 +62,8 @@ class TileReader {
 
   TileEntry tile(const toml::table& table) const {
     check(table, {"file", "yaw", "pitch", "roll", "fov"});
-    const auto file = table["file"].value<std::string>();
-    if (!file || file->empty()) failAt(at(table), "[[tile]] needs `file`, the name of an image");
+    const Entry file{path_, "file", table.get("file")};
+    if (!file) failAt(at(table), "[[tile]] needs `file`, the name of an image");
     constexpr double kMost = 3600;
     const auto angle = [&](const char* key) {
       return number(table, key, -kMost, kMost).value_or(0);
@@ -70,7 +71,7 @@ class TileReader {
     const std::optional<double> own = fov(table), common = fov(table_);
     if (!own && !common)
       failAt(at(table), "[[tile]] needs `fov`, vertical, or the list one for all");
-    const fs::path image = (fs::path(path_).parent_path() / *file).lexically_normal();
+    const fs::path image = (fs::path(path_).parent_path() / file.text()).lexically_normal();
     try {
       checkReadable(image);
     } catch (const InputError& error) {

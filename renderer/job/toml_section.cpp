@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/printable.h"
 #include "job/setting_table.h"
 #include "job/toml_keys.h"
 
@@ -16,7 +17,7 @@ constexpr size_t kMaxFileBytes = size_t(4) << 20;
 std::string describe(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", printableName(text->get()));
   if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
   if (node.is_table()) return "a table";
   if (node.is_boolean()) return "a boolean";
@@ -39,7 +40,10 @@ void Entry::mustBe(std::string_view what) const {
 
 std::string Entry::text() const {
   if (!node->is_string() || node->as_string()->get().empty()) mustBe("a string");
-  return node->as_string()->get();
+  const std::string& text = node->as_string()->get();
+  if (text.find('\0') != std::string::npos)  // it would end a file name
+    mustBe("a string without U+0000");
+  return text;
 }
 
 std::string Entry::choice() const {
@@ -141,7 +145,8 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
-             key.str(), name_.empty() ? "" : " in " + heading(), didYouMean(key.str(), known));
+             printableName(key.str()), name_.empty() ? "" : " in " + heading(),
+             didYouMean(key.str(), known));
 }
 
 Entry Section::required(std::string_view key) const {
@@ -170,7 +175,7 @@ void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_v
   for (const auto& [key, node] : table_)
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
-             owner, key.str(), fmt::join(keys, ", "));
+             owner, printableName(key.str()), fmt::join(keys, ", "));
 }
 
 void Section::read(Settings& settings) const {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/json_file.h"
+#include "base/printable.h"
 #include "lighting/light_file.h"
 
 namespace chromeball {
@@ -32,7 +33,7 @@ class Reader {
   void allowOnly(std::initializer_list<std::string_view> keys) const {
     for (const auto& [key, value] : object_.items())
       if (std::ranges::find(keys, key) == keys.end())
-        fail("`{}` is no key of a list of lights: {}", key, fmt::join(keys, ", "));
+        fail("`{}` is no key of a list of lights: {}", printableName(key), fmt::join(keys, ", "));
   }
 
   std::optional<dvec3> vector(const char* key) const {

@@ -11,6 +11,7 @@
 #include "probe/capture/photograph.h"
 #include "probe/convert.h"
 #include "probe/load.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -176,7 +177,7 @@ AssemblyTarget parseTarget(const AssembleArguments& arguments,
     const Mapping mapping = parseMapping(arguments.to, "--to");
     return {mapping, sizeFor(mapping, natural), natural};
   }
-  const ImageSize size = parseSize(arguments.size, "--size");
+  const ImageSize size = checkedSize(arguments.out, parseSize(arguments.size, "--size"));
   const std::optional<Mapping> mapping =
       parseMapping(arguments.to, size.width, size.height, "--to");
   if (!mapping) return {parseMapping(arguments.to, "--to"), size, size};

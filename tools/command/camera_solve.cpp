@@ -18,6 +18,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "scene/solve/camera_doubts.h"
 #include "scene/solve/fspy.h"
+#include "scene/solve/observations.h"
 #include "scene/solve/picture_lines.h"
 #include "scene/solve/solve_lines.h"
 
@@ -50,15 +51,19 @@ void check(const CameraSolveArguments& a) {
     throwInput("--fov: {:g} should be 0.01 to 179 degrees", *a.fov);
   if (a.focal35 && !(*a.focal35 > 0.1 && *a.focal35 < 1e5))
     throwInput("--focal35: {:g} should be 0.1 to 100000 millimetres", *a.focal35);
-  if (a.height && !(*a.height > 0 && *a.height < 1e9))
-    throwInput("--height: {:g} should be in metres, above 0", *a.height);
+  if (a.height && !(*a.height > 0 && *a.height <= kLargestCoordinate))
+    throwInput("--height: {:g} should be in metres, above 0, at most {:g}", *a.height,
+               kLargestCoordinate);
   if (a.up != "y" && a.up != "z") throwInput("--up: `{}` should be y or z", a.up);
   checkOutputFile(a.output, {".toml"});
   if (isGiven(a.preview)) checkWritable(a.preview);
   checkDistinct({a.output, a.preview}, {a.model, a.plate, a.points, a.lines, a.fspy});
 }
 
-Scene loadModels(const std::string& path) {
+Scene loadModels(const std::string& path, Messages& messages) {
+  const auto warn = [&](const std::string& line) {
+    messages.push_back({Message::Kind::Warning, line});
+  };
   Scene scene;
   for (const ModelEntry& model : openScene(path).models) {
     GltfChoice choice = model.choice;
@@ -71,8 +76,9 @@ Scene loadModels(const std::string& path) {
 dvec2 pairOf(const std::string& text, const char* option) {
   const std::vector<double> numbers = parseNumbers(text, 2, option);
   for (const double number : numbers)
-    if (std::fabs(number) > 1e9)
-      throwInput("{}: {} should be between -1e9 and 1e9", option, number);
+    if (std::fabs(number) > kLargestCoordinate)
+      throwInput("{}: {} should be between {:g} and {:g}", option, number, -kLargestCoordinate,
+                 kLargestCoordinate);
   return {numbers[0], numbers[1]};
 }
 
@@ -155,7 +161,7 @@ void run(const CameraSolveArguments& a) {
   check(a);
   Messages messages;
   Image plate = readPlate(a.plate, &messages);
-  const Scene scene = loadModels(a.model);
+  const Scene scene = loadModels(a.model, messages);
   const Solution solution = solve(a, {plate.width, plate.height});
   const std::vector<std::string> lines = reportLines(solution.report());
   std::vector<std::string> comments{

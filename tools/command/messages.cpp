@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "base/condense.h"
 #include "base/printable.h"
 #include "scene_options.h"
 
@@ -15,7 +16,7 @@ void warn(const std::string& text) { note("warning: " + text); }
 void note(const std::string& text) { fmt::print(stderr, "chromeball: {}\n", printable(text)); }
 
 void print(const Messages& messages, bool quiet) {
-  for (const Message& message : messages) {
+  for (const Message& message : condensed(messages)) {
     const std::string text = message.text + inWords(message.remedy);
     if (message.kind == Message::Kind::Warning)
       warn(text);

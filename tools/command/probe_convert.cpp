@@ -29,7 +29,7 @@ struct ProbeConvertArguments {
 // The mapping and size of the output. Without a size, crosses and strips are vertical.
 std::pair<Mapping, ImageSize> target(const ProbeConvertArguments& arguments, const Image& latLong) {
   if (!arguments.size.empty()) {
-    const ImageSize size = parseSize(arguments.size, "--size");
+    const ImageSize size = checkedSize(arguments.out, parseSize(arguments.size, "--size"));
     if (const auto mapping = parseMapping(arguments.to, size.width, size.height, "--to"))
       return {*mapping, size};
   }

@@ -81,6 +81,7 @@ Image reduced(const ProbeConvolveArguments& arguments, const Image& latLong) {
 void writeLevels(const ProbeConvolveArguments& arguments, const Image& latLong) {
   const ImageSize face = parseSize(arguments.size.empty() ? "256x256" : arguments.size, "--size");
   if (face.width != face.height) throwInput("--size: a face of a cube is square");
+  checkedSize(arguments.out, {6 * face.width, face.height});
   const std::string mips = arguments.mips.empty() ? "khronos" : arguments.mips;
   const MipRoughness roughness = parseMipRoughness(mips, "--mips");
   std::optional<BusyLine> busy("prefiltering the levels");
@@ -108,9 +109,11 @@ void run(const ProbeConvolveArguments& arguments) {
     writeLevels(arguments, probe.latLong);
     return;
   }
-  const ImageSize size = arguments.size.empty()
-                             ? ImageSize{probe.latLong.width, probe.latLong.height}
-                             : parseSize(arguments.size, "--size");
+  const ImageSize size =
+      checkedSize(arguments.out,
+                  arguments.size.empty() ? ImageSize{probe.latLong.width, probe.latLong.height}
+                                         : parseSize(arguments.size, "--size"),
+                  kernel->isCosine() ? kIrradianceCopies : 4);
   std::optional<BusyLine> busy("convolving the probe");
   const Image map = convolvedMap(arguments, probe.latLong, *kernel, size);
   busy.reset();

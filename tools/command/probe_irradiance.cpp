@@ -31,11 +31,14 @@ void run(const ProbeIrradianceArguments& arguments) {
   if (!exact && arguments.method != "sh")
     throwInput("--method: unknown method `{}`; {}", arguments.method,
                didYouMean(arguments.method, {"exact", "sh"}));
+  const auto checked = [&](const ImageSize& size) {
+    return checkedSize(arguments.out, size, kIrradianceCopies);
+  };
   const ImageSize given =
-      arguments.size.empty() ? ImageSize{0, 0} : parseSize(arguments.size, "--size");
+      arguments.size.empty() ? ImageSize{0, 0} : checked(parseSize(arguments.size, "--size"));
   const LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
   const ImageSize size =
-      given.width > 0 ? given : ImageSize{probe.latLong.width, probe.latLong.height};
+      given.width > 0 ? given : checked({probe.latLong.width, probe.latLong.height});
   std::optional<BusyLine> busy("irradiance of the probe");
   const Image irradiance = exact ? irradianceMap(probe.latLong, size, arguments.rotation)
                                  : shIrradianceMap(probe.latLong, size, arguments.rotation);

@@ -13,6 +13,7 @@
 #include "probe/random_rays.h"
 #include "probe_commands.h"
 #include "rotation_option.h"
+#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -118,7 +119,9 @@ void run(const ProbeRaysArguments& arguments) {
     throwInput("--error: {} should be a fraction from {} to 1: 0.1 is 10%", arguments.error,
                kMinError);
   const std::optional<ImageSize> size =
-      arguments.size.empty() ? std::nullopt : std::optional(parseSize(arguments.size, "--size"));
+      arguments.size.empty()
+          ? std::nullopt
+          : std::optional(checkedSize(arguments.file, parseSize(arguments.size, "--size")));
   LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const Normals normals(probe.latLong, arguments.rotation);

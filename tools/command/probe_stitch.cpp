@@ -62,7 +62,8 @@ void run(const ProbeStitchArguments& arguments) {
   if (!arguments.poses.empty() && !arguments.refine)
     throwInput("--poses: are those that --refine finds");
   ImageSize size{};
-  if (!arguments.size.empty()) size = parseSize(arguments.size, "--size");
+  if (!arguments.size.empty())
+    size = checkedSize(arguments.out, parseSize(arguments.size, "--size"));
   std::vector<TileEntry> entries = readTiles(arguments.list);
   std::vector<std::string> inputs{arguments.list};
   for (const TileEntry& entry : entries) inputs.push_back(entry.file);

@@ -114,7 +114,8 @@ void run(const ProbeSynthArguments& arguments, const Command& command) {
   checkRange("--ground-albedo", arguments.sky.groundAlbedo, 0, 1);
   checkRange("--sun-elevation", arguments.sky.sunElevation, 0, 90);
   checkRange("--turbidity", arguments.sky.turbidity, 2, 10);
-  writeProbe(arguments.out, maker->second(arguments, parseSize(arguments.size, "--size")));
+  const ImageSize size = checkedSize(arguments.out, parseSize(arguments.size, "--size"));
+  writeProbe(arguments.out, maker->second(arguments, size));
 }
 
 }  // namespace

@@ -33,8 +33,10 @@ namespace {
 // An image without samples in some pixels must not overwrite one that may be complete.
 void nameAsPartial(std::vector<std::string>& outputs) {
   for (std::string& output : outputs) {
+    constexpr size_t kLongestName = 255;
     std::filesystem::path path = output;
-    path.replace_extension(".partial" + path.extension().string());
+    const std::string end = ".partial" + path.extension().string();
+    path.replace_filename(path.stem().string().substr(0, kLongestName - end.size()) + end);
     output = path.string();
   }
 }

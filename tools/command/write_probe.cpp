@@ -9,6 +9,7 @@
 #include "image/io/lost_light.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/write_image.h"
+#include "image/size_limits.h"
 #include "messages.h"
 #include "probe/detect_mapping.h"
 #include "probe/load.h"
@@ -35,6 +36,11 @@ void warnOfClipping(const std::string& file, const Image& map) {
 }
 
 }  // namespace
+
+ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies) {
+  checkImageMemory(file, size.width, size.height, 3, sizeof(float), copies);
+  return size;
+}
 
 void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
   const std::string kind = lowerExtension(file), name = mappingName(mapping);

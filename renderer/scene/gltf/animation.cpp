@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/printable.h"
 #include "base/suggest.h"
 #include "scene/gltf/accessor.h"
 
@@ -135,13 +136,10 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
 }  // namespace
 
 std::string animationNames(const GltfFile& file) {
-  constexpr size_t kMax = 6;
-  const auto& animations = file.model.animations;
-  std::string text;
-  for (size_t i = 0; i < std::min(kMax, animations.size()); ++i)
-    text += fmt::format("{}`{}`", i ? ", " : "", oneLine(animationName(animations, i)));
-  if (animations.size() > kMax) text += fmt::format(" and {} more", animations.size() - kMax);
-  return text;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < file.model.animations.size(); ++i)
+    names.push_back("`" + animationName(file.model.animations, i) + "`");
+  return firstNames(names);
 }
 
 void applyAnimation(GltfFile& file, const AnimationTime& when) {

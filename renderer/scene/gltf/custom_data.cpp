@@ -25,11 +25,15 @@ void readExtras(GltfFile& file, CustomData& data) {
   for (const std::string& key : extras.Keys())
     if (const Value& value = memberOf(extras, key); value.IsString())
       data.texts[key] = value.Get<std::string>();
-  const Value& origin = memberOf(extras, "origin");
-  if (origin.IsArray() && origin.ArrayLen() == 3)
-    for (int i = 0; i < 3; ++i)
-      if (const Value& number = elementOf(origin, size_t(i)); number.IsNumber())
-        data.origin[i] = number.GetNumberAsDouble();
+  if (extras.Has("origin")) {
+    const Value& origin = memberOf(extras, "origin");
+    for (int i = 0; i < 3; ++i) {
+      const Value& number = elementOf(origin, size_t(i));
+      if (origin.ArrayLen() != 3 || !number.IsNumber())
+        file.fail("extras.chromeball.origin: must be three numbers");
+      data.origin[i] = number.GetNumberAsDouble();
+    }
+  }
   const Value& tables = memberOf(extras, "tables");
   if (!tables.IsObject()) return;
   for (const std::string& name : tables.Keys()) {

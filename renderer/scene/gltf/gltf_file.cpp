@@ -7,8 +7,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
+#include "scene/gltf/member_types.h"
 #include "scene/gltf/uri.h"
 
 namespace chromeball {
@@ -33,13 +35,12 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
     const GltfChunks chunks = splitContainer(file_.bytes());
     json root = parseJson(chunks.json);
     checkVersion(root);
+    checkMemberTypes(root);
     if (const auto ignored = checkExtensions(root); !ignored.empty())
-      warnOnce(fmt::format("ignored extensions: {}", fmt::join(ignored, ", ")));
+      warnOnce("ignored extensions: " + firstNames({ignored.begin(), ignored.end()}));
     readBuffers(takeArray(root, "buffers"), chunks.binary);
     for (const json& image : takeArray(root, "images")) {
-      const auto view = image.find("bufferView");
-      const bool inView = view != image.end() && view->is_number_integer();
-      images.push_back({inView ? view->get<int>() : -1, stringMember(image, "uri")});
+      images.push_back({image.value("bufferView", -1), stringMember(image, "uri")});
       addToFiles(images.back().uri);
     }
     readModel(root);
@@ -74,7 +75,7 @@ void GltfFile::readBuffers(const json& buffers, std::span<const uint8_t> binaryC
 }
 
 void GltfFile::readModel(json& root) {
-  checkSkins(root);
+  requireJoints(root);
   const int noView = fillGaps(root);
   keepLargeNumbers(root);
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -129,17 +130,18 @@ std::span<const uint8_t> GltfFile::image(int index, Bytes& storage) const {
 
 std::string GltfFile::describeImage(int index) const {
   const std::string& uri = images[size_t(index)].uri;
-  const bool named = !uri.empty() && !uri.starts_with("data:");
-  return fmt::format("{}: images[{}]{}", path_, index, named ? " (" + oneLine(uri) + ")" : "");
+  const bool named = !uri.empty() && !isDataUri(uri);
+  return fmt::format("{}: images[{}]{}", path_, index,
+                     named ? " (" + printableName(uri) + ")" : "");
 }
 
 void GltfFile::addToFiles(const std::string& uri) {
-  if (uri.empty() || uri.starts_with("data:")) return;
+  if (uri.empty() || isDataUri(uri)) return;
   files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
 }
 
 Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const {
-  if (uri.starts_with("data:")) {
+  if (isDataUri(uri)) {
     Bytes bytes;
     if (!decodeDataUri(uri, bytes)) fail("{}: invalid data URI", where);
     return bytes;
@@ -150,7 +152,7 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
     checkFileName(name);
     if (external_ == ExternalFiles::Refuse) checkInside(folder, name);
   } catch (const std::exception& e) {
-    fail("{}: \"{}\" {}", where, name, e.what());
+    fail("{}: \"{}\" {}", where, printableName(name), e.what());
   }
   try {
     return readFile(folder / name);

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <climits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "scene/gltf/gltf_file.h"
+#include "base/printable.h"
 
 namespace chromeball {
 namespace {
@@ -52,9 +51,8 @@ const char* adviceFor(const std::string& extension) {
 
 std::set<std::string> namesIn(const json& root, const char* key) {
   std::set<std::string> names;
-  if (const auto list = root.find(key); list != root.end() && list->is_array())
-    for (const json& name : *list)
-      if (name.is_string()) names.insert(name.get<std::string>());
+  if (const auto list = root.find(key); list != root.end())
+    for (const json& name : *list) names.insert(name.get<std::string>());
   return names;
 }
 
@@ -77,41 +75,32 @@ std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
     if (!kSupportedExtensions.contains(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
-                                           oneLine(name), adviceFor(name)));
+                                           printableName(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
   for (const std::string& name : kSupportedExtensions) ignored.erase(name);
   return ignored;
 }
 
-void checkSkins(const json& root) {
+void requireJoints(const json& root) {
   const auto skins = root.find("skins");
-  if (skins == root.end() || !skins->is_array()) return;
-  for (size_t i = 0; i < skins->size(); ++i) {
-    const json& skin = (*skins)[i];
-    if (!skin.is_object()) continue;
-    const auto joints = skin.find("joints");
-    const bool areNodes = joints != skin.end() && joints->is_array() &&
-                          std::all_of(joints->begin(), joints->end(),
-                                      [](const json& joint) { return joint.is_number_integer(); });
-    if (!areNodes)
-      throw std::runtime_error(
-          fmt::format("skins[{}].joints: is missing or not a list of node indices", i));
-  }
+  if (skins == root.end()) return;
+  for (size_t i = 0; i < skins->size(); ++i)
+    if (!(*skins)[i].contains("joints"))
+      throw std::runtime_error(fmt::format("skins[{}].joints: is missing", i));
 }
 
 int fillGaps(json& root) {
   for (json& skin : root["skins"])
-    if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
+    if (!skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
   for (json& animation : root["animations"])
-    if (animation.is_object() && animation.contains("channels"))
+    if (animation.contains("channels"))
       for (json& channel : animation["channels"])
-        if (channel.is_object() && channel.contains("target") && channel["target"].is_object() &&
-            !channel["target"].contains("node"))
+        if (channel.contains("target") && !channel["target"].contains("node"))
           channel["target"]["node"] = -1;
   json& views = root["bufferViews"];
   const int none = int(views.size());
   for (json& accessor : root["accessors"])
-    if (accessor.is_object() && !accessor.contains("bufferView")) accessor["bufferView"] = none;
+    if (!accessor.contains("bufferView")) accessor["bufferView"] = none;
   views.push_back({{"buffer", 0}, {"byteLength", 1}});
   return none;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is checked and mended in a glTF file's JSON before tinygltf reads it.
+// What is checked and mended in a glTF file's JSON before tinygltf reads it; the types of its
+// members apart (member_types.h).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,8 +18,8 @@ void checkVersion(const nlohmann::json& root);
 // the extensions that it uses and that are ignored.
 std::set<std::string> checkExtensions(const nlohmann::json& root);
 
-// Throws for skins that tinygltf rejects without giving a reason.
-void checkSkins(const nlohmann::json& root);
+// Throws for skins without joints, which tinygltf rejects without giving a reason.
+void requireJoints(const nlohmann::json& root);
 
 // tinygltf rejects three things that the specification allows: a skin without inverse bind
 // matrices, an animation channel without a node (an extension may define its target), and indices

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/printable.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/gpu_instancing.h"
 #include "scene/gltf/material_reader.h"
@@ -146,7 +147,7 @@ class InstanceReader {
     std::erase_if(transforms, [](const dmat4& transform) { return !isInvertible(transform); });
     if (transforms.size() < count)
       file_.warnOnce("ignored: nodes without an invertible transform (such as \"" +
-                     tree_.names[size_t(index)] + "\")");
+                     printableName(tree_.names[size_t(index)]) + "\")");
     return transforms;
   }
 

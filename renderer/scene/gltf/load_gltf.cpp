@@ -6,6 +6,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/printable.h"
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
 #include "scene/gltf/environment.h"
@@ -54,7 +55,8 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
                              ? camera.halfHeight > 0 && std::isfinite(camera.halfHeight)
                              : lens.yfov > 0 && lens.yfov < kPiD;
     if (!isValid || !isInvertible(tree.toWorld[size_t(i)])) {
-      file.warnOnce("camera \"" + camera.name + "\" has no field of view and is ignored");
+      file.warnOnce("camera \"" + printableName(camera.name) +
+                    "\" has no field of view and is ignored");
       continue;
     }
     placeCamera(tree.toWorld[size_t(i)], camera);

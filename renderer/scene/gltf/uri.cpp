@@ -28,12 +28,23 @@ int sextet(char c) {
   return -1;
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 }  // namespace
+
+bool isDataUri(std::string_view uri) {
+  constexpr std::string_view kScheme = "data:";
+  return lowerCase(uri.substr(0, kScheme.size())) == kScheme;
+}
 
 bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) return false;
-  if (!uri.substr(0, comma).ends_with(";base64")) {
+  if (!lowerCase(uri.substr(0, comma)).ends_with(";base64")) {
     const std::string text = decodePercent(uri.substr(comma + 1));
     bytes.assign(text.begin(), text.end());
     return true;
@@ -79,8 +90,10 @@ void checkInside(const fs::path& folder, const std::string& name) {
   if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
   if (std::find(path.begin(), path.end(), "..") != path.end())
     failUri("is outside of the model's folder by \"..\"; {}", kRemedy);
+  std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
-  const fs::path target = fs::weakly_canonical(root / path);
+  const fs::path target = fs::weakly_canonical(root / path, error);
+  if (error) failUri("cannot be found: {}", error.message());
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
   if (end != root.end()) failUri("is outside of the model's folder through a link; {}", kRemedy);
 }

@@ -5,11 +5,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace chromeball {
 
-// Decodes a data URI, in base64 or percent-encoded. Returns false if it is invalid.
+// Whether a URI has the scheme data:, in capitals or not (RFC 3986, 3.1).
+bool isDataUri(std::string_view uri);
+
+// Decodes a data URI (RFC 2397), in base64 or percent-encoded. Returns false if it is invalid.
 bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes);
 
 // Replaces each %XX by the byte with that hexadecimal code.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/solve/observations.h"
 
 namespace chromeball {
 namespace {
@@ -27,16 +28,12 @@ class Reader {
           path_);
   }
 
-  // The finite number at a path such as "/principalPoint/x".
-  double number(const std::string& pointer) const {
+  // The number at a path such as "/principalPoint/x", between `least` and `most`.
+  double number(const std::string& pointer, double least = -kLargestCoordinate,
+                double most = kLargestCoordinate) const {
     const json::json_pointer at(pointer);
-    if (!root_.contains(at) || !root_[at].is_number() || !std::isfinite(root_[at].get<double>()))
-      fail(pointer, "a finite number");
-    return root_[at].get<double>();
-  }
-
-  double numberAbove(const std::string& pointer, double least, double most) const {
-    const double value = number(pointer);
+    const double value =
+        root_.contains(at) && root_[at].is_number() ? root_[at].get<double>() : NAN;
     if (!(value > least && value < most))
       fail(pointer, fmt::format("a number between {:g} and {:g}", least, most));
     return value;
@@ -59,10 +56,10 @@ SolvedCamera readFspy(const std::filesystem::path& path, bool zUp) {
   constexpr double kTolerance = 1e-3, kMostPixels = 1e6;
   const Reader file(path);
   SolvedCamera camera;
-  camera.size = {int(file.numberAbove("/imageWidth", 0, kMostPixels)),
-                 int(file.numberAbove("/imageHeight", 0, kMostPixels))};
+  camera.size = {int(file.number("/imageWidth", 0, kMostPixels)),
+                 int(file.number("/imageHeight", 0, kMostPixels))};
   if (camera.size.width < 1 || camera.size.height < 1) file.fail("/imageWidth", "1 or more");
-  const double fov = file.numberAbove("/verticalFieldOfView", 0, kPiD);
+  const double fov = file.number("/verticalFieldOfView", 0, kPiD);
   camera.focalLength = focalLengthOfFov(camera.size, fov);
   for (int row = 0; row < 3; ++row) {
     const auto at = [&](int column) {

@@ -90,10 +90,9 @@ double finiteNumber(const Row& row, const Fields& columns, size_t i) {
   if (!number || !std::isfinite(*number))
     throwInput("{}: `{}` is `{}`; it should be a finite number", row.location, columns[i],
                row.fields[i]);
-  constexpr double kLargest = 1e9;  // metres or pixels; squares of 1e160 overflow
-  if (std::fabs(*number) > kLargest)
-    throwInput("{}: `{}` is `{}`; it should be between -1e9 and 1e9", row.location, columns[i],
-               row.fields[i]);
+  if (std::fabs(*number) > kLargestCoordinate)
+    throwInput("{}: `{}` is `{}`; it should be between {:g} and {:g}", row.location, columns[i],
+               row.fields[i], -kLargestCoordinate, kLargestCoordinate);
   return *number;
 }
 

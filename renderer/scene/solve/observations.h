@@ -14,6 +14,9 @@
 
 namespace chromeball {
 
+// No coordinate or length, in metres or pixels, may be larger: the squares of 1e160 overflow.
+inline constexpr double kLargestCoordinate = 1e9;
+
 struct ObservedPoint {
   std::string name, location;  // location: FILE:LINE, begins an error
   glm::dvec3 position;         // metres
