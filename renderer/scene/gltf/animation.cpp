@@ -138,7 +138,7 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
 std::string animationNames(const GltfFile& file) {
   std::vector<std::string> names;
   for (size_t i = 0; i < file.model.animations.size(); ++i)
-    names.push_back("`" + animationName(file.model.animations, i) + "`");
+    names.push_back(fmt::format("`{}`", animationName(file.model.animations, i)));
   return firstNames(names);
 }
 
