@@ -227,7 +227,7 @@ TEST(Image, WritesAllOrNothing) {
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.hdr", "a.pfm", "a.png"}));
 
   std::filesystem::create_directory(folder / "d.exr");
-  EXPECT_THROW(writeImage(folder / "d.exr", image), RunError);
+  EXPECT_THROW(writeImage(folder / "d.exr", image), InputError);
   EXPECT_THROW(writeImage(folder / "a.jpg", image), InputError);
   EXPECT_THROW(writeImage(folder / "a", image), InputError);
   EXPECT_THROW(writeImage(folder / "none/a.exr", image), InputError);

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/long_array.h"
 #include "base/parallel.h"
+#include "base/printable.h"
 
 namespace chromeball {
 
@@ -32,13 +33,14 @@ void refuseNul(const fs::path& path) {
 
 void checkReadable(const fs::path& path) {
   refuseNul(path);
+  const std::string name = printableName(path.string());
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throwInput("{}: no such file", path.string());
+  if (status.type() == fs::file_type::not_found) throwInput("{}: no such file", name);
   // A loop of links, a name that is too long, or a folder that cannot be entered.
-  if (error) throwInput("{}: {}", path.string(), error.message());
-  if (!fs::is_regular_file(status)) throwInput("{}: not a regular file", path.string());
-  if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", path.string(), std::strerror(errno));
+  if (error) throwInput("{}: {}", name, error.message());
+  if (!fs::is_regular_file(status)) throwInput("{}: not a regular file", name);
+  if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", name, std::strerror(errno));
 }
 
 std::string lowerExtension(const fs::path& path) {

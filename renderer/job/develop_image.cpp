@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/develop_image.h"
 
+#include <fmt/format.h>
+
 #include "base/file.h"
 
 namespace chromeball {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/load_messages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/file.h"

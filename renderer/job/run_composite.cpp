@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/run_composite.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "composite/local_scene.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_light.h"
 
+#include <fmt/format.h>
+
 #include "job/arguments.h"
 #include "lighting/light_list.h"
 #include "probe/sky.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_file_source.h"
 
+#include <fmt/format.h>
+
 #include "job/polygon_file.h"
 
 namespace chromeball {

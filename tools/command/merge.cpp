@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
+#include <fmt/format.h>
+
 #include <atomic>
 #include <nlohmann/json.hpp>
 

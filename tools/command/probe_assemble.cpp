@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe assemble PHOTO... -o OUT --azimuth 0,90
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <csetjmp>
 #include <cstdio>
 #include <stdexcept>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/custom_data.h"
 
+#include <fmt/format.h>
+
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extension_members.h"
 #include "scene/gltf/gltf_file.h"

@@ -5,6 +5,7 @@
 #include <draco/compression/point_cloud/point_cloud_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/metadata/metadata_decoder.h>
+#include <fmt/format.h>
 
 #include <cstring>
 #include <new>

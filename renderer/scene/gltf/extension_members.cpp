@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/extension_members.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace chromeball {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/lights.h"
 
+#include <fmt/format.h>
+
 #include "scene/gltf/extension_members.h"
 
 namespace chromeball {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/material_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/gltf/decode_images.h"

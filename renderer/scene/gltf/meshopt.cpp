@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/meshopt.h"
 
+#include <fmt/format.h>
 #include <meshoptimizer.h>
 
 #include <algorithm>

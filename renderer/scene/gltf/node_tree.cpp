@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/node_tree.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
 #include <iterator>
 
 #include "scene/gltf/extension_members.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/camera_doubts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/camera_view.h"
