@@ -90,7 +90,9 @@ TEST_F(CommandIntegrators, CacheIrradiance) {
   refuses(brighter, "is the cache of another scene: `probe-scale`");
   std::filesystem::resize_file(cache, size - 1);
   refuses(cached, "damaged");
-  refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "probe.exr"},
+  refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "probe.exr"}, "overwrite the input");
+  std::filesystem::copy_file(folder_ / "probe.exr", folder_ / "other.exr");
+  refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "other.exr"},
           "is not an irradiance cache");
   refuses({"--irradiance-cache", "0.3", "--cache", folder_ / "none/records"}, "none");
   refuses({"--cache", cache}, "--irradiance-cache");
