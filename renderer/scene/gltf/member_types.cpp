@@ -151,14 +151,6 @@ constexpr ObjectType kObjects[] = {
       {"count", "size"},
       {"filter", "string"},
       {"mode", "string"}}},
-    {"KHR_meshopt_compression",
-     {{"buffer", "integer"},
-      {"byteLength", "size"},
-      {"byteOffset", "size"},
-      {"byteStride", "size"},
-      {"count", "size"},
-      {"filter", "string"},
-      {"mode", "string"}}},
     {"EXT_texture_webp", {{"source", "integer"}}},
     {"KHR_draco_mesh_compression", {{"attributes", "integer{}"}, {"bufferView", "integer"}}},
     {"KHR_lights_punctual", {{"light", "integer"}, {"lights", "Light[]"}}},
@@ -306,8 +298,12 @@ void checkType(const json& value, std::string_view type, const JsonPlace& place)
 
 void checkExtensionTypes(const json& extensions, const JsonPlace& place) {
   require(extensions.is_object(), extensions, "object", place);
+  const auto kindOf = [](std::string_view name) {
+    return name == "KHR_meshopt_compression" ? "EXT_meshopt_compression"
+                                             : name;  // the same members
+  };
   for (const auto& [name, extension] : extensions.items())
-    if (const ObjectType* object = findObjectType(name))
+    if (const ObjectType* object = findObjectType(kindOf(name)))
       checkObject(extension, *object, {&place, name});
 }
 
