@@ -9,6 +9,7 @@
 #include "capture_photographs.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe/synth.h"
@@ -63,7 +64,7 @@ TEST(SlowCommandAssemble, TwoPhotographsReturnTheProbe) {
   EXPECT_EQ(result.error.find("warning") != std::string::npos,
             result.error.find("the outline of the ball is doubtful") != std::string::npos)
       << result.error;
-  const json report = json::parse(result.out);
+  const json report = parseJson(result.out);
   const json& second = report["views"][1];
   // A direction turns by 2 / radius for each pixel that a circle is beside its ball; both may be
   // off by 0.1 pixels.
@@ -180,9 +181,9 @@ TEST(SlowCommandAssemble, FisheyePhotographs) {
   writeImage(front, convert(map, Mapping::LatLong, Fisheye{200}, {300, 300}));
   writeImage(back, convert(map, Mapping::LatLong, Fisheye{200}, {300, 300}, 180));
   const json report =
-      json::parse(run({"probe", "assemble", front, back, "-o", folder / "probe.exr", "--from",
-                       "fisheye:200", "--azimuth", "0,180", "--size", "256x128", "--json"})
-                      .out);
+      parseJson(run({"probe", "assemble", front, back, "-o", folder / "probe.exr", "--from",
+                     "fisheye:200", "--azimuth", "0,180", "--size", "256x128", "--json"})
+                    .out);
   EXPECT_EQ(report["blind_share"], 0);
   EXPECT_LT(irradianceError(readImage(folder / "probe.exr"), map).mean, 0.003);
 }
@@ -259,7 +260,7 @@ TEST(SlowCommandConvert, ReadsAndWritesFisheyes) {
   writeImage(map, studio());
   run({"probe", "convert", map, disc, "--to", "fisheye:200:equisolid"});
   const json info =
-      json::parse(run({"probe", "info", disc, "--json", "--mapping", "fisheye:200:equisolid"}).out);
+      parseJson(run({"probe", "info", disc, "--json", "--mapping", "fisheye:200:equisolid"}).out);
   EXPECT_EQ(info["mapping"], "fisheye:200:equisolid");
   const CommandResult back = run({"probe", "convert", disc, folder / "back.exr", "--from",
                                   "fisheye:200:equisolid", "--to", "lat-long"});
@@ -286,17 +287,17 @@ TEST(SlowCommandReflectivity, PrintsThatOfABall) {
     return all;
   };
   EXPECT_NE(run(with({"--direct", "2,2,10,10"})).out.find("59% reflective"), std::string::npos);
-  const json ball = json::parse(run(with({"--direct", "2,2,10,10", "--json"})).out);
+  const json ball = parseJson(run(with({"--direct", "2,2,10,10", "--json"})).out);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(ball["reflectivity"][c], 0.59, 1e-6);
     EXPECT_NEAR(ball["standard_error"][c], 0, 1e-6);
   }
-  const json paint = json::parse(
+  const json paint = parseJson(
       run(with({"--against", "2,2,10,10", "--standard-reflectance", ".9", "--json"})).out);
   EXPECT_NEAR(paint["reflectivity"][1], 0.9 * 0.59, 1e-6);
-  const json other = json::parse(run(with({"--against", standard, "--direct", "0,0,10,10",
-                                           "--standard-reflectance", "0.9,0.8,0.7", "--json"}))
-                                     .out);
+  const json other = parseJson(run(with({"--against", standard, "--direct", "0,0,10,10",
+                                         "--standard-reflectance", "0.9,0.8,0.7", "--json"}))
+                                   .out);
   EXPECT_NEAR(other["reflectivity"][2], 0.5 * 0.7 * 0.59, 1e-6);
 
   expectError(command, "--direct: give the rectangle");

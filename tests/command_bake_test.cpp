@@ -8,6 +8,7 @@
 #include "browser.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "npm_packages.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -71,20 +72,20 @@ TEST_F(CommandBake, IrradianceLightmapIsShownWithoutLight) {
 TEST_F(CommandBake, OtherOutputs) {
   bake("ao.gltf", {"--what", "ambient-occlusion"});
   EXPECT_FALSE(load(folder_ / "ao.gltf").materials[0].unlit);
-  const auto ao = nlohmann::json::parse(fileContents(folder_ / "ao.gltf"));
+  const auto ao = jsonOfFile(folder_ / "ao.gltf");
   EXPECT_EQ(ao["materials"][0]["occlusionTexture"]["texCoord"], 1);
   EXPECT_EQ(ao["extras"]["chromeball"]["lightmap"], "ao.exr");
   EXPECT_TRUE(ao["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_0"));
 
   bake("v.gltf", {"--to", "vertices"});
-  const auto v = nlohmann::json::parse(fileContents(folder_ / "v.gltf"));
+  const auto v = jsonOfFile(folder_ / "v.gltf");
   EXPECT_TRUE(v["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
   EXPECT_TRUE(v["meshes"][0]["primitives"][0]["attributes"].contains("_IRRADIANCE"));
   EXPECT_TRUE(load(folder_ / "v.gltf").materials[0].unlit);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "v.exr"));
 
   bake("k.gltf", {"--keep-materials", "--texel", "0.1", "--no-denoise"});
-  const auto k = nlohmann::json::parse(fileContents(folder_ / "k.gltf"));
+  const auto k = jsonOfFile(folder_ / "k.gltf");
   EXPECT_FALSE(k.contains("images"));
   EXPECT_TRUE(k["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
   bake("r.glb", {"--what", "radiance", "--scale", "4"});
@@ -133,8 +134,7 @@ double differenceOfBaked(const TemporaryFolder& folder, const Strings& bakeOptio
        folder / "render.exr", "--transparent", "--quiet"});
   run({"render", folder / "baked.gltf", "--size", "120x80", "--samples", "64", "-o",
        folder / "shown.exr", "--transparent", "--max-depth", "0", "--quiet"});
-  const float scale =
-      nlohmann::json::parse(fileContents(folder / "baked.gltf"))["extras"]["chromeball"]["scale"];
+  const float scale = jsonOfFile(folder / "baked.gltf")["extras"]["chromeball"]["scale"];
   const Image a = readImage(folder / "render.exr"), b = readImage(folder / "shown.exr");
   double difference = 0, sum = 0;
   for (int y = 0; y < a.height; ++y)

@@ -9,6 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "photographs_of_points.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -133,7 +134,7 @@ TEST_F(CommandCamera, PrintsJson) {
   const CommandResult r =
       runCommand(solve({"--points", write("points.csv", csv(points)), "--fov", "50", "--json"}));
   ASSERT_EQ(r.status, 0) << r.error;
-  const auto json = nlohmann::json::parse(r.out);
+  const auto json = parseJson(r.out);
   EXPECT_EQ(json["method"], "points");
   EXPECT_NEAR(json["fov"], 50, 1e-9);
   EXPECT_GT(json["rms"], 0.1);

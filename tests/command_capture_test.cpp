@@ -9,6 +9,7 @@
 #include "exif_block.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "lighting/light_list.h"
 #include "probe/edit.h"
 #include "probe/irradiance.h"
@@ -66,7 +67,7 @@ TEST_F(SlowCommandCapture, MergesByExif) {
   const CommandResult result = runCommand(joined(merge, {"-o", out_, "--json"}));
   EXPECT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error, "");
-  const json report = json::parse(result.out);
+  const json report = parseJson(result.out);
   ASSERT_EQ(report["exposures"].size(), 3u);
   EXPECT_EQ(report["exposures"][1]["time"], 0.25);
   EXPECT_EQ(report["exposures"][1]["aperture"], 2);
@@ -291,7 +292,7 @@ TEST_F(SlowCommandSun, RestoresTheIrradianceOfTheSky) {
       runCommand(sun({"-o", full, "--lights", lights, "--residual", folder_ / "r.exr", "--json"}));
   ASSERT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error, "");
-  const json report = json::parse(result.out);
+  const json report = parseJson(result.out);
   EXPECT_LT(report["rms"].get<double>(), 0.01);
   EXPECT_GT(report["rms_clipped"].get<double>(), 0.3);
   EXPECT_GT(report["explained"].get<double>(), 0.95);
@@ -315,7 +316,7 @@ TEST_F(SlowCommandSun, UsesLayerDirectionAndMask) {
   const auto irradiance = [&](const Words& words) {
     const CommandResult result = runCommand(joined(words, {"--json"}));
     EXPECT_EQ(result.status, 0) << result.error;
-    return json::parse(result.out)["irradiance"][1].get<double>();
+    return parseJson(result.out)["irradiance"][1].get<double>();
   };
   const double plain = irradiance(sun({}));
   Image mask(64, 64, 3);
@@ -338,7 +339,7 @@ TEST_F(SlowCommandSun, UsesLayerDirectionAndMask) {
   words[2] = marked;
   const CommandResult result = runCommand(words);
   ASSERT_EQ(result.status, 0) << result.error;
-  const json found = json::parse(result.out);
+  const json found = parseJson(result.out);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found["direction"][size_t(c)].get<double>(), d[c], 0.03);
 }
 

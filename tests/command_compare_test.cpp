@@ -4,13 +4,14 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <set>
 
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
+#include "regular_expression.h"
 #include "run_command.h"
 #include "small_model.h"
 
@@ -39,7 +40,7 @@ class SlowCommandCompare : public testing::Test {
     return all;
   }
   std::string dir() const { return folder_ / "report"; }
-  json results() const { return json::parse(fileContents(dir() + "/results.json")); }
+  json results() const { return jsonOfFile(dir() + "/results.json"); }
   std::map<fs::path, fs::file_time_type> renders() const {
     std::map<fs::path, fs::file_time_type> found;
     for (const auto& entry : fs::directory_iterator(dir() + "/renders"))
@@ -240,10 +241,8 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
   ASSERT_EQ(runCommand(words("", {})).status, 0);
 
   const std::string help = runCommand({"compare", "--help"}).out;
-  const std::regex option("--([a-z-]+)");
-  for (auto at = std::sregex_iterator(help.begin(), help.end(), option);
-       at != std::sregex_iterator(); ++at) {
-    const std::string name = (*at)[1];
+  for (const Captures& option : allMatches(help, "--([a-z-]+)")) {
+    const std::string name = option[1];
     if (irrelevant.contains(name)) continue;
     const auto change = changes.find(name);
     if (change == changes.end()) {
@@ -324,21 +323,21 @@ TEST_F(SlowCommandCompare, numbersAreRoundedToTheirErrors) {
   Words arguments = command(kSmall);
   std::erase(arguments, "--quiet");
   const std::string table = runCommand(arguments).out;
-  const std::regex number("([0-9.]+)(e[-+0-9]+)? \\+- ([0-9.]+)(e[-+0-9]+)?");
   int found = 0;
-  for (auto at = std::sregex_iterator(table.begin(), table.end(), number);
-       at != std::sregex_iterator(); ++at, ++found) {
+  for (const Captures& match :
+       allMatches(table, "([0-9.]+)(e[-+0-9]+)? \\+- ([0-9.]+)(e[-+0-9]+)?")) {
+    ++found;
     const auto decimals = [](const std::string& text) {
       const size_t point = text.find('.');
       return point == std::string::npos ? 0 : int(text.size() - point) - 1;
     };
-    EXPECT_EQ(decimals((*at)[1]), decimals((*at)[3])) << at->str();
-    EXPECT_EQ((*at)[2], (*at)[4]) << at->str();
-    std::string digits = (*at)[3];
+    EXPECT_EQ(decimals(match[1]), decimals(match[3])) << match[0];
+    EXPECT_EQ(match[2], match[4]) << match[0];
+    std::string digits = match[3];
     std::erase(digits, '.');
     digits.erase(0, digits.find_first_not_of('0'));
     while (digits.ends_with('0') && digits.size() > 1) digits.pop_back();
-    EXPECT_LE(digits.size(), digits.starts_with('1') ? 2u : 1u) << at->str();
+    EXPECT_LE(digits.size(), digits.starts_with('1') ? 2u : 1u) << match[0];
   }
   EXPECT_GT(found, 4) << table;
 }

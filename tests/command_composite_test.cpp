@@ -8,6 +8,7 @@
 #include "composite/plate.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"
@@ -123,7 +124,7 @@ TEST_F(CommandComposite, WritesTheCompositeAndItsLayers) {
   EXPECT_GT(objects, 2);
   EXPECT_GT(shaded, 10);
   EXPECT_GT(untouched, 100);  // beside the ground
-  const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
+  const auto stats = jsonOfFile(path("stats.json"));
   EXPECT_GT(stats["composite"]["objects"], 0);
 }
 
@@ -223,7 +224,7 @@ TEST_F(SlowCommandComposite, EstimatesReflectanceFromThePlate) {
         }
     EXPECT_GT(known, 50);
     EXPECT_LT(error / known, 0.05) << how;
-    const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
+    const auto stats = jsonOfFile(path("stats.json"));
     EXPECT_GT(stats["reflectance"]["pixels"], 50);
   }
   // With a probe this dark, the plate needs an albedo above 1.

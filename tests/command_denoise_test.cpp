@@ -9,6 +9,7 @@
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "run_command.h"
 
 namespace chromeball::command_denoise_test {
@@ -51,7 +52,7 @@ TEST_F(CommandDenoise, WritesBothImagesAndTheError) {
   EXPECT_EQ(layer(out, "noisy"), layer(noisy, ""));
   EXPECT_NE(layer(out, ""), layer(noisy, ""));
   for (const float error : layer(out, "denoise_error")) EXPECT_GE(error, 0);
-  const auto json = nlohmann::json::parse(fileContents(stats));
+  const auto json = jsonOfFile(stats);
   EXPECT_GT(json["denoised"]["noise"], 0.0);
   EXPECT_LT(json["denoised"]["noise"], json["noise"]);
 }
@@ -116,7 +117,7 @@ TEST_F(CommandDenoise, OfACompositeKeepsBothImages) {
   int same = 0;  // pixels of the sky
   for (size_t i = 0; i < 72 * 10 * 3; ++i) same += color[i] == noisy[i];
   EXPECT_GT(same, 1000);
-  EXPECT_GT(nlohmann::json::parse(std::ifstream(stats))["denoised"]["noise"], 0.0);
+  EXPECT_GT(jsonOfFile(stats)["denoised"]["noise"], 0.0);
 }
 
 // Files that someone has edited.

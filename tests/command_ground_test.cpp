@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/irradiance.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -167,7 +168,7 @@ TEST_F(SlowCommandGround, ScalesTheProbeByThePlate) {
       render(scene(lines, "", "scale = \"plate\"\nrotation = 70"), {"--stats", path("stats.json")});
   EXPECT_NE(messages_.find("the probe's scale is 2,1,0.5 by "), std::string::npos) << messages_;
   EXPECT_NE(messages_.find("they scatter by 0%"), std::string::npos) << messages_;
-  const auto stats = nlohmann::json::parse(fileContents(path("stats.json")));
+  const auto stats = jsonOfFile(path("stats.json"));
   EXPECT_NEAR(stats["probe_scale"]["scale"][2], 0.5, 1e-4);
   EXPECT_GT(stats["probe_scale"]["pixels"], kWidth * kHeight / 3);
   // The ground rendered with it has the plate's radiance, but for noise.

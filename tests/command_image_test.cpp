@@ -6,6 +6,7 @@
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "run_command.h"
 #include "shared_data.h"
 
@@ -31,7 +32,7 @@ TEST(CommandImage, ErrorMetrics) {
   writeImage(folder / "a.exr", filled(4, 3, 3, 1.5f));
   writeImage(folder / "b.pfm", filled(4, 3, 3, 1));
   const json error =
-      json::parse(run({"image", "error", folder / "a.exr", folder / "b.pfm", "--json"}).out);
+      parseJson(run({"image", "error", folder / "a.exr", folder / "b.pfm", "--json"}).out);
   EXPECT_EQ(error["mse"], 0.25);
   EXPECT_EQ(error["bias"], 0.5);
   EXPECT_EQ(error["max_difference"], 0.5);
@@ -41,7 +42,7 @@ TEST(CommandImage, ErrorMetrics) {
       run({"image", "error", folder / "a.exr", folder / "b.pfm"}).out.find("mse             0.25"),
       std::string::npos);
   const json same =
-      json::parse(run({"image", "error", folder / "a.exr", folder / "a.exr", "--json"}).out);
+      parseJson(run({"image", "error", folder / "a.exr", folder / "a.exr", "--json"}).out);
   EXPECT_EQ(same["mse"], 0.0);
   EXPECT_TRUE(same["psnr"].is_null());
 }
@@ -77,7 +78,7 @@ TEST(CommandImage, FilesAreTheirDisplayWindows) {
     run({"image", "view", part, a, "--layer", "depth"});
     EXPECT_EQ(readImage(a).height, placement.height);
     for (const std::vector<std::string>& pair : {std::vector{part, whole}, {whole, part}}) {
-      const json error = json::parse(run({"image", "error", pair[0], pair[1], "--json"}).out);
+      const json error = parseJson(run({"image", "error", pair[0], pair[1], "--json"}).out);
       EXPECT_EQ(error["max_difference"], 0.0);
       EXPECT_EQ(error["z"]["mean"], 0.0);
     }
@@ -102,7 +103,7 @@ TEST(CommandImage, ErrorInSigmas) {
   write("a.exr", 1.5f, 0.01f);
   write("b.exr", 1, 0.0025f);
   const json z =
-      json::parse(run({"image", "error", folder / "a.exr", folder / "b.exr", "--json"}).out)["z"];
+      parseJson(run({"image", "error", folder / "a.exr", folder / "b.exr", "--json"}).out)["z"];
   EXPECT_EQ(z["count"], 36);
   EXPECT_NEAR(double(z["mean"]), 0.5 / std::sqrt(0.0125), 1e-5);
   EXPECT_EQ(z["beyond_3_sigma"], 1.0);
@@ -129,7 +130,7 @@ TEST(CommandImage, ErrorImage) {
     EXPECT_FALSE(isHot(15, 7)) << kind;
     EXPECT_EQ(isHot(2, 3), kind == std::string("relative"));
   }
-  const json error = json::parse(
+  const json error = parseJson(
       run({"image", "error", folder / "a.exr", folder / "b.exr", "--json", "--flip"}).out);
   EXPECT_GT(error["flip"], 0.01);
   EXPECT_LT(error["flip"], 1);

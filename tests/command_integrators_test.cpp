@@ -4,8 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_model.h"
@@ -166,8 +168,8 @@ TEST_F(CommandIntegrators, SlowCompare) {
                        "--repeats", "3", "-o", folder_ / "report"},
                       "compare"));
   ASSERT_EQ(rows.status, 0) << rows.error;
-  const auto json = nlohmann::json::parse(fileContents(folder_ / "report/results.json"));
-  const std::string text = json.dump();
+  const auto json = jsonOfFile(folder_ / "report/results.json");
+  const std::string text = jsonText(json);
   for (const char* row :
        {"importance+direct", "importance+ambient-occlusion", "importance+environment-map"})
     EXPECT_NE(text.find(row), std::string::npos) << row;

@@ -7,6 +7,7 @@
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -44,7 +45,7 @@ TEST(CommandLights, EveryFormatAndThePreview) {
   writeImage(probe, studioProbe({64, 32}));
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.json",
        "--preview", folder / "a.png"});
-  const json file = json::parse(fileContents(folder / "a.json"));
+  const json file = jsonOfFile(folder / "a.json");
   EXPECT_EQ(file["probe"], probe);
   EXPECT_EQ(file["method"], "median-cut");
   EXPECT_FALSE(file.contains("ambient"));
@@ -57,7 +58,7 @@ TEST(CommandLights, EveryFormatAndThePreview) {
   }
   EXPECT_EQ(readImage(folder / "a.png").width, 1024);
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.gltf"});
-  EXPECT_EQ(json::parse(fileContents(folder / "a.gltf"))["nodes"].size(), 8u);
+  EXPECT_EQ(jsonOfFile(folder / "a.gltf")["nodes"].size(), 8u);
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.csv"});
   const std::string csv = fileContents(folder / "a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 9);
@@ -69,7 +70,7 @@ TEST(CommandLights, RegionsAndLevels) {
   writeImage(probe, studioProbe({64, 32}));
   run({"lights", probe, "--method", "median-cut-centre", "--recursion", "3", "-o", out, "--preview",
        folder / "a.png", "--regions"});
-  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 8u);
+  EXPECT_EQ(jsonOfFile(out)["lights"].size(), 8u);
   const Image preview = readImage(folder / "a.png");
   int red = 0, white = 0;
   for (int y = 0; y < preview.height; ++y)
@@ -120,7 +121,7 @@ TEST(CommandLights, AnAngleGivesARadiance) {
   const std::string probe = folder / "studio.exr", out = folder / "a.json";
   writeImage(probe, studioProbe({64, 32}));
   run({"lights", probe, "--method", "median-cut", "--count", "3", "-o", out, "--angle", "1"});
-  for (const json& light : json::parse(fileContents(out))["lights"]) {
+  for (const json& light : jsonOfFile(out)["lights"]) {
     EXPECT_EQ(light["angle"], 1);
     const double irradiance = light["irradiance"][1];
     EXPECT_NEAR(light["radiance"][1].get<double>() * 2.3925e-4 / irradiance, 1, 1e-4);
@@ -135,9 +136,9 @@ TEST(CommandLights, SunsHaveTheirAngle) {
   addSunDisc(map, {1, 0, 0}, 4, dvec3(9));
   writeImage(probe, map);
   run({"lights", probe, "--method", "suns", "-o", out});
-  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 2u);
+  EXPECT_EQ(jsonOfFile(out)["lights"].size(), 2u);
   run({"lights", probe, "--method", "suns", "--count", "1", "-o", out});
-  const json lights = json::parse(fileContents(out))["lights"];
+  const json lights = jsonOfFile(out)["lights"];
   ASSERT_EQ(lights.size(), 1u);
   EXPECT_NEAR(lights[0]["direction"][0], 1, 1e-3);
   EXPECT_NEAR(lights[0]["irradiance"][1], 9, 0.02);
@@ -149,14 +150,14 @@ TEST(SlowCommandLights, IrradianceFitChoosesTheNumberOfLights) {
   const std::string probe = folder / "studio.exr", out = folder / "a.json";
   writeImage(probe, studioProbe({64, 32}));
   run({"lights", probe, "--method", "irradiance-fit", "--max-error", "5%", "--ambient", "-o", out});
-  const json file = json::parse(fileContents(out));
+  const json file = jsonOfFile(out);
   EXPECT_EQ(file["ambient"].size(), 3u);
   const size_t count = file["lights"].size();
   EXPECT_GE(count, 1u);
   EXPECT_LE(count, 20u);
   const CommandResult capped = run({"lights", probe, "--method", "irradiance-fit", "--max-error",
                                     "0.0001", "--count", "2", "-o", out});
-  EXPECT_LE(json::parse(fileContents(out))["lights"].size(), 2u);
+  EXPECT_LE(jsonOfFile(out)["lights"].size(), 2u);
   EXPECT_NE(capped.error.find("do not reach"), std::string::npos);
 }
 
@@ -249,7 +250,7 @@ TEST(SlowCommandLights, OfProbesWithLittleLight) {
   EXPECT_NE(masked.error.find("--probe-mask: below-horizon leaves no light"), std::string::npos);
   writeImage(probe, constantProbe({4, 2}, Rgb(0)));
   run({"lights", probe, "--method", "irradiance-fit", "--count", "3", "-o", out});
-  EXPECT_EQ(json::parse(fileContents(out))["lights"].size(), 0u);
+  EXPECT_EQ(jsonOfFile(out)["lights"].size(), 0u);
 }
 
 // The error of coarse probes is that of finer ones.

@@ -8,7 +8,9 @@
 #include <fstream>
 #include <thread>
 
+#include "base/json_text.h"
 #include "image/io/read_image.h"
+#include "json_file.h"
 #include "preview_render.h"
 #include "tcp.h"
 
@@ -26,7 +28,7 @@ void expectFilesView(const std::string& layer, const std::vector<std::string>& o
   preview.waitForImage();
   EXPECT_EQ(preview.post("/stop").status, 200);
   preview.waitUntil([](const json& status) { return status["isLast"] == true; });
-  const json values = json::parse(preview.get("/pixel.json?x=17&y=12").body);
+  const json values = parseJson(preview.get("/pixel.json?x=17&y=12").body);
   const HttpAnswer picture =
       preview.get("/image.png?layer=" + (layer == "color" ? "" : layer) + query);
   EXPECT_EQ(preview.result().status, 130);
@@ -153,7 +155,7 @@ TEST(SlowPreview, ShowsOneFrameAfterTheOther) {
   preview.waitForImage();
   EXPECT_EQ(preview.post("/save").status, 409);  // a file that exists is a finished frame
   preview.waitUntil(
-      [](const json& status) { return status["name"].dump().ends_with("f.1.exr\""); });
+      [](const json& status) { return jsonText(status["name"]).ends_with("f.1.exr\""); });
   preview.post("/stop");
   EXPECT_EQ(preview.result().status, 130);
   EXPECT_TRUE(std::filesystem::exists(preview.folder / "f.0.exr"));

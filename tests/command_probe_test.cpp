@@ -7,6 +7,7 @@
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -53,7 +54,7 @@ TEST(SlowCommandProbe, SynthAndInfoAgree) {
   const std::string path = folder / "sun.exr";
   run({"probe", "synth", "one-hot", path, "--size", "64x32", "--texel", "5,20", "--radiance",
        "3e5,2e5,1e5"});
-  const json info = json::parse(run({"probe", "info", path, "--json"}).out);
+  const json info = parseJson(run({"probe", "info", path, "--json"}).out);
   EXPECT_EQ(info["width"], 64);
   EXPECT_EQ(info["height"], 32);
   EXPECT_EQ(info["mapping"], "lat-long");
@@ -64,7 +65,7 @@ TEST(SlowCommandProbe, SynthAndInfoAgree) {
   EXPECT_EQ(info["brightest_shares"][0]["share"], 1.0);
   EXPECT_NE(run({"probe", "info", path}).out.find("lat-long (detected"), std::string::npos);
   EXPECT_EQ(
-      json::parse(
+      parseJson(
           run({"probe", "info", path, "--json", "--mapping", "lat-long"}).out)["mapping_guessed"],
       false);
 }
@@ -75,7 +76,7 @@ TEST(CommandProbe, InfoReportsInvalidTexels) {
   image.setRgb(2, 1, Rgb(std::nanf("")));
   image.setRgb(3, 3, Rgb(-1));
   writeImage(folder / "bad.exr", image);
-  const json info = json::parse(run({"probe", "info", folder / "bad.exr", "--json"}).out);
+  const json info = parseJson(run({"probe", "info", folder / "bad.exr", "--json"}).out);
   EXPECT_EQ(info["invalid_texels"]["nan"], 1);
   EXPECT_EQ(info["invalid_texels"]["negative"], 1);
   EXPECT_EQ(info["invalid_texels"]["first"], json({2, 1}));
@@ -125,7 +126,7 @@ TEST(SlowCommandProbe, AGridOfFacesIsDetectedWithANote) {
       run({"probe", "convert", folder / "grid.pfm", folder / "b.exr", "--to", "lat-long"});
   EXPECT_NE(back.error.find("detected as cube-3x2"), std::string::npos) << back.error;
   const json info =
-      json::parse(run({"probe", "info", folder / "grid.pfm", "--json", "--mapping-report"}).out);
+      parseJson(run({"probe", "info", folder / "grid.pfm", "--json", "--mapping-report"}).out);
   EXPECT_EQ(info["mapping"], "cube-3x2");
   EXPECT_EQ(info["width"], 48);
   EXPECT_EQ(info["height"], 32);

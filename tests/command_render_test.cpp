@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/json_text.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -52,7 +54,7 @@ class RenderScene {
   }
 
   ImageFile image(const std::string& name) const { return readImageFile(out / name); }
-  json stats(const std::string& name) const { return json::parse(fileContents(out / name)); }
+  json stats(const std::string& name) const { return jsonOfFile(out / name); }
 
  private:
   static int addBox(GltfWriter& w, float side, const json& material) {
@@ -282,8 +284,8 @@ TEST(SlowCommandRender, TheCommandLineOverridesTheSceneFile) {
 
   const json byFile = scene.stats("file.json"), byLine = scene.stats("line.json");
   const auto settings = [](const json& j) {
-    return Words{j["width"].dump(),    j["height"].dump(), j["samples_per_pixel"].dump(),
-                 j["strategy"].dump(), j["seed"].dump(),   j["max_depth"].dump()};
+    return Words{jsonText(j["width"]),    jsonText(j["height"]), jsonText(j["samples_per_pixel"]),
+                 jsonText(j["strategy"]), jsonText(j["seed"]),   jsonText(j["max_depth"])};
   };
   EXPECT_EQ(settings(byFile), (Words{"10", "8", "2", "\"uniform\"", "5", "0"}));
   EXPECT_EQ(settings(byLine), (Words{"6", "5", "3", "\"bsdf\"", "6", "2"}));
@@ -635,7 +637,7 @@ TEST(CommandRender, TheHeaderMapsNodeAndMaterialIdsToNames) {
             0);
   const ImageFile file = readImageFile(folder / "a.exr");
   const auto manifest = [&](const char* layer) {
-    return json::parse(std::get<std::string>(file.metadata.at(std::string("manifest/") + layer)));
+    return parseJson(std::get<std::string>(file.metadata.at(std::string("manifest/") + layer)));
   };
   const Image nodes = *findLayer(file, "node");
   const float node = *std::max_element(nodes.texels.begin(), nodes.texels.end());

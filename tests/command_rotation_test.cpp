@@ -9,6 +9,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "job/arguments.h"
+#include "json_file.h"
 #include "probe/irradiance.h"
 #include "probe/probe.h"
 #include "probe/sky.h"
@@ -112,13 +113,13 @@ TEST_F(Turned, CommandsTurnDirections) {
   const auto sunOf = [&](const Words& more) {
     Words words{"probe", "info", sky_, "--json"};
     words.insert(words.end(), more.begin(), more.end());
-    const json d = json::parse(run(words).out)["suns"][0]["direction"];
+    const json d = parseJson(run(words).out)["suns"][0]["direction"];
     return vec3(d[0], d[1], d[2]);
   };
   const vec3 sun = sunOf({}), turned = rotation(sun);
   EXPECT_LT(glm::length(sunOf({"--rotation", "20,70,-35"}) - turned), 1e-5f);
   run({"lights", sky_, "--method", "suns", "--rotation", "20,70,-35", "-o", path("l.json")});
-  const json light = json::parse(fileContents(path("l.json")))["lights"][0]["direction"];
+  const json light = jsonOfFile(path("l.json"))["lights"][0]["direction"];
   EXPECT_LT(glm::length(vec3(light[0], light[1], light[2]) - turned), 1e-5f);
   // Resampled, and the irradiance of what was not.
   run({"probe", "edit", probe_, path("e.exr"), "--rotation", "20,70,-35"});
@@ -169,7 +170,7 @@ TEST_F(Turned, AlignPrintsTheRotationAndWritesTheTurnedProbe) {
   run({"probe", "convert", studio, turned, "--to", "lat-long", "--rotation", "-20,15,30", "--scale",
        "3,2,1.5"});
   const std::string out = path("aligned.exr");
-  const json found = json::parse(run({"probe", "align", turned, studio, "--json", "-o", out}).out);
+  const json found = parseJson(run({"probe", "align", turned, studio, "--json", "-o", out}).out);
   constexpr double kTexel = 360.0 / 128;
   const double error = found["standard_error"].get<double>();
   EXPECT_LT(error, 0.2 * kTexel);
@@ -179,7 +180,7 @@ TEST_F(Turned, AlignPrintsTheRotationAndWritesTheTurnedProbe) {
   EXPECT_GT(found["correlation"].get<double>(), 0.98);
   EXPECT_FALSE(found["ambiguous"].get<bool>());
   EXPECT_EQ(found["quaternion"].size(), 4u);
-  const json again = json::parse(run({"probe", "align", turned, out, "--json"}).out);
+  const json again = parseJson(run({"probe", "align", turned, out, "--json"}).out);
   EXPECT_NEAR(std::fabs(again["quaternion"][3].get<double>()), 1, 1e-5);
   const CommandResult text = run({"probe", "align", turned, studio});
   EXPECT_NE(text.out.find("rotation         yaw -"), std::string::npos) << text.out;

@@ -10,6 +10,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/custom_data.h"
@@ -71,7 +72,7 @@ class CommandTransfer : public testing::Test {
   template <class Change>
   void refusesChanged(const Change& change, const std::string& reason,
                       const Strings& more = {}) const {
-    Json root = Json::parse(fileContents(folder_ / "t.gltf"));
+    Json root = jsonOfFile(folder_ / "t.gltf");
     change(root, root["meshes"][0]["primitives"][0]["attributes"]);
     std::ofstream(folder_ / "changed.gltf") << root;
     refusesRelight("changed.gltf", more, reason);
@@ -137,7 +138,7 @@ TEST_F(CommandTransfer, GlossyTransferIsSeenFromAPoint) {
   };
   EXPECT_NE(glossy("0").find("1 clusters of 0 vectors, error"), std::string::npos);
   glossy("2");
-  const Json extras = Json::parse(fileContents(folder_ / "t.gltf"))["extras"]["chromeball"];
+  const Json extras = jsonOfFile(folder_ / "t.gltf")["extras"]["chromeball"];
   EXPECT_LT(extras["compressionError"].get<double>(), 1e-5);
   const auto seenFrom = [&](const std::string& eye) {
     relight("white.exr", {"--view", eye});

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "json_file.h"
 #include "math/vec.h"
 #include "paths.h"
 #include "run_command.h"
@@ -123,8 +124,7 @@ TEST(SlowConsumer, InstalledHeadersCompile) {
 
 TEST(SlowConsumer, EveryPresetConfigures) {
   const std::string source = quoted(kSourceDir), cmake = quoted(CHROMEBALL_CMAKE);
-  const auto presets =
-      nlohmann::json::parse(fileContents(std::string(kSourceDir) + "/CMakePresets.json"));
+  const auto presets = jsonOfFile(std::string(kSourceDir) + "/CMakePresets.json");
   EXPECT_EQ(presets["configurePresets"].size(), 6u);
   const bool hasClang = std::system("command -v clang++ > /dev/null") == 0;
   for (const auto& preset : presets["configurePresets"]) {

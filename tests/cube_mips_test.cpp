@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chains of prefiltered cube maps, and chromeball probe convolve.
 #include "probe/cube_mips.h"
+#include "json_file.h"
 
 #include <Imath/half.h>
 #include <gtest/gtest.h>
@@ -159,7 +160,7 @@ TEST_F(SlowCommandConvolve, KtxParseReadsTheKtx2) {
   const std::string command = "node " + folder_ / "parse.mjs" + " " + folder_ / "o.ktx2" + " > " +
                               folder_ / "json" + " 2> " + folder_ / "log";
   ASSERT_EQ(std::system(command.c_str()), 0) << fileContents(folder_ / "log");
-  const auto ktx = nlohmann::json::parse(fileContents(folder_ / "json"));
+  const auto ktx = jsonOfFile(folder_ / "json");
   EXPECT_EQ(ktx["vkFormat"], 97);  // VK_FORMAT_R16G16B16A16_SFLOAT
   EXPECT_EQ(ktx["faceCount"], 6);
   EXPECT_EQ(ktx["keyValue"]["KTXorientation"], "rd");

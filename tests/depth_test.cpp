@@ -6,6 +6,7 @@
 
 #include "composite/render_composite.h"
 #include "gltf_writer.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "test_scene.h"
@@ -176,7 +177,7 @@ TEST(Depth, TheCommandReportsTheCutFraction) {
   };
   const std::string few = render("2");
   EXPECT_NE(few.find("warning: --max-depth 2 cut about "), std::string::npos) << few;
-  const auto stats = nlohmann::json::parse(fileContents(folder / "a.json"));
+  const auto stats = jsonOfFile(folder / "a.json");
   EXPECT_NEAR(double(stats["depth_cut"]["max_depth"]), 0.512, 0.1);
   EXPECT_EQ(stats["depth_cut"]["max_transmission_depth"], 0);
   EXPECT_EQ(stats["max_transmission_depth"], 64);

@@ -9,6 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -49,7 +50,7 @@ TEST(SlowEnvelopeSize, MemoryAndTimeOfATriangle) {
         runCommand({"render", sheet(writer, count), "--probe", out / "probe.exr", "--size", "64x64",
                     "--samples", "4", "--quiet", "--stats", out / "s.json", "-o", out / "a.exr"});
     EXPECT_EQ(result.status, 0) << result.error;
-    return nlohmann::json::parse(fileContents(out / "s.json"));
+    return jsonOfFile(out / "s.json");
   };
   const auto few = renderSheet(2), many = renderSheet(triangles);
   const double bytes =

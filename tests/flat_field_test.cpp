@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "json_file.h"
 #include "run_command.h"
 
 namespace chromeball::flat_field_test {
@@ -133,7 +134,7 @@ TEST_F(SlowCommandFlatField, FitsAndDivides) {
   EXPECT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error, "");
   EXPECT_LT(largestError(readImage(flat)), 0.005);
-  const json fit = json::parse(result.out);
+  const json fit = parseJson(result.out);
   EXPECT_EQ(fit["samples"].size(), 9u);
   EXPECT_LT(fit["a2"][0].get<double>(), -0.5);
 

@@ -14,6 +14,7 @@
 #include "demo/doric.h"
 #include "demo/gallery.h"
 #include "demo/nave.h"
+#include "json_file.h"
 #include "probe/sky.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
@@ -109,7 +110,7 @@ TEST_P(SlowGallery, RendersWithoutWarningsAndInvalidSamples) {
        "--samples", "4", "--max-depth", "12", "-o", folder / "image.exr", "--stats", stats});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.error.find("warning"), std::string::npos) << result.error;
-  EXPECT_EQ(nlohmann::json::parse(fileContents(stats)).at("invalid_samples"), 0);
+  EXPECT_EQ(jsonOfFile(stats).at("invalid_samples"), 0);
 }
 
 TEST(SlowGalleryScenes, AreCompleteWithTheModelsThatTheirHeadersName) {

@@ -6,7 +6,9 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "gltf_writer.h"
+#include "json_file.h"
 #include "scene/gltf/load_gltf.h"
 #include "temporary_folder.h"
 
@@ -55,7 +57,8 @@ TEST(GltfFile, GlbWithoutPadding) {
   w.root["buffers"] = {{{"byteLength", 36}}};
   for (int extra = 0; extra < 4; ++extra) {
     w.root["asset"]["generator"] = std::string(size_t(extra), 'x');
-    w.write("model.glb", glb(2, w.root.dump(), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, /*isPadded=*/false));
+    w.write("model.glb",
+            glb(2, jsonText(w.root), {0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, /*isPadded=*/false));
     const Scene scene = loadGltf((w.folder() / "model.glb").string(), {}, nullptr);
     EXPECT_EQ(scene.meshes.at(0).positions[1], vec3(1, 0, 0)) << extra;
   }
@@ -104,7 +107,7 @@ TEST(GltfFile, EmptyMembersOfExtensions) {
 TEST(GltfFile, LargeNumbersInExtensions) {
   for (const char* number : {"2147483647", "2147483648", "10000000000", "1e10", "10000000000.5"}) {
     GltfWriter w;
-    const json value = json::parse(number);
+    const json value = parseJson(number);
     w.root["extensions"]["KHR_lights_punctual"]["lights"] = {
         {{"type", "point"}, {"intensity", value}}};
     w.root["materials"] = {
@@ -146,17 +149,17 @@ TEST(GltfFile, GlbChunks) {
   w.root["buffers"] = {{{"byteLength", 36}}};
   const std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
   const auto path = w.folder() / "model.glb";
-  w.write("model.glb", glb(2, w.root.dump(), positions));
+  w.write("model.glb", glb(2, jsonText(w.root), positions));
   EXPECT_EQ(loadGltf(path.string(), {}, nullptr).meshes.at(0).positions[1], vec3(1, 0, 0));
 
-  w.write("model.glb", glb(2, w.root.dump(), {0, 0, 0}));
+  w.write("model.glb", glb(2, jsonText(w.root), {0, 0, 0}));
   EXPECT_EQ(errorMessageOf(path), "buffers[0]: byteLength is 36, but there are only 12 bytes");
-  w.write("model.glb", glb(2, w.root.dump(), positions, 4));
+  w.write("model.glb", glb(2, jsonText(w.root), positions, 4));
   EXPECT_TRUE(errorMessageOf(path).starts_with("is a truncated GLB")) << errorMessageOf(path);
-  w.write("model.glb", glb(1, w.root.dump(), positions));
+  w.write("model.glb", glb(1, jsonText(w.root), positions));
   EXPECT_EQ(errorMessageOf(path), "is glTF 1.0; convert it to glTF 2.0 (gltf-pipeline can)");
   // Every truncation is rejected without a crash.
-  const std::vector<uint8_t> whole = glb(2, w.root.dump(), positions);
+  const std::vector<uint8_t> whole = glb(2, jsonText(w.root), positions);
   for (size_t size = 0; size < whole.size(); size += 5) {
     w.write("model.glb", {whole.begin(), whole.begin() + std::ptrdiff_t(size)});
     EXPECT_NE(errorMessageOf(path), "") << size;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
+#include "json_file.h"
 #include "scene/gltf/member_types.h"
 
 namespace chromeball::gltf_member_types_test {
@@ -11,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 // Valid types: members that are numbers have a fraction, and whole numbers have none.
-const json kEveryMember = json::parse(R"({
+const json kEveryMember = parseJson(R"({
   "accessors": [{"bufferView": 0, "byteOffset": 0, "componentType": 5126, "count": 1, "name": "a",
                  "normalized": true, "type": "VEC3",
                  "sparse": {"count": 1, "indices": {"bufferView": 0, "byteOffset": 0,
@@ -104,7 +105,7 @@ std::string complaintOf(const json& root) {
 std::vector<json> valuesUnlike(const json& value) {
   std::vector<json> others;
   for (const char* text : {"null", "true", "\"1\"", "[]", "{}", "0.5", "-1", "4294967296e9"}) {
-    const json other = json::parse(text);
+    const json other = parseJson(text);
     if (other.is_number() ? !value.is_number_float() : other.type() != value.type())
       others.push_back(other);
   }
@@ -183,7 +184,7 @@ TEST(GltfMemberTypes, FilesAreRefused) {
     GltfWriter w;
     addTriangle(w);
     ASSERT_EQ(w.errorMessage(), "");
-    w.root[json::json_pointer(pointer)] = json::parse(value);
+    w.root[json::json_pointer(pointer)] = parseJson(value);
     EXPECT_NE(w.errorMessage().find(": must be "), std::string::npos)
         << pointer << ": " << w.errorMessage();
   }

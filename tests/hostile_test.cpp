@@ -14,6 +14,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
+#include "json_file.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -101,7 +102,7 @@ TEST(SlowHostile, ValidModelsAreRead) {
   for (const fs::path& path : filesBelow(*root, {".gltf", ".glb"})) {
     const fs::path report = path.string() + ".report.json";
     if (!fs::exists(report)) continue;
-    const auto issues = nlohmann::json::parse(fileContents(report)).at("issues");
+    const auto issues = jsonOfFile(report).at("issues");
     if (issues.at("numErrors") != 0) continue;
     const std::string errorMessage = modelErrorMessage(path);
     EXPECT_EQ(errorMessage.empty(), !kRejected.contains(path.filename()))

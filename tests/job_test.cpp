@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A job rendered with the library, without the command.
 #include "job/job.h"
+#include "base/json_text.h"
 
 #include <gtest/gtest.h>
 
@@ -169,7 +170,7 @@ TEST(Job, WhatIsAsPlannedIsNotDescribedTwice) {
     const LoadedScene loaded = loadScene(job);
     nlohmann::ordered_json changes = nlohmann::ordered_json::object();
     describeChanges(job, changes);
-    EXPECT_EQ(changes.dump(), "{}") << scene;
+    EXPECT_EQ(jsonText(changes), "{}") << scene;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of directional lights, and their error of irradiance (Madsen and Laursen 2007).
 #include "lighting/light_file.h"
+#include "json_file.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ TEST(LightFile, JsonKeepsEveryDigit) {
   const TemporaryFolder folder;
   const LightRig rig = exampleRig();
   writeLights(folder / "a.json", rig);
-  const json read = json::parse(fileContents(folder / "a.json"));
+  const json read = jsonOfFile(folder / "a.json");
   EXPECT_EQ(read["probe"], rig.probe);
   EXPECT_EQ(read["method"], rig.method);
   EXPECT_EQ(triple(read["ambient"]), rig.ambient);
@@ -47,7 +48,7 @@ TEST(LightFile, JsonKeepsEveryDigit) {
     EXPECT_EQ(light["angle"].get<float>(), rig.lights[i].angle);
   }
   writeLights(folder / "empty.json", {"p", "m", {}, {}});
-  const json empty = json::parse(fileContents(folder / "empty.json"));
+  const json empty = jsonOfFile(folder / "empty.json");
   EXPECT_FALSE(empty.contains("ambient"));
   EXPECT_EQ(empty["lights"], json::array());
 }
@@ -63,7 +64,7 @@ TEST(LightFile, GltfNodesPointFromTheLightToTheScene) {
   const TemporaryFolder folder;
   const LightRig rig = exampleRig();
   writeLights(folder / "a.gltf", rig);
-  const json gltf = json::parse(fileContents(folder / "a.gltf"));
+  const json gltf = jsonOfFile(folder / "a.gltf");
   EXPECT_EQ(gltf["asset"]["version"], "2.0");
   EXPECT_EQ(gltf["extensionsUsed"], json({"KHR_lights_punctual"}));
   EXPECT_EQ(gltf["scenes"][0]["nodes"], json({0, 1, 2, 3}));
@@ -130,7 +131,7 @@ TEST(LightFile, RadianceOfLightsWithAnAngle) {
   LightRig rig = exampleRig();
   rig.lights[0].angle = 1;
   writeLights(folder / "a.json", rig);
-  const json lights = json::parse(fileContents(folder / "a.json"))["lights"];
+  const json lights = jsonOfFile(folder / "a.json")["lights"];
   EXPECT_NEAR(lights[0]["radiance"][0].get<double>() * projectedSolidAngle(1), 5, 1e-5);
   EXPECT_TRUE(lights[1].contains("radiance"));
   EXPECT_FALSE(lights[2].contains("radiance"));

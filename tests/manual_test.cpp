@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "paths.h"
+#include "regular_expression.h"
 #include "run_command.h"
 
 namespace manual_test {
@@ -34,15 +34,14 @@ void readHelp(const Words& command, std::map<std::string, Names>& commands) {
   arguments.push_back("--help");
   std::istringstream help(runCommand(arguments).out);
   Names& names = commands[joined(command)];
-  static const std::regex kOption("  (?:-\\w,)?(--[a-z0-9-]+).*"), kSubcommand("  ([a-z-]+) .*");
-  std::smatch match;
   std::string section;
   for (std::string line; std::getline(help, line);) {
     if (!line.empty() && line[0] != ' ') section = line;
-    if (std::regex_match(line, match, kOption))
-      names.options.push_back(match[1]);
-    else if (section == "Subcommands:" && std::regex_match(line, match, kSubcommand))
-      names.subcommands.push_back(match[1]);
+    if (const auto option = wholeMatch(line, "  (?:-\\w,)?(--[a-z0-9-]+).*"))
+      names.options.push_back((*option)[1]);
+    else if (const auto name = wholeMatch(line, "  ([a-z-]+) .*");
+             name && section == "Subcommands:")
+      names.subcommands.push_back((*name)[1]);
   }
   for (const std::string& subcommand : names.subcommands) {
     Words words = command;
@@ -73,7 +72,7 @@ std::string part(const std::string& text, const std::string& begin, const std::s
 }
 
 bool hasWord(const std::string& text, const std::string& word) {
-  return std::regex_search(text, std::regex("(^|[^\\w-])" + word + "($|[^\\w-])"));
+  return containsMatch(text, "(^|[^\\w-])" + word + "($|[^\\w-])");
 }
 
 TEST(SlowManual, HelpIsParsed) {
@@ -86,8 +85,7 @@ TEST(SlowManual, HelpIsParsed) {
 }
 
 TEST(SlowManual, PageDescribesEveryCommandAndOption) {
-  const std::string page =
-      std::regex_replace(projectFile("docs/chromeball.1"), std::regex("\\\\-"), "-");
+  const std::string page = replaceMatches(projectFile("docs/chromeball.1"), "\\\\-", "-");
   for (const auto& [command, names] : allCommands()) {
     if (command.empty() || !names.subcommands.empty()) continue;
     const std::string section = part(page, ".SS chromeball " + command + " ", ".SS ");

@@ -2,6 +2,7 @@
 // What a render will take is stated before, agrees with what it took, and is refused if it is too
 // much. Small scenes: the numbers of large ones are in tools/RESULTS.md.
 #include "job/memory_estimate.h"
+#include "base/json_text.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include "image/io/encode_png.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -41,13 +43,13 @@ class SlowMemoryEstimate : public testing::Test {
     const auto memory = [&](const Words& arguments) {
       const CommandResult result = runExecutable(arguments);  // a fork shares memory
       EXPECT_EQ(result.status, 0) << result.error;
-      return nlohmann::json::parse(std::ifstream(out_ / "a.json"))["memory"];
+      return jsonOfFile(out_ / "a.json")["memory"];
     };
     const auto small = memory(words(model_, probe_, {"--size", "8x8"}));
     const auto large = memory(words(model, probe, more));
     const double measured = large["measured_peak"].get<double>();
     EXPECT_GT(measured, small["measured_peak"].get<double>() + 1e8) << "too small to be measured";
-    EXPECT_NEAR(large["stated_peak"].get<double>() / measured, 1, 0.25) << large.dump();
+    EXPECT_NEAR(large["stated_peak"].get<double>() / measured, 1, 0.25) << jsonText(large);
   }
 
   void expectRefused(const std::string& model, const std::string& probe, const Words& more,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview_render.h"
+#include "json_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ void PreviewRender::waitUntil(const std::function<bool(const nlohmann::json&)>& 
   HttpAnswer answer;
   for (int i = 0; i < 1500; ++i, usleep(20'000)) {
     answer = get("/status.json");
-    if (answer.status == 200 && holds(nlohmann::json::parse(answer.body))) return;
+    if (answer.status == 200 && holds(parseJson(answer.body))) return;
   }
   ADD_FAILURE() << "waited in vain; the last status: " << answer.status << ' ' << answer.body;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edits of a probe; what clipping costs, and whether a probe has been clipped.
+#include "json_file.h"
 #include "probe/edit.h"
 
 #include <gtest/gtest.h>
@@ -232,7 +233,7 @@ TEST(SlowCommandEdit, InfoSeesThatAProbeIsClipped) {
   const std::string in = folder / "a.exr", out = folder / "b.exr";
   writeImage(in, gradientProbe({64, 32}, Rgb(1), {0.3, 0.5, 0.2}));
   const auto infoOf = [](const std::string& file) {
-    return json::parse(runCommand({"probe", "info", file, "--json"}).out);
+    return parseJson(runCommand({"probe", "info", file, "--json"}).out);
   };
   EXPECT_EQ(infoOf(in)["plateau"]["looks_clipped"], false);
   EXPECT_NEAR(infoOf(in)["max_over_mean"].get<double>(), 1 + std::sqrt(0.38), 0.01);
@@ -266,7 +267,7 @@ TEST(SlowCommandEdit, InfoSaysWhyThereIsNoRobustRange) {
   const auto rangeOf = [&](const Image& image, const std::string& text) {
     writeImage(file, image);
     EXPECT_NE(runCommand({"probe", "info", file}).out.find(text), std::string::npos) << text;
-    return json::parse(runCommand({"probe", "info", file, "--json"}).out)["robust_range"];
+    return parseJson(runCommand({"probe", "info", file, "--json"}).out)["robust_range"];
   };
   EXPECT_EQ(rangeOf(spot(64, 32, 9, 16, 1, 0), "none: less than 1% of the sphere is lit"), 0);
   EXPECT_TRUE(rangeOf(overcastProbe({64, 32}, Rgb(1), 0), "infinite: more than 1%").is_null());

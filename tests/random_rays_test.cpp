@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number of random rays for the irradiance of an unoccluded surface.
 #include "probe/random_rays.h"
+#include "json_file.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -168,7 +169,7 @@ json raysOf(const std::vector<std::string>& arguments) {
   all.insert(all.end(), arguments.begin(), arguments.end());
   const CommandResult result = runCommand(all);
   EXPECT_EQ(result.status, 0) << result.error;
-  return json::parse(result.out);
+  return parseJson(result.out);
 }
 
 // Cosine-weighted rays for an error of 10% facing up, on maps of 256 x 128: counted by an

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
-#include <regex>
 
 #include "base/error.h"
 #include "image/io/write_image.h"
 #include "probe/load.h"
 #include "probe/mapping.h"
 #include "probe/synth.h"
+#include "regular_expression.h"
 #include "run_command.h"
 #include "shared_data.h"
 #include "study/report/row_plot.h"
@@ -147,8 +147,7 @@ TEST(SlowRowDistribution, WindowsOfSaintPeters) {
 
 // Whether a coordinate is not a finite number.
 bool hasInvalidNumber(const std::string& svg) {
-  static const std::regex kInvalid("[MLHVvh \"]-?(nan|inf)[MLHVvhz \"]");
-  return std::regex_search(svg.substr(0, svg.find("data:")), kInvalid);
+  return containsMatch(svg.substr(0, svg.find("data:")), "[MLHVvh \"]-?(nan|inf)[MLHVvhz \"]");
 }
 
 size_t countOf(const std::string& text, const std::string& word) {

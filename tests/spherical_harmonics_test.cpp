@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/spherical_harmonics.h"
+#include "json_file.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ TEST(SphericalHarmonics, GradientHasOnlyItsOwnTerms) {
 TEST(SlowSphericalHarmonics, PublishedCoefficientsOfDebevecsProbes) {
   const auto table = sharedData("reference/sh_coefficients_debevec.json");
   if (!table) GTEST_SKIP() << "no reference/sh_coefficients_debevec.json";
-  const auto json = nlohmann::json::parse(std::ifstream(*table));
+  const auto json = jsonOfFile(*table);
   constexpr std::array kNames = {"L00", "L1m1", "L10", "L11", "L2m2", "L2m1", "L20", "L21", "L22"};
   constexpr std::array kSigns = {1, 1, -1, 1, 1, -1, 1, -1, 1};
 

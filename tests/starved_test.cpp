@@ -14,6 +14,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
+#include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
 
@@ -145,7 +146,7 @@ TEST_F(SlowStarved, SigintAndSigtermSaveTheImageSoFar) {
     const CommandResult result = runExecutable(all, "  2%", signal);  // after a second
     EXPECT_EQ(result.status, 130) << result.error;
     EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));
-    const auto stats = nlohmann::json::parse(fileContents(out / "a.json"));
+    const auto stats = jsonOfFile(out / "a.json");
     EXPECT_EQ(stats["interrupted"], true);
     // `samples_per_pixel` counts complete passes; the layer `samples` has the count of each pixel.
     const Image samples = *findLayer(readImageFile(out / "a.exr"), "samples");

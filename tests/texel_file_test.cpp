@@ -18,6 +18,7 @@
 #include "image/io/encode_png.h"
 #include "image/io/read_image.h"
 #include "job/job.h"
+#include "json_file.h"
 #include "run_command.h"
 #include "scene/mip_chain.h"
 #include "scene/texture.h"
@@ -189,8 +190,7 @@ Outcome run(const std::string& model, const Words& more) {
   const CommandResult result = runCommand(words);
   EXPECT_EQ(result.status, 0) << result.error;
   if (result.status != 0) return {};
-  return {readImage(folder / "a.pfm").texels,
-          nlohmann::json::parse(std::ifstream(folder / "a.json"))};
+  return {readImage(folder / "a.pfm").texels, jsonOfFile(folder / "a.json")};
 }
 
 TEST(SlowTexelFile, ImagesHaveTheSameBitsAndMemoryIsBounded) {

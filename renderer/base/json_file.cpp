@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 
 namespace chromeball {
 
@@ -18,7 +19,7 @@ json readJsonFile(const std::filesystem::path& path, size_t maxMegabytes, std::s
     throwInput("{}: has {} MB; {} have at most {}", path.string(), size >> 20, kind, maxMegabytes);
   const std::vector<uint8_t> bytes = readFile(path);
   try {
-    return json::parse(bytes.begin(), bytes.end());
+    return parseJson(bytes);
   } catch (const json::parse_error& error) {
     const auto end = bytes.begin() + ptrdiff_t(std::min(error.byte, bytes.size()));
     throwInput("{}:{}: is not valid JSON here", path.string(),

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "job/check_job.h"
-#include "job/json_text.h"
 
 namespace chromeball {
 namespace {

@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "base/parallel.h"
 #include "job/file_hash.h"
 #include "job/job_changes.h"
-#include "job/json_text.h"
 
 namespace chromeball {
 namespace {

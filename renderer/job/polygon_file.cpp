@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/json_file.h"
-#include "job/json_text.h"
+#include "base/json_text.h"
 #include "job/output_file.h"
 
 namespace chromeball {
@@ -68,7 +68,7 @@ void writePolygons(const std::filesystem::path& path, const std::string& probe,
                     {"radiance", arrayOf(sources[i].radiance)},
                     {"irradiance", arrayOf(sources[i].irradiance())}});
   }
-  writeText(path, jsonText({{"probe", probe}, {"polygons", list}}, 2) + "\n");
+  writeText(path, jsonText(ordered_json{{"probe", probe}, {"polygons", list}}, 2) + "\n");
 }
 
 SphericalPolygon polygonOf(const PolygonCorners& corners, const LoadedProbe& probe,

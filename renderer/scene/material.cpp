@@ -3,6 +3,13 @@
 
 namespace chromeball {
 
+Material::Material() = default;
+Material::Material(const Material&) = default;
+Material::Material(Material&&) noexcept = default;
+Material& Material::operator=(const Material&) = default;
+Material& Material::operator=(Material&&) noexcept = default;
+Material::~Material() = default;
+
 std::vector<TextureSlot*> textureSlots(Material& m) {
   std::vector<TextureSlot*> slots = {&m.baseColorTexture, &m.metallicRoughnessTexture,
                                      &m.normalTexture,    &m.emissiveTexture,

@@ -18,7 +18,15 @@ enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 // and mirror reflections (back-face culling). Light: also light from behind. Off: none.
 enum class SingleSided : uint8_t { Camera, Light, Off };
 
+// Made, copied and destroyed in material.cpp, to be compiled once.
 struct Material {
+  Material();
+  Material(const Material&);
+  Material(Material&&) noexcept;
+  Material& operator=(const Material&);
+  Material& operator=(Material&&) noexcept;
+  ~Material();
+
   std::string name;
   vec4 baseColor{1};                  // linear RGB and alpha; times texture, times vertex colour
   float metallic = 1, roughness = 1;  // perceptual roughness; GGX alpha = roughness^2

@@ -14,8 +14,16 @@ using Triangle = glm::uvec3;  // vertex indices, counter-clockwise from the fron
 
 // The geometry of a glTF primitive.
 // Vertex arrays are empty or as long as `positions`. Normals are unit; tangents carry the sign of
-// the bitangent in w (bitangent = w * cross(normal, tangent)).
+// the bitangent in w (bitangent = w * cross(normal, tangent)). Made, copied and destroyed in
+// mesh.cpp, to be compiled once.
 struct Mesh {
+  Mesh();
+  Mesh(const Mesh&);
+  Mesh(Mesh&&) noexcept;
+  Mesh& operator=(const Mesh&);
+  Mesh& operator=(Mesh&&) noexcept;
+  ~Mesh();
+
   std::vector<Triangle> triangles;
   std::vector<vec3> positions;
   std::vector<vec3> normals;           // empty: flat, the triangle's own normal
@@ -23,7 +31,7 @@ struct Mesh {
   std::vector<vec4> colors;            // linear RGBA; empty: white
   std::vector<std::vector<vec2>> uvs;  // by UV set; filled only for sets that the material uses
 
-  bool operator==(const Mesh&) const = default;
+  bool operator==(const Mesh&) const;
 };
 
 // Copies of a list share its meshes.
@@ -42,20 +50,14 @@ class MeshList {
   const Shared& shared(size_t i) const { return meshes_[i]; }
 
   // For changes; another list that has the mesh keeps it as it was.
-  Mesh& edit(size_t i) {
-    const auto own = std::make_shared<Mesh>(*meshes_.at(i));
-    meshes_[i] = own;
-    return *own;
-  }
+  Mesh& edit(size_t i);
 
   void share(size_t i, const Shared& mesh) { meshes_[i] = mesh; }
 
-  void push_back(Mesh mesh) { meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh))); }
+  void push_back(Mesh mesh);
   void push_back(Shared mesh) { meshes_.push_back(std::move(mesh)); }
   void pop_back() { meshes_.pop_back(); }
-  void append(MeshList other) {
-    meshes_.insert(meshes_.end(), other.meshes_.begin(), other.meshes_.end());
-  }
+  void append(MeshList other);
 
   class Iterator {
    public:

@@ -29,6 +29,13 @@ void moveToEnd(std::vector<T>& to, std::vector<T>& from) {
 
 }  // namespace
 
+Scene::Scene() = default;
+Scene::Scene(const Scene&) = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene&) = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
 size_t Scene::triangleCount() const {
   size_t count = 0;
   for (const Instance& instance : instances) count += meshes[instance.mesh].triangles.size();

@@ -33,7 +33,16 @@ struct Instance {
   bool operator==(const Instance&) const = default;
 };
 
+// Made, copied and destroyed in scene.cpp: each file that has a scene would compile that of all its
+// parts, a second or two.
 struct Scene {
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   MeshList meshes;
   std::vector<Instance> instances;
   std::vector<Material> materials;  // not empty if there is a mesh

@@ -13,6 +13,7 @@ chromeball_unity(tests 32)  # each file of tests has a namespace of its name
 set(tests_dir ${PROJECT_SOURCE_DIR}/tests)
 target_precompile_headers(tests PRIVATE
   <filesystem> <fstream> <gtest/gtest.h> <nlohmann/json.hpp> <fmt/format.h>
+  ${tests_dir}/json_file.h
   ${tests_dir}/test_scene.h
   ${PROJECT_SOURCE_DIR}/renderer/image/io/read_image.h
   ${PROJECT_SOURCE_DIR}/renderer/image/io/write_image.h

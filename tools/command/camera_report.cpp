@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "base/json_text.h"
 #include "job/camera_file.h"
-#include "job/json_text.h"
 #include "json_values.h"
 
 namespace chromeball {

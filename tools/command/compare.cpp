@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "job/job.h"
 #include "job/job_description.h"
-#include "job/json_text.h"
 #include "job/machine.h"
 #include "job/output_file.h"
 #include "job/setting_table.h"

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/suggest.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
@@ -138,7 +139,7 @@ void run(const ImageErrorArguments& arguments) {
     throwInput("--map: neither {} nor {} has a variance layer; render with --aov variance",
                arguments.a, arguments.b);
   if (arguments.json)
-    fmt::print("{}\n", toJson(findings).dump(2));
+    fmt::print("{}\n", jsonText(toJson(findings), 2));
   else
     print(findings);
   if (!arguments.output.empty())

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "image/flat_field.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
@@ -115,7 +116,7 @@ void run(const ImageFlatFieldArguments& arguments) {
                     "even radiance within --radius?",
                     100 * error));
   if (arguments.json)
-    fmt::print("{}\n", toJson(field, series).dump(2));
+    fmt::print("{}\n", jsonText(toJson(field, series), 2));
   else
     print(field, series);
   print(writeImage(arguments.output, field.image(width, height)), false);

@@ -5,13 +5,13 @@
 #include <atomic>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "commands.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_noise_text.h"
 #include "job/id_manifest.h"
 #include "job/job_report.h"
-#include "job/json_text.h"
 #include "job/merge.h"
 #include "job/output_file.h"
 #include "messages.h"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"
 #include "input_image.h"
@@ -98,8 +99,7 @@ void run(const ProbeAlignArguments& arguments) {
   const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
   busy.reset();
   if (arguments.json)
-    fmt::print("{}\n",
-               toJson(arguments, alignment).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", jsonText(toJson(arguments, alignment), 2));
   else
     print(alignment);
   std::fflush(stdout);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assemble_options.h"
+#include "base/json_text.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"
 #include "messages.h"
@@ -176,7 +177,7 @@ void run(const AssembleArguments& arguments) {
   writeProbe(arguments.out, probe, target.mapping);
   if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)), false);
   if (arguments.json)
-    fmt::print("{}\n", toJson(report).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", jsonText(toJson(report), 2));
   else
     print(report);
 }

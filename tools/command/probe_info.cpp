@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/info.h"
@@ -158,7 +159,7 @@ void addProbeInfoCommand(Command probeCommand) {
     if (arguments->json) {
       Json json = toJson(probe, info, arguments->file);
       if (arguments->mappingReport) json["mapping_report"] = toJson(angles());
-      fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+      fmt::print("{}\n", jsonText(json, 2));
     } else {
       print(probe, info);
       if (arguments->mappingReport) print(probe, angles());

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "image/io/write_image.h"
 #include "input_image.h"
 #include "job/output_file.h"
@@ -102,7 +103,7 @@ void merge(const MergeArguments& arguments) {
   MergedPhotographs merged = mergePhotographs(series);
   print(merged.messages, false);
   if (arguments.json)
-    fmt::print("{}\n", toJson(series, merged).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", jsonText(toJson(series, merged), 2));
   else
     print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
@@ -142,10 +143,10 @@ void calibrate(const MergeArguments& arguments) {
       break;
     }
   if (arguments.json)
-    fmt::print("{}\n", Json{{"transmission", vectorToJson(t)},
-                            {"median", vectorToJson(filter.median)},
-                            {"pixels", filter.pixels}}
-                           .dump(2));
+    fmt::print("{}\n", jsonText(Json{{"transmission", vectorToJson(t)},
+                                     {"median", vectorToJson(filter.median)},
+                                     {"pixels", filter.pixels}},
+                                2));
   else
     fmt::print("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
 }

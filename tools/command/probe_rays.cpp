@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "input_image.h"
 #include "job/arguments.h"
 #include "math/icosphere.h"
@@ -126,8 +127,7 @@ void run(const ProbeRaysArguments& arguments) {
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const Normals normals(probe.latLong, arguments.rotation);
   if (arguments.json)
-    fmt::print("{}\n",
-               toJson(arguments, normals).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", jsonText(toJson(arguments, normals), 2));
   else
     print(arguments, normals);
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "input_image.h"
 #include "job/arguments.h"
 #include "json_values.h"
@@ -98,7 +99,7 @@ void run(const ProbeReflectivityArguments& arguments) {
                        {"reflected", toJson(reflected)},
                        {"direct", toJson(direct)},
                        {"standard_reflectance", vectorToJson(standard)}};
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", jsonText(json, 2));
     return;
   }
   const auto triple = [](const dvec3& v) {

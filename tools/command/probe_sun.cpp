@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "image/io/write_image.h"
 #include "input_image.h"
 #include "job/arguments.h"
@@ -192,7 +193,7 @@ void run(const ProbeSunArguments& arguments) {
         "without the sun: check --camera, --direction, --circle and --paint",
         100 * result.rms, 100 * result.rmsOfProbe));
   if (arguments.json)
-    fmt::print("{}\n", toJson(result, direction, samples).dump(2));
+    fmt::print("{}\n", jsonText(toJson(result, direction, samples), 2));
   else
     print(result, direction, samples);
   const Sun& sun = result.sun;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "image_noise_text.h"
@@ -17,7 +18,6 @@
 #include "job/job_description.h"
 #include "job/job_outputs.h"
 #include "job/job_report.h"
-#include "job/json_text.h"
 #include "job/output_file.h"
 #include "job/sequence.h"
 #include "lighting/methods.h"

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 namespace chromeball {
 namespace {
@@ -89,11 +90,11 @@ GltfChunks splitContainer(std::span<const uint8_t> file) {
   return chunks;
 }
 
-json parseJson(std::span<const uint8_t> text) {
+json parseRoot(std::span<const uint8_t> text) {
   if (nesting(text) > kMaxNesting) failGlb("nests deeper than {} levels", kMaxNesting);
   json root;
   try {
-    root = json::parse(text.begin(), text.end());
+    root = parseJson(text);
   } catch (const json::exception& e) {  // "[json.exception.KIND.NUMBER] reason"
     const char* reason = std::strchr(e.what(), ']');
     failGlb("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());

@@ -19,6 +19,6 @@ GltfChunks splitContainer(std::span<const uint8_t> file);
 
 // Parses a JSON object. Throws if it nests deeper than 128 levels, since its users recurse. Numbers
 // without a fractional part become integers, however they are written.
-nlohmann::json parseJson(std::span<const uint8_t> text);
+nlohmann::json parseRoot(std::span<const uint8_t> text);
 
 }  // namespace chromeball

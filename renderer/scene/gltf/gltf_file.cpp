@@ -33,7 +33,7 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
   try {
     file_ = FileBytes(path);
     const GltfChunks chunks = splitContainer(file_.bytes());
-    json root = parseJson(chunks.json);
+    json root = parseRoot(chunks.json);
     checkVersion(root);
     checkMemberTypes(root);
     if (const auto ignored = checkExtensions(root); !ignored.empty())

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "base/json_text.h"
 #include "base/printable.h"
 
 namespace chromeball {
@@ -269,7 +270,7 @@ std::string describeValue(const json& value) {
   if (value.is_string()) return "a string";
   if (value.is_array()) return "an array";
   if (value.is_object()) return "an object";
-  return value.dump();
+  return jsonText(value);
 }
 
 void require(bool matches, const json& value, std::string_view type, const JsonPlace& place) {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "image/tonemap.h"
-#include "job/json_text.h"
 #include "probe/mapping.h"
 #include "probe/preview.h"
 #include "study/report/log_log_plot.h"

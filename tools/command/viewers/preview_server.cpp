@@ -4,6 +4,7 @@
 #include <future>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "viewers/local_server.h"
 #include "viewers/preview_image.h"
 #include "viewers/watched_render.h"
@@ -78,7 +79,7 @@ class PreviewServer::Server {
       response.set_content(kPreviewScript, "text/javascript; charset=utf-8");
     });
     http_.Get("/status.json", [this](const auto&, auto& response) {
-      response.set_content(render.status().dump(), "application/json");
+      response.set_content(jsonText(render.status()), "application/json");
     });
     http_.Get("/image.png",
               ofImage([this](const NumberedImage& image, const auto& request, auto& response) {
@@ -88,11 +89,11 @@ class PreviewServer::Server {
                 response.set_header("X-Image", std::to_string(image.number));
                 render.hasSent(image.number);
               }));
-    http_.Get("/pixel.json",
-              ofImage([](const NumberedImage& image, const auto& request, auto& response) {
-                const int x = numberOf(request, "x", 0), y = numberOf(request, "y", 0);
-                response.set_content(valuesAt(image.image->image, x, y).dump(), "application/json");
-              }));
+    http_.Get(
+        "/pixel.json", ofImage([](const NumberedImage& image, const auto& request, auto& response) {
+          const int x = numberOf(request, "x", 0), y = numberOf(request, "y", 0);
+          response.set_content(jsonText(valuesAt(image.image->image, x, y)), "application/json");
+        }));
     http_.Post("/save", [this, saves](const auto&, auto& response) {
       if (!saves) return refuse(response, 409, "a frame is written when it is finished");
       render.askForFiles();

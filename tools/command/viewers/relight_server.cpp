@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "image/io/write_image.h"
 #include "image/resample.h"
 #include "job/arguments.h"
@@ -34,7 +35,7 @@ class RelightServer::Server {
       response.set_content(kRelightScript, "text/javascript; charset=utf-8");
     });
     http_.Get("/stage.json", [this](const auto&, auto& response) {
-      response.set_content(described().dump(), "application/json");
+      response.set_content(jsonText(described()), "application/json");
     });
     answer("/picture", "application/octet-stream",
            [this](const httplib::Request& request) { return pictureOf(request); });

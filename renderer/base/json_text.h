@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as text, and from text that may be damaged.
+// JSON as text, and from text that may be damaged: the writer and the parser are compiled here
+// alone.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 namespace chromeball {
 
 // On one line if `indent` is negative. Names of files may hold any byte: what is not UTF-8 becomes
 // U+FFFD.
+std::string jsonText(const nlohmann::json& json, int indent = -1);
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
+
+// Throws nlohmann::json::exception: parse_error, or out_of_range for a number beyond a double's.
+nlohmann::json parseJson(std::span<const uint8_t> text);
 
 // A `discarded` value if the text is no JSON, or nested more deeply than what this program writes.
 nlohmann::ordered_json readJson(const std::string& text);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/json_text.h"
+#include "run_command.h"
+
+namespace chromeball {
+
+nlohmann::json parseJson(const std::string& text) { return nlohmann::json::parse(text); }
+
+nlohmann::json jsonOfFile(const std::string& path) { return parseJson(fileContents(path)); }
+
+}  // namespace chromeball
+
+NLOHMANN_JSON_NAMESPACE_BEGIN
+void PrintTo(const json& value, std::ostream* out) { *out << chromeball::jsonText(value); }
+void PrintTo(const ordered_json& value, std::ostream* out) { *out << chromeball::jsonText(value); }
+NLOHMANN_JSON_NAMESPACE_END
