@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "capture_photographs.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "browser.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "bracket.h"
 #include "exif_block.h"
 #include "image/io/read_image.h"

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"

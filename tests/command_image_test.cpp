@@ -2,8 +2,7 @@
 // chromeball image error and view.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"

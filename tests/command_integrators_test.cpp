@@ -2,8 +2,7 @@
 // render --integrator, compare --integrators and image relight --probe as commands.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "base/json_text.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"

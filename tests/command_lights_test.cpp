@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"

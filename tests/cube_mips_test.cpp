@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chains of prefiltered cube maps, and chromeball probe convolve.
 #include "probe/cube_mips.h"
+#include "base/json.h"
 #include "json_file.h"
 
 #include <Imath/half.h>
@@ -10,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "image/io/write_image.h"

@@ -2,8 +2,7 @@
 // Limits of path length: which bounces they count, and how much light they cut.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "composite/render_composite.h"
 #include "gltf_writer.h"
 #include "json_file.h"

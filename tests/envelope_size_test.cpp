@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "envelope.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"

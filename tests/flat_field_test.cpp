@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flat-field response of a lens, fitted to photographs of a constant source.
 #include "image/flat_field.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "image/io/read_image.h"

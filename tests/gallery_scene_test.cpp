@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "demo/doric.h"
 #include "demo/gallery.h"
 #include "demo/nave.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A job rendered with the library, without the command.
 #include "job/job.h"
+#include "base/json.h"
 #include "base/json_text.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,6 @@
 #include <climits>
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "image/io/write_image.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "json_file.h"
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "base/json_text.h"
 #include "run_command.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of directional lights, and their error of irradiance (Madsen and Laursen 2007).
 #include "lighting/light_file.h"
+#include "base/json.h"
 #include "json_file.h"
 
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "lighting/fit/light_error.h"

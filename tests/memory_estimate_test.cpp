@@ -2,12 +2,12 @@
 // What a render will take is stated before, agrees with what it took, and is refused if it is too
 // much. Small scenes: the numbers of large ones are in tools/RESULTS.md.
 #include "job/memory_estimate.h"
+#include "base/json.h"
 #include "base/json_text.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"

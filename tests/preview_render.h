@@ -4,10 +4,10 @@
 
 #include <functional>
 #include <future>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "run_command.h"
 
 namespace chromeball {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edits of a probe; what clipping costs, and whether a probe has been clipped.
+#include "base/json.h"
 #include "json_file.h"
 #include "probe/edit.h"
 
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number of random rays for the irradiance of an unoccluded surface.
 #include "probe/random_rays.h"
+#include "base/json.h"
 #include "json_file.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <numeric>
 #include <random>

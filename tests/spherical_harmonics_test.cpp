@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/spherical_harmonics.h"
+#include "base/json.h"
 #include "json_file.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "probe/load.h"
 #include "probe/solid_angle.h"

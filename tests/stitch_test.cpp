@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Posed tiles to a probe: the place comes back, with the tiles' gains and poses.
 #include "probe/capture/stitch.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "image/io/read_image.h"

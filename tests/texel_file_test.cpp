@@ -2,6 +2,7 @@
 // Textures in a temporary file (--texture-memory): the same bits, in bounded memory, and no failure
 // to write or read that goes unnoticed.
 #include "image/io/texel_file.h"
+#include "base/json.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -9,7 +10,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/hash.h"

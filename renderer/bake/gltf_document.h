@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
+#include "base/json.h"
 #include "math/vec.h"
 
 namespace chromeball {

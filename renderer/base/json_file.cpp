@@ -2,10 +2,10 @@
 #include "base/json_file.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/json_text.h"
 
 namespace chromeball {

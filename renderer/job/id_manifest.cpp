@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/id_manifest.h"
 
-#include <nlohmann/json.hpp>
 #include <set>
+
+#include "base/json.h"
 
 namespace chromeball {
 namespace {

@@ -7,9 +7,9 @@
 #include <climits>
 #include <cmath>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "job/check_job.h"
 

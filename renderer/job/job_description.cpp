@@ -7,9 +7,9 @@
 #include <array>
 #include <bit>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "base/parallel.h"
 #include "job/file_hash.h"

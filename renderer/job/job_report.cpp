@@ -2,8 +2,8 @@
 #include "job/job_report.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/parallel.h"
 #include "job/id_manifest.h"
 #include "job/job_description.h"

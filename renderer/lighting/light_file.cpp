@@ -2,10 +2,10 @@
 #include "lighting/light_file.h"
 
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/suggest.h"
 #include "lighting/opengl_lights.h"
 

@@ -2,9 +2,9 @@
 // chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "commands.h"
 #include "interrupt.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball image flat-field SERIES... -o F.exr
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "image/flat_field.h"
 #include "image/io/write_image.h"

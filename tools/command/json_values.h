@@ -2,7 +2,7 @@
 // Values of the library as JSON, for --json.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 namespace chromeball {
 

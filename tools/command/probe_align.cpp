@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe align A B
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"

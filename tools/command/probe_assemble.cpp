@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "assemble_options.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "busy_line.h"
 #include "image/io/write_image.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe info FILE
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "json_values.h"
 #include "messages.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe merge 1.jpg 2.jpg ... -o hdr.exr
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "image/io/write_image.h"
 #include "input_image.h"

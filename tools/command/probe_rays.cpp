@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe rays PROBE
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "input_image.h"
 #include "job/arguments.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe reflectivity PHOTO --direct X,Y,W,H --reflected X,Y,W,H
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "input_image.h"
 #include "job/arguments.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "commands.h"

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <climits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/json.h"
 #include "base/printable.h"
 
 namespace chromeball {

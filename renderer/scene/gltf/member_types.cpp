@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <climits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
 
+#include "base/json.h"
 #include "base/json_text.h"
 #include "base/printable.h"
 

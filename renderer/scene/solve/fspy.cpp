@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solve/fspy.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "scene/solve/observations.h"
 
 namespace chromeball {

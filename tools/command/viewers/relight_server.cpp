@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/relight_server.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
+#include "base/json.h"
 #include "base/json_text.h"
 #include "image/io/write_image.h"
 #include "image/resample.h"

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "job/viewer.h"
 
