@@ -92,7 +92,7 @@ const json kEveryMember = parseJson(R"({
                 "extensions": {"EXT_texture_webp": {"source": 0}}}]
 })");
 
-std::string complaintOf(const json& root) {
+std::string complaintOf(json root) {
   try {
     checkMemberTypes(root);
   } catch (const std::runtime_error& e) {
@@ -166,6 +166,30 @@ TEST(GltfMemberTypes, WhatTheSpecificationAllowsPasses) {
   root["nodes"][0][""] = 1;
   root["extensions"]["EXT_other"] = 1;
   EXPECT_EQ(complaintOf(root), "");
+}
+
+void writeWithFractions(json& value) {
+  if (value.is_number_unsigned()) value = value.get<double>();
+  if (value.is_structured())
+    for (const auto& [key, part] : value.items()) writeWithFractions(part);
+}
+
+// glTF 2.0, "JSON Encoding".
+TEST(GltfMemberTypes, WholeNumbersMayHaveAFractionOfZero) {
+  json root = kEveryMember;
+  writeWithFractions(root);
+  checkMemberTypes(root);
+  EXPECT_EQ(root["nodes"], kEveryMember["nodes"]);
+  EXPECT_TRUE(root["nodes"][0]["mesh"].is_number_unsigned());
+
+  GltfWriter plain, fractions;
+  for (GltfWriter* w : {&plain, &fractions})
+    addTriangle(*w, {{"material", w->add("materials", {{"doubleSided", true}})}});
+  writeWithFractions(fractions.root);
+  const Scene scene = fractions.load();
+  EXPECT_EQ(scene.triangleCount(), 1u);
+  EXPECT_TRUE(scene.materials.at(size_t(scene.instances.at(0).material)).doubleSided);
+  EXPECT_EQ(scene.meshes.at(0), plain.load().meshes.at(0));
 }
 
 // Each would otherwise be read as a valid file: 2^32 as 0, -1 and strings as the default.

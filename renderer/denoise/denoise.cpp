@@ -147,18 +147,19 @@ RgbPlanes noiseOf(const HalvedImage& image, float scale) {
 }
 
 // Two passes with two bandwidths each: the second computes its weights from the narrower result of
-// the first. `progress` receives the fraction.
+// the first, and averages with them, too. `progress` receives the fraction.
 Selection denoise(const Component& component, const FeaturePlanes& features,
                   const Progress& progress, const std::atomic<bool>& stop) {
-  const auto first = filterHalves(component, guidesOf(component), features, {1, 8}, stop);
+  const auto first = filterHalves(component, guidesOf(component), features, {1, 8}, 0, stop);
   progress(0.5);
   const auto second =
-      filterHalves(component, guidesOf(first[1], component), features, {1, 4}, stop);
+      filterHalves(component, guidesOf(first.regressions[1], component), features, {1, 4}, 4, stop);
   progress(1);
-  return best({filtered(component, second[0], Bandwidth::Wide),
-               filtered(component, second[1], Bandwidth::Narrow),
-               filtered(component, first[0], Bandwidth::Wide),
-               filtered(component, first[1], Bandwidth::Narrow), unfiltered(component)});
+  return best({filtered(component, second.regressions[0], Filter::Wide),
+               filtered(component, second.regressions[1], Filter::Narrow),
+               filtered(component, first.regressions[0], Filter::Wide),
+               filtered(component, first.regressions[1], Filter::Narrow),
+               filtered(component, second.averages, Filter::Average), unfiltered(component)});
 }
 
 // No sample hit a surface or found light: the background of a transparent image.
@@ -221,7 +222,7 @@ Denoised sumOf(const std::vector<DenoisedPart>& parts) {
 }
 
 double denoiseBytes(int width, int height, int parts) {
-  const double planes = 143 + 6 * parts;  // that exist at the same time, at most
+  const double planes = 158 + 6 * parts;  // that exist at the same time, at most
   return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/filter.h"
 
+#include <span>
+
 #include "base/parallel.h"
 #include "denoise/vector8.h"
 
@@ -41,17 +43,27 @@ RgbPlanes finished(const Predictions& predictions, const RgbPlanes& noisy) {
   return result;
 }
 
-// Eight pixels from (x, y); `index` is that of the first in its tile.
-void average(const TileWeights& weights, size_t index, const std::vector<Plane>& channels, int x,
-             int y, std::vector<Plane>& means) {
+// Eight pixels from (x, y); `index` is that of the first in its tile. The power is one of two.
+void average(const TileWeights& weights, int power, size_t index, std::span<const Plane> channels,
+             int x, int y, std::span<Plane> means) {
   Float8 sums[3]{}, weightSum{};
   forNeighbours([&](size_t neighbour, int dx, int dy) {
-    const Float8 weight = load8(&weights[neighbour][index]);
+    Float8 weight = load8(&weights[neighbour][index]);
+    for (int i = 1; i < power; i *= 2) weight *= weight;
     for (size_t c = 0; c < channels.size(); ++c)
       sums[c] += weight * load8(channels[c].row(y + dy) + x + dx);
     weightSum += weight;
   });
   for (size_t c = 0; c < channels.size(); ++c) store8(means[c].row(y) + x, sums[c] / weightSum);
+}
+
+void averageTile(const TileWeights& weights, int power, std::span<const Plane> channels, int left,
+                 int top, std::span<Plane> means) {
+  const int bottom = std::min(top + kHeight, channels[0].height());
+  const int right = std::min(left + kWidth, channels[0].width());
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; x += kLanes)
+      average(weights, power, size_t((y - top) * kWidth + x - left), channels, x, y, means);
 }
 
 // Whether the noise of all pixels of the tile is far below their size.
@@ -94,9 +106,7 @@ HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& st
       }
       TileWeights& weights = tileWeights.local();
       weights.compute(halves[1 - half], left, top);
-      for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; x += kLanes)
-          average(weights, size_t((y - top) * kWidth + x - left), channels, x, y, means);
+      averageTile(weights, 1, channels, left, top, means);
     });
     for (Plane& mean : means) mean.extend();
   }
@@ -116,26 +126,32 @@ HalfGuides guidesOf(const Component& component) {
   return guides;
 }
 
-std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
-                                                 const HalfGuides& guides,
-                                                 const FeaturePlanes& features,
-                                                 const std::array<int, kBandwidths>& powers,
-                                                 const std::atomic<bool>& stop) {
+FilteredHalves filterHalves(const Component& component, const HalfGuides& guides,
+                            const FeaturePlanes& features,
+                            const std::array<int, kBandwidths>& powers, int averagePower,
+                            const std::atomic<bool>& stop) {
   const int width = component.variance[0].width(), height = component.variance[0].height();
-  std::array<HalfPlanes, kBandwidths> results;
+  FilteredHalves results;
   PerThread<TileWeights> tileWeights;
   for (size_t half = 0; half < 2; ++half) {
     std::array<Predictions, kBandwidths> predictions{Predictions(width, height),
                                                      Predictions(width, height)};
+    RgbPlanes& means = results.averages[half];
+    if (averagePower > 0)
+      for (Plane& mean : means) mean = Plane(width, height);
     forTiles(width, height, stop, [&](int left, int top) {
       TileWeights& weights = tileWeights.local();
       weights.compute(guides[1 - half], left, top);
       for (size_t i = 0; i < kBandwidths; ++i)
         addRegressions(weights, powers[i], component.halves[half], features, left, top,
                        predictions[i]);
+      if (averagePower > 0)
+        averageTile(weights, averagePower, component.halves[half], left, top, means);
     });
     for (size_t i = 0; i < kBandwidths; ++i)
-      results[i][half] = finished(predictions[i], component.halves[half]);
+      results.regressions[i][half] = finished(predictions[i], component.halves[half]);
+    if (averagePower > 0)
+      for (Plane& mean : means) mean.extend();
   }
   return results;
 }

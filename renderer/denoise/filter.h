@@ -29,12 +29,17 @@ HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& st
 
 constexpr int kBandwidths = 2;
 
-// The filtered halves for each power of the weights (addRegressions()). The result does not depend
-// on the number of threads.
-std::array<HalfPlanes, kBandwidths> filterHalves(const Component& component,
-                                                 const HalfGuides& guides,
-                                                 const FeaturePlanes& features,
-                                                 const std::array<int, kBandwidths>& powers,
-                                                 const std::atomic<bool>& stop);
+struct FilteredHalves {
+  std::array<HalfPlanes, kBandwidths> regressions;
+  HalfPlanes averages;  // weighted means: of what no feature explains, such as a dark reflection
+};
+
+// The regressions have the weights raised to powers[0] and powers[1] (addRegressions()), the
+// averages to averagePower; without averages if that is 0. The result does not depend on the number
+// of threads.
+FilteredHalves filterHalves(const Component& component, const HalfGuides& guides,
+                            const FeaturePlanes& features,
+                            const std::array<int, kBandwidths>& powers, int averagePower,
+                            const std::atomic<bool>& stop);
 
 }  // namespace chromeball

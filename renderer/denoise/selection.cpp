@@ -12,14 +12,24 @@ constexpr int kVarianceReach = 1;  // variances in it
 constexpr float kDark = 0.01f;     // as in film/noise.h; the mean of the image is about 1
 constexpr int kChoiceReach = 2;  // of the windows over which errors decide, and choices are blended
 constexpr float kWindow = (2 * kChoiceReach + 1) * (2 * kChoiceReach + 1);
-// As kDark, where the errors of a window decide: between filters, and between these and the noisy
-// image. The latter is lower, so that less noise of bright pixels does not excuse light that a
-// filter brings to dark ones beside them.
-constexpr float kDarkFiltered = 1.5f, kDarkUnfiltered = 0.1f;
+// As kDark, where the errors of a window decide: between regressions, and between these and an
+// average or the noisy image. The latter is lower, so that less noise of bright pixels does not
+// excuse light that a regression brings to dark ones beside them.
+constexpr float kDarkRegression = 1.5f, kDarkOther = 0.1f;
 
-// Of filtered and unfiltered images. Where a few pixels hold all of the noise, the errors of both
-// are known equally badly, and the filtered image is better.
-constexpr float kFilteredMargin = 0.6f, kUnfilteredMargin = 0.8f;
+// Standard errors by which a candidate must be better than those before it. Where a few pixels hold
+// all of the noise, the errors of filtered and noisy images are known equally badly, and the
+// filtered image is better.
+float marginOf(Filter filter) {
+  switch (filter) {
+    case Filter::None:
+      return 0.8f;
+    case Filter::Average:
+      return 0.3f;
+    default:
+      return 0.6f;
+  }
+}
 
 float square(float x) { return x * x; }
 
@@ -46,7 +56,7 @@ Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
     for (size_t c = 0; c < 3; ++c) {
       float sum = 0, count = 0;
       for (const Candidate& candidate : candidates)
-        if (candidate.bandwidth == Bandwidth::Narrow) sum += candidate.color[c].at(x, y), ++count;
+        if (candidate.filter == Filter::Narrow) sum += candidate.color[c].at(x, y), ++count;
       const float lesserHalf = noisy.color[c].at(x, y) - std::sqrt(noisy.variance[c].at(x, y));
       size += square((sum / count + std::max(lesserHalf, 0.0f)) / 2);
     }
@@ -57,23 +67,24 @@ Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
 // The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
 // pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
-  const Plane filteredSize = squaredSizes(candidates, kDarkFiltered);
-  const Plane unfilteredSize = squaredSizes(candidates, kDarkUnfiltered);
+  const Plane regressionSize = squaredSizes(candidates, kDarkRegression);
+  const Plane otherSize = squaredSizes(candidates, kDarkOther);
   const auto errorOf = [&](size_t i) {
-    return makePlaneLike(filteredSize,
+    return makePlaneLike(regressionSize,
                          [&, i](int x, int y) { return total(candidates[i].error, x, y); });
   };
   Plane chosen = makePlaneLike(candidates[0].error[0], [](int, int) { return 0.0f; });
   Plane error = errorOf(0);
   for (size_t i = 1; i < candidates.size(); ++i) {
     const Plane next = errorOf(i);
-    const bool isUnfiltered = candidates[i].bandwidth == Bandwidth::None;
-    const Plane& size = isUnfiltered ? unfilteredSize : filteredSize;
+    const Filter filter = candidates[i].filter;
+    const bool isRegression = filter == Filter::Narrow || filter == Filter::Wide;
+    const Plane& size = isRegression ? regressionSize : otherSize;
     const Plane gain = makePlaneLike(
         size, [&](int x, int y) { return (error.at(x, y) - next.at(x, y)) / size.at(x, y); });
     const Plane squared = makePlaneLike(gain, [&](int x, int y) { return square(gain.at(x, y)); });
     const Plane mean = boxMean(gain, kChoiceReach), meanSquare = boxMean(squared, kChoiceReach);
-    const float margin = candidates[i].margin / std::sqrt(kWindow);
+    const float margin = marginOf(filter) / std::sqrt(kWindow);
     const auto isBetter = [&](int x, int y) {
       return mean.at(x, y) > margin * std::sqrt(meanSquare.at(x, y));
     };
@@ -101,7 +112,7 @@ Plane averageErrors(const Plane& squaredErrors, const Plane& color, int reach) {
 }
 
 Candidate unfiltered(const Component& component) {
-  Candidate candidate{.margin = kUnfilteredMargin};
+  Candidate candidate;
   for (size_t c = 0; c < 3; ++c) {
     const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];
     candidate.color[c] = meanOf(c0, c1);
@@ -112,8 +123,8 @@ Candidate unfiltered(const Component& component) {
   return candidate;
 }
 
-Candidate filtered(const Component& component, const HalfPlanes& halves, Bandwidth bandwidth) {
-  Candidate candidate{.margin = kFilteredMargin, .bandwidth = bandwidth};
+Candidate filtered(const Component& component, const HalfPlanes& halves, Filter filter) {
+  Candidate candidate{.filter = filter};
   for (size_t c = 0; c < 3; ++c) {
     const Plane &f0 = halves[0][c], &f1 = halves[1][c];
     const Plane &c0 = component.halves[0][c], &c1 = component.halves[1][c];

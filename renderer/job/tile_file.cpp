@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/printable.h"
 #include "job/output_file.h"
 #include "job/toml_section.h"
@@ -71,13 +70,7 @@ class TileReader {
     const std::optional<double> own = fov(table), common = fov(table_);
     if (!own && !common)
       failAt(at(table), "[[tile]] needs `fov`, vertical, or the list one for all");
-    const fs::path image = (fs::path(path_).parent_path() / file.text()).lexically_normal();
-    try {
-      checkReadable(image);
-    } catch (const InputError& error) {
-      failAt(at(table), "`file`: {} (paths are relative to the list)", error.what());
-    }
-    return {image.string(),
+    return {existingFile(file, "the list"),
             {angle("yaw"), angle("pitch"), angle("roll")},
             own ? *own : *common,
             at(table)};

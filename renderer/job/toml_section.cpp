@@ -190,13 +190,13 @@ std::string resolvedPath(const Entry& entry) {
   return (folder / entry.text()).lexically_normal().string();
 }
 
-std::string existingFile(const Entry& entry) {
+std::string existingFile(const Entry& entry, std::string_view relativeTo) {
   const std::string path = resolvedPath(entry);
   try {
     checkReadable(path);
   } catch (const InputError& error) {
-    failAt(entry.location(), "`{}`: {} (paths are relative to the scene file)", entry.key,
-           error.what());
+    failAt(entry.location(), "`{}`: {} (paths are relative to {})", entry.key, error.what(),
+           relativeTo);
   }
   return path;
 }

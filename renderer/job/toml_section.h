@@ -101,10 +101,10 @@ void forEach(const Entry& entry, const Read& read) {
   for (size_t i = 0; i < entry.node->as_array()->size(); ++i) read(entry.element(i));
 }
 
-// A file name of the scene file as a path from the working directory; existingFile() throws
+// A file name of a TOML file as a path from the working directory; existingFile() throws
 // InputError if there is no such file.
 std::string resolvedPath(const Entry& entry);
-std::string existingFile(const Entry& entry);
+std::string existingFile(const Entry& entry, std::string_view relativeTo = "the scene file");
 
 // Throws InputError for a file that is not valid TOML.
 toml::table parseToml(const std::string& path);
