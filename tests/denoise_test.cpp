@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "denoise/regression.h"
+#include "denoise/selection.h"
 #include "denoise/vector8.h"
 #include "integrate/render.h"
 #include "math/sampler.h"
@@ -315,6 +316,28 @@ TEST(Denoise, KnowsItsErrorBesideAnEdge) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = kWidth / 2 + 1; x < kWidth; ++x) EXPECT_LT(*denoised.error.at(x, y), 0.15f);
   for (int x = 15; x < kWidth / 2 - 12; ++x) EXPECT_LT(*denoised.error.at(x, 20), 0.003f);
+}
+
+// An average keeps a dark line to which a regression brings light, though it leaves more noise in
+// the bright pixels around it.
+TEST(Denoise, TheErrorOfADarkLineDecides) {
+  constexpr int kLine = kHeight / 2;
+  const auto candidate = [](FilterKind filter, float dark, float darkError, float brightError) {
+    const auto planes = [](float line, float others) {
+      const Plane plane =
+          makePlane(kWidth, kHeight, [&](int, int y) { return y == kLine ? line : others; });
+      return RgbPlanes{plane, plane, plane};
+    };
+    const RgbPlanes error = planes(darkError, brightError);
+    return Candidate{.color = planes(dark, 8), .error = error, .variance = error, .filter = filter};
+  };
+  const Candidate regression = candidate(FilterKind::Narrow, 0.55f, 0.09f, 0.02f),
+                  average = candidate(FilterKind::Average, 0.25f, 0.002f, 0.7f),
+                  none = candidate(FilterKind::None, 0.25f, 0.01f, 2.0f);
+  const Selection found = best({regression, average, none});
+  EXPECT_FLOAT_EQ(found.color[1].at(20, kLine), 0.25f);
+  EXPECT_NEAR(found.error[1].at(20, kLine), 0.002f, 0.001f);
+  EXPECT_NEAR(found.error[1].at(20, kLine + 12), 0.02f, 1e-4f);  // far from it: the regression
 }
 
 // The regression is exact for colors that are affine in the features.

@@ -155,11 +155,11 @@ Selection denoise(const Component& component, const FeaturePlanes& features,
   const auto second =
       filterHalves(component, guidesOf(first.regressions[1], component), features, {1, 4}, 4, stop);
   progress(1);
-  return best({filtered(component, second.regressions[0], Filter::Wide),
-               filtered(component, second.regressions[1], Filter::Narrow),
-               filtered(component, first.regressions[0], Filter::Wide),
-               filtered(component, first.regressions[1], Filter::Narrow),
-               filtered(component, second.averages, Filter::Average), unfiltered(component)});
+  return best({filtered(component, second.regressions[0], FilterKind::Wide),
+               filtered(component, second.regressions[1], FilterKind::Narrow),
+               filtered(component, first.regressions[0], FilterKind::Wide),
+               filtered(component, first.regressions[1], FilterKind::Narrow),
+               filtered(component, second.averages, FilterKind::Average), unfiltered(component)});
 }
 
 // No sample hit a surface or found light: the background of a transparent image.

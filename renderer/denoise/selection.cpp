@@ -6,6 +6,7 @@
 namespace chromeball {
 namespace {
 
+constexpr int kSizeReach = 1;      // of the window whose noise limits the size of a dark pixel
 constexpr int kErrorReach = 3;     // of the window over which the noise is averaged
 constexpr int kBiasReach = 6;      // squared biases in the final estimate
 constexpr int kVarianceReach = 1;  // variances in it
@@ -20,11 +21,11 @@ constexpr float kDarkRegression = 1.5f, kDarkOther = 0.1f;
 // Standard errors by which a candidate must be better than those before it. Where a few pixels hold
 // all of the noise, the errors of filtered and noisy images are known equally badly, and the
 // filtered image is better.
-float marginOf(Filter filter) {
+float marginOf(FilterKind filter) {
   switch (filter) {
-    case Filter::None:
+    case FilterKind::None:
       return 0.8f;
-    case Filter::Average:
+    case FilterKind::Average:
       return 0.3f;
     default:
       return 0.6f;
@@ -48,17 +49,22 @@ float total(const RgbPlanes& planes, int x, int y) {
 
 // What the errors of a pixel are relative to. The narrow filters know a sharp highlight from the
 // dark pixels around it, and both halves of the samples contain it, but only one contains a
-// firefly. `dark`: the least size.
+// firefly. A dark spot, to which they bring light, is not brighter than its noise and that of its
+// neighbours allow. `dark`: the least size.
 Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
   const Candidate& noisy = candidates.back();
+  const auto localVariance = [&](size_t c) { return boxMean(noisy.variance[c], kSizeReach); };
+  const RgbPlanes variance{localVariance(0), localVariance(1), localVariance(2)};
   return makePlaneLike(noisy.error[0], [&](int x, int y) {
     float size = 0;
     for (size_t c = 0; c < 3; ++c) {
       float sum = 0, count = 0;
       for (const Candidate& candidate : candidates)
-        if (candidate.filter == Filter::Narrow) sum += candidate.color[c].at(x, y), ++count;
-      const float lesserHalf = noisy.color[c].at(x, y) - std::sqrt(noisy.variance[c].at(x, y));
-      size += square((sum / count + std::max(lesserHalf, 0.0f)) / 2);
+        if (candidate.filter == FilterKind::Narrow) sum += candidate.color[c].at(x, y), ++count;
+      const float value = noisy.color[c].at(x, y);
+      const float lesserHalf = std::max(value - std::sqrt(noisy.variance[c].at(x, y)), 0.0f);
+      const float most = value + std::sqrt(variance[c].at(x, y));
+      size += square(std::min((sum / count + lesserHalf) / 2, most));
     }
     return std::max(size, 3 * square(dark));
   });
@@ -77,8 +83,8 @@ Plane choose(const std::vector<Candidate>& candidates) {
   Plane error = errorOf(0);
   for (size_t i = 1; i < candidates.size(); ++i) {
     const Plane next = errorOf(i);
-    const Filter filter = candidates[i].filter;
-    const bool isRegression = filter == Filter::Narrow || filter == Filter::Wide;
+    const FilterKind filter = candidates[i].filter;
+    const bool isRegression = filter == FilterKind::Narrow || filter == FilterKind::Wide;
     const Plane& size = isRegression ? regressionSize : otherSize;
     const Plane gain = makePlaneLike(
         size, [&](int x, int y) { return (error.at(x, y) - next.at(x, y)) / size.at(x, y); });
@@ -123,7 +129,7 @@ Candidate unfiltered(const Component& component) {
   return candidate;
 }
 
-Candidate filtered(const Component& component, const HalfPlanes& halves, Filter filter) {
+Candidate filtered(const Component& component, const HalfPlanes& halves, FilterKind filter) {
   Candidate candidate{.filter = filter};
   for (size_t c = 0; c < 3; ++c) {
     const Plane &f0 = halves[0][c], &f1 = halves[1][c];

@@ -9,13 +9,13 @@
 namespace chromeball {
 
 // None; a regression of narrow or wide bandwidth; an average.
-enum class Filter { None, Narrow, Wide, Average };
+enum class FilterKind { None, Narrow, Wide, Average };
 
 // An image, and unbiased but noisy estimates of the squared errors of its pixels: squared bias and
 // variance together, and the variance alone.
 struct Candidate {
   RgbPlanes color{}, error{}, variance{};
-  Filter filter = Filter::None;
+  FilterKind filter = FilterKind::None;
 };
 
 // The noisy image itself.
@@ -27,7 +27,7 @@ Candidate unfiltered(const Component& component);
 //   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 / 2,
 // and the error of the mean is the mean error of f0 and f1 less half the variance of either
 // (Bitterli et al. 2016, section 5.3).
-Candidate filtered(const Component& component, const HalfPlanes& halves, Filter filter);
+Candidate filtered(const Component& component, const HalfPlanes& halves, FilterKind filter);
 
 // The mean of squared errors over the window around each pixel of an image: the lesser of the
 // absolute and the relative mean. Absolute errors would spread from bright pixels to dark ones, and
