@@ -61,7 +61,7 @@ foreach(target chromeball_planning chromeball_renderer)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
-    <fmt/format.h> ${PROJECT_SOURCE_DIR}/renderer/math/vec.h)
+    <fmt/format.h> <glm/glm.hpp> <glm/gtc/quaternion.hpp>)
 endforeach()
 set_target_properties(chromeball_planning PROPERTIES
   POSITION_INDEPENDENT_CODE "${BUILD_SHARED_LIBS}")
