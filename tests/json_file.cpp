@@ -7,7 +7,9 @@
 
 namespace chromeball {
 
-nlohmann::json parseJson(const std::string& text) { return nlohmann::json::parse(text); }
+nlohmann::json parseJson(const std::string& text) {
+  return parseJson({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
 
 nlohmann::json jsonOfFile(const std::string& path) { return parseJson(fileContents(path)); }
 

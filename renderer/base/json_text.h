@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as text, and from text that may be damaged: the writer and the parser are compiled here
-// alone.
+// JSON as text, and from text that may be damaged. The writer and the parser take a second to
+// compile: call these.
 #pragma once
 
 #include <cstdint>

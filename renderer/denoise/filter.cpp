@@ -43,7 +43,7 @@ RgbPlanes finished(const Predictions& predictions, const RgbPlanes& noisy) {
   return result;
 }
 
-// Eight pixels from (x, y); `index` is that of the first in its tile. The power is one of two.
+// Eight pixels from (x, y); `index` is that of the first in its tile. `power` is a power of two.
 void average(const TileWeights& weights, int power, size_t index, std::span<const Plane> channels,
              int x, int y, std::span<Plane> means) {
   Float8 sums[3]{}, weightSum{};

@@ -50,8 +50,8 @@ float total(const RgbPlanes& planes, int x, int y) {
 // What the errors of a pixel are relative to. The narrow filters know a sharp highlight from the
 // dark pixels around it, and both halves of the samples contain it, but only one contains a
 // firefly. A dark spot, to which they bring light, is not brighter than its noise and that of its
-// neighbours allow. `dark`: the least size.
-Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
+// neighbours allow.
+Plane squaredSizes(const std::vector<Candidate>& candidates) {
   const Candidate& noisy = candidates.back();
   const auto localVariance = [&](size_t c) { return boxMean(noisy.variance[c], kSizeReach); };
   const RgbPlanes variance{localVariance(0), localVariance(1), localVariance(2)};
@@ -66,18 +66,16 @@ Plane squaredSizes(const std::vector<Candidate>& candidates, float dark) {
       const float most = value + std::sqrt(variance[c].at(x, y));
       size += square(std::min((sum / count + lesserHalf) / 2, most));
     }
-    return std::max(size, 3 * square(dark));
+    return size;
   });
 }
 
 // The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
 // pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
-  const Plane regressionSize = squaredSizes(candidates, kDarkRegression);
-  const Plane otherSize = squaredSizes(candidates, kDarkOther);
+  const Plane size = squaredSizes(candidates);
   const auto errorOf = [&](size_t i) {
-    return makePlaneLike(regressionSize,
-                         [&, i](int x, int y) { return total(candidates[i].error, x, y); });
+    return makePlaneLike(size, [&, i](int x, int y) { return total(candidates[i].error, x, y); });
   };
   Plane chosen = makePlaneLike(candidates[0].error[0], [](int, int) { return 0.0f; });
   Plane error = errorOf(0);
@@ -85,9 +83,10 @@ Plane choose(const std::vector<Candidate>& candidates) {
     const Plane next = errorOf(i);
     const FilterKind filter = candidates[i].filter;
     const bool isRegression = filter == FilterKind::Narrow || filter == FilterKind::Wide;
-    const Plane& size = isRegression ? regressionSize : otherSize;
-    const Plane gain = makePlaneLike(
-        size, [&](int x, int y) { return (error.at(x, y) - next.at(x, y)) / size.at(x, y); });
+    const float least = 3 * square(isRegression ? kDarkRegression : kDarkOther);
+    const Plane gain = makePlaneLike(size, [&](int x, int y) {
+      return (error.at(x, y) - next.at(x, y)) / std::max(size.at(x, y), least);
+    });
     const Plane squared = makePlaneLike(gain, [&](int x, int y) { return square(gain.at(x, y)); });
     const Plane mean = boxMean(gain, kChoiceReach), meanSquare = boxMean(squared, kChoiceReach);
     const float margin = marginOf(filter) / std::sqrt(kWindow);

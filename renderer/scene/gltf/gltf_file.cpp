@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/json_text.h"
 #include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
@@ -78,7 +79,7 @@ void GltfFile::readModel(json& root) {
   requireJoints(root);
   const int noView = fillGaps(root);
   keepLargeNumbers(root);
-  const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = jsonText(root);
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("has more than 4 GiB of JSON");
   std::string error, warning;
   tinygltf::TinyGLTF reader;
