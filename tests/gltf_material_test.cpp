@@ -17,11 +17,12 @@ using nlohmann::json;
 const std::vector<float> kUv = {0, 0, 1, 0, 0, 1};
 
 // A textured triangle with the given material.
-Scene loadWith(GltfWriter& w, const json& material) {
+Scene loadWith(GltfWriter& w, const json& material,
+               const json& sampler = {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}) {
   w.write("a.png", kPng);
   w.root["images"] = {{{"uri", "a.png"}}};
   w.root["textures"] = {{{"source", 0}}, {{"source", 0}, {"sampler", 0}}};
-  w.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  w.root["samplers"] = {sampler};
   w.root["materials"] = {material};
   addTriangle(w, {{"material", 0},
                   {"attributes",
@@ -279,6 +280,26 @@ TEST(GltfMaterial, TangentsOnlyForNormalMaps) {
   ASSERT_EQ(mesh.tangents.size(), 3u);
   // v points down in the image and up on the triangle, so the map's up is the triangle's down.
   for (const vec4& t : mesh.tangents) EXPECT_EQ(t, vec4(1, 0, 0, -1));
+}
+
+TEST(GltfMaterial, UnknownSamplersAreRejected) {
+  const auto errorOf = [](const json& sampler) {
+    GltfWriter w;
+    try {
+      loadWith(w, {{"normalTexture", {{"index", 1}}}}, sampler);
+    } catch (const InputError& e) {
+      return std::string(e.what()).substr((w.folder() / "model.gltf").string().size() + 2);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(errorOf(json::object()), "");
+  EXPECT_EQ(errorOf({{"wrapS", 10497}, {"wrapT", 33648}, {"magFilter", 9729}}), "");
+  for (const char* wrap : {"wrapS", "wrapT"})  // 10496: GL_CLAMP
+    EXPECT_EQ(errorOf({{wrap, 10496}}), std::string("samplers[0].") + wrap +
+                                            ": 10496 is not 10497 (repeat), 33071 (clamp to edge) "
+                                            "or 33648 (mirrored repeat)");
+  EXPECT_EQ(errorOf({{"magFilter", 9987}}),  // of minFilter
+            "samplers[0].magFilter: 9987 is not 9728 (nearest) or 9729 (linear)");
 }
 
 TEST(GltfMaterial, InvalidNumbersAreRejectedOrClamped) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 
 namespace chromeball {
 namespace {
@@ -102,7 +103,7 @@ void GltfDocument::write(const std::filesystem::path& path) {
   const bool isBinary = lowerExtension(path) == ".glb";
   if (!isBinary)
     root["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(bytes_);
-  std::string text = root.dump(isBinary ? -1 : 1, ' ', false, Json::error_handler_t::replace);
+  std::string text = jsonText(root, isBinary ? -1 : 1);
   if (!isBinary)
     return writeFile(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   text.resize((text.size() + 3) / 4 * 4, ' ');

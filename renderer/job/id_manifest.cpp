@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/json.h"
+#include "base/json_text.h"
 
 namespace chromeball {
 namespace {
@@ -55,7 +56,7 @@ std::map<int, std::string> readManifest(const Metadata& metadata, const std::str
   std::map<int, std::string> names;
   const auto found = metadata.find("manifest/" + layer);
   if (found == metadata.end() || !std::holds_alternative<std::string>(found->second)) return names;
-  const auto json = ordered_json::parse(std::get<std::string>(found->second), nullptr, false);
+  const auto json = readJson(std::get<std::string>(found->second));
   if (!json.is_object()) return names;
   for (const auto& [id, name] : json.items())
     if (name.is_string() && !id.empty() && id.size() < 9 &&

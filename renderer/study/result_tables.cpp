@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/json.h"
+#include "base/json_text.h"
 #include "study/estimate_text.h"
 
 namespace chromeball {
@@ -80,7 +81,7 @@ Json resultsJson(const Study& study, const StudyResults& results, const Machine&
                  {"system", machine.system},
                  {"compiler", machine.compiler},
                  {"threads", machine.threads}}},
-               {"study", Json::parse(study.identity)},
+               {"study", readJson(study.identity)},
                {"complete", results.complete},
                {"warnings", results.warnings},
                {"repeats", study.repeats},

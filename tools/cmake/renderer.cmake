@@ -43,7 +43,7 @@ set(chromeball_private_libraries
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
 # Each takes as long as a group, for what it instantiates of a library.
 set_source_files_properties(
-  renderer/math/dense_eigen.cpp renderer/math/dense_least_squares.cpp
+  renderer/base/json_text.cpp renderer/math/dense_eigen.cpp renderer/math/dense_least_squares.cpp
   renderer/math/dense_solvers.cpp renderer/relight/clustered_pca.cpp renderer/lighting/light_file.cpp
   renderer/lighting/fit/light_descent.cpp renderer/lighting/fit/nonnegative.cpp
   renderer/scene/gltf/draco.cpp renderer/scene/gltf/gltf_file.cpp renderer/bake/gltf_document.cpp
@@ -57,12 +57,13 @@ foreach(target chromeball_planning chromeball_renderer)
   target_include_directories(${target} PRIVATE renderer)
   target_include_directories(${target} SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC fmt::fmt glm::glm PRIVATE ${chromeball_private_libraries})
-  chromeball_unity(${target} 20)
   # What nearly every file includes, parsed once.
   target_precompile_headers(${target} PRIVATE
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
     <fmt/format.h> <glm/glm.hpp> <glm/gtc/quaternion.hpp>)
 endforeach()
+chromeball_unity(chromeball_planning 20)
+chromeball_unity(chromeball_renderer 24)
 set_target_properties(chromeball_planning PROPERTIES
   POSITION_INDEPENDENT_CODE "${BUILD_SHARED_LIBS}")
 

@@ -8,7 +8,7 @@ target_include_directories(tests PRIVATE tests)
 target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG
                       JPEG::JPEG GTest::gtest GTest::gtest_main)
 chromeball_optimize_less(tests)
-chromeball_unity(tests 44)  # each file of tests has a namespace of its name
+chromeball_unity(tests 56)  # each file of tests has a namespace of its name
 # What a third of the tests include, and parse for seconds.
 set(tests_dir ${PROJECT_SOURCE_DIR}/tests)
 target_precompile_headers(tests PRIVATE

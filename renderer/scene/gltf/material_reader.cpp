@@ -15,10 +15,21 @@ using tinygltf::Value;
 
 constexpr int kMaxUvSet = 15;
 
-Wrap wrapOf(int code) {
+Wrap readWrap(const GltfFile& file, int code, const std::string& where) {
+  if (code == TINYGLTF_TEXTURE_WRAP_REPEAT) return Wrap::Repeat;
   if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::ClampToEdge;
   if (code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::MirroredRepeat;
-  return Wrap::Repeat;
+  file.fail("{}: {} is not {} (repeat), {} (clamp to edge) or {} (mirrored repeat)", where, code,
+            TINYGLTF_TEXTURE_WRAP_REPEAT, TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE,
+            TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT);
+}
+
+Filter readFilter(const GltfFile& file, int code, const std::string& where) {
+  if (code == TINYGLTF_TEXTURE_FILTER_NEAREST) return Filter::Nearest;
+  if (code != TINYGLTF_TEXTURE_FILTER_LINEAR && code != -1)
+    file.fail("{}: {} is not {} (nearest) or {} (linear)", where, code,
+              TINYGLTF_TEXTURE_FILTER_NEAREST, TINYGLTF_TEXTURE_FILTER_LINEAR);
+  return Filter::Linear;
 }
 
 }  // namespace
@@ -179,9 +190,10 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   if (source.sampler != -1) {
     const tinygltf::Sampler& sampler =
         file_.at(file_.model.samplers, source.sampler, "samplers", where);
-    t.wrapS = wrapOf(sampler.wrapS);
-    t.wrapT = wrapOf(sampler.wrapT);
-    if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) t.filter = Filter::Nearest;
+    const std::string at = fmt::format("samplers[{}]", source.sampler);
+    t.wrapS = readWrap(file_, sampler.wrapS, at + ".wrapS");
+    t.wrapT = readWrap(file_, sampler.wrapT, at + ".wrapT");
+    t.filter = readFilter(file_, sampler.magFilter, at + ".magFilter");
   }
   file_.at(file_.images, image, "images", where);
   const TextureKey key{image, t.wrapS, t.wrapT, t.filter, t.srgb, t.weightedByAlpha};

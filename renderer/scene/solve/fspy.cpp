@@ -4,12 +4,13 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/json_text.h"
 #include "scene/solve/observations.h"
 
 namespace chromeball {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 class Reader {
  public:
@@ -19,7 +20,7 @@ class Reader {
     if (std::filesystem::file_size(path) > kMaxBytes)
       throwInput("{}: is too long for the camera parameters of fSpy", path_);
     const std::vector<uint8_t> bytes = readFile(path);
-    root_ = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    root_ = readJson({bytes.begin(), bytes.end()});
     if (!root_.is_object())
       throwInput(
           "{}: is not JSON with the camera parameters of fSpy; a project (.fspy) is not: "
@@ -30,7 +31,7 @@ class Reader {
   // The number at a path such as "/principalPoint/x", between `least` and `most`.
   double number(const std::string& pointer, double least = -kLargestCoordinate,
                 double most = kLargestCoordinate) const {
-    const json::json_pointer at(pointer);
+    const Json::json_pointer at(pointer);
     const double value =
         root_.contains(at) && root_[at].is_number() ? root_[at].get<double>() : NAN;
     if (!(value > least && value < most))
@@ -44,7 +45,7 @@ class Reader {
 
  private:
   std::string path_;
-  json root_;
+  Json root_;
 };
 
 dvec3 turnedUp(const dvec3& v) { return {v.x, v.z, -v.y}; }
