@@ -27,7 +27,7 @@ def madsen_laursen(run):
             errors |= {(method, count): value for count, value in zip(COUNTS, cut.values())}
         for method in ["irradiance-fit", *CUTS]:
             rows.append([f"{name}, `{method}`"] + [both(errors[(method, n)]) for n in COUNTS])
-        notes.append(f"{name}: below 5% from {first_below(errors, 'irradiance-fit', 5)} lights of the fit, "
+        notes.append(f"{name}: below 5% from column {first_below(errors, 'irradiance-fit', 5)} of the fit, "
                      f"{first_below(errors, 'median-cut', 5)} of centroids, "
                      f"{first_below(errors, 'median-cut-centre', 5)} of centres on")
     if not rows:
@@ -47,7 +47,8 @@ def madsen_laursen(run):
         "inference: the paper says \"centroid\" in one place and \"center\" in another, and does not define its "
         "percentage. Centres do not explain its other two statements: they fall below 5% at 64 lights (of powers of "
         "two), where the paper says about 20, and at 16 times as many as the fit in Galileo's Tomb, where it says 2 to 3 "
-        "times; centroids take 16, and 4 times. The optimisation here needs fewer lights than the paper's.")]
+        "times; centroids take 16, and 4 times. The fit here needs 4 lights in Galileo's Tomb and 5 in St "
+        "Peter's.")]
 
 
 def madsen_2003(run):

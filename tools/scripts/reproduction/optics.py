@@ -131,7 +131,7 @@ def bloom(run):
         "The frames of the film are a weighted sum of Gaussian blurs, 75% of it nearly sharp, darkened towards the "
         "corners, before tone mapping.",
         [f"chromeball image develop IN.exr OUT.png --bloom {mix} --vignette {vignette}"],
-        "The mix above: the sharp part has the text's 75%.",
+        "The mix below: the sharp part has the text's 75%.",
         "The weights and widths of the other parts are in a figure that is not in the text; those here are chosen. The "
         "sum of the image is kept to 1e-5, the fast kernels are within 1e-4 of the exact ones' peak (tests).", pictures)
 

@@ -100,7 +100,8 @@ def rooms(run):
                              f"{name}, seen towards the {place}"))
     return [Row(
         "HDRI 9.2.3: a probe on the walls of a box",
-        "A probe mapped onto a box or a model of the place, so that its light depends on the position.",
+        "The probe is on the walls of a large box around the pedestal instead of an infinite sphere. In 9.6.1 it is on "
+        "a model of the place, so that its light depends on the position.",
         ["chromeball render room.toml -o room.exr"],
         "`[surroundings] shape = \"box\"`. The pillars in a box of 12 x 5.5 x 12 metres, in two lightings, from two directions of view.", "", pictures)]
 

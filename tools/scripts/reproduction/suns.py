@@ -103,7 +103,10 @@ def errata():
         "mapping from world to image, (u, v) = (1/2 - r D_y, 1/2 + r D_x) has u and v exchanged; it is (1/2 + r D_x, "
         "1/2 - r D_y), as in 9.4.1.\n- 9.4.3, 9.6.2: texels are weighted by cos(phi) of the latitude, but the formulas "
         "of the mapping have phi = pi v from the pole, of which it is the sine.\n- 9.5: the estimate of irradiance, the "
-        "mean of L cos(theta) over directions that are uniform on the hemisphere, lacks the factor 2 pi.\n- 9.7: "
+        "mean of L cos(theta) over directions that are uniform on the hemisphere, lacks the factor 2 pi.\n- 9.5, 9.7: "
+        "irradiance is multiplied by the albedo, and rho = L / E, without the 1 / pi of a Lambertian surface's radiance.\n- "
+        "9.2.5, 9.6.2: the blur of the clipped image is called figure 9.6 (d), and the lights of a cube's faces 9.31 (a); "
+        "the captions have (b) for both.\n- 9.7: "
         "the composite in which objects shadow the ground is called figure 9.38 (c); its caption has (c) for the white "
         "local scene without objects, and (e) for the composite.", "")]
 

@@ -126,5 +126,5 @@ def rows(run):
         table(["light", *names], measured)
         + "\n\nA metal ball over a floor of the same metal, seen from one side, by glossy transfer (`sh:4`, 64 clusters of "
         "24 vectors), against a render:\n\n" + table(["roughness", *glossy_names], glossy_rows),
-        "The figure has no numbers. 25 wavelets are about as close as 25 harmonics, 100 are closer, but for the noise of "
+        "The figure has no numbers. 25 wavelets have .5 to 2.4 times the error of 25 harmonics, 100 are closer, but for the noise of "
         "noon: few paths find the one cell of the sun, and the error falls with the root of the samples, to 4% with 65536.", views(run))]
