@@ -14,6 +14,7 @@ namespace chromeball {
 // CIE 1931 xy; the default is Rec. 709 with D65.
 struct Chromaticities {
   glm::dvec2 red{0.64, 0.33}, green{0.3, 0.6}, blue{0.15, 0.06}, white{0.3127, 0.329};
+  bool operator==(const Chromaticities&) const = default;
 };
 
 // To three decimals, as files state it.

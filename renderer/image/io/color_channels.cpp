@@ -44,27 +44,53 @@ std::vector<std::string> wordsOf(std::string_view segment) {
   return words;
 }
 
-// By the names of our own layers and of those of Blender, Arnold, V-Ray, Cryptomatte and others.
-bool isNoLight(std::string_view segment) {
-  constexpr std::array kSegments = {"node",     "clipped",       "diffcol", "glosscol", "transcol",
-                                    "material", "subsurfacecol", "ratio",   "samples",  "variance",
-                                    "invalid",  "reflectance",   "zback"};
-  constexpr std::array kWords = {
-      "alpha",    "ao",        "occlusion", "mist",      "normal",      "normals", "position",
-      "pref",     "velocity",  "motion",    "vector",    "vectors",     "tangent", "uv",
-      "shadow",   "id",        "ids",       "index",     "mask",        "masks",   "matte",
-      "mattes",   "count",     "error",     "distance",  "coverage",    "opacity", "roughness",
-      "metallic", "metalness", "basecolor", "disparity", "motionvector"};
-  constexpr std::array kPartsOfWords = {"depth", "albedo", "crypto"};
-  const auto isIn = [](const auto& list, const std::string& word) {
+enum class Content { Light, Surface, Data };  // Surface: the colour of a material
+
+// By the names of our own layers and of those of Blender, Arnold, V-Ray, Houdini, Cryptomatte and
+// others.
+Content contentOf(std::string_view segment) {
+  constexpr std::array kDataSegments = {"node",    "clipped",  "material", "ratio",
+                                        "samples", "variance", "invalid",  "zback"};
+  constexpr std::array kSurfaceSegments = {"diffcol", "glosscol", "transcol", "subsurfacecol",
+                                           "reflectance"};
+  constexpr std::array kDataWords = {
+      "alpha",    "ao",        "occlusion", "mist",     "normal",   "normals",     "position",
+      "pref",     "velocity",  "motion",    "vector",   "vectors",  "tangent",     "uv",
+      "shadow",   "id",        "ids",       "index",    "mask",     "masks",       "matte",
+      "mattes",   "count",     "error",     "distance", "coverage", "opacity",     "roughness",
+      "metallic", "metalness", "disparity", "facing",   "st",       "motionvector"};
+  constexpr std::array kDataPartsOfWords = {"depth", "crypto"};
+  // The filters of V-Ray are what its raw light is multiplied by.
+  constexpr std::array kSurfaceWords = {"basecolor", "filter", "wire"};
+  constexpr std::array kSurfacePartsOfWords = {"albedo"};
+  // Before "color": "BaseColor", "diffuse_color".
+  constexpr std::array kOfSurfaces = {"base",       "diffuse",      "specular", "wire",
+                                      "subsurface", "transmission", "object",   "material",
+                                      "surface",    "vertex"};
+  // Of "Pworld", "Nn" and "Pref", normals and positions.
+  constexpr std::array kSpaces = {"world", "camera", "cam", "object", "obj", "ref", "rest", "eye",
+                                  "view",  "screen", "n",   "g",      "s",   "w",   "o"};
+  const auto isIn = [](const auto& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
   };
-  if (isIn(kSegments, inLowerCase(segment))) return true;
-  return std::ranges::any_of(wordsOf(segment), [&](const std::string& word) {
-    return isIn(kWords, word) || std::ranges::any_of(kPartsOfWords, [&](const char* part) {
-             return word.find(part) != word.npos;
-           });
-  });
+  const auto hasIn = [](const auto& list, const std::string& word) {
+    return std::ranges::any_of(list,
+                               [&](const char* part) { return word.find(part) != word.npos; });
+  };
+  const std::string lower = inLowerCase(segment);
+  if (isIn(kDataSegments, lower)) return Content::Data;
+  const std::vector<std::string> words = wordsOf(segment);
+  const auto isData = [&](const std::string& word) {
+    return isIn(kDataWords, word) || hasIn(kDataPartsOfWords, word) ||
+           ((word[0] == 'p' || word[0] == 'n') && isIn(kSpaces, std::string_view(word).substr(1)));
+  };
+  if (std::ranges::any_of(words, isData)) return Content::Data;
+  if (isIn(kSurfaceSegments, lower)) return Content::Surface;
+  for (size_t i = 0; i < words.size(); ++i)
+    if (isIn(kSurfaceWords, words[i]) || hasIn(kSurfacePartsOfWords, words[i]) ||
+        (i > 0 && (words[i] == "color" || words[i] == "colour") && isIn(kOfSurfaces, words[i - 1])))
+      return Content::Surface;
+  return Content::Light;
 }
 
 // Alpha, a normal, a position, a depth; also "N" of the channel "View.N.X". Elsewhere a letter says
@@ -78,16 +104,23 @@ bool isLetterOfNoLight(const std::vector<std::string_view>& segments) {
          (count > 1 && segments.back().size() == 1 && is(segments[count - 2]));
 }
 
+Content contentOf(const std::vector<std::string_view>& segments) {
+  Content content = isLetterOfNoLight(segments) ? Content::Data : Content::Light;
+  for (const std::string_view segment : segments) content = std::max(content, contentOf(segment));
+  return content;
+}
+
 // The least is the best; nullopt: no light.
-constexpr int kUnnamed = 0, kOtherLayer = 5, kGrey = 6;
+constexpr int kUnnamed = 0, kWithBeauty = 5, kOtherLayer = 6, kGrey = 7;
 std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};
   if (layer.empty()) return kUnnamed;
   const std::vector<std::string_view> segments = segmentsOf(layer);
   const auto light = std::find(kLight.begin(), kLight.end(), inLowerCase(segments.back()));
   if (light != kLight.end()) return 1 + int(light - kLight.begin());
-  if (isLetterOfNoLight(segments) || std::ranges::any_of(segments, isNoLight)) return {};
-  return kOtherLayer;
+  if (contentOf(segments) != Content::Light) return {};
+  const std::vector<std::string> words = wordsOf(segments.back());
+  return std::ranges::find(words, "beauty") != words.end() ? kWithBeauty : kOtherLayer;
 }
 
 bool hasChannel(const std::vector<std::string>& channels, const std::string& name) {
@@ -136,6 +169,10 @@ void addCandidates(const PartChannels& part, size_t index,
 }
 
 }  // namespace
+
+bool isColorLayer(const std::string& layer) {
+  return contentOf(segmentsOf(layer)) != Content::Data;
+}
 
 std::optional<ColorChannels> findColorChannels(std::span<const PartChannels> parts) {
   std::vector<ColorCandidate> candidates;

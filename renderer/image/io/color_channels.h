@@ -24,9 +24,14 @@ struct ColorChannels {
 };
 
 // In this order: R, G and B without a layer; those of the layers Combined, beauty, rgba and C;
-// those of another layer, unless a word of its name says that it is no light (AO, albedo, normal,
-// depth, mask, crypto, ...); Y; the only channel, if its name does not say that it is something
-// else (A, Z, R, ...) or no light. nullopt if there is none of these.
+// those of a layer with the word beauty; those of another layer, unless a word of its name says
+// that it is no light (AO, albedo, normal, depth, mask, crypto, ...); Y; the only channel, if its
+// name does not say that it is something else (A, Z, R, ...) or no light. nullopt if there is none
+// of these.
 std::optional<ColorChannels> findColorChannels(std::span<const PartChannels> parts);
+
+// Whether R, G and B of a layer of this name are a colour, of light or of a surface (albedo), that
+// has primaries: not a normal, a position, a mask, a statistic.
+bool isColorLayer(const std::string& layer);
 
 }  // namespace chromeball

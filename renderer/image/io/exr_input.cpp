@@ -211,6 +211,7 @@ void ExrInput::readHeader() {
   metadata_ = metadataOf(header);
   placement_ = placementOf(window, header.displayWindow());
   primaries_ = chromaticitiesOf(header);
+  pixelAspectRatio_ = header.pixelAspectRatio();
   checkExrLength(path_, width_, height_, bytesPerTexel(header.channels()));
   channels_ = channelsOf(header.channels());
   if (isLuminanceChroma(header.channels())) {

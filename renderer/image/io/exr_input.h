@@ -30,6 +30,7 @@ class ExrInput {
   const std::optional<Placement>& placement() const { return placement_; }
   const std::string& part() const { return partName_; }  // empty: the only one
   const std::optional<Chromaticities>& primaries() const { return primaries_; }
+  double pixelAspectRatio() const { return pixelAspectRatio_; }  // width / height
   // Of several layers or parts with colour, which one is the file's: one line; else empty.
   const std::string& choice() const { return choice_; }
   Numbers numbers() const { return numbers_; }
@@ -51,6 +52,7 @@ class ExrInput {
   std::optional<Placement> placement_;
   std::string partName_, choice_;
   std::optional<Chromaticities> primaries_;
+  double pixelAspectRatio_ = 1;
   Numbers numbers_ = Numbers::Half;
   bool isTiled_ = false;
   std::unique_ptr<Part> part_;

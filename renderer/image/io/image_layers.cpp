@@ -22,12 +22,18 @@ Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
   return out;
 }
 
-// Of the three channels, or more, of the file's colour. Grey has no primaries.
-Image inRec709(Image color, const std::vector<size_t>& channels, const ImageFile& file) {
+// Of the three channels, or more, of the file's colour. nullopt: Rec. 709's, or grey, which has
+// none.
+std::optional<Chromaticities> primariesOf(const std::vector<size_t>& channels,
+                                          const ImageFile& file) {
   const bool isGrey = channels[0] == channels[1];
-  if (isGrey || !file.primaries || isRec709(*file.primaries)) return color;
-  const auto matrix = toRec709(*file.primaries);  // checked by readImageFile()
-  if (matrix) convertColor(color, *matrix);
+  if (isGrey || !file.primaries || isRec709(*file.primaries)) return {};
+  return file.primaries;
+}
+
+Image inRec709(Image color, const std::vector<size_t>& channels, const ImageFile& file) {
+  if (const auto primaries = primariesOf(channels, file))
+    convertColor(color, toRec709(*primaries).value());  // checked by readImageFile()
   return color;
 }
 
@@ -92,6 +98,16 @@ std::optional<ChannelIndices> colorIndices(const ImageFile& file) {
   return indicesOf(file, "", {names[0].c_str(), names[1].c_str(), names[2].c_str()});
 }
 
+ChannelIndices neededColor(const ImageFile& file, const fs::path& path) {
+  const auto indices = colorIndices(file);
+  if (!indices)
+    throwInput(
+        "{}: has no colour; it needs channels R, G and B, or Y, or a single channel of light; it "
+        "has {}",
+        path.string(), listOf(file.channels));
+  return *indices;
+}
+
 }  // namespace
 
 std::optional<Image> findColor(const ImageFile& file) {
@@ -108,8 +124,11 @@ std::optional<Image> findColorAndAlpha(const ImageFile& file) {
 
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
   const std::string prefix = name + ".";
-  for (const std::array letters : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
-    if (auto image = findChannels(file, prefix, {letters[0], letters[1], letters[2]})) return image;
+  if (const auto indices = indicesOf(file, prefix, {"R", "G", "B"})) {
+    Image image = extract(file, *indices);
+    return isColorLayer(name) ? inRec709(std::move(image), *indices, file) : std::move(image);
+  }
+  if (auto image = findChannels(file, prefix, {"X", "Y", "Z"})) return image;
   if (auto image = findChannels(file, name, {""})) return image;
   const auto belongs = [&](const std::string& channel) { return channel.starts_with(prefix); };
   const auto first = std::find_if(file.channels.begin(), file.channels.end(), belongs);
@@ -147,13 +166,13 @@ Image inDisplayWindow(Image data, const std::optional<Placement>& placement, con
 }
 
 Image colorOfData(ImageFile&& file, const fs::path& path) {
-  const auto indices = colorIndices(file);
-  if (!indices)
-    throwInput(
-        "{}: has no colour; it needs channels R, G and B, or Y, or a single channel of light; it "
-        "has {}",
-        path.string(), listOf(file.channels));
-  return inRec709(taken(file, *indices), *indices, file);
+  const ChannelIndices indices = neededColor(file, path);
+  return inRec709(taken(file, indices), indices, file);
+}
+
+StoredColor storedColorOf(ImageFile&& file, const fs::path& path) {
+  const ChannelIndices indices = neededColor(file, path);
+  return {inDisplayWindow(taken(file, indices), file.placement, path), primariesOf(indices, file)};
 }
 
 Image colorAndAlphaOfData(ImageFile&& file, const fs::path& path) {

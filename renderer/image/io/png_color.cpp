@@ -84,13 +84,26 @@ DecodeSample transferOf(uint8_t code) {
   }
 }
 
+std::optional<Transfer> statedTransfer(uint8_t code) {
+  switch (code) {
+    case 2:  // unspecified
+      return {};
+    case 8:
+      return Transfer::Linear;
+    case 13:
+      return Transfer::Srgb;
+    default:
+      return Transfer::Other;
+  }
+}
+
 PngColor colorOfCodePoints(std::span<const uint8_t> chunk) {
   const uint8_t primaries = chunk[0], transfer = chunk[1], matrix = chunk[2], fullRange = chunk[3];
   if (matrix != 0 || fullRange != 1)
     throw std::runtime_error(
         "its cICP chunk states samples that are not RGB of the full range, which are not decoded "
         "here");
-  return {transferOf(transfer), primariesOf(primaries)};
+  return {transferOf(transfer), primariesOf(primaries), statedTransfer(transfer)};
 }
 
 }  // namespace
@@ -99,15 +112,17 @@ PngColor pngColor(std::span<const uint8_t> file) {
   constexpr size_t kCodePoints = 4;
   if (const auto chunk = pngChunk(file, "cICP"); chunk.size() == kCodePoints)
     return colorOfCodePoints(chunk);
-  if (!pngChunk(file, "sRGB").empty() || !pngChunk(file, "iCCP").empty()) return {};
+  if (!pngChunk(file, "sRGB").empty()) return {.transfer = Transfer::Srgb};
   PngColor color;
-  // What writers of sRGB state is 1/2.2, a power near its curve.
-  constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.05;
-  if (const auto gamma = numbersIn<1>(pngChunk(file, "gAMA"));
-      gamma && (*gamma)[0] > 0 && std::abs((*gamma)[0] / kOfSrgb - 1) > kTolerance)
-    color.decode = [exponent = 1 / (*gamma)[0]](float sample) {
-      return powerToLinear(sample, exponent);
-    };
+  if (const auto gamma = numbersIn<1>(pngChunk(file, "gAMA")); gamma && (*gamma)[0] > 0) {
+    // What writers of sRGB state is 1/2.2, a power near its curve.
+    constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.05;
+    const double exponent = 1 / (*gamma)[0];
+    const bool isSrgb = std::abs((*gamma)[0] / kOfSrgb - 1) <= kTolerance;
+    color.transfer = isSrgb ? Transfer::Srgb : exponent == 1 ? Transfer::Linear : Transfer::Other;
+    if (!isSrgb)
+      color.decode = [exponent](float sample) { return powerToLinear(sample, exponent); };
+  }
   if (const auto n = numbersIn<8>(pngChunk(file, "cHRM")))
     color.primaries = Chromaticities{
         {(*n)[2], (*n)[3]}, {(*n)[4], (*n)[5]}, {(*n)[6], (*n)[7]}, {(*n)[0], (*n)[1]}};

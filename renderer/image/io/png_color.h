@@ -9,6 +9,7 @@
 #include <span>
 
 #include "image/chromaticities.h"
+#include "image/io/read_image.h"
 #include "image/tonemap.h"
 
 namespace chromeball {
@@ -19,11 +20,12 @@ using DecodeSample = std::function<float(float)>;
 struct PngColor {
   DecodeSample decode = srgbToLinear;
   std::optional<Chromaticities> primaries = {};  // nullopt: of sRGB
+  std::optional<Transfer> transfer = {};         // nullopt: not stated, `decode` is of sRGB
 };
 
-// By the chunk cICP, else by gAMA and cHRM, which sRGB and iCCP override. An ICC profile is not
-// read: sRGB. Throws std::runtime_error for a cICP whose samples cannot be decoded here, such as
-// those of PQ and HLG.
+// By the chunk cICP, else by gAMA and cHRM, which sRGB overrides; they approximate an ICC profile
+// (iCCP), which is not read. Throws std::runtime_error for a cICP whose samples cannot be decoded
+// here, such as those of PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -47,6 +47,12 @@ ImageFile readExr(const fs::path& path) {
   file.part = input.part();
   file.primaries = input.primaries();
   if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
+  if (input.pixelAspectRatio() != 1)
+    file.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: its pixels are not square, {:.4g} times as wide as high; they are taken "
+                     "as square",
+                     path.string(), input.pixelAspectRatio())});
   checkImageMemory(path, input.width(), input.height(), int64_t(input.channels().size()));
   file.image = Image(input.width(), input.height(), int(input.channels().size()));
   input.read(0, input.height(), file.image.texels.data());
@@ -81,13 +87,15 @@ void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image)
   });
 }
 
-// Sets file.primaries too.
+// Sets file.primaries and file.transfer too.
 DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
                            IntegerTexels integers, ImageFile& file) {
   if (integers == IntegerTexels::Linear) return [](float sample) { return sample; };
   PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
   file.primaries = color.primaries;
-  return std::move(color.decode);
+  if (integers == IntegerTexels::Srgb) return std::move(color.decode);
+  file.transfer = color.transfer;
+  return [](float sample) { return sample; };
 }
 
 ImageFile readHdr(const fs::path& path) {

@@ -27,7 +27,14 @@ inline constexpr const char* kEnvmapLatLong = "latlong";
 inline constexpr const char* kEnvmapCube = "cube";
 
 // The encoding of integer files (8 or 16 bits). Float files are always linear.
-enum class IntegerTexels { Srgb, Linear };  // Srgb: decoded to linear, except alpha
+enum class IntegerTexels {
+  Srgb,    // decoded to linear as the file says, else from sRGB; except alpha
+  Linear,  // as stored: a mask, no light
+  Levels,  // as stored: a photograph; refuses what Srgb refuses
+};
+
+// The encoding that a file of integers states; Other: neither of the two.
+enum class Transfer { Srgb, Linear, Other };
 
 // The position of an image's first pixel in another image, and the size of that, which need not
 // contain the image.
@@ -49,6 +56,7 @@ struct ImageFile {
   int bits = 0;           // of these, 8 or 16
   std::string part = {};  // the name of the part that was read, of an .exr with several
   std::optional<Chromaticities> primaries = {};  // of the colour, if these are not Rec. 709's
+  std::optional<Transfer> transfer = {};         // of Levels, if the file states one
   Messages messages = {};  // what was chosen, or was not understood; each "FILE: ..."
 };
 
@@ -66,8 +74,9 @@ std::optional<Image> findColor(const ImageFile& file);
 std::optional<Image> findColorAndAlpha(const ImageFile& file);
 
 // The channels NAME.R NAME.G NAME.B or NAME.X NAME.Y NAME.Z (three channels), else NAME or the
-// first channel of the layer NAME (one channel); "alpha" also finds channel A. nullopt if the file
-// has no such layer.
+// first channel of the layer NAME (one channel); "alpha" also finds channel A. R, G and B of a
+// layer of colour (isColorLayer() in color_channels.h) are converted to linear Rec. 709. nullopt if
+// the file has no such layer.
 std::optional<Image> findLayer(const ImageFile& file, const std::string& name);
 
 // The names of the layers that findLayer() finds.
@@ -78,6 +87,13 @@ std::vector<std::string> layerNames(const ImageFile& file);
 Image colorOf(ImageFile&& file, const std::filesystem::path& path);
 Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb,
                 Messages* messages = nullptr);  // gets the file's
+
+// As colorOf(), not converted: the channels of a sensor, for example.
+struct StoredColor {
+  Image image;
+  std::optional<Chromaticities> primaries;  // nullopt: Rec. 709's, or grey
+};
+StoredColor storedColorOf(ImageFile&& file, const std::filesystem::path& path);
 
 // Also with alpha as a fourth channel, if the file has R, G, B and A.
 Image colorAndAlphaOf(ImageFile&& file, const std::filesystem::path& path);

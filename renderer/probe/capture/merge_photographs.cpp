@@ -40,14 +40,18 @@ void checkFactorsDiffer(const PhotographSeries& series, const std::vector<dvec3>
                series.files.back());
 }
 
+glm::dmat3 toRec709(const std::optional<Chromaticities>& primaries) {
+  return primaries ? toRec709(*primaries).value() : glm::dmat3(1);
+}
+
 // The flat fields, each read once, and which of them each photograph is divided by.
 class FlatFields {
  public:
   FlatFields(const PhotographSeries& series, const std::vector<CameraSettings>& settings,
-             const Image& photograph)
+             const PhotographLevels& photographs)
       : ofPhotograph_(settings.size(), nullptr) {
     for (const auto& [aperture, file] : series.flatFields) {
-      if (!images_.contains(file)) images_[file] = read(file, series, photograph);
+      if (!images_.contains(file)) images_[file] = read(file, series, photographs);
       const Image& image = images_[file];
       bool isUsed = false;
       for (size_t i = 0; i < settings.size(); ++i) {
@@ -68,8 +72,14 @@ class FlatFields {
   const Messages& messages() const { return messages_; }  // of the readers
 
  private:
-  Image read(const std::string& file, const PhotographSeries& series, const Image& photograph) {
-    Image image = readImage(file, IntegerTexels::Srgb, &messages_);
+  Image read(const std::string& file, const PhotographSeries& series,
+             const PhotographLevels& photographs) {
+    ImageFile contents = readImageFile(file);
+    messages_.insert(messages_.end(), contents.messages.begin(), contents.messages.end());
+    auto [image, primaries] = storedColorOf(std::move(contents), file);
+    if (primaries != photographs.primaries)
+      convertColor(image, glm::inverse(toRec709(photographs.primaries)) * toRec709(primaries));
+    const Image& photograph = photographs.levels.front();
     if (image.width != photograph.width || image.height != photograph.height)
       throwInput("{}: is {} x {}, but {} is {} x {}; a flat field has the photographs' size", file,
                  image.width, image.height, series.files.front(), photograph.width,
@@ -100,16 +110,27 @@ void checkShifts(std::span<const Exposure> exposures) {
   }
 }
 
-ResponseCurve responseOf(const PhotographSeries& series, int bits,
+// The files' own, if they state one.
+std::string defaultResponse(const PhotographSeries& series, const PhotographLevels& photographs) {
+  if (photographs.transfer == Transfer::Other)
+    throwInput(
+        "{}: states that its levels are neither linear nor encoded as sRGB (gAMA, cICP); give "
+        "--response",
+        series.files.front());
+  if (photographs.transfer) return photographs.transfer == Transfer::Srgb ? "srgb" : "linear";
+  return photographs.bits == 8 ? "srgb" : "linear";
+}
+
+ResponseCurve responseOf(const PhotographSeries& series, const PhotographLevels& photographs,
                          std::span<const Exposure> exposures, std::string& name) {
   name = series.response;
-  if (name.empty()) name = bits == 8 ? "srgb" : "linear";
+  if (name.empty()) name = defaultResponse(series, photographs);
   if (name == "linear") return ResponseCurve::linear();
   if (name == "srgb") return ResponseCurve::srgb();
   if (name != "solve" && !std::filesystem::exists(name))
     throwInput("--response: `{}` is neither linear, srgb or solve nor a file", name);
   if (name != "solve") return ResponseCurve::read(name);
-  if (bits != 8)
+  if (photographs.bits != 8)
     throwInput("--response solve: {} has no 8-bit levels; a response is solved from these",
                series.files.front());
   return solveResponse(exposures, series.smoothness);
@@ -146,7 +167,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   checkFactorsDiffer(series, merged.factors);
   PhotographLevels photographs = readLevels(series.files, series.white, series.resizes);
   merged.white = photographs.white;
-  const FlatFields flatFields(series, merged.settings, photographs.levels.front());
+  const FlatFields flatFields(series, merged.settings, photographs);
   merged.messages = std::move(photographs.messages);
   merged.messages.insert(merged.messages.end(), flatFields.messages().begin(),
                          flatFields.messages().end());
@@ -155,9 +176,11 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
     exposures.push_back(
         {series.files[i], std::move(photographs.levels[i]), merged.factors[i], flatFields.of(i)});
   if (series.checkAlignment) checkShifts(exposures);
-  merged.response = responseOf(series, photographs.bits, exposures, merged.responseName);
+  merged.response = responseOf(series, photographs, exposures, merged.responseName);
   merged.image = mergeExposures(exposures, merged.response);
   for (float& texel : merged.image.radiance.texels) texel *= merged.white;  // the files' scale
+  // Last: exposure, saturation and black are those of the files' channels.
+  if (photographs.primaries) convertColor(merged.image.radiance, toRec709(photographs.primaries));
   merged.agreements = exposureAgreement(exposures, merged.response);
 
   const size_t pixels = merged.image.clipped.texels.size();

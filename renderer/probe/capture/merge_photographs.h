@@ -28,8 +28,8 @@ struct PhotographSeries {
   };
   std::vector<FlatField> flatFields;
 
-  // linear, srgb, solve (solve_response.h) or a file (response_curve.h). Empty: srgb for 8 bits,
-  // else linear.
+  // linear, srgb, solve (solve_response.h) or a file (response_curve.h). Empty: what the files
+  // state, else srgb for 8 bits, else linear.
   std::string response;
   double smoothness = 20;      // of solve
   std::optional<float> white;  // of float files (read_levels.h)

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/io/read_image.h"
 #include "image/resample.h"
 
 namespace chromeball {
@@ -37,12 +36,15 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
                             bool resizes) {
   PhotographLevels result;
   for (const std::string& file : files) {
-    ImageFile read = readImageFile(file, IntegerTexels::Linear);
+    ImageFile read = readImageFile(file, IntegerTexels::Levels);
     const int bits = read.bits;
+    const std::optional<Transfer> transfer = read.transfer;
     result.messages.insert(result.messages.end(), read.messages.begin(), read.messages.end());
-    Image image = colorOf(std::move(read), file);
+    auto [image, primaries] = storedColorOf(std::move(read), file);
     if (result.levels.empty()) {
       result.bits = bits;
+      result.primaries = primaries;
+      result.transfer = transfer;
     } else {
       const Image& first = result.levels.front();
       if (!resizes && (image.width != first.width || image.height != first.height))
@@ -53,6 +55,14 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
       if (bits != result.bits)
         throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,
                    kindOf(bits), files.front(), kindOf(result.bits));
+      if (primaries != result.primaries)
+        throwInput("{}: its primaries are not those of {}; photographs of a series have the same",
+                   file, files.front());
+      if (transfer != result.transfer)
+        throwInput(
+            "{}: the encoding of its levels that it states (gAMA, sRGB, cICP) is not that of {}; "
+            "photographs of a series have the same",
+            file, files.front());
     }
     result.levels.push_back(std::move(image));
   }

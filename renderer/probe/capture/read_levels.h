@@ -8,13 +8,16 @@
 
 #include "base/message.h"
 #include "image/image.h"
+#include "image/io/read_image.h"
 
 namespace chromeball {
 
 struct PhotographLevels {
-  std::vector<Image> levels;    // as encoded, divided by `white`; three channels; of one size
-  int bits = 0;                 // of the files' channels; 0: floats
-  float white = 1;              // the texel of the files that is level 1
+  std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
+  std::optional<Chromaticities> primaries;  // of these channels; nullopt: Rec. 709's, or grey
+  std::optional<Transfer> transfer;         // that the files state
+  int bits = 0;                             // of the files' channels; 0: floats
+  float white = 1;                          // the texel of the files that is level 1
   std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
   Messages messages;            // of the readers
 };
@@ -22,7 +25,7 @@ struct PhotographLevels {
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
 // to the smallest width and height. `white` is that of float files, which are otherwise white at 1,
 // or at their largest texel if that is higher. Integers are white at 1. Throws InputError if a file
-// is no image, or if sizes or kinds of numbers differ.
+// is no image, or if sizes, kinds of numbers, primaries or stated transfers differ.
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes = false);
 
