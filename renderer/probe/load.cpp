@@ -21,12 +21,19 @@ const std::string* textOf(const ImageFile& file, const char* attribute) {
   return found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
+// Of the map, which a data window may lie in.
+ImageSize sizeOf(const ImageFile& file) {
+  if (file.placement) return {file.placement->width, file.placement->height};
+  return {file.image.width, file.image.height};
+}
+
 // The mapping in OpenEXR's `envmap` attribute.
 std::optional<Mapping> openExrMapping(const ImageFile& file) {
   const std::string* envmap = textOf(file, kEnvmapAttribute);
   if (!envmap) return std::nullopt;
   if (*envmap == kEnvmapLatLong) return Mapping::LatLong;
-  const bool isStrip = file.image.height == 6 * file.image.width;
+  const ImageSize size = sizeOf(file);
+  const bool isStrip = size.height == 6 * int64_t(size.width);
   if (*envmap == kEnvmapCube && isStrip) return Mapping::VerticalStrip;
   return std::nullopt;
 }
@@ -36,7 +43,8 @@ std::optional<Mapping> namedMapping(const ImageFile& file) {
   const std::string* name = textOf(file, kMappingAttribute);
   if (!name) return std::nullopt;
   try {
-    return parseMapping(*name, file.image.width, file.image.height, kMappingAttribute);
+    const ImageSize size = sizeOf(file);
+    return parseMapping(*name, size.width, size.height, kMappingAttribute);
   } catch (const InputError&) {
     return std::nullopt;
   }
