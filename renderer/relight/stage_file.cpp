@@ -82,6 +82,15 @@ Image extract(Image&& all, const std::vector<size_t>& channels) {
   return std::move(all);
 }
 
+// All triples of channels.
+void convertColors(Image& image, const glm::dmat3& matrix) {
+  for (size_t i = 0; i + 2 < image.texels.size(); i += 3) {
+    float* color = &image.texels[i];
+    const dvec3 converted = matrix * dvec3(color[0], color[1], color[2]);
+    for (int c = 0; c < 3; ++c) color[c] = float(converted[c]);
+  }
+}
+
 // `top`: the image's first row in the stage.
 void checkFinite(const std::filesystem::path& path, const Image& image, int top) {
   for (size_t i = 0; i < image.texels.size(); ++i)
@@ -114,6 +123,15 @@ StageReader::StageReader(const std::filesystem::path& path)
   if (!elements)
     throwInput("{}: lacks elements of its basis {}, which has {}", path.string(), basis_.name(),
                basis_.size());
+  if (file_.placement())
+    throwInput(
+        "{}: its data window is not its display window: it was cropped or extended after it was "
+        "made; a light stage has all pixels of its picture",
+        path.string());
+  if (const auto& primaries = file_.primaries(); primaries && !isRec709(*primaries)) {
+    toRec709_ = toRec709(*primaries);
+    if (!toRec709_) throwInput("{}: its primaries are degenerate", path.string());
+  }
   elements_ = *elements;
   std::vector<std::string> own;
   addChannels(own, kOwn);
@@ -125,6 +143,10 @@ LightStage StageReader::read(int top, int count) {
   LightStage band{basis_, {}, {}};
   if (!own_.empty()) band.own = extract(all, own_);
   band.elements = extract(std::move(all), elements_);
+  if (toRec709_) {
+    convertColors(band.own, *toRec709_);
+    convertColors(band.elements, *toRec709_);
+  }
   checkFinite(path_, band.elements, top);
   checkFinite(path_, band.own, top);
   return band;

@@ -32,7 +32,8 @@ class StageWriter {
 
 class StageReader {
  public:
-  // Throws InputError for a file that is not a light stage, or that lacks elements.
+  // Colour of other primaries is converted to linear Rec. 709. Throws InputError for a file that is
+  // not a light stage, that lacks elements, or whose data window is not its display window.
   explicit StageReader(const std::filesystem::path& path);
 
   const DirectionBasis& basis() const { return basis_; }
@@ -50,6 +51,7 @@ class StageReader {
   std::filesystem::path path_;
   ExrRowsReader file_;
   DirectionBasis basis_;
+  std::optional<glm::dmat3> toRec709_;  // nullopt: it is
   std::vector<size_t> elements_, own_;  // positions of their channels; empty: there are none
 };
 

@@ -43,6 +43,11 @@ int ExrRowsReader::height() const { return input_->height(); }
 const std::vector<std::string>& ExrRowsReader::channels() const { return input_->channels(); }
 const Metadata& ExrRowsReader::metadata() const { return input_->metadata(); }
 
+const std::optional<Placement>& ExrRowsReader::placement() const { return input_->placement(); }
+const std::optional<Chromaticities>& ExrRowsReader::primaries() const {
+  return input_->primaries();
+}
+
 Image ExrRowsReader::read(int top, int count) {
   Image rows(width(), count, int(channels().size()));
   input_->read(top, count, rows.texels.data());
