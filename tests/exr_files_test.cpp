@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -16,7 +17,9 @@
 #include "image/io/color_channels.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
+#include "relight/stage_file.h"
 #include "temporary_folder.h"
 
 namespace chromeball::exr_files_test {
@@ -32,16 +35,21 @@ struct Part {
 
 struct Windows {
   Imath::Box2i data{{0, 0}, {7, 3}}, display{{0, 0}, {7, 3}};
+  float pixelAspectRatio = 1;
 };
 
 void writeParts(const std::string& path, const std::vector<Part>& parts,
-                const Windows& windows = {}, std::optional<Imf::Chromaticities> primaries = {}) {
+                const Windows& windows = {}, std::optional<Imf::Chromaticities> primaries = {},
+                const std::string& basis = "", const std::string& mapping = "") {
   std::vector<Imf::Header> headers;
   for (const Part& part : parts) {
-    Imf::Header& header = headers.emplace_back(windows.display, windows.data);
+    Imf::Header& header =
+        headers.emplace_back(windows.display, windows.data, windows.pixelAspectRatio);
     header.setType(Imf::SCANLINEIMAGE);
     if (!part.name.empty()) header.setName(part.name);
     if (primaries) header.insert("chromaticities", Imf::ChromaticitiesAttribute(*primaries));
+    if (!basis.empty()) header.insert("basis", Imf::StringAttribute(basis));
+    if (!mapping.empty()) header.insert(kMappingAttribute, Imf::StringAttribute(mapping));
     for (const auto& [name, value] : part.channels)
       header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   }
@@ -119,6 +127,8 @@ TEST(ExrFiles, TheColourIsChosenByName) {
             "beauty.R");
   EXPECT_EQ(layerOf({"a.B", "a.G", "a.R", "rgba.A", "rgba.B", "rgba.G", "rgba.R"}), "rgba.R");
   EXPECT_EQ(layerOf({"C.B", "C.G", "C.R", "diffuse.B", "diffuse.G", "diffuse.R"}), "C.R");
+  EXPECT_EQ(layerOf({"beauty_main.B", "beauty_main.G", "beauty_main.R", "a.B", "a.G", "a.R"}),
+            "beauty_main.R");
   EXPECT_EQ(layerOf({"depth.Z", "diffuse.B", "diffuse.G", "diffuse.R"}), "diffuse.R");
   EXPECT_EQ(layerOf({"A", "Y"}), "Y");
   EXPECT_EQ(layerOf({"Y", "Z"}), "Y");
@@ -139,18 +149,43 @@ TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
   const auto ofLayer = [](const std::string& layer) {
     return Names{layer + ".B", layer + ".G", layer + ".R"};
   };
-  for (const char* layer :
-       {"ViewLayer.Denoising Albedo", "ViewLayer.CryptoObject00", "crypto_material01", "DiffCol",
-        "diffuse_albedo", "View.Position", "bent_normal", "shadow.lamp", "VRayZDepth", "ObjectID",
-        "ID mask", "UVMap", "lineardepth", "motionvector", "Shadow Catcher", "denoise.albedo",
-        "invalid", "View.N"})
+  for (const char* layer : {"ViewLayer.Denoising Albedo",
+                            "ViewLayer.CryptoObject00",
+                            "crypto_material01",
+                            "DiffCol",
+                            "diffuse_albedo",
+                            "View.Position",
+                            "bent_normal",
+                            "shadow.lamp",
+                            "VRayZDepth",
+                            "ObjectID",
+                            "ID mask",
+                            "UVMap",
+                            "lineardepth",
+                            "motionvector",
+                            "Shadow Catcher",
+                            "denoise.albedo",
+                            "invalid",
+                            "View.N",
+                            "BaseColor",
+                            "base_color",
+                            "VRayDiffuseFilter",
+                            "VRayWireColor",
+                            "diffuse_color",
+                            "Pworld",
+                            "Nn",
+                            "ST",
+                            "facing_ratio",
+                            "View.Specular Color",
+                            "Pref"})
     EXPECT_FALSE(isColor(ofLayer(layer))) << layer;
   for (const char* channel :
        {"depth.Y", "ViewLayer.Depth.V", "distance", "object id", "ZBack", "mask", "clipped", "N.X",
         "ViewLayer.Mist.Z", "Debug Sample Count", "samples", "View.IndexOB.X", "denoise_error.Y"})
     EXPECT_FALSE(isColor({channel})) << channel;
-  for (const char* layer : {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined",
-                            "noisy", "left", "P3.spec", "panorama", "image", "candid"})
+  for (const char* layer :
+       {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined", "noisy", "left",
+        "color", "light_color", "emission_color", "P3.spec", "panorama", "image", "candid"})
     EXPECT_TRUE(isColor(ofLayer(layer))) << layer;
   for (const char* channel : {"luminance", "light.Y", "grey", "L", "Y"})
     EXPECT_TRUE(isColor({channel})) << channel;
@@ -269,6 +304,127 @@ TEST(ExrFiles, DegeneratePrimariesAreRefused) {
     EXPECT_NE(problemOf(path).find("primaries are degenerate"), std::string::npos)
         << problemOf(path);
   }
+}
+
+const Imf::Chromaticities kAcesCg(Imath::V2f(0.713f, 0.293f), Imath::V2f(0.165f, 0.83f),
+                                  Imath::V2f(0.128f, 0.044f), Imath::V2f(0.32168f, 0.33767f));
+
+// `color` of ACEScg in Rec. 709, as readImage() converts it.
+Rgb fromAcesCg(const TemporaryFolder& folder, const Rgb& color) {
+  writeParts(folder / "converted.exr", {colored("", color)}, {}, kAcesCg);
+  return readImage(folder / "converted.exr").rgb(0, 0);
+}
+
+void expectRgb(const Rgb& read, const Rgb& expected) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], expected[c], 1e-5f * maxComponent(expected));
+}
+
+TEST(ExrFiles, LayersOfColourAreConvertedAndDataAreNot) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const Rgb color(0.1f, 0.8f, 0.2f), converted = fromAcesCg(folder, color);
+  for (const char* name : {"light.sun", "albedo", "difference", "denoise.albedo", "BaseColor"}) {
+    writeParts(path, {colored("", color, std::string(name) + ".")}, {}, kAcesCg);
+    expectRgb(findLayer(readImageFile(path), name)->rgb(0, 0), converted);
+    EXPECT_EQ(layerOf(readImageFile(path), name, path)->rgb(0, 0),
+              findLayer(readImageFile(path), name)->rgb(0, 0));
+  }
+  for (const char* name :
+       {"normal", "bent_normal", "variance", "Pworld", "mask", "crypto00", "N"}) {
+    writeParts(path, {colored("", color, std::string(name) + ".")}, {}, kAcesCg);
+    EXPECT_EQ(findLayer(readImageFile(path), name)->rgb(0, 0), color) << name;
+  }
+  writeParts(path, {{"", {{"a.X", 0.1f}, {"a.Y", 0.8f}, {"a.Z", 0.2f}}}}, {}, kAcesCg);
+  EXPECT_EQ(findLayer(readImageFile(path), "a")->rgb(0, 0), color);
+}
+
+// Saturation, white and black are those of the channels that the sensor has: in Rec. 709 the red of
+// this colour is negative.
+TEST(ExrFiles, PhotographsAreMergedInTheirPrimaries) {
+  const TemporaryFolder folder;
+  const Rgb color(0.1f, 0.8f, 0.2f), converted = fromAcesCg(folder, color);
+  ASSERT_LT(converted.x, 0);
+  PhotographSeries series;
+  series.times = {1, 0.25, 0.0625};
+  series.checkAlignment = false;
+  for (size_t i = 0; i < series.times.size(); ++i) {
+    series.files.push_back(folder / fmt::format("{}.exr", i));
+    writeParts(series.files[i], {colored("", color * float(series.times[i]))}, {}, kAcesCg);
+  }
+  MergedPhotographs merged = mergePhotographs(series);
+  expectRgb(merged.image.radiance.rgb(3, 2), converted);
+  EXPECT_EQ(merged.white, 1);
+  EXPECT_EQ(merged.image.underexposedPixels, 0u);
+  // A flat field is one of the same channels.
+  const Rgb flat(0.5f, 0.9f, 0.7f);
+  writeParts(folder / "flat.exr", {colored("", flat)}, {}, kAcesCg);
+  series.flatFields = {{{}, folder / "flat.exr"}};
+  merged = mergePhotographs(series);
+  expectRgb(merged.image.radiance.rgb(3, 2), fromAcesCg(folder, color / flat));
+  // One in Rec. 709 is converted to them.
+  writeParts(folder / "flat.exr", {colored("", fromAcesCg(folder, flat))});
+  merged = mergePhotographs(series);
+  expectRgb(merged.image.radiance.rgb(3, 2), fromAcesCg(folder, color / flat));
+
+  writeParts(series.files[1], {colored("", color * 0.25f)});
+  try {
+    mergePhotographs(series);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("1.exr: its primaries are not those of"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(ExrFiles, LightStagesAreConvertedOrRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const Rgb color(0.1f, 0.8f, 0.2f), converted = fromAcesCg(folder, color);
+  // One element: the function sh:0, the constant.
+  const auto write = [&](const Windows& windows, std::optional<Imf::Chromaticities> primaries) {
+    Part part = colored("", color);
+    for (const char* layer : {"element.0000.", "own."})
+      for (const auto& channel : colored("", color, layer).channels)
+        part.channels.push_back(channel);
+    writeParts(path, {part}, windows, primaries, "sh:0");
+  };
+  write({}, {});
+  EXPECT_EQ(StageReader(path).read(1, 2).elements.rgb(0, 0), color);
+  write({}, kAcesCg);
+  const LightStage stage = StageReader(path).read(1, 2);
+  expectRgb(stage.elements.rgb(7, 1), converted);
+  expectRgb(stage.own.rgb(7, 1), converted);
+  write({{{2, 0}, {7, 3}}, {{0, 0}, {7, 3}}}, {});
+  try {
+    StageReader reader(path);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("data window"), std::string::npos) << error.what();
+  }
+}
+
+// A fisheye is square: its display window is, whatever part of it has data.
+TEST(ExrFiles, TheMappingIsOfTheDisplayWindow) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  writeParts(path, {colored("", Rgb(1))}, {{{0, 2}, {7, 5}}, {{0, 0}, {7, 7}}}, {}, "",
+             "fisheye:180:equisolid");
+  EXPECT_EQ(mappingName(loadProbe(path).mapping), "fisheye:180:equisolid");
+}
+
+TEST(ExrFiles, PixelsThatAreNotSquareAreNamed) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  Windows windows;
+  writeParts(path, {colored("", Rgb(1))}, windows);
+  EXPECT_TRUE(readImageFile(path).messages.empty());
+  windows.pixelAspectRatio = 2;
+  writeParts(path, {colored("", Rgb(1))}, windows);
+  const Messages messages = readImageFile(path).messages;
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].kind, Message::Kind::Warning);
+  EXPECT_NE(messages[0].text.find("pixels are not square, 2 times"), std::string::npos);
 }
 
 }  // namespace

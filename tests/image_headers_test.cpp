@@ -17,6 +17,7 @@
 #include "image/io/write_image.h"
 #include "image/orientation.h"
 #include "image/tonemap.h"
+#include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
 #include "run_command.h"
 
@@ -194,6 +195,56 @@ TEST(ImageHeaders, CodePointsOfAPng) {
     }
     EXPECT_NO_THROW(readImage(file(chunks), IntegerTexels::Linear));  // raw levels are no light
   }
+}
+
+// Photographs of 1 texel and two exposures, merged: the channels' encoding and primaries are those
+// that the file states, and what is not decoded elsewhere is refused.
+TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
+  const TemporaryFolder folder;
+  const std::array<uint8_t, 3> texel = {200, 100, 50};
+  const auto merged = [&](const std::string& first, const std::string& second,
+                          const std::string& response) {
+    PhotographSeries series;
+    series.files = {saved(folder / "a.png", png(texel, first)),
+                    saved(folder / "b.png", png(texel, second))};
+    series.times = {1, 0.5};
+    series.response = response;
+    series.checkAlignment = false;
+    return mergePhotographs(series);
+  };
+  const auto expectAs = [&](const std::string& chunks, const char* response) {
+    const MergedPhotographs found = merged(chunks, chunks, "");
+    EXPECT_EQ(found.responseName, response);
+    // Of two equal pictures each channel has one factor.
+    const Rgb plain = merged("", "", response).image.radiance.rgb(0, 0);
+    const Rgb decoded = readImage(saved(folder / "c.png", png(texel, chunks))).rgb(0, 0);
+    const Rgb undone = readImage(saved(folder / "c.png", png(texel, ""))).rgb(0, 0);
+    const float factor =
+        response == std::string("srgb") ? plain.y / undone.y : plain.y / (float(texel[1]) / 255);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(found.image.radiance.rgb(0, 0)[c], factor * decoded[c], 1e-5f) << chunks;
+  };
+  expectAs("", "srgb");
+  expectAs(chunk("gAMA", {45455}), "srgb");
+  expectAs(chunk("gAMA", {100000}), "linear");
+  expectAs(chunk("cHRM", {31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600}), "srgb");
+  expectAs(codePoints(12, 13), "srgb");
+  expectAs(codePoints(9, 8), "linear");
+  const auto problem = [&](const std::string& first, const std::string& second,
+                           const std::string& response) -> std::string {
+    try {
+      merged(first, second, response);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string half = chunk("gAMA", {50000}), p3 = codePoints(12, 13);
+  EXPECT_NE(problem(half, half, "").find("give --response"), std::string::npos);
+  EXPECT_EQ(problem(half, half, "srgb"), "");
+  EXPECT_NE(problem(half, "", "").find("b.png: the encoding"), std::string::npos);
+  EXPECT_NE(problem(p3, codePoints(9, 13), "").find("b.png: its primaries"), std::string::npos);
+  EXPECT_NE(problem(codePoints(12, 16), codePoints(12, 16), "srgb").find("PQ"), std::string::npos);
 }
 
 // The texel in the upper left of the picture, by where the orientation says that it is stored.
