@@ -190,6 +190,36 @@ TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
 }
 
+// A profile that is not applied is said, unless it is known to be that of sRGB.
+TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
+  const TemporaryFolder folder;
+  const auto isSaid = [&](const std::string& name, const Bytes& bytes,
+                          IntegerTexels integers = IntegerTexels::Srgb) {
+    const Messages messages = readImageFile(saved(folder / name, bytes), integers).messages;
+    return std::ranges::any_of(messages, [](const Message& message) {
+      return message.kind == Message::Kind::Warning &&
+             message.text.ends_with(
+                 "has a colour profile that is not applied; its colours are read as sRGB");
+    });
+  };
+  const Bytes wide = text("Adobe RGB (1998)"), srgb = text("xx sRGB IEC61966-2.1"),
+              srgb16 = joined({Bytes{0, 's', 0, 'R', 0, 'G', 0, 'B'}, Bytes(9)});
+  for (const auto& [data, isWide] : {std::pair{wide, true}, {srgb, false}, {srgb16, false}}) {
+    const Bytes jpeg =
+        inserted(seed("a.jpg"), 2, segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, data})));
+    EXPECT_EQ(isSaid("a.jpg", jpeg), isWide);
+    EXPECT_FALSE(isSaid("a.jpg", jpeg, IntegerTexels::Linear));  // a mask
+    EXPECT_EQ(isSaid("a.png", inserted(kPng, 8 + 25, chunk("iCCP", data))), isWide);
+    EXPECT_EQ(isSaid("a.tif", withTag(seed("a.tif"), 34675, 7, data)), isWide);
+  }
+  EXPECT_FALSE(isSaid("a.jpg", seed("a.jpg")));
+  EXPECT_FALSE(isSaid("a.png", kPng));
+  EXPECT_FALSE(isSaid("a.tif", seed("a.tif")));
+  // Chunks that say what the profile does are used.
+  const Bytes linear = chunk("gAMA", {0, 1, 0x86, 0xa0});
+  EXPECT_FALSE(isSaid("a.png", inserted(kPng, 8 + 25, joined({chunk("iCCP", wide), linear}))));
+}
+
 // Models with the texture `jpeg`: in a file, in a data URI and in a buffer view.
 std::vector<nlohmann::json> imagesOf(GltfWriter& model, const Bytes& jpeg) {
   constexpr const char* kDigits =

@@ -14,7 +14,8 @@ enum JpegMarker : uint8_t {
   kSoi = 0xd8,
   kEoi = 0xd9,
   kSos = 0xda,
-  kApp1 = 0xe1  // EXIF, XMP
+  kApp1 = 0xe1,  // EXIF, XMP
+  kApp2 = 0xe2   // an ICC profile
 };
 
 bool standsAlone(uint8_t marker) { return marker == kTem || (marker >= kRst0 && marker <= kSoi); }
@@ -37,21 +38,33 @@ size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
   return std::min(at + size_t(std::max(file[at] << 8 | file[at + 1], 2)), file.size());
 }
 
-}  // namespace
-
-std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
-  constexpr size_t kLengthBytes = 2, kBlockAt = kLengthBytes + kExifName.size();
+// The data of the first segment with this marker that begins with `name`, after it.
+std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted,
+                                   std::string_view name) {
+  constexpr size_t kLengthBytes = 2;
+  const size_t dataAt = kLengthBytes + name.size();
   size_t at = 0;
   while (const uint8_t marker = nextMarker(file, at)) {
     if (marker == kSos || marker == kEoi) break;
     const size_t begin = at;
     at = endOfSegment(file, at, marker);
     const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
-    if (marker == kApp1 && segment.size() > kBlockAt &&
-        std::equal(kExifName.begin(), kExifName.end(), segment.begin() + kLengthBytes))
-      return segment.subspan(kBlockAt);
+    if (marker == wanted && segment.size() > dataAt &&
+        std::equal(name.begin(), name.end(), segment.begin() + kLengthBytes))
+      return segment.subspan(dataAt);
   }
   return {};
+}
+
+}  // namespace
+
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
+  return segmentOf(file, kApp1, kExifName);
+}
+
+std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file) {
+  constexpr std::string_view kName("ICC_PROFILE\0", 12);
+  return segmentOf(file, kApp2, kName);
 }
 
 }  // namespace chromeball

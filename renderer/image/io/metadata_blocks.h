@@ -15,6 +15,9 @@ inline constexpr std::string_view kExifName("Exif\0\0", 6);
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
 std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
 
+// The ICC profile, or its first part, which describes it. Empty if there is none.
+std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file);
+
 // The data of the first chunk of this type, such as "gAMA"; empty if there is none.
 std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_view type);
 

@@ -14,6 +14,7 @@
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
+#include "image/io/metadata_blocks.h"
 #include "image/io/pfm.h"
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
@@ -107,6 +108,27 @@ ImageFile readHdr(const fs::path& path) {
   return file;
 }
 
+// Warns of a profile (ISO 15076-1) unless its description says sRGB, in ASCII or UTF-16. Of a PNG
+// the name is enough, since the profile itself is compressed.
+void warnOfProfile(std::span<const uint8_t> profile, const fs::path& path, Messages& messages) {
+  using namespace std::string_view_literals;
+  const std::string_view text(reinterpret_cast<const char*>(profile.data()), profile.size());
+  if (text.empty() || text.find("sRGB") != text.npos || text.find("s\0R\0G\0B"sv) != text.npos)
+    return;
+  messages.push_back({Message::Kind::Warning,
+                      fmt::format("{}: has a colour profile that is not applied; its colours are "
+                                  "read as sRGB",
+                                  path.string())});
+}
+
+// Of light: unless other chunks of a PNG say what the profile does.
+std::span<const uint8_t> unreadProfile(ImageFormat format, std::span<const uint8_t> bytes) {
+  if (format == ImageFormat::Jpeg) return jpegProfile(bytes);
+  for (const char* chunk : {"cICP", "sRGB", "cHRM", "gAMA"})
+    if (!pngChunk(bytes, chunk).empty()) return {};
+  return pngChunk(bytes, "iCCP");
+}
+
 ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels integers) {
   const std::vector<uint8_t> bytes = readFile(path);
   const auto check = [&](const SampleLayout& layout) {
@@ -129,6 +151,8 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   file.bits = layout.bits;
   file.image = Image(layout.width, layout.height, layout.channels);
   const DecodeSample decode = sampleDecoder(format, bytes, integers, file);
+  if (integers != IntegerTexels::Linear)
+    warnOfProfile(unreadProfile(format, bytes), path, file.messages);
   if (layout.bits == 8)
     readSamples<uint8_t>(*reader, decode, file.image);
   else
@@ -159,6 +183,11 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   file.channels = header.channels;
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
+  if (file.integers && integers != IntegerTexels::Linear) {
+    constexpr uint16_t kProfileTag = 34675;
+    const TiffBlock tiff(bytes);
+    warnOfProfile(tiff.bytes(tiff.firstDirectory(), kProfileTag), path, file.messages);
+  }
   checkImageMemory(path, header.width, header.height, int64_t(header.channels.size()));
   file.image = Image(header.width, header.height, int(header.channels.size()));
   image->read(file.image.texels.data());

@@ -9,9 +9,11 @@ namespace {
 
 // IFD is a LONG that points to a directory; LONG8 and IFD8 are BigTIFF's.
 enum TiffType : uint16_t {
+  kByte = 1,
   kShort = 3,
   kLong = 4,
   kRational = 5,
+  kUndefined = 7,
   kIfd = 13,
   kLong8 = 16,
   kIfd8 = 18
@@ -86,6 +88,17 @@ std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) cons
   std::vector<uint64_t> values;
   for (uint64_t i = 0; i < count; ++i) values.push_back(number(at + i * bytes, bytes));
   return values;
+}
+
+std::span<const uint8_t> TiffBlock::bytes(uint64_t directory, uint16_t tag) const {
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  if (!entry) return {};
+  const uint64_t type = number(*entry + 2, 2), count = number(*entry + 4, offsetBytes());
+  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
+  const uint64_t at = count <= offsetBytes() ? field : number(field, offsetBytes());
+  if ((type != kByte && type != kUndefined) || at > bytes_.size() || count > bytes_.size() - at)
+    return {};
+  return bytes_.subspan(at, count);
 }
 
 std::vector<uint8_t> TiffBlock::withFirstDirectory(uint64_t directory) const {

@@ -28,6 +28,9 @@ class TiffBlock {
   // All values of an entry of unsigned integers, such as offsets; empty if there is none.
   std::vector<uint64_t> integers(uint64_t directory, uint16_t tag) const;
 
+  // The value of an entry of bytes; empty if there is none.
+  std::span<const uint8_t> bytes(uint64_t directory, uint16_t tag) const;
+
   // The bytes of the block with another directory as the first.
   std::vector<uint8_t> withFirstDirectory(uint64_t directory) const;
 
