@@ -183,9 +183,9 @@ TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
        {"depth.Y", "ViewLayer.Depth.V", "distance", "object id", "ZBack", "mask", "clipped", "N.X",
         "ViewLayer.Mist.Z", "Debug Sample Count", "samples", "View.IndexOB.X", "denoise_error.Y"})
     EXPECT_FALSE(isColor({channel})) << channel;
-  for (const char* layer :
-       {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined", "noisy", "left",
-        "color", "light_color", "emission_color", "P3.spec", "panorama", "image", "candid"})
+  for (const char* layer : {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined",
+                            "noisy", "left", "color", "light_color", "no_fog", "emission_color",
+                            "P3.spec", "panorama", "image", "candid"})
     EXPECT_TRUE(isColor(ofLayer(layer))) << layer;
   for (const char* channel : {"luminance", "light.Y", "grey", "L", "Y"})
     EXPECT_TRUE(isColor({channel})) << channel;

@@ -68,8 +68,8 @@ Content contentOf(std::string_view segment) {
                                       "subsurface", "transmission", "object",   "material",
                                       "surface",    "vertex"};
   // Of "Pworld", "Nn" and "Pref", normals and positions.
-  constexpr std::array kSpaces = {"world", "camera", "cam", "object", "obj", "ref", "rest", "eye",
-                                  "view",  "screen", "n",   "g",      "s",   "w",   "o"};
+  constexpr std::array kSpaces = {"world", "camera", "cam",    "object", "obj", "ref", "rest",
+                                  "eye",   "view",   "screen", "n",      "g",   "s",   "w"};
   const auto isIn = [](const auto& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
   };
