@@ -143,6 +143,33 @@ TEST(Coincident, ASheetOnARoofLetsNoLightThrough) {
 }
 
 // Slabs that touch: exp(-sum of attenuation x thickness), from both sides and in any order.
+// The front of a roof that passes light from behind, over a floor: light samples and bounces agree
+// whatever coincides with it, and neither a doubled roof nor a clear sheet on it changes the light.
+TEST(Coincident, AFrontThatPassesLightFromBehindPassesItBehindASheet) {
+  for (const std::string other : {"none", "same", "sheet", "opaque"}) {
+    std::vector<float> found;
+    for (const char* strategy : {"importance", "bsdf"}) {
+      Scene scene;
+      addSquare(scene, lambert(Rgb(0.5f)), -1, true);
+      Material roof = oneSidedMatte(Rgb(0.5f));
+      roof.singleSided = SingleSided::Light;
+      addSquare(scene, roof, 0, false);
+      Material sheet = sheetOfGlass();
+      sheet.specular = 0;
+      if (other == "same") addSquare(scene, roof, 0, false);
+      if (other == "sheet") addSquare(scene, sheet, 0, true);
+      if (other == "opaque") addSquare(scene, lambert(Rgb(0)), 0, true);
+      const Camera inside = Camera::lookAt({0.4f, -0.2f, 0.3f}, {0, -1, 0}, {0, 0, -1}, 0.3f);
+      found.push_back(meanInWhite(scene, inside, 512, strategy).x);
+    }
+    // Infinite sheets: the roof passes all light, and both reflect half of it, up to depth 6.
+    float expected = 0;
+    for (int i = 1; i <= 6; i += 2) expected += std::pow(0.5f, float(i));
+    if (other == "opaque") expected = 0;
+    for (const float mean : found) EXPECT_NEAR(mean, expected, 0.02f) << other;
+  }
+}
+
 TEST(Coincident, TouchingBodiesAbsorbInTurn) {
   const Rgb first(0.3f, 0.1f, 0), second(0.1f, 0.4f, 0.2f), third(0, 0.2f, 0.5f);
   const Rgb expected = glm::exp(-(first * 1.0f + second * 2.0f + third * 0.5f));

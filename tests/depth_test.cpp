@@ -181,6 +181,10 @@ TEST(Depth, TheCommandReportsTheCutFraction) {
   EXPECT_EQ(stats["depth_cut"]["max_transmission_depth"], 0);
   EXPECT_EQ(stats["max_transmission_depth"], 64);
   EXPECT_EQ(render("60").find("--max-depth"), std::string::npos);
+  const CommandResult direct = runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size",
+                                           "16x16", "--samples", "64", "--integrator", "direct"});
+  EXPECT_NE(direct.error.find("--integrator direct cut about "), std::string::npos) << direct.error;
+  EXPECT_NE(direct.error.find("--integrator path keeps it"), std::string::npos) << direct.error;
 }
 
 }  // namespace

@@ -299,6 +299,56 @@ TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
 }
 
+// Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: what lies
+// behind the first of the surfaces.
+TEST(SlowIrradianceCache, MeetsAllSurfacesOfAPlace) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  Material pane = clearGlass(1, Rgb(0));
+  pane.specular = 0;
+  pane.baseColor = {0.5f, 0.6f, 0.7f, 1};
+  pane.extended->thinWalled = true;
+  const int tinted = addMaterial(scene, pane);
+  for (int i = 0; i < 2; ++i) addQuad(scene, tinted, {-2, 1, -2}, {0, 0, 4}, {4, 0, 0});
+  Scene withLamp = scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.9f))), {-2, 3, -2}, {4, 0, 0}, {0, 0, 4});
+  const Image sky = constantProbe({16, 8}, Rgb(1));
+  const Camera camera = Camera::lookAt({0, 0.9f, 0}, {0, 0, 0}, {0, 0, -1}, 0.5f);
+  const auto change = [&](const Scene& s, const Image& probe) {
+    const auto mean = [&](float error) {
+      RenderSettings settings = smallRender(24, 24, 1024, 4);
+      settings.cacheError = error;
+      return double(luminance(
+          meanColor(renderScene(s, camera, Probe(probe), "importance", settings).film.mean())));
+    };
+    return mean(0.1f) / mean(0) - 1;
+  };
+  EXPECT_NEAR(change(scene, sky), 0, 0.006);
+
+  Material lamp = lambert(Rgb(0));
+  lamp.emission = Rgb(5);
+  lamp.doubleSided = true;
+  addQuad(withLamp, addMaterial(withLamp, lamp), {-0.4f, 1, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f});
+  EXPECT_NEAR(change(withLamp, constantProbe({16, 8}, Rgb(0))), 0, 0.01);
+}
+
+// Squares of radiances at the limits of floats.
+TEST(IrradianceCache, DoesNotDependOnTheUnitOfLight) {
+  const Image unit = gradientProbe({32, 16}, Rgb(0.5f), {0.2, 0.3, 0.1});
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  addSphere(scene, 0, {0, 0.3f, 0}, 0.3f, 12);
+  const RenderSettings settings = smallRender(16, 16, 4, 4);
+  const Image expected = renderTop(scene, unit, settings, true);
+  for (const float scale : {0x1p-80f, 0x1p70f}) {
+    Image probe = unit;
+    for (float& texel : probe.texels) texel *= scale;
+    const Image found = renderTop(scene, probe, settings, true);
+    for (size_t i = 0; i < expected.texels.size(); ++i)
+      ASSERT_NEAR(found.texels[i] / scale, expected.texels[i], 1e-5f) << scale;
+  }
+}
+
 // A tent seen from above through the hidden backs of its roof: records are as dense as pixels ask
 // for, however far the camera is from the roof.
 TEST(SlowIrradianceCache, SeesThroughHiddenBacks) {

@@ -93,6 +93,31 @@ TEST(Reflectance, OfAFlatGroundRenderedAndExact) {
   expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
 }
 
+// What is unlit shows its base colour, and what emits reflects the rest of the plate.
+TEST(Reflectance, OfUnlitAndEmittingGround) {
+  const Rgb plate(0.3f, 0.2f, 0.15f), emission(0.1f, 0.05f, 0.02f);
+  for (const bool unlit : {true, false}) {
+    Local local(Rgb(0.5f), std::nullopt);
+    Material& ground = local.scene.materials[0];
+    ground.unlit = unlit;
+    if (!unlit) ground.emission = emission;
+    Image photograph(kSize, kSize, 3);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) photograph.setRgb(x, y, plate);
+    const vec3 normal(0, 1, 0);
+    const Rgb irradiance(exactIrradiance(local.probe.latLong(), {&normal, 1})[0]);
+    const Rgb expected = unlit ? plate : (plate - emission) * kPi / irradiance;
+    Projection rendered(local.camera, kSize, kSize), exact = rendered;
+    local.solve(photograph, 1, rendered);
+    expectNear(meanOf(rendered.colors(), true), expected, 0.006f);
+    const auto lighting = makeStrategy("importance", local.probe, Mis::Balance, "test");
+    const World world(local.scene, rayMasks(local.isObject));
+    solveFlatReflectance({world, local.camera, *lighting, photograph},
+                         smallRender(kSize, kSize, 1, 8), irradiance, exact, kStop);
+    expectNear(meanOf(exact.colors(), true), expected, 1e-5f);
+  }
+}
+
 TEST(Reflectance, FlatNormalExistsOnlyForOnePlane) {
   EXPECT_FALSE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, false}));
   EXPECT_TRUE(flatNormal(Local(Rgb(0.5f), Rgb(0.5f)).scene, {false, true}));

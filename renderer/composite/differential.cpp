@@ -4,6 +4,26 @@
 #include <utility>
 
 namespace chromeball {
+namespace {
+
+// The layers of a place that the world without objects has too, for a path that goes on in
+// `direction`: at the path's surface, or the next one of them.
+Place withoutObjects(const CompositeWorlds& worlds, const Place& place, const vec3& direction) {
+  const bool ascends = glm::dot(place.axis, direction) > 0;
+  Place kept = place;
+  kept.count = 0;
+  kept.at = ascends ? 0 : -1;
+  for (int i = 0; i < place.count; ++i) {
+    const Hit& hit = place.hits[size_t(i)];
+    if (worlds.isObject(hit)) continue;
+    kept.at += ascends ? i < place.at : i <= place.at;
+    kept.hits[size_t(kept.count++)] = hit;
+  }
+  if (kept.at < 0 || kept.at >= kept.count) kept.count = 0;
+  return kept;
+}
+
+}  // namespace
 
 DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
                                         bool behindObjects, PathContext& context) {
@@ -13,6 +33,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
   ++context.counts.camera;
   context.sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {
+    const bool isInPlace = bool(state.place);  // and has crossed some of its layers
     const std::optional<Hit> met = hit ? whole.metAt(state, *hit, context) : std::nullopt;
     if (met) hit = met;
     if (met && worlds.isObject(*met)) {
@@ -21,9 +42,10 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
       sample.withObjects += whole.follow(state, hit, context);
       if (sample.objectFirst && !behindObjects) return sample;
       state.first = nullptr;
-      state.place = {};
+      state.place =
+          isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
       context.sampler.startVertex(state.depth);
-      hit = local.closestHit(state.ray, context);
+      hit = local.nextHit(state, context);
       const auto records = std::exchange(context.records, nullptr);  // those of `whole` suffice
       sample.without += local.follow(state, hit, context);
       context.records = records;
@@ -32,7 +54,9 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
     whole.estimateDepthCut(state, hit, context);
     PathState without = state;
     without.first = nullptr;
-    context.shadowsDiffer = false;
+    without.place = withoutObjects(worlds, state.place, state.ray.direction);
+    // A shadow ray that starts in the place crosses its layers without being traced.
+    context.shadowsDiffer = without.place.count != state.place.count;
     const bool continues = shared.vertex(state, hit, context);
     const Rgb found = std::exchange(state.radiance, Rgb(0));
     // An object casts a shadow on the vertex or lights it: evaluate it again without objects.

@@ -18,21 +18,22 @@ PathSettings localSettings(const RenderSettings& settings) {
   return local;
 }
 
-// The visible surfaces of the local scene: per pixel the maximum depth, and the mean base colour of
-// the model; 0 where none is visible.
+// The visible surfaces of the local scene: per pixel the maximum depth, and the means of the model's
+// base colour, of emitted radiance and of the fraction that is unlit; 0 where none is visible.
 struct VisibleSurfaces {
-  Image farthest, baseColor;
+  Image farthest, baseColor, emission, unlit;
 };
 
 class VisibilityIntegrator : public Integrator {
  public:
-  enum Layer { kDepth, kCoverage, kBaseColor };
+  enum Layer { kDepth, kCoverage, kBaseColor, kEmission, kUnlit };
 
   VisibilityIntegrator(const PathTracer& tracer, const CameraRays& camera)
       : tracer_(tracer), camera_(camera) {}
 
   std::vector<Accumulation> layers() const override {
-    return {Accumulation::Maximum, Accumulation::Sum, Accumulation::Sum};
+    return {Accumulation::Maximum, Accumulation::Sum, Accumulation::Sum, Accumulation::Sum,
+            Accumulation::Sum};
   }
   RayMask visible() const override { return kLocalScene; }
 
@@ -43,12 +44,17 @@ class VisibilityIntegrator : public Integrator {
     if (!hit) return Rgb(0);
     const Scene& scene = tracer_.world().scene;
     const vec3& direction = state.ray.direction;
-    const Surface surface = surfaceAt(scene, scene.instances[hit->instance], hit->triangle,
-                                      hit->barycentric, -direction, 0, state.ray.time);
+    const Instance& instance = scene.instances[hit->instance];
+    const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric, -direction,
+                                      0, state.ray.time);
     const float distance = glm::length(surface.position - camera.ray.origin);
     context.layers[kDepth] = Rgb(camera_.depth(direction, distance));
     context.layers[kCoverage] = Rgb(1);
     context.layers[kBaseColor] = materialAt(scene, surface).baseColor;
+    if (surface.material->unlit)
+      context.layers[kUnlit] = Rgb(1);
+    else if (surface.material->emits())
+      context.layers[kEmission] = emittedRadiance(scene, instance, surface, -direction);
     return Rgb(0);
   }
 
@@ -71,6 +77,7 @@ class RepaintedIntegrator : public Integrator {
     PathState state = camera.path();
     auto first = firstSurface(tracer_, state, camera.hit, context);
     if (!first) return Rgb(0);
+    if (first->surface.material->unlit) return baseColor_;
     if (first->surface.material->emits())
       state.radiance += tracer_.foundEmission(state, first->surface, first->instance);
     first->material.baseColor = baseColor_;
@@ -95,8 +102,8 @@ VisibleSurfaces findVisibleSurfaces(const ReflectanceProblem& problem,
   const RenderResult result = render(
       VisibilityIntegrator(tracer, camera), problem.world, problem.camera, quick, [](double) {},
       stop);
-  VisibleSurfaces visible{Image(settings.width, settings.height, 1),
-                          Image(settings.width, settings.height, 3)};
+  const auto image = [&](int channels) { return Image(settings.width, settings.height, channels); };
+  VisibleSurfaces visible{image(1), image(3), image(3), image(1)};
   for (int y = 0; y < settings.height; ++y)
     for (int x = 0; x < settings.width; ++x) {
       const auto layer = [&](VisibilityIntegrator::Layer l) {
@@ -106,6 +113,8 @@ VisibleSurfaces findVisibleSurfaces(const ReflectanceProblem& problem,
       if (seen == 0) continue;
       *visible.farthest.at(x, y) = float(layer(VisibilityIntegrator::kDepth).x);
       visible.baseColor.setRgb(x, y, Rgb(layer(VisibilityIntegrator::kBaseColor) / seen));
+      visible.emission.setRgb(x, y, Rgb(layer(VisibilityIntegrator::kEmission) / seen));
+      *visible.unlit.at(x, y) = float(layer(VisibilityIntegrator::kUnlit).x / seen);
     }
   return visible;
 }
@@ -209,9 +218,12 @@ ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
                                          Projection& projection, const std::atomic<bool>& stop) {
   const VisibleSurfaces visible = findVisibleSurfaces(problem, settings, stop);
   initialise(visible, projection);
-  Image black(settings.width, settings.height, 3), white = black;
+  const Image& black = visible.emission;
+  Image white(settings.width, settings.height, 3);
   for (int y = 0; y < white.height; ++y)
-    for (int x = 0; x < white.width; ++x) white.setRgb(x, y, irradiance * kInvPi);
+    for (int x = 0; x < white.width; ++x)
+      white.setRgb(x, y, black.rgb(x, y) +
+                             glm::mix(irradiance * kInvPi, Rgb(1), *visible.unlit.at(x, y)));
   return solveStep(problem.plate, black, white, visible, projection);
 }
 

@@ -59,7 +59,7 @@ class GatheredPath {
       state.radiance -= emissionAt(state, *hit, context);
       if (!tracer_.vertex(state, hit, context)) return state.radiance;
       context.sampler.startVertex(state.depth);
-      hit = tracer_.closestHit(state.ray, context);
+      hit = tracer_.nextHit(state, context);
       // Only smooth glass and what the path has passed straight is between it and the point.
       const bool isClear = state.isDelta || state.from.position == start;
       if (!isClear || state.bounces() != 1) return tracer_.follow(state, hit, context);
@@ -71,9 +71,11 @@ class GatheredPath {
   // What the vertex adds to the path as the light of a source.
   Rgb emissionAt(PathState state, const Hit& hit, PathContext& context) const {
     const Scene& scene = tracer_.world().scene;
-    if (!scene.materials[size_t(scene.instances[hit.instance].material)].emits()) return Rgb(0);
+    const auto met = tracer_.metAt(state, hit, context);
+    if (!met || !scene.materials[size_t(scene.instances[met->instance].material)].emits())
+      return Rgb(0);
     const Rgb before = state.radiance;
-    sources_.vertex(state, hit, context);  // at its limit of depth: no light samples
+    sources_.vertex(state, met, context);  // at its limit of depth: no light samples
     return state.radiance - before;
   }
 
@@ -150,8 +152,8 @@ IrradianceRecord integrate(Hemisphere& seen, const HemisphereStrata& strata, con
 // Where the irradiance changes faster than the distances tell (Krivanek et al. 2006).
 float radiusOfGradient(const IrradianceRecord& record) {
   const auto& t = record.translation;
-  const vec3 gradient = 0.2126f * t[0] + 0.7152f * t[1] + 0.0722f * t[2];
-  return luminance(record.irradiance) / glm::length(gradient);
+  const glm::dvec3 gradient = 0.2126f * t[0] + 0.7152f * t[1] + 0.0722f * t[2];
+  return float(double(luminance(record.irradiance)) / glm::length(gradient));  // squares: double
 }
 
 }  // namespace

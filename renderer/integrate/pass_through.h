@@ -23,14 +23,13 @@ inline bool mayPass(const PathState& state, const Surface& surface) {
 }
 
 // The front of a single-sided surface reflects light and also passes light that arrives at its
-// back. The path follows one of the two at random, with twice the throughput. Returns true to
-// continue behind the front; the MIS weights stay valid, because shadow rays pass the front too.
-inline bool choosesBehind(PathState& state, const Surface& surface, const Hit& hit,
-                          const PixelSampler& sampler) {
-  if (state.isDelta || !surface.frontFace || !surface.material->backLetsLightThrough())
-    return false;
+// back. A path that is no camera's or mirror's follows one of the two at random, with twice the
+// throughput; the MIS weights stay valid, because shadow rays pass the front too.
+inline bool passesFromBehind(const PathState& state, const Material& material, bool frontFace) {
+  return !state.isDelta && frontFace && material.backLetsLightThrough();
+}
+inline bool continuesBehind(const Hit& hit, const PixelSampler& sampler) {
   constexpr uint64_t kPurpose = 0x6f6e6577;  // separate random stream
-  state.throughput *= 2;
   return hash(sampler.sampleKey() ^ kPurpose, uint64_t(hit.instance) << 32 | hit.triangle) & 1;
 }
 

@@ -208,8 +208,14 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   const Instance& instance = scene.instances[hit->instance];
   const Surface surface = surfaceOf(state, *hit);
   if (!state.place && mayPass(state, surface)) [[unlikely]] {
-    auto met = metAt(state, *hit, surface, context);
-    if (!met || (!state.place && choosesBehind(state, surface, *hit, context.sampler))) {
+    float weight = 1;
+    auto met = metAt(state, *hit, surface, weight, context);
+    if (met && !state.place && passesFromBehind(state, *surface.material, surface.frontFace)) {
+      weight = 2;
+      if (continuesBehind(*hit, context.sampler)) met.reset();
+    }
+    state.throughput *= weight;
+    if (!met) {
       state.leave(surface, state.ray.direction);
       return true;
     }

@@ -114,7 +114,8 @@ class PathTracer {
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
-  std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface,
+  // `weight`: of the path that goes on, if that is chosen at random.
+  std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
   Surface surfaceOf(const PathState& state, const Hit& hit) const;
   Rgb escapedRadiance(const PathState& state, PathContext& context) const;

@@ -28,22 +28,25 @@ class PlaceCollector {
     ++count_;
     if (material.transmits()) return addLayer({hit, !material.isBody() ? 1 : front ? 0 : 2});
     // Of several opaque surfaces the path meets a front.
-    const Layer found{hit, front ? 0 : 1};
-    if (!opaque_ ||
-        std::tuple(found.rank, orderOf(hit)) < std::tuple(opaque_->rank, orderOf(opaque_->hit)))
-      opaque_ = found;
+    keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, front ? 0 : 1});
   }
 
   int count() const { return count_; }
 
-  // Needs a surface. `axis`: unit, on the side to which the path goes.
-  Place place(const vec3& axis, float rayOffset) {
+  // Fronts that pass light from behind, as one; none where an opaque surface blocks that light.
+  std::optional<Hit> oneWay() const {
+    return oneWay_ && !opaque_ ? std::optional(oneWay_->hit) : std::nullopt;
+  }
+
+  // The other surfaces, or oneWay() alone if the path is `atOneWay`. `axis`: unit, on the side to
+  // which the path goes.
+  Place place(const vec3& axis, float rayOffset, bool atOneWay) {
     Place place;
     place.axis = axis;
     place.rayOffset = rayOffset;
-    if (opaque_) {
+    if (const std::optional<Layer>& alone = atOneWay ? oneWay_ : opaque_) {
       place.count = 1;
-      place.hits[0] = opaque_->hit;
+      place.hits[0] = alone->hit;
       return place;
     }
     // Of one rank, in an order that is the reverse for the other direction.
@@ -61,6 +64,12 @@ class PlaceCollector {
     int rank;  // before those with higher ones
   };
 
+  static void keepFirst(std::optional<Layer>& first, const Layer& layer) {
+    if (!first ||
+        std::tuple(layer.rank, orderOf(layer.hit)) < std::tuple(first->rank, orderOf(first->hit)))
+      first = layer;
+  }
+
   // Keeps the first kMost of the scene.
   void addLayer(const Layer& layer) {
     int i = layerCount_;
@@ -75,7 +84,7 @@ class PlaceCollector {
   const Scene& scene_;
   const PathState& state_;
   int count_ = 0, layerCount_ = 0;
-  std::optional<Layer> opaque_;
+  std::optional<Layer> opaque_, oneWay_;
   std::array<Layer, Place::kMost> layers_;  // ascending by orderOf()
 };
 
@@ -83,7 +92,7 @@ class PlaceCollector {
 
 // Not inlined, because most surfaces let no path pass.
 [[gnu::noinline]] std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit,
-                                                       const Surface& surface,
+                                                       const Surface& surface, float& weight,
                                                        PathContext& context) const {
   PlaceCollector found(world_.scene, state);
   found.add(hit);
@@ -97,7 +106,12 @@ class PlaceCollector {
                                  });
   if (found.count() == 0) return std::nullopt;
   if (isMet && found.count() == 1) return hit;
-  state.place = found.place(-surface.geometricNormal, rayOffset);
+  const auto oneWay = found.oneWay();
+  if (oneWay) weight = 2;
+  const bool atOneWay = oneWay && !continuesBehind(*oneWay, context.sampler);
+  const Place place = found.place(-surface.geometricNormal, rayOffset, atOneWay);
+  if (!place) return std::nullopt;
+  state.place = place;
   return state.place.current();
 }
 
@@ -107,7 +121,11 @@ std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathConte
   const bool isPassed = state.isDelta ? material.hidesBack() : material.backLetsLightThrough();
   if (state.place || !(material.transmits() || isPassed)) return hit;
   const Surface surface = surfaceOf(state, hit);
-  return mayPass(state, surface) ? metAt(state, hit, surface, context) : hit;
+  if (!mayPass(state, surface)) return hit;
+  float weight = 1;
+  const auto met = metAt(state, hit, surface, weight, context);
+  if (met) state.throughput *= weight;
+  return met;
 }
 
 std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,

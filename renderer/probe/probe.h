@@ -85,11 +85,14 @@ inline Probe::Position Probe::locate(const vec3& direction) const {
   // Column 0's centre lies at u = 0.5 / W.
   float x = u * float(width_) - 0.5f;
   if (x < 0) x += float(width_);
-  // Clamped on both sides: a NaN direction must give NaN and not read outside the map.
-  p.column = std::clamp(int(x), 0, width_ - 1);
+  // Clamped on both sides, a NaN to 0: its direction must give NaN and not read outside the map.
+  const auto cell = [](float at, int last) {
+    return int(std::min(std::max(0.0f, at), float(last)));
+  };
+  p.column = cell(x, width_ - 1);
   p.s = x - float(p.column);
   const float y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
-  p.row = std::clamp(int(y), 0, height_);
+  p.row = cell(y, height_);
   p.t = y - float(p.row);
   if (p.row == 0)
     p.t = 2 * y - 1;  // from the pole at y = 1/2

@@ -35,12 +35,13 @@ std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loa
   return hint;
 }
 
-void addDepthCut(const char* option, int depth, double fraction, Messages& messages) {
+void addDepthCut(const std::string& limit, const char* remedy, double fraction,
+                 Messages& messages) {
   constexpr double kMinFraction = 0.01;
   if (fraction > kMinFraction)
-    messages.push_back({Message::Kind::Warning,
-                        fmt::format("{} {} cut about {:.2g}% of the light; a higher one keeps it",
-                                    option, depth, 100 * fraction)});
+    messages.push_back(
+        {Message::Kind::Warning, fmt::format("{} cut about {:.2g}% of the light; {} keeps it",
+                                             limit, 100 * fraction, remedy)});
 }
 
 }  // namespace
@@ -66,8 +67,14 @@ Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
   Messages messages;
   addExcluded(result.render, messages);
   const DepthCut& cut = result.render.depthCut;
-  addDepthCut("--max-depth", job.settings.maxDepth, cut.fraction(cut.byDepth), messages);
-  addDepthCut("--max-transmission-depth", job.settings.maxTransmissionDepth,
+  const RenderSettings& settings = job.settings;
+  constexpr const char* kHigher = "a higher one";
+  if (settings.path().maxDepth < settings.maxDepth)
+    addDepthCut("--integrator direct", "--integrator path", cut.fraction(cut.byDepth), messages);
+  else
+    addDepthCut(fmt::format("--max-depth {}", settings.maxDepth), kHigher,
+                cut.fraction(cut.byDepth), messages);
+  addDepthCut(fmt::format("--max-transmission-depth {}", settings.maxTransmissionDepth), kHigher,
               cut.fraction(cut.byTransmission), messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   if (job.composite || job.settings.isPart()) return messages;
