@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages of the command: typing errors, options of other renderers, warnings, notes.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "gltf_writer.h"
@@ -38,6 +40,17 @@ class SlowCommandMessage : public testing::Test {
   GltfWriter w_;
   TemporaryFolder folder_;
 };
+
+TEST(CommandMessage, TextThatCannotBeWrittenIsAFailure) {
+  const TemporaryFolder folder;
+  for (const char* words : {"--help", "--version", "render --help", "probe synth --help"}) {
+    const std::string error = folder / "error",
+                      line = std::string(kCommand) + " " + words + " >/dev/full 2>" + error;
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1) << words;
+    EXPECT_EQ(fileContents(error).find("chromeball: standard output: "), 0u) << words;
+  }
+}
 
 TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
   for (const auto& [theirs, ours] :

@@ -275,5 +275,35 @@ TEST(FindCircle, OfARealPhotograph) {
   expectCircle(readImage(*path), {{190.5, 190.5}, 190.5}, 3, "office");
 }
 
+// Smooth pictures have contours, and polygons sides, that are circles almost.
+TEST(FindCircle, ContoursAndPolygonsAreNoBalls) {
+  constexpr int kWidth = 320, kHeight = 240;
+  const auto picture = [](const auto& radiance) {
+    Image image(kWidth, kHeight, 3);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        image.setRgb(x, y, Rgb(float(radiance(x - 160.5, y - 120.5))));
+    return image;
+  };
+  for (const double width : {30.0, 50.0}) {
+    EXPECT_FALSE(findCircle(picture([&](double x, double y) {
+      return 0.02 + std::exp(-(x * x + y * y) / (2 * width * width));
+    }))) << width;
+  }
+  EXPECT_FALSE(findCircle(picture([](double x, double y) {
+    return 1 + 0.3 * std::sin(x / 17) * std::cos(y / 23) + 0.2 * std::sin((x + y) / 31);
+  })));
+  for (const int sides : {6, 8}) {
+    EXPECT_FALSE(findCircle(picture([&](double x, double y) {
+      double farthest = 0;
+      for (int i = 0; i < sides; ++i) {
+        const double angle = 2 * kPiD * (i + 0.3) / sides;
+        farthest = std::max(farthest, x * std::cos(angle) + y * std::sin(angle));
+      }
+      return 0.1 + 0.8 * std::clamp(75.5 - farthest, 0.0, 1.0);
+    }))) << sides;
+  }
+}
+
 }  // namespace
 }  // namespace chromeball::find_circle_test

@@ -106,12 +106,48 @@ TEST(Gltf, InvalidNormalsAreRepaired) {
   EXPECT_EQ(normals, (std::vector<vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
 }
 
-TEST(Gltf, NodesWithSingularTransformsAreIgnored) {
+TEST(Gltf, NodesWithoutAreaAreIgnored) {
   GltfWriter w;
-  addTriangle(w, {}, {{"scale", {1, 0, 1}}});
+  addTriangle(w, {}, {{"scale", {1, 0, 0}}});
+  addTriangle(w, {}, {{"scale", {0, 0, 0}}});
   addTriangle(w, {}, {{"scale", {1e-6, 1e-6, 1e-6}}});  // small, but invertible
   EXPECT_EQ(w.load().instances.size(), 1u);
-  EXPECT_EQ(w.warnings.size(), 1u);
+  EXPECT_EQ(w.warnings.size(), 2u);
+}
+
+// A scale of 0 on one axis makes a solid a figure in a plane, whose normals are the plane's, on the
+// side that its triangles face; however the node is turned.
+TEST(Gltf, NodesMayFlattenTheirMeshes) {
+  for (const bool isShared : {false, true})
+    for (const double degrees : {0.0, 33.0, 180.0, 251.0}) {
+      GltfWriter w;
+      const double half = degrees * kPiD / 360;
+      const json turn = {0.6 * std::sin(half), 0, 0.8 * std::sin(half), std::cos(half)};
+      // Two sides of a roof, with normals that are not the triangles'.
+      const int mesh =
+          w.mesh({{"attributes",
+                   {{"POSITION", w.vec3s({0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, -1, 1, 0, 0, 0, 1})},
+                    {"NORMAL",
+                     w.vec3s({0, 1, 0, -.6f, .8f, 0, 0, .8f, .6f, 1, 0, 0, 0, 1, 0, 0, 1, 0})}}}});
+      w.add("nodes", {{"mesh", mesh}, {"scale", {2, 0, 3}}, {"rotation", turn}});
+      if (isShared)
+        for (const double x : {5, 9}) w.add("nodes", {{"mesh", mesh}, {"translation", {x, 0, 0}}});
+      const Scene scene = w.load();
+      ASSERT_EQ(scene.instances.size(), isShared ? 3u : 1u);
+      EXPECT_TRUE(w.warnings.empty());
+      EXPECT_FALSE(scene.instances[0].toWorld);
+      const Mesh& flat = scene.meshes[size_t(scene.instances[0].mesh)];
+      const glm::dquat q(std::cos(half), 0.6 * std::sin(half), 0, 0.8 * std::sin(half));
+      const glm::dvec3 up = q * glm::dvec3(0, 1, 0);
+      for (size_t i = 0; i < flat.positions.size(); ++i) {
+        EXPECT_NEAR(glm::dot(glm::dvec3(flat.positions[i]), up), 0, 1e-6);
+        EXPECT_NEAR(glm::dot(glm::dvec3(flat.normals[i]), up), 1, 1e-6) << i << " " << degrees;
+      }
+      for (const Triangle& t : flat.triangles) {
+        const vec3 a = flat.positions[t.x], b = flat.positions[t.y], c = flat.positions[t.z];
+        EXPECT_NEAR(glm::dot(glm::dvec3(glm::cross(b - a, c - a)), up), 6, 1e-5);
+      }
+    }
 }
 
 TEST(Gltf, TheDefaultSceneSelectsTheNodes) {

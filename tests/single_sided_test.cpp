@@ -12,6 +12,8 @@
 namespace chromeball::single_sided_test {
 namespace {
 
+using nlohmann::json;
+
 constexpr SingleSided kModes[] = {SingleSided::Camera, SingleSided::Light, SingleSided::Off};
 
 Probe whiteProbe() { return Probe(constantProbe({64, 32}, Rgb(1))); }
@@ -229,6 +231,32 @@ TEST(SlowSingleSided, AnEmptyViewIsReported) {
   EXPECT_TRUE(contains(message, "no surface is in view")) << message;
   EXPECT_TRUE(contains(message, "--single-sided off")) << message;
   EXPECT_FALSE(contains(messagesOf(model, 1, {"--single-sided", "off"}), "in view"));
+}
+
+// What no camera would see is not the camera's fault.
+TEST(SlowSingleSided, SurfacesThatNeverShowAreReported) {
+  const auto message = [](const json& material, const std::vector<float>& positions) {
+    GltfWriter w;
+    w.add("materials", material);
+    w.add(
+        "nodes",
+        {{"mesh", w.mesh({{"attributes", {{"POSITION", w.vec3s(positions)}}}, {"material", 0}})}});
+    return messagesOf(w.save(), 1);
+  };
+  const std::vector<float> triangle = {-1, 0, 0, 1, 0, 0, 0, 1, 0},
+                           line = {-1, 0, 0, 1, 0, 0, 0, 0, 0};
+  const json clear = {{"baseColorFactor", {1, 1, 1, 0}}};
+  for (const json& material :
+       std::vector<json>{{{"alphaMode", "MASK"}, {"alphaCutoff", 2}},
+                         {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", clear}},
+                         {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", clear}}}) {
+    const std::string hidden = message(material, triangle);
+    EXPECT_TRUE(contains(hidden, "all have an alpha of 0")) << hidden;
+    EXPECT_FALSE(contains(hidden, "another camera")) << hidden;
+  }
+  const std::string flat = message(json::object(), line);
+  EXPECT_TRUE(contains(flat, "all triangles have no area")) << flat;
+  EXPECT_FALSE(contains(flat, "another camera")) << flat;
 }
 
 }  // namespace

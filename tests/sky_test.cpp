@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "base/error.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
@@ -41,6 +43,47 @@ TEST(SlowSky, SunIrradianceIsIndependentOfResolution) {
       EXPECT_TRUE(glm::length(found) > 0 && std::isfinite(found.x));
     }
   }
+}
+
+// The smallest discs have the most samples a texel; near a pole they reach every texel of a row.
+TEST(Sky, SmallSunsNearThePolesTakeNoLonger) {
+  constexpr int kSuns = 200;
+  Image image(128, 64, 3);
+  const dvec3 zenith(0, 1, 0);
+  const std::clock_t start = std::clock();
+  for (int i = 0; i < kSuns; ++i)
+    addSunDisc(image, glm::normalize(zenith + 1e-5 * i * dvec3(0.6, 0, 0.8)), 0.01, dvec3(3, 2, 1));
+  EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 2) << "a minute if all are sampled";
+  EXPECT_LT(glm::distance(irradiance(image, zenith) / double(kSuns), {3, 2, 1}), 1e-3 * 3);
+}
+
+// Discs over a pole, beside it and across the seam cover each texel by its share of them.
+TEST(Sky, DiscsCoverTheirShareOfEachTexel) {
+  const int w = 64, h = 32;
+  for (const double elevation : {90.0, 89.0, -80.0, 5.0, 30.0})
+    for (const double radius : {9.0, 20.0, 44.0}) {
+      ClearSky sky;
+      sky.sunElevation = elevation;
+      sky.sunAzimuth = 178;
+      const dvec3 towards = sunDirection(sky);
+      Image image(w, h, 3);
+      addSunDisc(image, towards, 2 * radius, dvec3(1));
+      const double cosRadius = std::cos(radius * kPiD / 180);
+      float brightest = 0;
+      for (const float texel : image.texels) brightest = std::max(brightest, texel);
+      for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+          constexpr int kSide = 32;
+          int inside = 0;
+          for (int i = 0; i < kSide * kSide; ++i) {
+            const dvec2 uv((x + (i % kSide + 0.5) / kSide) / w,
+                           (y + (i / kSide + 0.5) / kSide) / h);
+            inside += glm::dot(*uvToDirection(Mapping::LatLong, uv), towards) >= cosRadius;
+          }
+          ASSERT_NEAR(image.rgb(x, y).x / brightest, double(inside) / (kSide * kSide), 0.25)
+              << elevation << " " << radius << ": " << x << " " << y;
+        }
+    }
 }
 
 TEST(SlowSky, SunHasTheGivenDiameterAndConstantRadiance) {

@@ -157,6 +157,21 @@ TEST_F(Tiff, TruncatedFilesAreRefused) {
   }
 }
 
+// No file of 5 kB holds 400 MB, however it is compressed; nothing is decoded to find this out.
+TEST_F(Tiff, FilesTooShortForTheirTexelsAreRefused) {
+  constexpr uint16_t kNone = 1, kLzw = 5, kJpeg = 7, kAdobeDeflate = 8, kPackBits = 32773,
+                     kDeflate = 32946;
+  TiffImage image{16384, 8192, std::string(5000, '\0')};
+  for (const uint16_t compression : {kNone, kLzw, kJpeg, kAdobeDeflate, kPackBits, kDeflate}) {
+    image.compression = compression;
+    refuse({image}, "a.tif: cannot be read: the file is too short for 16384 x 8192 texels");
+    refuse({thumbnail(), image}, "too short for 16384 x 8192 texels");
+  }
+  // Black and white, of which a row takes a bit: 2^17 of 2^15 bits do not fit into 5 kB.
+  constexpr uint16_t kCcittFax4 = 4;
+  refuse({{1 << 15, 1 << 17, std::string(5000, '\0'), 0, 1, 1, kCcittFax4}}, "too short for");
+}
+
 // Directories that point to each other, and truncated ones.
 TEST_F(Tiff, DamagedDirectoriesAreHarmless) {
   TiffImage parent = thumbnail();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "base/error.h"
 #include "probe/rasterize.h"
@@ -47,6 +49,83 @@ dvec3 skyIrradiance(const SkyRadiance& radiance) {
     }
   return sum * (kPiD / (kRings * kSectors));
 }
+
+// How much of the texels of a lat-long map a disc covers: a grid of samples in each texel, about 16
+// across the disc and no more than 1024 across a texel. Of each line of samples the disc has one
+// interval, whose ends are computed, so that the time is that of the texels that it covers.
+class DiscSamples {
+ public:
+  DiscSamples(const dvec3& direction, double radius, const ImageSize& size)
+      : size_(size),
+        radius_(radius),
+        theta_(std::atan2(std::hypot(direction.x, direction.z), direction.y)),
+        centreU_(directionToUv(Mapping::LatLong, direction).x),
+        samplesX_(samplesAlong(2 * kPiD / size.width)),
+        samplesY_(samplesAlong(kPiD / size.height)) {}
+
+  int top() const { return rowAt(theta_ - radius_); }
+  int bottom() const { return rowAt(theta_ + radius_); }
+
+  // Calls found(x, fraction) for each texel of the row that has samples inside the disc.
+  template <class Found>
+  void forEachCovered(int y, const Found& found) const {
+    std::vector<Interval> lines;
+    Interval whole{std::numeric_limits<int64_t>::max(), std::numeric_limits<int64_t>::min()};
+    for (int j = 0; j < samplesY_; ++j) {
+      const Interval line = samplesOfLine(kPiD * (y + (j + 0.5) / samplesY_) / size_.height);
+      if (line.last < line.first) continue;
+      lines.push_back(line);
+      whole = {std::min(whole.first, line.first), std::max(whole.last, line.last)};
+    }
+    if (lines.empty()) return;
+    // Columns go on beyond the seam; one that is reached from both sides is counted once.
+    const int64_t w = size_.width, first = columnOf(whole.first), last = columnOf(whole.last);
+    std::vector<int64_t> inside(size_t(std::min(last - first + 1, w)));
+    for (const Interval& line : lines)
+      for (int64_t column = columnOf(line.first); column <= columnOf(line.last); ++column)
+        inside[size_t((column - first) % w)] += std::min(line.last, (column + 1) * samplesX_ - 1) -
+                                                std::max(line.first, column * samplesX_) + 1;
+    for (size_t i = 0; i < inside.size(); ++i)
+      if (inside[i] > 0)
+        found(int(((first + int64_t(i)) % w + w) % w),
+              double(inside[i]) / (double(samplesX_) * samplesY_));
+  }
+
+ private:
+  // Of samples along a line, numbered from u = 0 on; empty if last < first.
+  struct Interval {
+    int64_t first, last;
+  };
+
+  int samplesAlong(double texelAngle) const {
+    return int(std::clamp(std::ceil(8 * texelAngle / radius_), 4.0, 1024.0));
+  }
+  int rowAt(double theta) const {
+    return std::clamp(int(theta / kPiD * size_.height), 0, size_.height - 1);
+  }
+  int64_t columnOf(int64_t sample) const { return int64_t(std::floor(double(sample) / samplesX_)); }
+
+  // Those at most the radius R from the centre C, by the haversine formula:
+  // sin^2(R / 2) = sin^2((theta - thetaC) / 2) + sin(theta) sin(thetaC) sin^2((phi - phiC) / 2).
+  Interval samplesOfLine(double theta) const {
+    const auto haversine = [](double angle) { return std::pow(std::sin(0.5 * angle), 2); };
+    const double left = haversine(radius_) - haversine(theta - theta_);
+    if (left < 0) return {0, -1};
+    const double most = std::sin(theta) * std::sin(theta_);
+    const double along = double(size_.width) * samplesX_;
+    if (left >= most) {
+      const auto first = int64_t(std::ceil((centreU_ - 0.5) * along - 0.5));
+      return {first, first + int64_t(along) - 1};
+    }
+    const double reach = std::asin(std::sqrt(left / most)) / kPiD;  // in u
+    return {int64_t(std::ceil((centreU_ - reach) * along - 0.5)),
+            int64_t(std::floor((centreU_ + reach) * along - 0.5))};
+  }
+
+  ImageSize size_;
+  double radius_, theta_, centreU_;
+  int samplesX_, samplesY_;
+};
 
 }  // namespace
 
@@ -101,15 +180,7 @@ dvec3 sunIrradiance(const ClearSky& sky) {
 void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
                 const dvec3& irradiance) {
   const int w = latLong.width, h = latLong.height;
-  const double radius = 0.5 * radians(diameterDegrees), cosRadius = std::cos(radius);
-  const double theta = std::acos(std::clamp(direction.y, -1.0, 1.0));
-  const int top = std::clamp(int((theta - radius) / kPiD * h), 0, h - 1);
-  const int bottom = std::clamp(int((theta + radius) / kPiD * h), 0, h - 1);
-  // About 16 samples across the disc, and no more than 1024 across a texel.
-  const auto samplesAlong = [&](double texelAngle) {
-    return int(std::clamp(std::ceil(8 * texelAngle / radius), 4.0, 1024.0));
-  };
-  const int samplesX = samplesAlong(2 * kPiD / w), samplesY = samplesAlong(kPiD / h);
+  const DiscSamples disc(direction, 0.5 * radians(diameterDegrees), {w, h});
 
   // The fraction of each texel that the disc covers, estimated from the samples.
   struct Covered {
@@ -123,26 +194,12 @@ void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
     covered.push_back({x, y, fraction});
     facing += fraction * texelSolidAngle(y, w, h) * std::max(glm::dot(centre, direction), 1e-3);
   };
-  const double centreU = directionToUv(Mapping::LatLong, direction).x;
-  for (int y = top; y <= bottom; ++y) {
-    // Half the range of u that the disc may reach in this row: the whole row if it contains a pole.
-    const double sinTheta = std::sin(std::clamp(theta, radius, kPiD - radius));
-    const bool containsPole = theta < 2 * radius || theta > kPiD - 2 * radius;
-    const double reach = containsPole ? 0.5 : std::asin(std::sin(radius) / sinTheta) / (2 * kPiD);
-    const int first = int(std::floor((centreU - reach) * w)), last = int((centreU + reach) * w);
-    for (int column = first; column <= std::min(last, first + w - 1); ++column) {
-      const int x = (column % w + w) % w;
-      int64_t inside = 0;
-      for (int j = 0; j < samplesY; ++j)
-        for (int i = 0; i < samplesX; ++i) {
-          const dvec2 uv((x + (i + 0.5) / samplesX) / w, (y + (j + 0.5) / samplesY) / h);
-          inside += glm::dot(*uvToDirection(Mapping::LatLong, uv), direction) >= cosRadius;
-        }
-      if (inside > 0) add(x, y, double(inside) / (samplesX * samplesY));
-    }
+  for (int y = disc.top(); y <= disc.bottom(); ++y)
+    disc.forEachCovered(y, [&](int x, double fraction) { add(x, y, fraction); });
+  if (covered.empty()) {
+    const dvec2 uv = directionToUv(Mapping::LatLong, direction);
+    add(std::clamp(int(uv.x * w), 0, w - 1), std::clamp(int(uv.y * h), 0, h - 1), 1);
   }
-  if (covered.empty())
-    add(std::clamp(int(centreU * w), 0, w - 1), std::clamp(int(theta / kPiD * h), 0, h - 1), 1);
 
   for (const Covered& texel : covered)
     latLong.setRgb(

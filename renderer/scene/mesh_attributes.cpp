@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "scene/linear_map.h"
 
 namespace chromeball {
 namespace {
@@ -131,13 +132,12 @@ void repairTangents(Mesh& mesh) {
 
 void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   const glm::dmat3 linear(transform);
-  const glm::dmat3 inverseTranspose = glm::transpose(glm::inverse(linear));
-  const bool mirrors = glm::determinant(linear) < 0;
+  const bool isMirrored = mirrors(linear);
   forEach(mesh.positions, [&](vec3& p) { p = vec3(transform * glm::dvec4(dvec3(p), 1)); });
-  for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), mirrors ? -t.w : t.w);
-  if (mirrors)
+  for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), isMirrored ? -t.w : t.w);
+  if (isMirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
-  placeNormals(mesh, inverseTranspose);
+  placeNormals(mesh, normalMatrix(linear));
   repairTangents(mesh);
 }
 

@@ -100,6 +100,12 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
                      word, known.empty() ? help : didYouMean(option, known));
 }
 
+// An earlier write may have failed, after which nothing is left to flush.
+void finishOutput() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throwRun("standard output: {}", std::strerror(errno));
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Renders glTF scenes lit by HDR light probes.", "chromeball"};
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
@@ -120,10 +126,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return report(kBadInput, describe(app, error));
+    if (error.get_exit_code() != 0) return report(kBadInput, describe(app, error));
+    app.exit(error);  // prints --help or --version
   }
-  if (std::fflush(stdout) != 0) throwRun("standard output: {}", std::strerror(errno));
+  finishOutput();
   return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "math/icosphere.h"
@@ -119,7 +120,30 @@ bool isBehindWalls(const Accel& accel, const Surface& surface, const std::vector
   });
 }
 
-std::string noneInView(const Seen& seen) {
+// Why no camera sees any surface; empty if one may. The search ends at the first that shows.
+std::string whyNoneShows(const Scene& scene) {
+  constexpr std::array<vec2, 7> kPoints = {vec2(1.f / 3),     vec2(0.05f, 0.05f), vec2(0.9f, 0.05f),
+                                           vec2(0.05f, 0.9f), vec2(0.45f, 0.45f), vec2(0.1f, 0.45f),
+                                           vec2(0.45f, 0.1f)};
+  bool anyArea = false;
+  for (const Instance& instance : scene.instances) {
+    const std::vector<Triangle>& triangles = scene.meshes[size_t(instance.mesh)].triangles;
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+      const auto [a, b, c] = cornersAt(scene, instance, triangles[i], 0);
+      if (!(glm::length(glm::cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a))) > 0)) continue;
+      anyArea = true;
+      if (std::ranges::any_of(kPoints, [&](const vec2& barycentric) {
+            return surfaceAlpha(scene, instance, i, barycentric) > 0;
+          }))
+        return "";
+    }
+  }
+  return anyArea ? "no surface is visible: all have an alpha of 0, or one below their alphaCutoff"
+                 : "no surface is visible: all triangles have no area";
+}
+
+std::string noneInView(const Scene& scene, const Seen& seen) {
+  if (const std::string cause = whyNoneShows(scene); !cause.empty()) return cause;
   if (seen.hidden > 0)
     return "no surface is in view: the camera is behind single-sided ones, whose backs it does not "
            "see; try --single-sided off, or another camera";
@@ -137,7 +161,7 @@ std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loa
   const Seen seen = lookThrough(loaded, accel, mean, kDark * probeMean, kGrid);
   if (seen.surfaces == 0) {
     const Seen finer = lookThrough(loaded, accel, mean, 0, kFine);
-    return finer.surfaces == 0 ? std::optional(noneInView(finer)) : std::nullopt;
+    return finer.surfaces == 0 ? std::optional(noneInView(loaded.scene, finer)) : std::nullopt;
   }
   const double black = double(seen.black.size()) / seen.surfaces;
   if (job.settings.maxDepth == 0 || black < kMax) return std::nullopt;  // at 0, only emitters shine

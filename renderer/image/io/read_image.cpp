@@ -188,7 +188,11 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
     const TiffBlock tiff(bytes);
     warnOfProfile(tiff.bytes(tiff.firstDirectory(), kProfileTag), path, file.messages);
   }
-  checkImageMemory(path, header.width, header.height, int64_t(header.channels.size()));
+  // A strip may be the whole image, which the module decodes in memory of its own; grey becomes
+  // RGB.
+  constexpr double kCopies = 4;
+  checkImageMemory(path, header.width, header.height,
+                   std::max<int64_t>(int64_t(header.channels.size()), 3), sizeof(float), kCopies);
   file.image = Image(header.width, header.height, int(header.channels.size()));
   image->read(file.image.texels.data());
   if (file.integers && integers == IntegerTexels::Srgb)

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/tiff_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <vector>
 
 #include "image/io/tiff_block.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 namespace {
@@ -13,8 +16,13 @@ namespace {
 enum PictureTag : uint16_t {
   kNewSubfileType = 254,
   kSubfileType = 255,
+  kWidth = 256,
+  kHeight = 257,
+  kBitsPerSample = 258,
+  kCompression = 259,
   kPhotometric = 262,
   kStripOffsets = 273,
+  kSamplesPerPixel = 277,
   kStripLengths = 279,
   kTileOffsets = 324,
   kTileLengths = 325,
@@ -88,6 +96,56 @@ void checkWhole(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
   }
 }
 
+// Upper bounds on the bytes of texels that a byte of the file can hold, by its compression.
+double maxRatioOf(int compression, double width) {
+  enum Compression {
+    kNone = 1,
+    kCcittRle,
+    kCcittFax3,
+    kCcittFax4,
+    kLzw,
+    kJpeg = 7,
+    kAdobeDeflate,
+    kPackBits = 32773,
+    kDeflate = 32946
+  };
+  switch (compression) {
+    case kNone:
+      return 1;
+    case kCcittRle:
+    case kCcittFax3:
+    case kCcittFax4:
+      return std::max(width, 1.0);  // a row of white takes one bit
+    case kLzw:
+      return 2731;  // a code of 12 bits stands for less than 4096 bytes
+    case kJpeg:
+      return 3 * double(kMaxTexelsPerJpegByte);  // three channels of 8 bits
+    case kAdobeDeflate:
+    case kDeflate:
+      return double(kMaxDeflateRatio);
+    case kPackBits:
+      return 64;  // 128 bytes in 2
+    default:
+      return 100'000;  // an estimate: LZMA and Zstandard repeat a byte almost for ever
+  }
+}
+
+// Refuses what a file of this length cannot hold before it is decoded. Blocks that several strips
+// or tiles share count once. Small images may have any ratio.
+void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
+  constexpr double kAlwaysAllowed = 64 << 20;
+  const auto number = [&](uint16_t tag) {
+    const std::vector<uint64_t> values = tiff.integers(directory, tag);
+    return values.empty() ? 1 : double(std::ranges::max(values));
+  };
+  const double width = number(kWidth), height = number(kHeight);
+  const double bytes = width * height * number(kSamplesPerPixel) * number(kBitsPerSample) / 8;
+  const auto compression = int(std::min(number(kCompression), 65535.0));
+  if (bytes > std::max(kAlwaysAllowed, double(fileBytes) * maxRatioOf(compression, width)))
+    throw std::runtime_error(
+        fmt::format("the file is too short for {} x {} texels", width, height));
+}
+
 }  // namespace
 
 uint64_t pictureDirectory(std::span<const uint8_t> file) {
@@ -115,6 +173,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
         "its texels are LogL or LogLuv, of which only 8 bits would be read: convert it to .exr, "
         ".hdr or a .tif of floats");
   checkWhole(tiff, picture, file.size());
+  checkRatio(tiff, picture, file.size());
   return picture;
 }
 

@@ -20,8 +20,8 @@ constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
 // Of the final fit: places without a ball have at most 0.55 of a circle on edges, and a third of
-// its arcs agree; and in pixels.
-constexpr double kLeastAgreement = 0.95, kLargestError = 1;
+// its arcs agree, octagons half of each, and balls at least 1.4 in all; and in pixels.
+constexpr double kLeastAgreement = 1.2, kLargestError = 1;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
@@ -210,6 +210,33 @@ std::optional<FoundCircle> best(const EdgeMap& edges) {
   return found;
 }
 
+// Whether the circle is an edge of the picture, not a contour of a smooth one: along a quarter of
+// its radii at least, the steepest slope at the circle is well above the mean one around it, which
+// it equals where radiance changes smoothly. Balls have more than 3 times that.
+bool isSharp(const Image& channel, const Circle& circle) {
+  constexpr int kRadii = 360, kAround = 6;
+  constexpr double kLeastRatio = 1.5, kLeastShare = 0.25, kNoSlope = 1e-3;
+  int shown = 0, sharp = 0;
+  for (int i = 0; i < kRadii; ++i) {
+    const dvec2 normal = outward(2 * kPiD * i / kRadii);
+    const auto at = [&](double distance) {
+      return circle.centre + (circle.radius + distance) * normal;
+    };
+    const dvec2 end = at(kAround + 1);
+    if (end.x < 1 || end.y < 1 || end.x > channel.width - 1 || end.y > channel.height - 1) continue;
+    const auto slope = [&](double distance) {
+      return std::fabs(interpolate(channel, at(distance + 1)) -
+                       interpolate(channel, at(distance - 1)));
+    };
+    double steepest = 0, around = 0;
+    for (int k = -2; k <= 2; ++k) steepest = std::max(steepest, slope(0.5 * k));
+    for (int k = 2; k <= kAround; ++k) around += slope(k) + slope(-k);
+    ++shown;
+    sharp += steepest > kLeastRatio * (around / (2 * (kAround - 1)) + kNoSlope);
+  }
+  return sharp >= kLeastShare * shown;
+}
+
 }  // namespace
 
 std::optional<FoundCircle> findCircle(const Image& image) {
@@ -229,7 +256,8 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   }
   const std::optional<Outline> outline = fitOutline(image, circle);
   if (!outline || found->support + outline->support < kLeastAgreement ||
-      !(outline->standardError < kLargestError))
+      !(outline->standardError < kLargestError) ||
+      !isSharp(small, {outline->circle.centre / double(scale), outline->circle.radius / scale}))
     return std::nullopt;
   return FoundCircle{outline->circle, outline->support, outline->standardError};
 }

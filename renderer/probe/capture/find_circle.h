@@ -20,7 +20,8 @@ struct FoundCircle {
 // which the best is fitted by least squares to edges across it, first in the copy and then in the
 // picture itself; at last to a fraction of a pixel (outline.h). Parts of the circle may be outside
 // the picture. nullopt if no circle of at least 5% of the picture's shorter side in radius has half
-// of its outline on edges, if few arcs of the final fit agree on it, or only to more than a pixel.
+// of its outline on edges, if few arcs of the final fit agree on it, or only to more than a pixel,
+// or if radiance changes there no faster than around it, as in smooth pictures.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 }  // namespace chromeball

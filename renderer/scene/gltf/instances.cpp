@@ -11,6 +11,7 @@
 #include "scene/gltf/gpu_instancing.h"
 #include "scene/gltf/material_reader.h"
 #include "scene/gltf/mesh.h"
+#include "scene/linear_map.h"
 #include "scene/mesh_attributes.h"
 
 namespace chromeball {
@@ -76,7 +77,9 @@ class InstanceReader {
   }
 
   void addInstance(const Plan& plan) {
-    const bool shared = plan.geometry && plan.geometry->users > 1;
+    // Rays are not transformed back through a flattened instance: it has a mesh of its own.
+    const bool shared =
+        plan.geometry && plan.geometry->users > 1 && isInvertible(glm::dmat3(plan.toWorld));
     int mesh = shared ? plan.geometry->mesh : -1;
     if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
     if (mesh == -1) return;
@@ -140,16 +143,19 @@ class InstanceReader {
   }
 
   // The node's transforms to world space (several with EXT_mesh_gpu_instancing), without those that
-  // are not invertible.
+  // leave no area of any surface.
   std::vector<dmat4> transformsOf(int index, const std::string& where) {
     std::vector<dmat4> transforms =
         readInstanceTransforms(file_, file_.model.nodes[size_t(index)], where);
     for (dmat4& transform : transforms) transform = tree_.toWorld[size_t(index)] * transform;
     const size_t count = transforms.size();
-    std::erase_if(transforms, [](const dmat4& transform) { return !isInvertible(transform); });
+    std::erase_if(transforms,
+                  [](const dmat4& transform) { return !leavesArea(glm::dmat3(transform)); });
     if (transforms.size() < count)
-      file_.warnOnce("ignored: nodes without an invertible transform (such as \"" +
-                     printableName(tree_.names[size_t(index)]) + "\")");
+      file_.warnOnce(
+          "ignored: nodes whose scale of 0 on two axes or three, or transform beyond the range of "
+          "float, leaves no surface (such as \"" +
+          printableName(tree_.names[size_t(index)]) + "\")");
     return transforms;
   }
 

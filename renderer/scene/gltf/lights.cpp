@@ -81,7 +81,8 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
     const glm::dvec3 backwards(toWorld[2]);
     const double length = glm::length(backwards);
     if (!isFinite(light.position) || !(length > 0) || !std::isfinite(length)) {
-      file.warnOnce("ignored: lights of nodes without an invertible transform");
+      file.warnOnce(
+          "ignored: lights of nodes whose transform leaves them no direction or position");
       continue;
     }
     light.direction = vec3(-backwards / length);

@@ -19,6 +19,7 @@
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/gltf/variants.h"
+#include "scene/linear_map.h"
 
 namespace chromeball {
 namespace {
@@ -56,7 +57,7 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
     const bool isValid = camera.orthographic
                              ? camera.halfHeight > 0 && std::isfinite(camera.halfHeight)
                              : lens.yfov > 0 && lens.yfov < kPiD;
-    if (!isValid || !isInvertible(tree.toWorld[size_t(i)])) {
+    if (!isValid || !isInvertible(glm::dmat3(tree.toWorld[size_t(i)]))) {
       file.warnOnce("camera \"" + printableName(camera.name) +
                     "\" has no field of view and is ignored");
       continue;

@@ -159,10 +159,4 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
   return tree;
 }
 
-bool isInvertible(const dmat4& m) {
-  const glm::dmat3 linear(glm::mat3{glm::dmat3(m)});
-  const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-  return std::isfinite(volume) && std::fabs(glm::determinant(linear)) > 1e-9 * volume;
-}
-
 }  // namespace chromeball

@@ -23,7 +23,4 @@ struct NodeTree {
 // finite.
 NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
 
-// Whether the matrix is invertible, also after rounding to float.
-bool isInvertible(const glm::dmat4& m);
-
 }  // namespace chromeball

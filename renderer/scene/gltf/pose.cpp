@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scene/gltf/accessor.h"
+#include "scene/linear_map.h"
 
 namespace chromeball {
 namespace {
@@ -83,14 +84,14 @@ void applySkin(GltfFile& file, const tinygltf::Primitive& primitive,
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::dmat4& m = blended[i];
     const glm::dmat3 linear(m);
-    const bool mirrors = glm::determinant(linear) < 0;
-    mirrored += mirrors;
+    const bool isMirrored = mirrors(linear);
+    mirrored += isMirrored;
     mesh.positions[i] = vec3(m * glm::dvec4(glm::dvec3(mesh.positions[i]), 1));
     if (!mesh.normals.empty())
-      mesh.normals[i] = vec3(glm::transpose(glm::inverse(linear)) * glm::dvec3(mesh.normals[i]));
+      mesh.normals[i] = vec3(normalMatrix(linear) * glm::dvec3(mesh.normals[i]));
     if (!mesh.tangents.empty()) {
       const vec4 t = mesh.tangents[i];
-      mesh.tangents[i] = vec4(vec3(linear * glm::dvec3(t)), mirrors ? -t.w : t.w);
+      mesh.tangents[i] = vec4(vec3(linear * glm::dvec3(t)), isMirrored ? -t.w : t.w);
     }
   }
   if (2 * mirrored > mesh.positions.size())
