@@ -20,8 +20,8 @@ constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
 // Of the final fit: places without a ball have at most 0.55 of a circle on edges, and a third of
-// its arcs agree, octagons half of each, and balls at least 1.4 in all; and in pixels.
-constexpr double kLeastAgreement = 1.2, kLargestError = 1;
+// its arcs agree; and in pixels.
+constexpr double kLeastAgreement = 0.95, kLargestError = 1;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
