@@ -276,7 +276,7 @@ TEST(FindCircle, OfARealPhotograph) {
 }
 
 // Smooth pictures have contours that are circles almost.
-TEST(FindCircle, ContoursAreNoBalls) {
+TEST(SlowFindCircle, ContoursAreNoBalls) {
   constexpr int kWidth = 320, kHeight = 240;
   const auto picture = [](const auto& radiance) {
     Image image(kWidth, kHeight, 3);

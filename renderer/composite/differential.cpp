@@ -42,8 +42,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
       sample.withObjects += whole.follow(state, hit, context);
       if (sample.objectFirst && !behindObjects) return sample;
       state.first = nullptr;
-      state.place =
-          isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
+      state.place = isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
       context.sampler.startVertex(state.depth);
       hit = local.nextHit(state, context);
       const auto records = std::exchange(context.records, nullptr);  // those of `whole` suffice

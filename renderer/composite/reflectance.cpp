@@ -18,8 +18,9 @@ PathSettings localSettings(const RenderSettings& settings) {
   return local;
 }
 
-// The visible surfaces of the local scene: per pixel the maximum depth, and the means of the model's
-// base colour, of emitted radiance and of the fraction that is unlit; 0 where none is visible.
+// The visible surfaces of the local scene: per pixel the maximum depth, and the means of the
+// model's base colour, of emitted radiance and of the fraction that is unlit; 0 where none is
+// visible.
 struct VisibleSurfaces {
   Image farthest, baseColor, emission, unlit;
 };
@@ -45,8 +46,8 @@ class VisibilityIntegrator : public Integrator {
     const Scene& scene = tracer_.world().scene;
     const vec3& direction = state.ray.direction;
     const Instance& instance = scene.instances[hit->instance];
-    const Surface surface = surfaceAt(scene, instance, hit->triangle, hit->barycentric, -direction,
-                                      0, state.ray.time);
+    const Surface surface =
+        surfaceAt(scene, instance, hit->triangle, hit->barycentric, -direction, 0, state.ray.time);
     const float distance = glm::length(surface.position - camera.ray.origin);
     context.layers[kDepth] = Rgb(camera_.depth(direction, distance));
     context.layers[kCoverage] = Rgb(1);
@@ -222,8 +223,8 @@ ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
   Image white(settings.width, settings.height, 3);
   for (int y = 0; y < white.height; ++y)
     for (int x = 0; x < white.width; ++x)
-      white.setRgb(x, y, black.rgb(x, y) +
-                             glm::mix(irradiance * kInvPi, Rgb(1), *visible.unlit.at(x, y)));
+      white.setRgb(
+          x, y, black.rgb(x, y) + glm::mix(irradiance * kInvPi, Rgb(1), *visible.unlit.at(x, y)));
   return solveStep(problem.plate, black, white, visible, projection);
 }
 
