@@ -243,26 +243,32 @@ TEST(SlowComposite, OnePassAgreesWithTwo) {
 // An object's tinted sheet that coincides with a rough pane of the local scene: without objects
 // light crosses the pane alone.
 TEST(SlowComposite, LayersOfAPlaceAreThoseOfTheWorld) {
-  Worlds w;
-  addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.7f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
   Material pane = lambert(Rgb(0.9f));
   pane.doubleSided = true;
   pane.roughness = 0.5f;
   pane.extended.emplace();
   pane.extended->transmission = 1;
-  const int rough = addMaterial(w.scene, pane);
-  addQuad(w.scene, rough, {-3, 1, 3}, {6, 0, 0}, {0, 0, -6});
-  w.markRestLocal();
-  pane.roughness = 0;
-  pane.baseColor = {0.5f, 0.7f, 0.9f, 1};
-  const int tinted = addMaterial(w.scene, pane);
-  addQuad(w.scene, tinted, {-3, 1, 3}, {6, 0, 0}, {0, 0, -6});
-  w.markRestObjects();
-  const auto one = tileMeans(w, "importance", Passes::One, 32, 100);
-  const auto two = tileMeans(w, "importance", Passes::Two, 64, 900);
-  for (size_t i = 0; i < one.size(); ++i)
-    EXPECT_GT(welchTest(Moments::of(one[i]), Moments::of(two[i])), sidak(1e-3, int(one.size())))
-        << "tile " << i / 3;
+  Material tinted = pane;
+  tinted.roughness = 0;
+  tinted.baseColor = {0.3f, 0.6f, 0.9f, 1};
+  for (const bool objectFirst : {true, false}) {  // decides which of the two a path meets first
+    Worlds w;
+    w.camera = Camera::lookAt({0.5f, 0.4f, 1}, {0, 0, 0}, {0, 1, 0}, 0.7f);  // under the panes
+    const auto addPane = [&](const Material& material) {
+      addQuad(w.scene, addMaterial(w.scene, material), {-3, 0.5f, 3}, {6, 0, 0}, {0, 0, -6});
+    };
+    if (objectFirst) addPane(tinted), w.markRestObjects();
+    addPane(pane);
+    addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.7f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+    w.markRestLocal();
+    if (!objectFirst) addPane(tinted), w.markRestObjects();
+    const auto one = tileMeans(w, "importance", Passes::One, 32, 100);
+    const auto two = tileMeans(w, "importance", Passes::Two, 64, 900);
+    for (size_t i = 0; i < one.size(); ++i)
+      EXPECT_GT(welchTest(Moments::of(one[i]), Moments::of(two[i])),
+                sidak(1e-3, 2 * int(one.size())))
+          << "tile " << i / 3;
+  }
 }
 
 // Adaptive passes take different numbers of samples of a pixel, and the layers are means all the
