@@ -34,12 +34,16 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
   context.sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {
     const bool isInPlace = bool(state.place);  // and has crossed some of its layers
-    const std::optional<Hit> met = hit ? whole.metAt(state, *hit, context) : std::nullopt;
+    float weight = 1;
+    const std::optional<Hit> met = hit ? whole.metAt(state, *hit, weight, context) : std::nullopt;
     if (met) hit = met;
-    if (met && worlds.isObject(*met)) {
-      // The ray hits an object: from here on the paths of the two worlds differ.
+    if ((met && worlds.isObject(*met)) || weight != 1) {
+      // The ray hits an object, or there is a choice at its end that depends on objects: from here
+      // on the paths of the two worlds differ.
       sample.objectFirst = state.depth == 0;
-      sample.withObjects += whole.follow(state, hit, context);
+      PathState withObjects = state;
+      if (met) withObjects.throughput *= weight;
+      sample.withObjects += whole.follow(withObjects, hit, context);
       if (sample.objectFirst && !behindObjects) return sample;
       state.first = nullptr;
       state.place = isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
@@ -53,7 +57,8 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
     whole.estimateDepthCut(state, hit, context);
     PathState without = state;
     without.first = nullptr;
-    without.place = withoutObjects(worlds, state.place, state.ray.direction);
+    if (state.place) [[unlikely]]
+      without.place = withoutObjects(worlds, state.place, state.ray.direction);
     // A shadow ray that starts in the place crosses its layers without being traced.
     context.shadowsDiffer = without.place.count != state.place.count;
     const bool continues = shared.vertex(state, hit, context);

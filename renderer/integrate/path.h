@@ -96,6 +96,9 @@ class PathTracer {
   // The surface that the path meets where it has hit one: another one if that coincides with it and
   // comes first. nullopt if the path ignores the surface and no other one coincides with it.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, PathContext& context) const;
+  // The same, if a choice at random is not to change the throughput: it is left in `weight`.
+  std::optional<Hit> metAt(PathState& state, const Hit& hit, float& weight,
+                           PathContext& context) const;
 
   // Moves a camera path past back faces that the camera does not see (--single-sided); returns the
   // hit of the first visible surface.

@@ -115,16 +115,20 @@ class PlaceCollector {
   return state.place.current();
 }
 
-std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathContext& context) const {
+std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, float& weight,
+                                     PathContext& context) const {
   const Instance& instance = world_.scene.instances[hit.instance];
   const Material& material = world_.scene.materials[size_t(instance.material)];
   const bool isPassed = state.isDelta ? material.hidesBack() : material.backLetsLightThrough();
   if (state.place || !(material.transmits() || isPassed)) return hit;
   const Surface surface = surfaceOf(state, hit);
-  if (!mayPass(state, surface)) return hit;
+  return mayPass(state, surface) ? metAt(state, hit, surface, weight, context) : hit;
+}
+
+std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathContext& context) const {
   float weight = 1;
-  const auto met = metAt(state, hit, surface, weight, context);
-  if (met) state.throughput *= weight;
+  const auto met = metAt(state, hit, weight, context);
+  if (met) state.throughput *= weight;  // else vertex() chooses again, and in the same way
   return met;
 }
 
