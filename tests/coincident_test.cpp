@@ -142,7 +142,6 @@ TEST(Coincident, ASheetOnARoofLetsNoLightThrough) {
               meanInWhite(covered, camera, 64, strategy).x);
 }
 
-// Slabs that touch: exp(-sum of attenuation x thickness), from both sides and in any order.
 // The front of a roof that passes light from behind, over a floor: light samples and bounces agree
 // whatever coincides with it, and neither a doubled roof nor a clear sheet on it changes the light.
 TEST(Coincident, AFrontThatPassesLightFromBehindPassesItBehindASheet) {
@@ -170,6 +169,7 @@ TEST(Coincident, AFrontThatPassesLightFromBehindPassesItBehindASheet) {
   }
 }
 
+// Slabs that touch: exp(-sum of attenuation x thickness), from both sides and in any order.
 TEST(Coincident, TouchingBodiesAbsorbInTurn) {
   const Rgb first(0.3f, 0.1f, 0), second(0.1f, 0.4f, 0.2f), third(0, 0.2f, 0.5f);
   const Rgb expected = glm::exp(-(first * 1.0f + second * 2.0f + third * 0.5f));

@@ -18,38 +18,45 @@ BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
 
 }  // namespace
 
-Rgb DirectLight::visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t lamp) const {
-  if (!exists(lamp, mask)) return Rgb(0);
-  return world_.accel.transmittance(ray, mask, media.attenuation(), media.bodies());
+Rgb DirectLight::visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t key,
+                            const LightEnd& end) const {
+  if (!exists(end, mask)) return Rgb(0);
+  const Rgb passed = world_.accel.transmittance(ray, mask, media.attenuation(), media.bodies());
+  if (end.instance == LightEnd::kNone || isBlack(passed) ||
+      !world_.sharedPlaces.contains(end.instance, end.triangle))
+    return passed;
+  const Hit emitter{end.instance, end.triangle, end.barycentric, ray.tMax};
+  return passed * transmittanceAtPlace(world_, media, ray, emitter, key, mask);
 }
 
 Rgb DirectLight::visibility(const Ray& ray, const Media& media, PathContext& context,
-                            uint32_t lamp) const {
+                            const LightEnd& end) const {
   ++context.counts.shadow;
   if (context.log) context.log->rays.push_back({ray, true});
-  const Rgb passed = visibility(ray, media, settings_.visible, lamp);
+  const uint32_t key = context.sampler.sampleKey();
+  const Rgb passed = visibility(ray, media, settings_.visible, key, end);
   const bool differs = settings_.compared != settings_.visible;
   // `compared` is a subset of `visible`: a ray unoccluded in `visible` is unoccluded there too.
-  if (differs && (passed != Rgb(1) || !exists(lamp, settings_.compared))) [[unlikely]] {
+  if (differs && (passed != Rgb(1) || !exists(end, settings_.compared))) [[unlikely]] {
     // The product over blended surfaces depends on their order by rounding errors.
     constexpr float kRounding = 1e-6f;
-    const Rgb other = visibility(ray, media, settings_.compared, lamp);
+    const Rgb other = visibility(ray, media, settings_.compared, key, end);
     context.shadowsDiffer |= maxComponent(absolute(other - passed)) > kRounding;
   }
   return passed;
 }
 
 Rgb DirectLight::transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
-                               uint32_t lamp) const {
+                               const LightEnd& end) const {
   if (!vertex.media.inside() && !vertex.surface.material->extended)
-    return visibility(ray, {}, context, lamp);
+    return visibility(ray, {}, context, end);
   Media media = vertex.media;
   media.follow(vertex.surface, ray.direction);
   Rgb passed(1);
   if (vertex.place && *vertex.place)
     passed = crossPlace(*vertex.place, ray.direction, ray.time, media);
   if (isBlack(passed)) return passed;
-  return passed * visibility(ray, media, context, lamp);
+  return passed * visibility(ray, media, context, end);
 }
 
 Rgb DirectLight::crossPlace(Place place, const vec3& direction, float time, Media& media) const {
@@ -195,7 +202,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
       ray.tMax = glm::length(light.end.position - ray.origin);
       ray.direction = (light.end.position - ray.origin) / ray.tMax;
     }
-    const Rgb passed = transmittance(vertex, ray, context, light.end.instance);
+    const Rgb passed = transmittance(vertex, ray, context, light.end);
     const Rgb scattered = (weighted(light, broad) + weighted(light, narrow)) * passed;
     sum += scattered * light.irradiance;
     if (context.groups) [[unlikely]]

@@ -84,18 +84,20 @@ class DirectLight {
   static LightRecord record(const LightPoint& point, const LightSample& light,
                             const BsdfValue& bsdf);
 
-  // Transmittance of a shadow ray from the vertex: occluders, and absorption in media. `lamp`: the
-  // instance at which the ray ends, or LightEnd::kNone.
+  // Transmittance of a shadow ray from the vertex: occluders, and absorption in media. `end`: where
+  // the ray ends, if in the scene.
   Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
-                    uint32_t lamp = LightEnd::kNone) const;
-  Rgb visibility(const Ray& ray, const Media& media, PathContext& context, uint32_t lamp) const;
-  Rgb visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t lamp) const;
+                    const LightEnd& end = {}) const;
+  Rgb visibility(const Ray& ray, const Media& media, PathContext& context,
+                 const LightEnd& end) const;
+  Rgb visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t key,
+                 const LightEnd& end) const;
   // Transmittance of the other surfaces at the vertex's place in a direction, and the media behind
   // them.
   Rgb crossPlace(Place place, const vec3& direction, float time, Media& media) const;
   // False for an instance that is not in this part of the scene.
-  bool exists(uint32_t lamp, RayMask mask) const {
-    return lamp == LightEnd::kNone || world_.accel.mask(lamp) & mask;
+  bool exists(const LightEnd& end, RayMask mask) const {
+    return end.instance == LightEnd::kNone || world_.accel.mask(end.instance) & mask;
   }
 
   const World& world_;

@@ -207,7 +207,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   const Scene& scene = world_.scene;
   const Instance& instance = scene.instances[hit->instance];
   const Surface surface = surfaceOf(state, *hit);
-  if (!state.place && mayPass(state, surface)) [[unlikely]] {
+  if (!state.place && (mayPass(state, surface) || sharesPlace(*hit))) [[unlikely]] {
     float weight = 1;
     auto met = metAt(state, *hit, surface, weight, context);
     if (met && !state.place && passesFromBehind(state, *surface.material, surface.frontFace)) {

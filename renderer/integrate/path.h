@@ -120,6 +120,9 @@ class PathTracer {
   // `weight`: of the path that goes on, if that is chosen at random.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
+  bool sharesPlace(const Hit& hit) const {
+    return world_.sharedPlaces.contains(hit.instance, hit.triangle);
+  }
   Surface surfaceOf(const PathState& state, const Hit& hit) const;
   Rgb escapedRadiance(const PathState& state, PathContext& context) const;
   Rgb weighted(const PathState& state, const LightSource::Escaped& escaped,

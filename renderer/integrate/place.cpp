@@ -27,8 +27,9 @@ class PlaceCollector {
     if (ignores(state_, material, front)) return;
     ++count_;
     if (material.transmits()) return addLayer({hit, !material.isBody() ? 1 : front ? 0 : 2});
-    // Of several opaque surfaces the path meets a front.
-    keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, front ? 0 : 1});
+    // Of several opaque surfaces the path meets a front, and of fronts one that emits.
+    const int rank = !front ? 2 : material.emits() ? 0 : 1;
+    keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, rank});
   }
 
   int count() const { return count_; }
@@ -120,9 +121,10 @@ std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, float& we
   const Instance& instance = world_.scene.instances[hit.instance];
   const Material& material = world_.scene.materials[size_t(instance.material)];
   const bool isPassed = state.isDelta ? material.hidesBack() : material.backLetsLightThrough();
-  if (state.place || !(material.transmits() || isPassed)) return hit;
+  const bool isShared = sharesPlace(hit);
+  if (state.place || !(material.transmits() || isPassed || isShared)) return hit;
   const Surface surface = surfaceOf(state, hit);
-  return mayPass(state, surface) ? metAt(state, hit, surface, weight, context) : hit;
+  return isShared || mayPass(state, surface) ? metAt(state, hit, surface, weight, context) : hit;
 }
 
 std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathContext& context) const {
@@ -130,6 +132,32 @@ std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathConte
   const auto met = metAt(state, hit, weight, context);
   if (met) state.throughput *= weight;  // else vertex() chooses again, and in the same way
   return met;
+}
+
+Rgb transmittanceAtPlace(const World& world, const Media& media, const Ray& ray, const Hit& emitter,
+                         uint32_t key, RayMask mask) {
+  const Scene& scene = world.scene;
+  PathState state{.ray = ray, .isDelta = false, .media = media};
+  PlaceCollector found(scene, state);
+  found.add(emitter);
+  const auto surfaceOf = [&](const Hit& hit) {
+    return surfaceAt(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric,
+                     -ray.direction, 0, ray.time);
+  };
+  const Surface surface = surfaceOf(emitter);
+  world.accel.forEachCoincident(ray, emitter, surface, key, mask,
+                                [&](const Hit& other) { found.add(other); });
+  const auto isEmitter = [&](const Hit& hit) { return orderOf(hit) == orderOf(emitter); };
+  if (const auto oneWay = found.oneWay(); oneWay && isEmitter(*oneWay)) return Rgb(1);
+  Rgb passed(1);
+  for (Place place = found.place(-surface.geometricNormal, 0, false); place;
+       place.leave(ray.direction)) {
+    const Hit& hit = place.current();
+    if (isEmitter(hit)) return passed;
+    passed *=
+        straightTransmittance(scene, scene.instances[hit.instance], surfaceOf(hit), ray.direction);
+  }
+  return Rgb(0);
 }
 
 std::optional<Hit> PathTracer::skipHiddenBacks(PathState& state, std::optional<Hit> hit,

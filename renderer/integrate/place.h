@@ -32,4 +32,14 @@ struct Place {
   }
 };
 
+struct World;
+class Media;
+
+// For a light sample on an emitting triangle that shares its place (World::sharedPlaces): the part
+// of its light that a path along the ray would find there, past the surfaces that it crosses first;
+// 0 if it would meet another one. `emitter`: the point, as a hit of the ray; `media`: that the ray
+// is in; `key`: as Accel::intersect().
+Rgb transmittanceAtPlace(const World& world, const Media& media, const Ray& ray, const Hit& emitter,
+                         uint32_t key, RayMask mask);
+
 }  // namespace chromeball

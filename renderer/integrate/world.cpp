@@ -11,6 +11,7 @@ World::World(const Scene& described, const std::vector<RayMask>& masks, const Bs
     : scene(described),
       accel(described, masks, std::move(earlier)),
       sources(described),
+      sharedPlaces(accel),
       bsdfTables(tables) {}
 
 }  // namespace chromeball

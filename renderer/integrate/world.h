@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "shading/bsdf_tables.h"
 #include "trace/accel.h"
+#include "trace/shared_places.h"
 
 namespace chromeball {
 
@@ -26,6 +27,7 @@ struct World {
   const Scene& scene;
   const Accel accel;
   const SceneSources sources;
+  const SharedPlaces sharedPlaces;
   const BsdfTables bsdfTables;  // those that its materials need
 };
 

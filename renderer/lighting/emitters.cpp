@@ -122,17 +122,19 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   if (isBlack(radiance) || !(cosine > 0)) return;
   const float density = pdf(instance.material, distance, cosine) * areaRatio(surface, instance);
   if (!(density > 0)) return;
-  out.push_back({.wi = wi,
-                 .irradiance = radiance / density,
-                 .pdf = density,
-                 .distance = distance,
-                 .end = {emitter.instance, surface.rayOrigin(-wi)}});
+  out.push_back(
+      {.wi = wi,
+       .irradiance = radiance / density,
+       .pdf = density,
+       .distance = distance,
+       .end = {emitter.instance, emitter.triangle, emitter.barycentric, surface.rayOrigin(-wi)}});
 }
 
 float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
                          const Instance& instance) const {
   const vec3 to = surface.position - point.position;
   const float distance = glm::length(to);
+  if (distance == 0) return 0;  // of surfaces at one place (integrate/place.h), as sample()
   constexpr float kGrazing = 1e-12f;
   const float cosine = -glm::dot(surface.geometricNormal, to) / distance;
   return pdf(instance.material, distance, std::max(cosine, kGrazing)) *

@@ -31,7 +31,8 @@ struct LightPoint {
 struct LightEnd {
   static constexpr uint32_t kNone = ~0u;
 
-  uint32_t instance = kNone;
+  uint32_t instance = kNone, triangle = 0;  // as in Hit
+  vec2 barycentric{0};
   vec3 position{0};  // offset from the surface, as origins of rays
 };
 

@@ -69,6 +69,18 @@ class Accel {
         &visit);
   }
 
+  // Calls visit(instance, triangle) for all triangles that come within `radius` metres of the point
+  // at the time, and for some of their neighbours. visit() returns whether to go on.
+  template <class Visit>
+  void forEachNear(const vec3& point, float radius, float time, Visit&& visit) const {
+    visitNear(
+        point, radius, time,
+        [](uint32_t instance, uint32_t triangle, void* function) -> bool {
+          return (*static_cast<std::remove_reference_t<Visit>*>(function))(instance, triangle);
+        },
+        &visit);
+  }
+
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
   // (1 - alpha), surfaces that pass shadow rays (scene/thin_wall.h) and absorption. The ray points
   // towards the light; it passes the front of a surface with Material::backLetsLightThrough().
@@ -86,6 +98,9 @@ class Accel {
   using VisitHit = void (*)(const Hit&, void*);
   void visitCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
                        RayMask mask, VisitHit visit, void* visitor) const;
+  using VisitTriangle = bool (*)(uint32_t instance, uint32_t triangle, void*);
+  void visitNear(const vec3& point, float radius, float time, VisitTriangle visit,
+                 void* visitor) const;
   void build();
   void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;

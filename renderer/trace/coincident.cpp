@@ -68,7 +68,6 @@ class CoincidentTriangle {
   double area_;  // twice the triangle's, the length of normal_
 };
 
-// What the callback of Embree's point query needs.
 struct CoincidentSearch {
   const Accel& accel;
   const Ray& ray;
@@ -104,25 +103,43 @@ void testTriangle(const CoincidentSearch& s, uint32_t instanceIndex, uint32_t tr
   if (isCovered(scene, other, s.ray.direction, s.ray.time, s.key)) s.visit(other, s.visitor);
 }
 
+struct NearSearch {
+  const Scene& scene;
+  bool (*visit)(uint32_t, uint32_t, void*);
+  void* visitor;
+};
+
 bool visitPrimitive(RTCPointQueryFunctionArguments* arguments) {
-  const auto& search = *static_cast<const CoincidentSearch*>(arguments->userPtr);
+  const auto& search = *static_cast<const NearSearch*>(arguments->userPtr);
   const uint32_t top = arguments->context->instStackSize > 0 ? arguments->context->instID[0]
                                                              : RTC_INVALID_GEOMETRY_ID;
-  testTriangle(search, instanceOf(search.accel.scene(), top, arguments->geomID), arguments->primID);
-  return false;  // the radius stays
+  if (search.visit(instanceOf(search.scene, top, arguments->geomID), arguments->primID,
+                   search.visitor))
+    return false;  // the radius stays
+  arguments->query->radius = 0;
+  return true;
 }
 
 }  // namespace
 
-void Accel::visitCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
-                            RayMask mask, VisitHit visit, void* visitor) const {
-  constexpr float kReach = 4;  // in offsets
-  const vec3& p = surface.position;
-  CoincidentSearch search{*this, ray, hit, surface, key, mask, visit, visitor};
-  RTCPointQuery query{p.x, p.y, p.z, ray.time, kReach * surface.rayOffset};
+void Accel::visitNear(const vec3& point, float radius, float time, VisitTriangle visit,
+                      void* visitor) const {
+  NearSearch search{described_, visit, visitor};
+  RTCPointQuery query{point.x, point.y, point.z, time, radius};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(scene_, &query, &context, visitPrimitive, &search);
+}
+
+void Accel::visitCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
+                            RayMask mask, VisitHit visit, void* visitor) const {
+  constexpr float kReach = 4;  // in offsets
+  const CoincidentSearch search{*this, ray, hit, surface, key, mask, visit, visitor};
+  forEachNear(surface.position, kReach * surface.rayOffset, ray.time,
+              [&](uint32_t instance, uint32_t triangle) {
+                testTriangle(search, instance, triangle);
+                return true;
+              });
 }
 
 }  // namespace chromeball
