@@ -267,6 +267,35 @@ TEST(FindCircle, FindsNoneWhereThereIsNone) {
   EXPECT_FALSE(findCircle(ramp));
 }
 
+// Hexagons and octagons, which are circles to 7 and 4% of their radius.
+TEST(SlowFindCircle, RegularPolygonsAreNoBalls) {
+  constexpr int kWidth = 320, kHeight = 240, kFine = 4;
+  for (const int corners : {6, 8})
+    for (const double radius : {75.0, 100.0}) {
+      const auto isInside = [&](const dvec2& p) {
+        for (int i = 0; i < corners; ++i) {
+          const double angle = 2 * kPiD * (i + 0.3) / corners;
+          if (glm::dot(p, dvec2(std::cos(angle), std::sin(angle))) >
+              radius * std::cos(kPiD / corners))
+            return false;
+        }
+        return true;
+      };
+      Image image(kWidth, kHeight, 3);
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+          float sum = 0;
+          for (int i = 0; i < kFine * kFine; ++i) {
+            const dvec2 p(x - 160.3 + (i % kFine + 0.5) / kFine,
+                          y - 119.6 + (i / kFine + 0.5) / kFine);
+            sum += isInside(p) ? 0.3f + 0.2f * float(std::sin(p.x / 9) * std::sin(p.y / 7)) : 0.8f;
+          }
+          image.setRgb(x, y, Rgb(sum / (kFine * kFine)));
+        }
+      EXPECT_FALSE(findCircle(image)) << corners << " " << radius;
+    }
+}
+
 // A ball in an office. The author of these photographs took the circle inscribed in the picture.
 TEST(FindCircle, OfARealPhotograph) {
   const auto path =

@@ -20,8 +20,9 @@ constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
 // Of the final fit: places without a ball have at most 0.55 of a circle on edges, and a third of
-// its arcs agree; and in pixels.
-constexpr double kLeastAgreement = 0.95, kLargestError = 1;
+// its arcs agree; in pixels; and of the arcs that agree: balls have at most 0.61,
+// octagons whose sides are not shorter than 50 pixels 1 and more.
+constexpr double kLeastAgreement = 0.95, kLargestError = 1, kMostContradiction = 0.75;
 
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
@@ -257,6 +258,7 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   const std::optional<Outline> outline = fitOutline(image, circle);
   if (!outline || found->support + outline->support < kLeastAgreement ||
       !(outline->standardError < kLargestError) ||
+      outline->contradiction > kMostContradiction * outline->support ||
       !isSharp(small, {outline->circle.centre / double(scale), outline->circle.radius / scale}))
     return std::nullopt;
   return FoundCircle{outline->circle, outline->support, outline->standardError};

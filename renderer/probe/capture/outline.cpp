@@ -143,15 +143,17 @@ struct ModelFit {
   dvec3 change;
   double standardError;  // of the jackknife
   double doubt;          // minus the logarithm of the likelihood of an arc, on average
-  double support;
+  double support, contradiction;
 };
 
-ModelFit fitProfiles(const ArcProfiles& profiles) {
+ModelFit fitProfiles(const ArcProfiles& profiles, double radius) {
   // The wide bound finds the outline where edges are so sharp that the grid misses their minima.
   constexpr double kWideBound = 30, kBound = 3, kPixelsForOne = 20, kNear = 0.5;
+  constexpr double kClear = 15, kLeastApart = 0.8, kApart = 0.01;
   const OutlineDoubt wide(profiles, kWideBound, kPixelsForOne);
   const OutlineDoubt doubt(profiles, kBound, kPixelsForOne);
-  ModelFit fit{doubt.descend(wide.descend(wide.likeliest())), 0, 0, 0};
+  ModelFit fit{doubt.descend(wide.descend(wide.likeliest())), 0, 0, 0, 0};
+  const double apart = std::max(kLeastApart, kApart * radius);
 
   std::array<dvec3, kTwelfths> without;
   dvec3 mean(0), squares(0);
@@ -166,7 +168,9 @@ ModelFit fitProfiles(const ArcProfiles& profiles) {
   for (const ArcProfile& arc : profiles) {
     const double offset = glm::dot(fit.change, dvec3(arc.normal, 1));
     fit.doubt += (arc.least + arc.at(offset)) / double(profiles.size());
-    fit.support += (std::fabs(arc.likeliestOffset() - offset) < kNear) / double(profiles.size());
+    const double error = std::fabs(arc.likeliestOffset() - offset);
+    fit.support += (error < kNear) / double(profiles.size());
+    fit.contradiction += (error > apart && arc.at(offset) > kClear) / double(profiles.size());
   }
   return fit;
 }
@@ -178,9 +182,9 @@ std::optional<Outline> fitVariances(const Image& image, const Circle& start, Rim
   constexpr double kJackknife = 1.5, kLeastError = 0.03, kEvidence = 50, kEvidenceWidth = 5;
   const ArcProfiles profiles = profilesAround(image, start, model, 1);
   if (profiles.size() < kLeastArcs) return std::nullopt;
-  const ModelFit step = fitProfiles(profiles);
+  const ModelFit step = fitProfiles(profiles, start.radius);
   model.isContinuous = true;
-  const ModelFit smooth = fitProfiles(profilesAround(image, start, model, 1));
+  const ModelFit smooth = fitProfiles(profilesAround(image, start, model, 1), start.radius);
 
   const double evidence = (smooth.doubt - step.doubt - kEvidence) / kEvidenceWidth;
   const double share = 1 / (1 + std::exp(std::clamp(evidence, -100.0, 100.0)));
@@ -189,7 +193,8 @@ std::optional<Outline> fitVariances(const Image& image, const Circle& start, Rim
   const double ofModel = 0.5 * share * std::max({apart.x, apart.y, apart.z});
   return Outline{{start.centre + dvec2(change), start.radius + change.z},
                  glm::length(dvec3(kJackknife * step.standardError, ofModel, kLeastError)),
-                 step.support};
+                 step.support,
+                 step.contradiction};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ struct Outline {
   Circle circle;
   double standardError;  // the largest of those of the centre's coordinates and the radius; pixels
   double support;        // the share of the arcs in the picture that the circle fits, 0 to 1
+  double contradiction;  // the share of those that clearly lie elsewhere: by 1% of the radius
 };
 
 // Fits a circle to the outline of a ball in a linear picture. `start` is within about two pixels.
