@@ -122,6 +122,20 @@ TEST(LightFrom, RefusesAWholeWithoutSuns) {
   EXPECT_FALSE(std::filesystem::exists(folder / "o.exr"));
 }
 
+// The lamps of the scene file are left out, and no lamp of the model is counted.
+TEST(LightFrom, SunsWithoutAProbeCountNoLamps) {
+  const TemporaryFolder folder;
+  writeSmallModel(folder / "model.gltf");
+  std::ofstream(folder / "scene.toml")
+      << "model = \"model.gltf\"\n[[light]]\ntype = \"point\"\nposition = [0, 2, 0]\n"
+         "intensity = 1\n[[light]]\ntype = \"sun\"\ndirection = [0, 1, 0]\nirradiance = 1\n";
+  const CommandResult result =
+      runCommand({"render", folder / "scene.toml", "--light-from", "suns", "--size", "8x8",
+                  "--samples", "2", "-o", folder / "o.exr"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_EQ(result.error.find("lit by the model's"), std::string::npos) << result.error;
+}
+
 void expectSameIrradiance(const Image& a, const Image& b, const std::string& name) {
   const std::vector<vec3> normals = icosphereNormals(2);
   const std::vector<dvec3> ofA = exactIrradiance(a, normals), ofB = exactIrradiance(b, normals);

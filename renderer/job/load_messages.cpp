@@ -36,7 +36,8 @@ void addMemory(const RenderJob& job, const LoadedScene& loaded, Collector& messa
 }
 
 // Lamps of the scene file that are among the scene's lights.
-size_t ofSceneFile(const RenderJob& job) {
+size_t ofSceneFile(const RenderJob& job, const Scene& scene) {
+  if (scene.lights.empty()) return 0;  // left out (--light-from)
   return size_t(std::ranges::count_if(job.file.lamps,
                                       [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
 }
@@ -45,7 +46,7 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
   const std::string& model = job.file.models.front().file;
   if (scene.environment)
     messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
-  else if (const size_t count = scene.lights.size() - ofSceneFile(job))
+  else if (const size_t count = scene.lights.size() - ofSceneFile(job, scene))
     messages.note(fmt::format("{}: no probe; lit by the model's {} light{}", model, count,
                               count == 1 ? "" : "s"));
 }

@@ -148,7 +148,8 @@ void addRelightCommand(Command app) {
           "which the probes are turned and swapped")
       .typeName("[=PORT]");
   command.addOption("--white", a->white,
-                    "of a model: the light that its white stands for; without it, the brightest");
+                    "of a model: the light that its white stands for; without it, the smallest power "
+                    "of two, from 1 up, that clips nothing");
   command.addOption("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
   command.addFlag("--allow-external", a->allowsExternal,
                   "of a model: read files outside of its folder");

@@ -96,7 +96,7 @@ def exposures(run):
         "of an office desk. They have no licence, so this part has numbers only. It needs "
         f"`$CHROMEBALL_DATA/{FOLDER}`. It shows what to expect of photographs that were not taken for this program.",
         "### Merge",
-        "The crops have no EXIF; their names tell the times. They have three sizes:",
+        "The crops have EXIF; the times are given here too. They have three sizes:",
         indented(f"chromeball probe merge 10.JPG 40.JPG 160.JPG --exposures {TIMES} -o merged.exr"), fenced(sizes),
         "`--resize` takes them as crops of one ball. They were cropped by hand, so they are shifted "
         "too:", fenced(shifted),
