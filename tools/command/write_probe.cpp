@@ -21,10 +21,13 @@ namespace {
 void warnOfLostMapping(const std::string& file, const Image& map, Mapping mapping) {
   const DetectedMapping detected = detectMapping(map);
   if (detected.mapping == mapping) return;
+  // A scene file takes lenses only from files that name them.
+  const bool isLens = mapping.kind() == Mapping::FisheyeDisc;
   warn(fmt::format(
-      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from {}` or "
-      "`[probe] mapping` where it is read, or write an .exr or .hdr",
-      file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping)));
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from {}`{} where it "
+      "is read, or write an .exr or .hdr",
+      file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping),
+      isLens ? "" : " or `[probe] mapping`"));
 }
 
 void warnOfClipping(const std::string& file, const Image& map) {
