@@ -226,9 +226,10 @@ int addNormalMappedMaterial(Scene& scene) {
 // A smooth sphere with tangents along its parallels.
 Mesh tangentSphere() {
   Scene scene;
-  addSphere(scene, 0, vec3(0.2f, 0, 0), 1, 24);
+  addSphere(scene, addMaterial(scene, lambert(Rgb(0))), vec3(0.2f, 0, 0), 1, 24);
   Mesh mesh = scene.meshes[0];
   for (const vec3& n : mesh.normals) mesh.tangents.emplace_back(n.z, 0, -n.x, 1);
+  mesh.uvs.assign(1, std::vector<vec2>(mesh.positions.size(), vec2(0.5f)));
   repairTangents(mesh);
   return mesh;
 }

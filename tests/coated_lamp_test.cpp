@@ -70,11 +70,13 @@ TEST(CoatedLamp, UsesTheCoatsTextureAndNormal) {
     const TextureSlot tiltedNormal =
         addTexel(scene, {0.5f, 0.5f - 0.5f * std::sin(tilt), 0.5f + 0.5f * std::cos(tilt), 1});
     (tilted ? m.extended->clearcoatNormalTexture : m.normalTexture) = tiltedNormal;
-    addTile(scene, addMaterial(scene, m));
-    Mesh& mesh = scene.meshes.edit(scene.meshes.size() - 1);
+    Mesh mesh;
+    mesh.positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     mesh.normals.assign(4, {0, 1, 0});
     mesh.tangents.assign(4, {1, 0, 0, 1});  // the bitangent points to -Z, away from the camera
     mesh.uvs.assign(1, std::vector<vec2>(4, vec2(0.5f)));
+    addMesh(scene, addMaterial(scene, m), std::move(mesh));
     const double degrees = 20;
     const double cosine = std::cos(degrees * kPiD / 180 - (tilted ? double(tilt) : 0));
     EXPECT_NEAR(radianceAt(scene, degrees).y / 2, coatTransmittance(0.4, cosine), 1e-3) << tilted;

@@ -137,8 +137,8 @@ TEST(Composite, InvalidSamplesAreCountedByCause) {
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
   w.markRestLocal();
   Material lamp = lambert(Rgb(0));
-  lamp.emission = Rgb(INFINITY);
   addSphere(w.scene, addMaterial(w.scene, lamp), {0, 1, 0}, 0.5f, 16);
+  w.scene.materials.back().emission = Rgb(INFINITY);
   w.markRestObjects();
   for (const Passes passes : {Passes::One, Passes::Two}) {
     const CompositeRender r = composite(w, Probe(sunnyProbe()), "bsdf", smallRender(16, 16, 4, 0),

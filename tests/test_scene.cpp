@@ -2,6 +2,7 @@
 #include "test_scene.h"
 
 #include "lighting/strategy.h"
+#include "scene/builder/scene_builder.h"
 
 namespace chromeball {
 
@@ -15,14 +16,13 @@ Material lambert(Rgb albedo) {
 }
 
 int addMaterial(Scene& scene, const Material& material) {
-  scene.materials.push_back(material);
-  return int(scene.materials.size()) - 1;
+  return SceneBuilder(scene).addMaterial(material);
 }
 
 void addMesh(Scene& scene, int material, Mesh mesh) {
-  if (scene.nodeNames.empty()) scene.nodeNames.push_back("node");
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({int(scene.meshes.size()) - 1, material, 0, {}});
+  SceneBuilder builder(scene);
+  if (scene.nodeNames.empty()) builder.addNode("node");
+  builder.addInstance(builder.addMesh(std::move(mesh), material), material, 0);
 }
 
 void addQuad(Scene& scene, int material, vec3 corner, vec3 a, vec3 b) {

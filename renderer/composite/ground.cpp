@@ -2,6 +2,7 @@
 #include "composite/ground.h"
 
 #include "base/error.h"
+#include "scene/builder/scene_builder.h"
 #include "trace/ray.h"
 
 namespace chromeball {
@@ -50,14 +51,10 @@ void addGround(Scene& scene, const Ground& ground, const Rgb& reflectance) {
   matte.baseColor = vec4(reflectance, 1);
   matte.metallic = matte.specular = 0;
   matte.doubleSided = true;
-  scene.meshes.push_back(std::move(mesh));
-  scene.materials.push_back(std::move(matte));
-  scene.nodeNames.emplace_back(kGroundNode);
-  if (!scene.nodeParents.empty()) scene.nodeParents.push_back(-1);
-  scene.instances.push_back({.mesh = int(scene.meshes.size()) - 1,
-                             .material = int(scene.materials.size()) - 1,
-                             .node = int(scene.nodeNames.size()) - 1,
-                             .toWorld = {}});
+  SceneBuilder builder(scene);
+  const int material = builder.addMaterial(std::move(matte));
+  builder.addInstance(builder.addMesh(std::move(mesh), material), material,
+                      builder.addNode(kGroundNode));
 }
 
 }  // namespace chromeball

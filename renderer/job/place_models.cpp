@@ -10,6 +10,7 @@
 #include "job/open_shutter.h"
 #include "job/scene_lighting.h"
 #include "scene/bounds.h"
+#include "scene/builder/add_lamp.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/thin_wall.h"
 

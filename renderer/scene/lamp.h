@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/light.h"
 
 namespace chromeball {
 
@@ -20,10 +20,5 @@ struct Lamp {
   std::optional<SunLamp> sun;
   std::optional<AmbientLamp> ambient;
 };
-
-// Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
-// single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
-inline constexpr int kDiscSides = 128;
-void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 
 }  // namespace chromeball

@@ -90,6 +90,8 @@ void append(Scene& scene, Scene&& other) {
   moveToEnd(scene.grids, other.grids);
   moveToEnd(scene.cameras, other.cameras);
   moveToEnd(scene.lights, other.lights);
+  moveToEnd(scene.suns, other.suns);
+  moveToEnd(scene.ambient, other.ambient);
   if (other.texelFile) scene.texelFile = std::move(other.texelFile);
   if (!scene.environment) scene.environment = std::move(other.environment);
   scene.nodeParents.resize(scene.nodeNames.size(), -1);

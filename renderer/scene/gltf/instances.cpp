@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/printable.h"
+#include "scene/builder/scene_builder.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/gpu_instancing.h"
 #include "scene/gltf/material_reader.h"
@@ -30,10 +31,12 @@ class InstanceReader {
         materials_(file, cache ? &cache->texels : nullptr) {}
 
   Scene read() {
+    scene_.nodeNames = tree_.names;
+    scene_.nodeParents = tree_.parents;
     for (int node : tree_.visible) planNode(node);
+    materials_.moveInto(scene_);
     for (const Plan& plan : plans_) addInstance(plan);
     if (cache_) cache_->forgetUnused();
-    materials_.moveInto(scene_);
     return std::move(scene_);
   }
 
@@ -84,9 +87,9 @@ class InstanceReader {
     if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
     if (mesh == -1) return;
     if (shared) plan.geometry->mesh = mesh;
-    scene_.instances.push_back({mesh, plan.material, plan.node,
-                                shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt,
-                                moves(plan)});
+    builder_.addInstance(mesh, plan.material, plan.node,
+                         shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt,
+                         moves(plan));
   }
 
   bool moves(const Plan& plan) const {
@@ -104,32 +107,29 @@ class InstanceReader {
     MeshKey key;
     if (cache_) {
       key = keyOf(plan, primitive, transform);
-      if (auto known = cache_->find(key)) return add(std::move(known));
+      if (auto known = cache_->find(key)) return builder_.addMesh(std::move(known));
     }
     const std::string where = describe(plan.mesh, size_t(plan.primitive));
     std::optional<Mesh> mesh =
-        readPrimitive(file_, primitive, poseOf(plan.node), where, materials_[plan.material]);
+        readPrimitive(file_, primitive, poseOf(plan.node), where, materialOf(plan));
     if (!mesh) return -1;
     if (transform) transformMesh(*mesh, *transform);
     if (!areFinite(mesh->positions))
       file_.fail("{}: its node's transform exceeds the range of float", where);
     auto shared = std::make_shared<const Mesh>(std::move(*mesh));
     if (cache_) cache_->add(std::move(key), shared);
-    return add(std::move(shared));
+    return builder_.addMesh(std::move(shared));
   }
 
-  int add(std::shared_ptr<const Mesh> mesh) {
-    scene_.meshes.push_back(std::move(mesh));
-    return int(scene_.meshes.size()) - 1;
+  const Material& materialOf(const Plan& plan) const {
+    return scene_.materials[size_t(plan.material)];
   }
 
   MeshKey keyOf(const Plan& plan, const tinygltf::Primitive& primitive,
                 const dmat4* transform) const {
     const Pose pose = poseOf(plan.node);
-    MeshKey key{file_.files().front(),
-                recipeOf(primitive, pose, materials_[plan.material]),
-                !plan.geometry,
-                {}};
+    MeshKey key{
+        file_.files().front(), recipeOf(primitive, pose, materialOf(plan)), !plan.geometry, {}};
     const auto append = [&](const dmat4& m) {
       key.placement.insert(key.placement.end(), &m[0][0], &m[0][0] + 16);
     };
@@ -189,6 +189,7 @@ class InstanceReader {
   MeshCache* cache_;  // null: none
   MaterialReader materials_;
   Scene scene_;
+  SceneBuilder builder_{scene_};
   std::vector<Plan> plans_;
   std::map<MeshRecipe, Geometry> geometries_;
   std::map<int, std::vector<dmat4>> jointsOf_;  // by skin

@@ -125,8 +125,6 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scaleMedia(placement, scene);
   scene.lights = readLights(file, tree, choice.lightUnits);
   if (choice.environment) scene.environment = readEnvironment(file);
-  scene.nodeNames = tree.names;
-  scene.nodeParents = tree.parents;
   scene.files = file.files();
   scene.isAnimated = isAnimated;
   if (!choice.animation && !file.model.animations.empty())

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
-#include <set>
 
 #include "base/parallel.h"
+#include "scene/builder/complete_mesh.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/pose.h"
 #include "scene/mesh_attributes.h"
@@ -92,15 +92,6 @@ class AttributeReader {
   size_t vertexCount_ = 0;
 };
 
-// The UV sets that the material needs for textures or tangents.
-std::vector<int> uvSetsOf(Material material) {
-  std::set<int> sets;
-  for (const TextureSlot* slot : textureSlots(material))
-    if (*slot) sets.insert(slot->uvSet);
-  if (const std::optional<TextureSlot> slot = tangentSpace(material)) sets.insert(slot->uvSet);
-  return {sets.begin(), sets.end()};
-}
-
 void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const Material& material,
                             Mesh& mesh) {
   for (const int set : uvSetsOf(material)) {
@@ -121,20 +112,6 @@ void readVertexColors(GltfFile& file, AttributeReader& attributes, const std::st
       file.fail("{}.attributes.COLOR_0: a colour is not finite", where);
     c = glm::max(c, vec4(0));
   }
-  const bool white = std::all_of(mesh.colors.begin(), mesh.colors.end(),
-                                 [](const vec4& c) { return c == vec4(1); });
-  if (white) mesh.colors.clear();
-}
-
-// Adds the normals and tangents that the material needs, for example for a normal map.
-void completeTangents(const Material& material, Mesh& mesh) {
-  const std::optional<TextureSlot> slot = tangentSpace(material);
-  if (!slot) return;
-  if (mesh.normals.empty()) makeFlat(mesh);
-  if (!mesh.tangents.empty()) return repairTangents(mesh);
-  std::vector<vec2> uv = mesh.uvs[size_t(slot->uvSet)];
-  for (vec2& coordinates : uv) coordinates = slot->transform(coordinates);
-  computeTangents(mesh, uv);
 }
 
 }  // namespace
@@ -204,9 +181,7 @@ std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& pri
   applyMorphTargets(file, primitive, pose.weights, where, mesh);
   if (isSkinned(primitive, pose)) applySkin(file, primitive, pose.joints, where, mesh);
   checkFinite(file, mesh.positions, where);
-  dropUnusedVertices(mesh);
-  repairNormals(mesh);
-  completeTangents(material, mesh);
+  completeMesh(mesh, material);
   return mesh;
 }
 

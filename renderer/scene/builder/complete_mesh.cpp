@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/builder/complete_mesh.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "scene/mesh_attributes.h"
+
+namespace chromeball {
+namespace {
+
+bool areAllFinite(const vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+bool areAllFinite(const vec3& v) { return isFinite(v); }
+bool areAllFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
+
+template <class T>
+void checkLength(const std::vector<T>& array, size_t vertices, const std::string& name) {
+  if (!array.empty() && array.size() != vertices)
+    throwInput("{}: {} elements for {} vertices", name, array.size(), vertices);
+}
+
+template <class T>
+void checkFinite(const std::vector<T>& array, const std::string& name) {
+  for (size_t i = 0; i < array.size(); ++i)
+    if (!areAllFinite(array[i])) throwInput("{}[{}]: is not finite", name, i);
+}
+
+void checkTriangles(const Mesh& mesh, const std::string& name) {
+  const size_t vertices = mesh.positions.size();
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.triangles[i][k] >= vertices)
+        throwInput("{}[{}]: there is no vertex {} among {}", name, i, mesh.triangles[i][k],
+                   vertices);
+}
+
+bool hasSet(const Mesh& mesh, int set) {
+  return size_t(set) < mesh.uvs.size() && !mesh.uvs[size_t(set)].empty();
+}
+
+std::set<int> setsOfTextures(const Material& material) {
+  std::set<int> sets;
+  Material copy = material;  // textureSlots() allows changes
+  for (const TextureSlot* slot : textureSlots(copy))
+    if (*slot) sets.insert(slot->uvSet);
+  return sets;
+}
+
+void completeTangents(const Material& material, Mesh& mesh) {
+  const std::optional<TextureSlot> slot = tangentSpace(material);
+  if (!slot) return;
+  if (mesh.normals.empty()) makeFlat(mesh);
+  if (!mesh.tangents.empty()) return repairTangents(mesh);
+  std::vector<vec2> uv(mesh.positions.size());
+  if (hasSet(mesh, slot->uvSet))
+    std::ranges::transform(mesh.uvs[size_t(slot->uvSet)], uv.begin(),
+                           [&](const vec2& coordinates) { return slot->transform(coordinates); });
+  computeTangents(mesh, uv);
+}
+
+}  // namespace
+
+std::vector<int> uvSetsOf(const Material& material) {
+  std::set<int> sets = setsOfTextures(material);
+  if (const std::optional<TextureSlot> slot = tangentSpace(material)) sets.insert(slot->uvSet);
+  return {sets.begin(), sets.end()};
+}
+
+void checkMesh(const Mesh& mesh, const Material& material, const std::string& location) {
+  const size_t vertices = mesh.positions.size();
+  const auto named = [&](const std::string& array) { return location + array; };
+  const auto check = [&](const auto& array, const std::string& name) {
+    checkLength(array, vertices, named(name));
+    checkFinite(array, named(name));
+  };
+  check(mesh.positions, "positions");
+  checkTriangles(mesh, named("triangles"));
+  // Normals and tangents that are not finite are repaired.
+  checkLength(mesh.normals, vertices, named("normals"));
+  checkLength(mesh.tangents, vertices, named("tangents"));
+  check(mesh.colors, "colors");
+  for (size_t i = 0; i < mesh.colors.size(); ++i)
+    if (glm::any(glm::lessThan(mesh.colors[i], vec4(0))))
+      throwInput("{}[{}]: is negative", named("colors"), i);
+  for (size_t set = 0; set < mesh.uvs.size(); ++set)
+    check(mesh.uvs[set], fmt::format("uvs[{}]", set));
+  for (const int set : setsOfTextures(material))
+    if (vertices > 0 && !hasSet(mesh, set))
+      throwInput("{}: is missing, which the material \"{}\" uses",
+                 named(fmt::format("uvs[{}]", set)), material.name);
+}
+
+void completeMesh(Mesh& mesh, const Material& material) {
+  if (std::ranges::all_of(mesh.colors, [](const vec4& c) { return c == vec4(1); }))
+    mesh.colors.clear();
+  dropUnusedVertices(mesh);
+  repairNormals(mesh);
+  completeTangents(material, mesh);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/builder/scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "scene/builder/check_material.h"
+#include "scene/builder/complete_mesh.h"
+#include "scene/linear_map.h"
+#include "scene/mip_chain.h"
+
+namespace chromeball {
+namespace {
+
+void checkIndex(const char* what, int index, size_t count) {
+  if (index < 0 || size_t(index) >= count)
+    throwInput("there is no {} {} among {}", what, index, count);
+}
+
+template <class... Numbers>
+bool areAllFinite(const Numbers&... numbers) {
+  return (std::isfinite(numbers) && ...);
+}
+
+void checkRadiance(const char* what, const std::string& name, const Rgb& color) {
+  if (!isFinite(color) || glm::any(glm::lessThan(color, Rgb(0))))
+    throwInput("{} \"{}\": its light must be finite, and not negative", what, name);
+}
+
+void checkDirection(const char* what, const std::string& name, const vec3& direction) {
+  constexpr float kTolerance = 1e-3f;
+  if (!(std::fabs(glm::length(direction) - 1) < kTolerance))
+    throwInput("{} \"{}\": its direction must be a unit vector", what, name);
+}
+
+void checkTexels(const TexelGrid& image) {
+  const size_t texels = size_t(image.width) * size_t(image.height);
+  if (image.width < 1 || image.height < 1)
+    throwInput("image: is {} x {}; it must have a texel", image.width, image.height);
+  if (!image.texels8.empty() == !image.texelsFloat.empty() ||
+      image.texels8.size() + image.texelsFloat.size() != texels)
+    throwInput("image: {} texels of 8 bits and {} of floats, for {} x {}", image.texels8.size(),
+               image.texelsFloat.size(), image.width, image.height);
+  for (size_t i = 0; i < image.texelsFloat.size(); ++i) {
+    const vec4& t = image.texelsFloat[i];
+    if (!areAllFinite(t.x, t.y, t.z, t.w) || glm::any(glm::lessThan(t, vec4(0))))
+      throwInput("image: texel {}, {} must be finite, and not negative", i % size_t(image.width),
+                 i / size_t(image.width));
+  }
+}
+
+}  // namespace
+
+int SceneBuilder::addNode(std::string name, int parent) {
+  std::vector<int>& parents = scene_.nodeParents;
+  if (parent != -1) {
+    checkIndex("node", parent, scene_.nodeNames.size());
+    parents.resize(scene_.nodeNames.size(), -1);
+  }
+  if (parent != -1 || !parents.empty()) parents.push_back(parent);
+  scene_.nodeNames.push_back(std::move(name));
+  return int(scene_.nodeNames.size()) - 1;
+}
+
+int SceneBuilder::addImage(TexelGrid image) {
+  checkTexels(image);
+  scene_.grids.push_back(std::make_shared<TexelGrid>(std::move(image)));
+  return int(scene_.grids.size()) - 1;
+}
+
+int SceneBuilder::addTexture(Texture texture) {
+  MipChain& chain = chains_[{texture.grid, texture.srgb, texture.weightedByAlpha}];
+  if (!chain)
+    chain = std::make_shared<const std::vector<TexelGrid>>(
+        makeMipLevels(*texture.grid, texture.srgb, texture.weightedByAlpha));
+  texture.mipLevels = chain;
+  scene_.textures.push_back(std::move(texture));
+  return int(scene_.textures.size()) - 1;
+}
+
+TextureSlot SceneBuilder::addTexture(int image, bool srgb, const TextureSampler& sampler) {
+  checkIndex("image", image, scene_.grids.size());
+  Texture texture;
+  texture.grid = scene_.grids[size_t(image)].get();
+  texture.wrapS = sampler.wrapS;
+  texture.wrapT = sampler.wrapT;
+  texture.filter = sampler.filter;
+  texture.srgb = srgb;
+  TextureSlot slot;
+  slot.texture = addTexture(std::move(texture));
+  return slot;
+}
+
+int SceneBuilder::addMaterial(Material material) {
+  checkMaterial(material, scene_.textures.size());
+  TextureSlot& color = material.baseColorTexture;
+  if (color && material.alphaMode != AlphaMode::Opaque &&
+      !scene_.textures[size_t(color.texture)].weightedByAlpha) {
+    Texture weighted = scene_.textures[size_t(color.texture)];
+    weighted.weightedByAlpha = true;
+    color.texture = addTexture(std::move(weighted));
+  }
+  scene_.materials.push_back(std::move(material));
+  return int(scene_.materials.size()) - 1;
+}
+
+int SceneBuilder::addMesh(Mesh mesh, int material) {
+  checkIndex("material", material, scene_.materials.size());
+  const Material& needs = scene_.materials[size_t(material)];
+  const std::string location = fmt::format("mesh {}: ", scene_.meshes.size());
+  if (mesh.triangles.empty()) {
+    if (mesh.positions.size() % 3 != 0)
+      throwInput("{}positions: {}; without triangles their number must be a multiple of 3",
+                 location, mesh.positions.size());
+    for (uint32_t i = 0; i < mesh.positions.size(); i += 3)
+      mesh.triangles.push_back({i, i + 1, i + 2});
+  }
+  checkMesh(mesh, needs, location);
+  completeMesh(mesh, needs);
+  return addMesh(std::make_shared<const Mesh>(std::move(mesh)));
+}
+
+int SceneBuilder::addMesh(MeshList::Shared mesh) {
+  scene_.meshes.push_back(std::move(mesh));
+  return int(scene_.meshes.size()) - 1;
+}
+
+void SceneBuilder::addInstance(int mesh, int material, int node,
+                               const std::optional<Transform>& toWorld, bool moves) {
+  checkIndex("mesh", mesh, scene_.meshes.size());
+  checkIndex("material", material, scene_.materials.size());
+  checkIndex("node", node, scene_.nodeNames.size());
+  if (toWorld && (!isInvertible(glm::dmat3(toWorld->linear)) || !isFinite(toWorld->translation)))
+    throwInput(
+        "instance {} (\"{}\"): its transform is not invertible, or beyond the range of float",
+        scene_.instances.size(), scene_.nodeNames[size_t(node)]);
+  scene_.instances.push_back({mesh, material, node, toWorld, moves});
+}
+
+int SceneBuilder::addCamera(Camera camera) {
+  const bool hasView = camera.orthographic ? camera.halfHeight > 0 : camera.fov > 0;
+  if (!hasView || !isFinite(camera.position) || !areAllFinite(camera.fov, camera.halfHeight) ||
+      (!camera.orthographic && !(camera.fov < kPi)))
+    throwInput(
+        "camera \"{}\": its position and field of view must be finite, and the latter above 0",
+        camera.name);
+  for (const vec3& axis : {camera.right, camera.up, camera.back})
+    checkDirection("camera", camera.name, axis);
+  scene_.cameras.push_back(std::move(camera));
+  return int(scene_.cameras.size()) - 1;
+}
+
+void SceneBuilder::addLight(const PunctualLight& light) {
+  checkRadiance("light", light.name, light.intensity);
+  checkDirection("light", light.name, light.direction);
+  if (!isFinite(light.position) || !(light.range > 0))
+    throwInput("light \"{}\": its position must be finite, and its range above 0", light.name);
+  if (light.node != -1) checkIndex("node", light.node, scene_.nodeNames.size());
+  scene_.lights.push_back(light);
+}
+
+void SceneBuilder::addSun(const SunLamp& lamp) {
+  constexpr double kMostDegrees = 90;
+  checkRadiance("sun", lamp.name, Rgb(lamp.sun.irradiance));
+  checkDirection("sun", lamp.name, vec3(lamp.sun.direction));
+  if (!(lamp.sun.angle > 0 && lamp.sun.angle <= kMostDegrees))
+    throwInput("sun \"{}\": its diameter must be above 0 and at most {} degrees", lamp.name,
+               kMostDegrees);
+  scene_.suns.push_back(lamp);
+}
+
+void SceneBuilder::addAmbient(const AmbientLamp& light) {
+  checkRadiance("ambient light", light.name, light.radiance);
+  scene_.ambient.push_back(light);
+}
+
+}  // namespace chromeball
