@@ -69,7 +69,7 @@ std::vector<double> tileSums(const WhiteFloor& folder, const std::string& strate
   file.settings.set("lighting.strategy", strategy);
   file.settings.set("lighting.from", part);
   file.settings.set("output.file", std::vector<std::string>{folder / "o.exr"});
-  RenderJob job = planJob(file);
+  RenderDescription job = planJob(file);
   const LoadedScene loaded = loadScene(job);
   const JobResult result = renderJob(job, loaded);
   std::vector<double> sums(8);

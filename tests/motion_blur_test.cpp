@@ -102,7 +102,7 @@ Settings settingsOf(double time, std::optional<double> shutter, uint64_t seed, u
 }
 
 Image rendered(const std::string& path, const Settings& settings) {
-  RenderJob job = planJob(openScene(path), settings);
+  RenderDescription job = planJob(openScene(path), settings);
   const LoadedScene loaded = loadScene(job);
   return renderJob(job, loaded).color();
 }
@@ -457,9 +457,9 @@ TEST(MotionBlur, WarnsOfWhatIsTurnedInsideOut) {
     const std::string path = w.save();
     Settings settings = settingsOf(0, 1.0, 1, 2, {8, 8});
     settings.set("camera.shutter_steps", uint64_t(1));
-    RenderJob job = planJob(openScene(path), settings);
+    RenderDescription job = planJob(openScene(path), settings);
     std::vector<std::string> texts;
-    job.file.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
+    job.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
     const LoadedScene loaded = loadScene(job);
     for (const Message& message : loaded.messages) texts.push_back(message.text);
     EXPECT_TRUE(std::ranges::any_of(texts, [](const std::string& text) {

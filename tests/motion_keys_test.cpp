@@ -64,8 +64,8 @@ Settings openShutterFor(double seconds, uint64_t steps) {
 }
 
 LoadedScene loaded(const std::string& path, const Settings& settings) {
-  RenderJob job = planJob(openScene(path), settings);
-  job.file.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
+  RenderDescription job = planJob(openScene(path), settings);
+  job.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
   return loadScene(job);
 }
 

@@ -225,7 +225,7 @@ TEST(SlowSequence, PartsOfFramesMerge) {
               "animation-time");
 }
 
-RenderJob jobAt(const std::string& scene, double seconds, double degrees = 0) {
+RenderDescription jobAt(const std::string& scene, double seconds, double degrees = 0) {
   Settings given;
   given.set("frames", std::string("0:9"));
   given.set("model.time", seconds);
@@ -236,7 +236,7 @@ RenderJob jobAt(const std::string& scene, double seconds, double degrees = 0) {
 TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
   const Moving model;
   FrameScene scene;
-  RenderJob first = jobAt(model.scene(), 0), turned = jobAt(model.scene(), 0, 30),
+  RenderDescription first = jobAt(model.scene(), 0), turned = jobAt(model.scene(), 0, 30),
             later = jobAt(model.scene(), 1);
   scene.show(first);
   const World* world = scene.prepared().world.get();
@@ -265,7 +265,7 @@ TEST(Sequence, BuildsNothingTwiceWhereTheProbeTurns) {
   const Moving model;
   const std::string path = model.scene("rotation_keys = [[0, 20], [1, 10]]\n");
   FrameScene scene;
-  RenderJob first = jobAt(path, 0), later = jobAt(path, 1);
+  RenderDescription first = jobAt(path, 0), later = jobAt(path, 1);
   scene.show(first);
   const std::shared_ptr<BuiltGeometry> built = scene.prepared().world->accel.built();
   scene.show(later);
@@ -292,7 +292,7 @@ TEST(SlowSequence, BuildsInstancesOnce) {
   FrameScene scene;
   std::vector<int> builds;
   for (const double seconds : {0.0, 0.5, 1.0, 1.5}) {
-    RenderJob job = jobAt(path, seconds);
+    RenderDescription job = jobAt(path, seconds);
     scene.show(job);
     builds.push_back(scene.prepared().world->accel.built()->builds());
   }
@@ -327,7 +327,7 @@ TEST(Sequence, LampsAreBuiltOnce) {
       "radiance = 5\n");
   FrameScene scene;
   for (const double seconds : {0.0, 0.5, 1.0}) {
-    RenderJob job = jobAt(path, seconds);
+    RenderDescription job = jobAt(path, seconds);
     scene.show(job);
     EXPECT_EQ(scene.prepared().world->accel.built()->builds(), 1) << seconds;
   }

@@ -269,23 +269,23 @@ TEST_F(SettingsInAFile, OptionsOverrideTheFileAndTheFileOverridesDefaults) {
   std::ofstream(path_)
       << "model = 'ball.glb'\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
          "[render]\nsamples = 5\nnoise = 2\nmax_depth = 3\nseed = 9\n";
-  const RenderJob byFile = planJob(openScene(path_));
+  const RenderDescription byFile = planJob(openScene(path_));
   EXPECT_EQ(byFile.settings.samples, 5u);
   EXPECT_EQ(byFile.settings.noiseLimit, 0.02);
-  EXPECT_TRUE(byFile.file.camera);
-  EXPECT_EQ(byFile.file.settings.location("render.seed"), path_ + ":9");
+  EXPECT_TRUE(byFile.camera.placed);
+  EXPECT_EQ(byFile.origins.of("render.seed"), path_ + ":9");
 
   Settings over;
   over.set("render.seed", uint64_t(7));
   over.parse("render.time", "1.5");
   over.set("camera.name", std::string("Front"), "--camera");
-  const RenderJob job = planJob(openScene(path_), over);
+  const RenderDescription job = planJob(openScene(path_), over);
   EXPECT_EQ(job.settings.seed, 7u);
   EXPECT_EQ(job.settings.maxDepth, 3);
   EXPECT_EQ(job.settings.timeLimit, 1.5);
   EXPECT_FALSE(job.settings.noiseLimit) << "--time replaces the limits of the file";
   EXPECT_EQ(job.settings.samples, kMaxSamples);
-  EXPECT_FALSE(job.file.camera);
+  EXPECT_FALSE(job.camera.placed);
 }
 
 TEST(Settings, DefaultsEqualThoseOfRenderSettings) {

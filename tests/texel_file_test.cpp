@@ -244,7 +244,7 @@ TEST(TexelFile, AFailureToReadEndsTheRender) {
   given.set("probe.file", kProbe);
   given.set("render.size", ImageSize{200, 200});
   given.set("render.samples", uint64_t(1));
-  RenderJob job = planJob(openScene(writeTexturedModel(w, 1, 512)), given);
+  RenderDescription job = planJob(openScene(writeTexturedModel(w, 1, 512)), given);
   const LoadedScene loaded = loadScene(job);
   ASSERT_EQ(ftruncate(openTexelFile(), 0), 0);
   try {

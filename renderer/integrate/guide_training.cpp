@@ -25,7 +25,7 @@ constexpr double kSamplesUnderNoiseLimit = 256;
 }  // namespace
 
 uint32_t GuideTraining::samplesOf(const RenderSettings& settings) {
-  if (settings.guiding == Guiding::Off || settings.samples < kMinSamples) return 0;
+  if (settings.usedGuiding() == Guiding::Off || settings.samples < kMinSamples) return 0;
   const uint32_t samples = std::clamp(settings.samples / 4, kMinTraining, kTraining);
   return settings.shard.repeated > 0 ? std::min(samples, settings.shard.repeated) : samples;
 }
@@ -36,7 +36,7 @@ GuideTraining::GuideTraining(const World& world, const LightSource& lighting,
       lighting_(lighting),
       settings_(settings),
       guiding_(settings.samples < kMinSamples || !lighting.canBeGuided() ? Guiding::Off
-                                                                         : settings.guiding),
+                                                                         : settings.usedGuiding()),
       lightGuiding_(guiding_),
       lastSample_(samplesOf(settings)),
       tiles_{settings.window().width, settings.window().height},

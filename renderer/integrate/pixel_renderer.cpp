@@ -19,7 +19,9 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
       cameraRays_(camera, float(settings.width) / float(settings.height)),
       drawsTimes_(camera.motion || world.scene.moves),
       sequence_(settings),
-      table_(sequence_.tableSize(), dimension::tabulated(settings.maxDepth + 1), settings.seed),
+      table_(sequence_.tableSize(),
+             dimension::tabulated(std::min(settings.maxDepth, dimension::kTabulatedVertices) + 1),
+             settings.seed),
       result_(result) {
   if (camera.motion) moving_.emplace(camera, float(settings.width) / float(settings.height));
 }

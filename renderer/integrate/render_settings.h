@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "film/aov.h"
@@ -23,6 +24,13 @@ struct Crop {
   int x, y, width, height;
 };
 
+// Names of layers that are by source of light.
+inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
+
+inline bool isOfLight(std::string_view layer) {
+  return layer == kLightGroups || layer == kShadowMattes;
+}
+
 struct RenderSettings {
   int width = 800, height = 600;  // of the whole image
   std::optional<Crop> crop;
@@ -33,8 +41,8 @@ struct RenderSettings {
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
   // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
   bool adaptive = true;
-  Guiding guiding = Guiding::Auto;
-  int maxDepth = 8;  // as in PathSettings, like maxTransmissionDepth
+  Guiding guiding = Guiding::Auto;  // as it was asked for
+  int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
   int maxTransmissionDepth = kDefaultTransmissionDepth;
   int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;  // as in PathSettings
   IntegratorKind integrator = IntegratorKind::Path;
@@ -71,6 +79,8 @@ struct RenderSettings {
             .maxSpecularDepth = maxSpecularDepth,
             .hideProbe = hideProbe};
   }
+  // Guided bounces have no kind: with limits of depth by kind, nothing is guided.
+  Guiding usedGuiding() const { return path().limitsKinds() ? Guiding::Off : guiding; }
 };
 
 }  // namespace chromeball

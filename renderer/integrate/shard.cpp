@@ -35,7 +35,7 @@ RenderSettings shardOf(RenderSettings whole, uint32_t index, uint32_t count) {
   RenderSettings settings = std::move(whole);
   Shard& shard = settings.shard;
   shard = {.index = index, .count = count, .samplesOfAll = settings.samples};
-  shard.isConsecutive = !settings.adaptive && settings.guiding == Guiding::Off;
+  shard.isConsecutive = !settings.adaptive && settings.usedGuiding() == Guiding::Off;
   settings.samples /= count;
   if (const uint32_t pilot = Schedule::pilotSamples(settings))
     shard.repeated = std::max(pilot, kLeastPilot);

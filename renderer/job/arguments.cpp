@@ -67,8 +67,8 @@ bool isPositiveFloat(double number) {
   return float(number) > 0 && number <= double(std::numeric_limits<float>::max());
 }
 
-Rgb colorOf(const std::vector<double>& numbers) {
-  return glm::dvec3(numbers.front(), numbers[numbers.size() / 2], numbers.back());
+glm::dvec3 colorOf(const std::vector<double>& numbers) {
+  return {numbers.front(), numbers[numbers.size() / 2], numbers.back()};
 }
 
 Rgb parseColor(std::string_view text, std::string_view location) {
@@ -103,12 +103,6 @@ Rotation parseRotation(std::string_view text, std::string_view location) {
     if (!(std::abs(number) <= double(std::numeric_limits<float>::max())))
       throwInput("{}: {} is too large", location, number);
   return parseRotation(numbers, location);
-}
-
-std::vector<double> numbersOf(const Rotation& rotation) {
-  if (!rotation.isTilted()) return {double(rotation.yaw())};
-  const glm::dquat q = rotation.quaternion();
-  return {q.x, q.y, q.z, q.w};
 }
 
 }  // namespace chromeball

@@ -28,7 +28,7 @@ bool isPositiveFloat(double number);
 
 // A number for all channels, or three; and from the text "X" or "R,G,B", each 0 or a positive
 // float. Throws InputError, begun by `location`.
-Rgb colorOf(const std::vector<double>& numbers);
+glm::dvec3 colorOf(const std::vector<double>& numbers);
 Rgb parseColor(std::string_view text, std::string_view location);
 
 // A yaw in degrees; or yaw, pitch and roll; or a quaternion x, y, z, w, whose length should be 1 to
@@ -36,8 +36,5 @@ Rgb parseColor(std::string_view text, std::string_view location);
 Rotation parseRotation(const std::vector<double>& numbers, std::string_view location);
 // The same from numbers with commas between.
 Rotation parseRotation(std::string_view text, std::string_view location);
-
-// The least numbers that parseRotation() reads as this rotation.
-std::vector<double> numbersOf(const Rotation& rotation);
 
 }  // namespace chromeball

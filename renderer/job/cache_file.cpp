@@ -22,9 +22,8 @@ constexpr size_t kHeader = kMagic.size() + sizeof(uint64_t);
 
 }  // namespace
 
-CacheFile::CacheFile(const RenderJob& job, const LoadedScene& loaded)
-    : cache_(job.settings.cacheError.value()),
-      path_(job.file.settings.getIfGiven<std::string>("cache")) {
+CacheFile::CacheFile(const RenderDescription& job, const LoadedScene& loaded)
+    : cache_(job.settings.cacheError.value()), path_(job.run.cache) {
   if (!path_) return;
   checkReplaceable(*path_);
   identity_ = lightIdentity(job, loaded);

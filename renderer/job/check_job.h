@@ -11,11 +11,4 @@ namespace chromeball {
 // Throws InputError, begun by the location of one of the settings. `file`: with the given settings.
 void checkJob(const SceneFile& file);
 
-// Names of layers that are by source of light.
-inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
-
-inline bool isOfLight(std::string_view layer) {
-  return layer == kLightGroups || layer == kShadowMattes;
-}
-
 }  // namespace chromeball

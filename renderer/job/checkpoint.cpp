@@ -12,22 +12,21 @@
 
 namespace chromeball {
 
-JobControl::JobControl(const RenderJob& job, const LoadedScene& loaded,
+JobControl::JobControl(const RenderDescription& job, const LoadedScene& loaded,
                        std::function<void(const RenderState&)> onPass, std::vector<Viewer*> viewers)
     : job_(job),
       loaded_(loaded),
       onPass_(std::move(onPass)),
-      path_(job.file.settings.getIfGiven<std::string>("checkpoint")),
+      path_(job.run.checkpoint),
       viewers_(std::move(viewers)),
-      images_(job.file.settings.getIfGiven<double>("write-every")),
-      checkpoints_(path_ ? std::optional(job.file.settings.get<double>("checkpoint-every"))
-                         : std::nullopt) {
+      images_(job.run.writeEvery),
+      checkpoints_(path_ ? std::optional(job.run.checkpointEvery) : std::nullopt) {
   if (!path_) return;
   path_ = std::filesystem::weakly_canonical(std::filesystem::absolute(*path_)).string();  // links
   lock_.emplace(*path_);
   part_.identity = renderIdentity(job, loaded);
   if (!std::filesystem::exists(*path_)) return;
-  if (!job.file.settings.get<bool>("resume"))
+  if (!job.run.resumes)
     throw InputError(fmt::format("{}: exists; continue that render, or remove the file", *path_),
                      Remedy{"resume", {}});
   const std::string stored = readPartHeader(*path_).identity;

@@ -9,9 +9,10 @@
 namespace chromeball {
 namespace {
 
-Camera chooseWithoutLens(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
-  if (job.file.camera) return job.file.camera->relativeTo(view.origin);
-  if (const auto wanted = job.file.settings.getIfGiven<std::string>("camera.name")) {
+Camera chooseWithoutLens(const RenderDescription& job, const Scene& scene,
+                         const AutomaticView& view) {
+  if (job.camera.placed) return job.camera.placed->relativeTo(view.origin);
+  if (const auto& wanted = job.camera.name) {
     std::vector<std::string_view> names;
     for (const auto name : {&Camera::name, &Camera::node})
       for (const Camera& camera : scene.cameras) {
@@ -19,15 +20,15 @@ Camera chooseWithoutLens(const RenderJob& job, const Scene& scene, const Automat
         if (std::count(names.begin(), names.end(), camera.*name) == 0)
           names.push_back(camera.*name);
       }
-    throwInput("{}: the model has no camera `{}`; {}", job.file.settings.location("camera.name"),
-               *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
+    throwInput("{}: the model has no camera `{}`; {}", job.origins.of("camera.name"), *wanted,
+               names.empty() ? "it has none" : didYouMean(*wanted, names));
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
   return *view.camera;
 }
 
-Camera withLens(const RenderJob& job, Camera camera) {
-  const auto& lens = job.file.lens;
+Camera withLens(const RenderDescription& job, Camera camera) {
+  const auto& lens = job.camera.lens;
   if (!lens) return camera;
   if (camera.orthographic)
     throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
@@ -37,8 +38,8 @@ Camera withLens(const RenderJob& job, Camera camera) {
   return camera;
 }
 
-Camera withOptics(const RenderJob& job, Camera camera) {
-  const auto& optics = job.file.optics;
+Camera withOptics(const RenderDescription& job, Camera camera) {
+  const auto& optics = job.camera.optics;
   if (!optics) return camera;
   if (camera.orthographic)
     throwInput(
@@ -60,15 +61,12 @@ AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
   return view;
 }
 
-bool turnsCamera(const Settings& settings) {
-  return settings.has("orbit") || settings.has("orbit-step");
-}
-
-AutomaticView automaticView(const RenderJob& job, const Scene& scene, const glm::dvec3& origin) {
+AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
+                            const glm::dvec3& origin) {
   const RenderSettings& s = job.settings;
   const float aspect = float(s.width) / float(s.height);
-  const bool turns = turnsCamera(job.file.settings);
-  const bool isPlaced = job.file.camera || job.file.settings.has("camera.name");
+  const bool turns = job.camera.turns;
+  const bool isPlaced = job.camera.placed || job.camera.name;
   AutomaticView view{.origin = origin};
   if (turns) view.centre = centreOf(scene);
   if (!isPlaced && scene.cameras.empty())
@@ -76,7 +74,7 @@ AutomaticView automaticView(const RenderJob& job, const Scene& scene, const glm:
   return view;
 }
 
-Camera chooseCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view) {
+Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view) {
   return withOptics(job, withLens(job, chooseWithoutLens(job, scene, view)));
 }
 

@@ -8,11 +8,7 @@
 
 namespace chromeball {
 
-struct RenderJob;
-class Settings;
-
-// Whether the job turns its camera around the models, if only while the shutter is open.
-bool turnsCamera(const Settings& settings);
+struct RenderDescription;
 
 // What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
 // times.
@@ -25,10 +21,11 @@ struct AutomaticView {
 };
 
 // The job's size must be final.
-AutomaticView automaticView(const RenderJob& job, const Scene& scene, const glm::dvec3& origin);
+AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
+                            const glm::dvec3& origin);
 
 // Before its `orbit`. Throws InputError for a camera that the model does not have, or a lens of an
 // orthographic one.
-Camera chooseCamera(const RenderJob& job, const Scene& scene, const AutomaticView& view);
+Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view);
 
 }  // namespace chromeball

@@ -5,12 +5,10 @@
 
 namespace chromeball {
 
-void FrameScene::show(RenderJob& job) {
+void FrameScene::show(RenderDescription& job) {
   if (!loaded_ || job.composite) return load(job);
-  const bool turns = !(rotationOf(job) == loaded_->probe.rotation());
-  if (turns && !job.file.settings.has("probe.file"))
-    return load(job);  // the model's own environment
-  job.view = loaded_->view;
+  const bool turns = !(job.probe.rotation == loaded_->probe.rotation());
+  if (turns && !job.probe.file) return load(job);  // the model's own environment
   const FrameChange change = loadFrame(job, *loaded_, models_);
   if (change.geometry) {
     BsdfTables tables = prepared_.world->bsdfTables;
@@ -22,14 +20,15 @@ void FrameScene::show(RenderJob& job) {
   }
   if (!change.lighting) return;
   prepared_.lighting = makeLighting(job, *loaded_);
-  prepared_.environment = makeEnvironment(job.settings.integrator, job.strategy.name, *loaded_);
+  prepared_.environment =
+      makeEnvironment(job.settings.integrator, job.lighting.strategy.name, *loaded_);
 }
 
-void FrameScene::load(RenderJob& job) {
-  if (loaded_) job.view = loaded_->view;
+void FrameScene::load(RenderDescription& job) {
+  const std::optional<AutomaticView> view = loaded_ ? std::optional(loaded_->view) : std::nullopt;
   prepared_ = {};
   models_.keepsFiles = true;
-  loaded_ = std::make_unique<LoadedScene>(loadScene(job, &models_));
+  loaded_ = std::make_unique<LoadedScene>(loadScene(job, &models_, view ? &*view : nullptr));
   prepared_ = prepareScene(job, *loaded_);
 }
 

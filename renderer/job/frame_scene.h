@@ -14,13 +14,13 @@ class FrameScene {
   // decoded, and the tables of the probe made with the first; meshes, and the acceleration
   // structures over them, are made again where they have moved or changed, the probe where it has
   // turned, and all for composites. Throws InputError.
-  void show(RenderJob& job);
+  void show(RenderDescription& job);
 
   const LoadedScene& loaded() const { return *loaded_; }
   const PreparedScene& prepared() const { return prepared_; }
 
  private:
-  void load(RenderJob& job);
+  void load(RenderDescription& job);
 
   ModelCache models_;
   std::unique_ptr<LoadedScene> loaded_;

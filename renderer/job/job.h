@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything a program needs to render a scene file:
 //
-//   RenderJob job = planJob(openScene("scene.toml"));
+//   RenderDescription job = planJob(openScene("scene.toml"));
 //   LoadedScene loaded = loadScene(job);
 //   JobResult result = renderJob(job, loaded);
 //   const Image& image = result.color();   // linear RGB, row 0 at the top

@@ -12,8 +12,8 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/parallel.h"
+#include "description/describe.h"
 #include "job/file_hash.h"
-#include "job/job_changes.h"
 
 namespace chromeball {
 namespace {
@@ -29,25 +29,6 @@ constexpr std::array kOfImage = {"camera",   "cameraPosition", "cameraFov",     
                                  "seed",     "clamp",          "transparent",   "denoise",
                                  "adaptive", "ao-distance",    "bent"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
-
-Json toJson(const SettingValue& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
-  if (const auto* number = std::get_if<uint64_t>(&value)) return *number;
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
-    if (numbers->size() == 1) return numbers->front();
-  return toText(value);
-}
-
-// The settings that change the image's radiance, under the names of their options.
-void describeSettings(const Settings& settings, Json& d) {
-  for (const Setting& setting : settingTable()) {
-    if (setting.option.empty() || setting.effect != Effect::Image) continue;
-    const std::optional<SettingValue> value = settings.value(setting.name());
-    if (!value || toText(*value) == "false") continue;
-    d[std::string(setting.option)] = toJson(*value);
-  }
-}
 
 // For row vectors: each row is the transformed unit vector of an axis, the last row the transformed
 // origin.
@@ -98,11 +79,11 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
 }
 
 // The description, with contents of files instead of their names, and without limits.
-Json describeContents(const RenderJob& job, const LoadedScene& loaded) {
+Json describeContents(const RenderDescription& job, const LoadedScene& loaded) {
   Json identity = describeJob(job, loaded);
   for (const char* name : kPaths) identity.erase(name);
   for (const char* name : kLimits) identity.erase(name);
-  identity["contents of scene"] = fingerprint(job.file.path);
+  identity["contents of scene"] = fingerprint(job.path);
   for (const std::string& file : loaded.files) {
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
@@ -120,25 +101,14 @@ uint64_t hashOf(const std::vector<PunctualLight>& lights) {
 
 }  // namespace
 
-Json describeJob(const RenderJob& job, const LoadedScene& loaded) {
-  const Settings& settings = job.file.settings;
-  Json d = {{"scene", job.file.path}};
-  describeSettings(settings, d);
-  if (settings.has("probe.file"))
-    d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
-  else
-    d.erase("probe-mapping");
+Json describeJob(const RenderDescription& job, const LoadedScene& loaded) {
+  Json d = describe(job);
+  if (job.probe.file) d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
   if (const auto& found = loaded.plateScale)
     d["probe-scale"] = fmt::format("{},{},{}", found->scale.x, found->scale.y, found->scale.z);
-  if (job.shutter) d["fps"] = settings.get<double>("fps");
-  d["size"] = fmt::format("{}x{}", job.settings.width, job.settings.height);
   if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
-  d["strategy"] = resolveStrategy(job.strategy.name);
   d["files"] = loaded.files;
-  if (const auto noise = settings.getIfGiven<double>("render.noise")) d["noise-limit"] = *noise;
-  if (const auto time = settings.getIfGiven<double>("render.time")) d["time-limit"] = *time;
   describeCamera(job.settings, loaded, d);
-  describeChanges(job, d);
   return d;
 }
 
@@ -159,14 +129,14 @@ Metadata toMetadata(const Json& description) {
   return metadata;
 }
 
-std::string identityOf(const RenderJob& job, const LoadedScene& loaded) {
+std::string identityOf(const RenderDescription& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   for (const char* name : kVariedByComparisons) identity.erase(name);
   identity["threads"] = threadCount();
   return jsonText(identity);
 }
 
-std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
+std::string renderIdentity(const RenderDescription& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   identity["layers"] = layerNames(job);
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
@@ -174,7 +144,7 @@ std::string renderIdentity(const RenderJob& job, const LoadedScene& loaded) {
   return jsonText(identity);
 }
 
-std::string lightIdentity(const RenderJob& job, const LoadedScene& loaded) {
+std::string lightIdentity(const RenderDescription& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   for (const char* name : kOfImage) identity.erase(name);
   if (std::ranges::none_of(loaded.scene.instances, &Instance::moves)) {

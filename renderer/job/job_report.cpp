@@ -63,14 +63,14 @@ json describe(const RenderResult& result) {
 
 }  // namespace
 
-json statistics(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
+json statistics(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,
                 const PhaseSeconds& seconds) {
   json j = {
       {"version", CHROMEBALL_VERSION},
       {"command", commandLine()},
       {"job", describeJob(job, loaded)},
-      {"scene", job.file.path},
-      {"strategy", resolveStrategy(job.strategy.name)},
+      {"scene", job.path},
+      {"strategy", resolveStrategy(job.lighting.strategy.name)},
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
       {"max_transmission_depth", job.settings.maxTransmissionDepth},
@@ -117,7 +117,7 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
   return metadata;
 }
 
-Metadata imageMetadata(const RenderJob& job, const LoadedScene& loaded,
+Metadata imageMetadata(const RenderDescription& job, const LoadedScene& loaded,
                        const FinishedImage& finished, const RenderResult& render, double seconds) {
   Metadata metadata = toMetadata(describeJob(job, loaded));
   metadata["Software"] = "chromeball " CHROMEBALL_VERSION;

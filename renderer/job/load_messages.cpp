@@ -28,22 +28,22 @@ bool hasBodies(const Scene& scene) {
   });
 }
 
-void addMemory(const RenderJob& job, const LoadedScene& loaded, Collector& messages) {
+void addMemory(const RenderDescription& job, const LoadedScene& loaded, Collector& messages) {
   constexpr double kMinBytes = 1e9;
   if (const MemoryEstimate estimate = estimateMemory(job, loaded); estimate.peak > kMinBytes)
-    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.file.path,
-                              1e-9 * estimate.peak, inWords(estimate)));
+    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.path, 1e-9 * estimate.peak,
+                              inWords(estimate)));
 }
 
 // Lamps of the scene file that are among the scene's lights.
-size_t ofSceneFile(const RenderJob& job, const Scene& scene) {
+size_t ofSceneFile(const RenderDescription& job, const Scene& scene) {
   if (scene.lights.empty()) return 0;  // left out (--light-from)
-  return size_t(std::ranges::count_if(job.file.lamps,
-                                      [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
+  return size_t(
+      std::ranges::count_if(job.lamps, [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
 }
 
-void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
-  const std::string& model = job.file.models.front().file;
+void addLights(const RenderDescription& job, const Scene& scene, Collector& messages) {
+  const std::string& model = job.models.front().file;
   if (scene.environment)
     messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
   else if (const size_t count = scene.lights.size() - ofSceneFile(job, scene))
@@ -52,10 +52,9 @@ void addLights(const RenderJob& job, const Scene& scene, Collector& messages) {
 }
 
 // `guide = "on"` where nothing can be guided.
-void addGuide(const RenderJob& job, Collector& messages) {
-  const Settings& settings = job.file.settings;
-  if (settings.get<std::string>("render.guide") != "on") return;
-  const std::string location = settings.location("render.guide");
+void addGuide(const RenderDescription& job, Collector& messages) {
+  if (job.settings.guiding != Guiding::On) return;
+  const std::string location = job.origins.of("render.guide");
   if (job.settings.path().limitsKinds())
     messages.note(fmt::format(
         "{}: nothing is guided, since limits of depth by kind do not know guided bounces",
@@ -110,10 +109,10 @@ std::string plateScaleText(const CompositeEntry& composite, const PlateScale& fo
 
 }  // namespace
 
-Messages loadMessages(const RenderJob& job, const LoadedScene& loaded) {
+Messages loadMessages(const RenderDescription& job, const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   Collector messages;
-  for (const std::string& line : job.file.warnings) messages.warn(line);
+  for (const std::string& line : job.warnings) messages.warn(line);
   if (job.composite) messages.add(job.composite->messages);
   for (const std::string& line : loaded.modelWarnings) messages.warn(line);
   for (const std::string& line : scene.notes) messages.note(line);
@@ -122,17 +121,15 @@ Messages loadMessages(const RenderJob& job, const LoadedScene& loaded) {
         "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
         "are in full shadow; light from emissive surfaces passes");
   addMemory(job, loaded, messages);
-  const Settings& settings = job.file.settings;
-  if (const auto probe = settings.getIfGiven<std::string>("probe.file"))
+  if (const auto& probe = job.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);
   else
     addLights(job, scene, messages);
   addGuide(job, messages);
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
-    messages.note(plateScaleText(*job.file.composite, *scale));
-  if (const auto plate = settings.getIfGiven<std::string>("composite.plate"))
-    addPlate(*plate, messages);
+    messages.note(plateScaleText(job.composite->entry, *scale));
+  if (job.composite && job.composite->plateFile) addPlate(*job.composite->plateFile, messages);
   return messages.take();
 }
 

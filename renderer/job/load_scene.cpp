@@ -8,6 +8,7 @@
 #include "job/load_messages.h"
 #include "job/memory_estimate.h"
 #include "job/place_models.h"
+#include "job/prepare_composite.h"
 #include "job/scene_lighting.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
@@ -16,11 +17,11 @@ namespace chromeball {
 namespace {
 
 // Null unless the surroundings are a model.
-std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& origin,
+std::unique_ptr<const Room> loadRoom(const RenderDescription& job, const glm::dvec3& origin,
                                      ModelCache& cache, std::vector<std::string>& files) {
-  const auto& surroundings = job.file.surroundings;
+  const auto& surroundings = job.surroundings;
   if (!surroundings || surroundings->shape.shape != Surroundings::Shape::Model) return nullptr;
-  GltfChoice choice = job.file.models.front().choice;
+  GltfChoice choice = job.models.front().choice;
   choice.animation.reset();
   choice.variant.reset();
   choice.environment = false;
@@ -33,9 +34,9 @@ std::unique_ptr<const Room> loadRoom(const RenderJob& job, const glm::dvec3& ori
                                       surroundings->shape.model);
 }
 
-std::optional<Surroundings> surroundingsOf(const RenderJob& job, const glm::dvec3& origin) {
-  if (!job.file.surroundings) return {};
-  return job.file.surroundings->relativeTo(origin);
+std::optional<Surroundings> surroundingsOf(const RenderDescription& job, const glm::dvec3& origin) {
+  if (!job.surroundings) return {};
+  return job.surroundings->relativeTo(origin);
 }
 
 // Gives `scene` the meshes of an earlier one where they are equal and do not move: lamps.
@@ -71,14 +72,14 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 }
 
 // The probe of the job's frame, if it has turned or is another file.
-void replaceProbe(RenderJob& job, LoadedScene& loaded, FrameChange& change) {
-  const auto file = job.file.settings.getIfGiven<std::string>("probe.file");
+void replaceProbe(RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
+  const auto& file = job.probe.file;
   const bool isOther = file && *file != loaded.probeFile;
   if (isOther) {
     std::ranges::replace(loaded.files, loaded.probeFile, *file);
     loaded.probeFile = *file;
   }
-  if (isOther || !(loaded.probe.rotation() == rotationOf(job))) {
+  if (isOther || !(loaded.probe.rotation() == job.probe.rotation)) {
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
     loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
@@ -86,15 +87,15 @@ void replaceProbe(RenderJob& job, LoadedScene& loaded, FrameChange& change) {
   }
 }
 
-void replaceModels(RenderJob& job, LoadedScene& loaded, ModelCache& cache, FrameChange& change) {
-  PlacedModels models = placeModels(job, cache);
-  if (job.file.surroundings && !loaded.room)
-    checkInside(models.scene, *surroundingsOf(job, models.origin), job.file.models.front().file);
+void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cache,
+                   FrameChange& change) {
+  PlacedModels models = placeModels(job, cache, &loaded.view);
+  if (job.surroundings && !loaded.room)
+    checkInside(models.scene, *surroundingsOf(job, models.origin), job.models.front().file);
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.modelWarnings = std::move(models.warnings);
-  if (!job.file.settings.has("probe.file") && !models.scene.environment)
-    checkLit(job, models.scene);
+  if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
   shareMeshes(loaded.scene, models.scene);
   change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (change.geometry) loaded.scene = std::move(models.scene);
@@ -109,40 +110,31 @@ void replaceModels(RenderJob& job, LoadedScene& loaded, ModelCache& cache, Frame
 
 }  // namespace
 
-LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
+LoadedScene loadScene(RenderDescription& job, ModelCache* shared, const AutomaticView* view) {
   ModelCache own;
   ModelCache& cache = shared ? *shared : own;
-  if (const auto limit = job.file.settings.getIfGiven<double>("texture-memory"))
-    cache.texels.memory = 1e9 * *limit;
+  if (job.run.textureMemory) cache.texels.memory = *job.run.textureMemory;
   cache.texels.limit = memoryLimit(job);
-  PlacedModels models = placeModels(job, cache);
+  PlacedModels models = placeModels(job, cache, view);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
-  const auto& lists = job.file.lightLists;
+  const auto& lists = job.lightLists;
   files.insert(files.end(), lists.begin(), lists.end());
-  const Settings& settings = job.file.settings;
-  if (const auto path = settings.getIfGiven<std::string>("probe.file")) files.push_back(*path);
-  if (const auto path = settings.getIfGiven<std::string>("camera.file")) files.push_back(*path);
-  if (const auto path = settings.getIfGiven<std::string>("composite.plate")) files.push_back(*path);
+  if (job.probe.file) files.push_back(*job.probe.file);
+  if (job.camera.file) files.push_back(*job.camera.file);
+  if (job.composite && job.composite->plateFile) files.push_back(*job.composite->plateFile);
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
-  if (job.file.surroundings && !room)
-    checkInside(scene, *surroundingsOf(job, models.origin), job.file.models.front().file);
+  if (job.surroundings && !room)
+    checkInside(scene, *surroundingsOf(job, models.origin), job.models.front().file);
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
-  LoadedScene result{std::move(scene),
-                     models.camera,
-                     models.view,
-                     std::move(loaded),
-                     std::move(probe),
-                     surroundingsOf(job, models.origin),
-                     std::move(room),
-                     models.origin,
-                     std::move(sources),
-                     settings.getIfGiven<double>("lighting.sun_angle"),
-                     settings.get<bool>("lighting.show_lights"),
-                     std::move(files)};
-  result.probeFile = settings.getIfGiven<std::string>("probe.file").value_or("");
+  LoadedScene result{
+      std::move(scene),      models.camera,           models.view,
+      std::move(loaded),     std::move(probe),        surroundingsOf(job, models.origin),
+      std::move(room),       models.origin,           std::move(sources),
+      job.lighting.sunAngle, job.lighting.showLights, std::move(files)};
+  result.probeFile = job.probe.file.value_or("");
   result.modelWarnings = std::move(models.warnings);
   if (job.composite) {
     prepareLocalScene(job, result);
@@ -154,7 +146,7 @@ LoadedScene loadScene(RenderJob& job, ModelCache* shared) {
   return result;
 }
 
-FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache) {
+FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache) {
   assert(!job.composite);
   FrameChange change;
   replaceProbe(job, loaded, change);

@@ -5,6 +5,7 @@
 #include "base/message.h"
 #include "composite/objects.h"
 #include "composite/plate_scale.h"
+#include "job/choose_camera.h"
 #include "job/render_job.h"
 #include "job/scene_lighting.h"
 #include "lighting/strategy.h"
@@ -39,8 +40,10 @@ struct LoadedScene {
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
-// camera. `shared`: of the models' other loads; may be null. Throws InputError.
-LoadedScene loadScene(RenderJob& job, ModelCache* shared = nullptr);
+// camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
+// have decided; both may be null. Throws InputError.
+LoadedScene loadScene(RenderDescription& job, ModelCache* shared = nullptr,
+                      const AutomaticView* view = nullptr);
 
 struct FrameChange {
   bool geometry = false;  // or lights of the scene
@@ -50,6 +53,6 @@ struct FrameChange {
 // Replaces the camera, the probe if it has turned or is another file, and, where a model is
 // animated, what moves with it, for another frame of the same job. Not for composites; a probe that
 // turns must have a file.
-FrameChange loadFrame(RenderJob& job, LoadedScene& loaded, ModelCache& cache);
+FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache);
 
 }  // namespace chromeball

@@ -40,18 +40,15 @@ double bytesOfFiles(const Scene& scene) {
 
 }  // namespace
 
-double imageBytes(const RenderJob& job) {
+double imageBytes(const RenderDescription& job) {
   const RenderSettings& s = job.settings;
   const double composite = job.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
   return imageBytes(s) + composite * s.width * s.height;
 }
 
-double memoryLimit(const RenderJob& job) {
-  const auto given = job.file.settings.getIfGiven<double>("memory");
-  return given ? 1e9 * *given : memoryBudget();
-}
+double memoryLimit(const RenderDescription& job) { return job.run.memory.value_or(memoryBudget()); }
 
-MemoryEstimate estimateMemory(const RenderJob& job, const LoadedScene& loaded) {
+MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   const double texels = double(scene.texelByteCount());
   const double meshes = double(scene.byteCount()) - texels;
@@ -66,7 +63,7 @@ MemoryEstimate estimateMemory(const RenderJob& job, const LoadedScene& loaded) {
   e.textures = texels;
   if (const auto& file = scene.texelFile)
     e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
-  const bool keepsFiles = job.file.settings.has("frames") && scene.isAnimated;
+  const bool keepsFiles = job.run.isOfFrames && scene.isAnimated;
   e.geometry = meshes + kBuiltTriangle * triangles + (keepsFiles ? bytesOfFiles(scene) : 0);
   e.probe = map + kTableTexel * mapTexels;
 
@@ -84,14 +81,13 @@ std::string inWords(const MemoryEstimate& e) {
                      1e-9 * e.images, 1e-9 * e.textures, 1e-9 * e.geometry, 1e-9 * e.probe);
 }
 
-void checkMemory(const RenderJob& job, const LoadedScene& loaded) {
+void checkMemory(const RenderDescription& job, const LoadedScene& loaded) {
   const MemoryEstimate estimate = estimateMemory(job, loaded);
   const double limit = memoryLimit(job);
   if (estimate.peak > limit)
-    throw InputError(
-        fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB", job.file.path,
-                    1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
-        Remedy{"memory", {}});
+    throw InputError(fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB",
+                                 job.path, 1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
+                     Remedy{"memory", {}});
 }
 
 }  // namespace chromeball

@@ -17,18 +17,18 @@ struct MemoryEstimate {
   double peak = 0;      // the most at any one time; files are freed before images are allocated
 };
 
-MemoryEstimate estimateMemory(const RenderJob& job, const LoadedScene& loaded);
+MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded);
 
 // The job's limit: `--memory`, or memoryBudget().
-double memoryLimit(const RenderJob& job);
+double memoryLimit(const RenderDescription& job);
 
 // The film, layers and output images of a job of known size.
-double imageBytes(const RenderJob& job);
+double imageBytes(const RenderDescription& job);
 
 // "images 1.2 GB, textures 0.1 GB, ..."
 std::string inWords(const MemoryEstimate& estimate);
 
 // Throws InputError if the peak exceeds the limit.
-void checkMemory(const RenderJob& job, const LoadedScene& loaded);
+void checkMemory(const RenderDescription& job, const LoadedScene& loaded);
 
 }  // namespace chromeball

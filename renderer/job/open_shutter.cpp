@@ -16,12 +16,14 @@ namespace {
 constexpr double kMovingVertex = 80;  // bytes of a key: attributes, and Embree's copy
 
 // The models at a fraction of the shutter's time.
-Scene modelsAt(const RenderJob& job, double fraction, const glm::dvec3& origin, ModelCache& cache) {
-  SceneFile later = job.file;
-  for (ModelEntry& model : later.models)
-    if (model.choice.animation) model.choice.animation->seconds += fraction * job.shutter->seconds;
+Scene modelsAt(const RenderDescription& job, double fraction, const glm::dvec3& origin,
+               ModelCache& cache) {
+  std::vector<ModelEntry> later = job.models;
+  for (ModelEntry& model : later)
+    if (model.choice.animation)
+      model.choice.animation->seconds += fraction * job.camera.shutter->seconds();
   std::vector<std::string> known;
-  return loadModels(later, origin, cache, known);
+  return loadModels(job, later, origin, cache, known);
 }
 
 bool isSameView(const Camera& a, const Camera& b) {
@@ -35,21 +37,21 @@ void setMotion(std::vector<Camera> keys, Camera& camera) {
 }
 
 // The models have one key in memory; they will have one for each step.
-void checkMotionMemory(const RenderJob& job, const Scene& scene) {
+void checkMotionMemory(const RenderDescription& job, const Scene& scene) {
   double moving = 0;
   for (const Instance& instance : scene.instances)
     if (instance.moves)
       moving += double(scene.meshes[size_t(instance.mesh)].positions.size()) * kMovingVertex;
-  const double needed = moving * job.shutter->steps;
+  const double needed = moving * job.camera.shutter->steps;
   if (needed > memoryLimit(job))
     throw InputError(
         fmt::format("{}: {} steps of what moves take {:.3g} GB of memory; the limit is {:.3g} GB",
-                    job.file.settings.location("camera.shutter"), job.shutter->steps, 1e-9 * needed,
+                    job.origins.of("camera.shutter"), job.camera.shutter->steps, 1e-9 * needed,
                     1e-9 * memoryLimit(job)),
         Remedy{"memory", {}});
 }
 
-const std::string& modelOf(const RenderJob& job) { return job.file.models.front().file; }
+const std::string& modelOf(const RenderDescription& job) { return job.models.front().file; }
 
 // `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
 void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Camera& camera,
@@ -64,20 +66,20 @@ void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Ca
 
 }  // namespace
 
-void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) {
+void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache) {
   const auto warn = [&](std::vector<std::string> lines) {
     placed.warnings.insert(placed.warnings.end(), lines.begin(), lines.end());
   };
   if (!placed.scene.isAnimated)
     return warn(turnCamera(job, placed.scene, placed.view, placed.origin, placed.camera));
   checkMotionMemory(job, placed.scene);
-  const int steps = job.shutter->steps;
+  const int steps = job.camera.shutter->steps;
   std::vector<Camera> cameras(2 * size_t(steps) + 1, placed.camera);  // at half steps
   const auto modelsAtHalfStep = [&](int i) {
     const double fraction = double(i) / (2 * steps);
     Scene scene = modelsAt(job, fraction, placed.origin, cache);
     cameras[size_t(i)] =
-        cameraOf(job, scene, placed.view, placed.origin, fraction * job.shutter->turn);
+        cameraOf(job, scene, placed.view, placed.origin, fraction * job.camera.shutter->turn);
     return scene;
   };
   std::vector<Scene> later;
@@ -91,14 +93,14 @@ void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache) 
   MotionError error;
   for (int k = 0; k < steps; ++k)
     error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
-  moveCamera(*job.shutter, cameras, placed.camera, error);
+  moveCamera(*job.camera.shutter, cameras, placed.camera, error);
   warn(error.warnings(modelOf(job), steps));
 }
 
-std::vector<std::string> turnCamera(const RenderJob& job, const Scene& scene,
+std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera) {
-  const Shutter& shutter = *job.shutter;
+  const Shutter& shutter = *job.camera.shutter;
   if (shutter.turn == 0) return {};
   std::vector<Camera> cameras;
   for (int i = 0; i <= 2 * shutter.steps; ++i)

@@ -10,10 +10,10 @@ namespace chromeball {
 // Gives the models, their lamps and the camera their motion. Warns where straight lines are far
 // from it, and of parts and lamps that appear, vanish or are mirrored: what is there when the
 // shutter opens stays as it was, and nothing else comes. Throws InputError.
-void openShutter(const RenderJob& job, PlacedModels& placed, ModelCache& cache);
+void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache);
 
 // The camera's turn around models that stand still. Returns warnings.
-std::vector<std::string> turnCamera(const RenderJob& job, const Scene& scene,
+std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera);
 

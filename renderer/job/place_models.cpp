@@ -5,7 +5,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "job/job_changes.h"
 #include "job/memory_estimate.h"
 #include "job/open_shutter.h"
 #include "job/scene_lighting.h"
@@ -34,75 +33,75 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
 
 // The job's size; else the default height, with the aspect ratio of the model's camera. Throws
 // InputError if the image does not fit into the job's memory.
-void chooseSize(RenderJob& job, const Scene& scene) {
+void chooseSize(RenderDescription& job, const Scene& scene) {
   RenderSettings& settings = job.settings;
   if (job.size) {
     settings.width = job.size->width;
     settings.height = job.size->height;
-  } else if (!job.file.camera && !scene.cameras.empty()) {
+  } else if (!job.camera.placed && !scene.cameras.empty()) {
     const float aspect = chooseCamera(job, scene, {}).aspect;
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
   if (const auto& crop = settings.crop)
     if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
-      throwInput("{}: is not within the image of {}x{} pixels", job.file.settings.location("crop"),
+      throwInput("{}: is not within the image of {}x{} pixels", job.origins.of("crop"),
                  settings.width, settings.height);
-  const Settings& given = job.file.settings;
   const double needed = imageBytes(job), budget = memoryLimit(job);
   if (needed > budget)
     throw InputError(
         fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
-                    given.has("render.size") ? given.location("render.size") + ": " : "",
+                    job.origins.has("render.size") ? job.origins.of("render.size") + ": " : "",
                     settings.width, settings.height, needed * 1e-9, budget * 1e-9),
         Remedy{"memory", {}});
 }
 
-PlacedModels modelsAtOrigin(const SceneFile& file, ModelCache& cache) {
+PlacedModels modelsAtOrigin(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                            ModelCache& cache) {
   PlacedModels placed;
-  placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
-  placed.origin = originFor(placed.scene, file.models.front().file);
+  placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
+  placed.origin = originFor(placed.scene, models.front().file);
   if (placed.origin != glm::dvec3(0))
-    placed.scene = loadModels(file, placed.origin, cache, placed.warnings);
+    placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
   return placed;
 }
 
 // That of time 0, also in the coordinates of that time: with the same rounding for all times.
-AutomaticView viewAtStart(const RenderJob& job, const PlacedModels& now, ModelCache& cache) {
-  if (job.view) return *job.view;
+AutomaticView viewAtStart(const RenderDescription& job, const PlacedModels& now,
+                          ModelCache& cache) {
   const AutomaticView view = automaticView(job, now.scene, now.origin);
-  if (!now.scene.isAnimated || !(view.camera || turnsCamera(job.file.settings))) return view;
-  SceneFile start = job.file;
-  for (ModelEntry& model : start.models)
+  if (!now.scene.isAnimated || !(view.camera || job.camera.turns)) return view;
+  std::vector<ModelEntry> start = job.models;
+  for (ModelEntry& model : start)
     if (model.choice.animation) model.choice.animation->seconds = 0;
-  const PlacedModels first = modelsAtOrigin(start, cache);
+  const PlacedModels first = modelsAtOrigin(job, start, cache);
   return automaticView(job, first.scene, first.origin);
 }
 
 }  // namespace
 
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
-                 std::vector<std::string>& warnings) {
+Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                 const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {
   Scene scene;
   std::set<std::string> known(warnings.begin(), warnings.end());
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) warnings.push_back(line);
   };
-  for (const ModelEntry& model : file.models) {
+  for (const ModelEntry& model : models) {
     GltfChoice choice = model.choice;
     // Near the world's origin the translation is as exact as all coordinates.
     choice.origin = origin == glm::dvec3(0) ? origin : origin - model.translationRest;
     choice.cache = &cache;
-    choice.environment = !file.settings.has("probe.file");
+    choice.environment = !job.probe.file;
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
-  const float factor = float(file.settings.get<double>("lighting.lights"));
+  const float factor = float(job.lighting.lamps);
   if (factor == 0) scene.lights.clear();
   for (PunctualLight& light : scene.lights) light.intensity *= factor;
   return scene;
 }
 
-Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& view,
+Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
                 const glm::dvec3& origin, double turn) {
   const AutomaticView here = view.seenFrom(origin);
   const Camera camera = chooseCamera(job, scene, here);
@@ -110,32 +109,31 @@ Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& v
     throwInput(
         "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
         "ascend; `distortion` may be for another `fov`",
-        job.file.optics->location);
-  return camera.turnedAround(here.centre,
-                             job.file.settings.getIfGiven<double>("orbit").value_or(0) + turn);
+        job.camera.optics->location);
+  return camera.turnedAround(here.centre, job.camera.orbit + turn);
 }
 
-PlacedModels placeModels(RenderJob& job, ModelCache& cache) {
-  PlacedModels placed = modelsAtOrigin(job.file, cache);
+PlacedModels placeModels(RenderDescription& job, ModelCache& cache, const AutomaticView* view) {
+  PlacedModels placed = modelsAtOrigin(job, job.models, cache);
   if (placed.scene.instances.empty() && !placed.scene.isAnimated)
-    throwInput("{}: the model has no triangles to render", job.file.models.front().file);
+    throwInput("{}: the model has no triangles to render", job.models.front().file);
   Scene& scene = placed.scene;
   chooseSize(job, scene);
-  placed.view = viewAtStart(job, placed, cache);
+  placed.view = view ? *view : viewAtStart(job, placed, cache);
   placed.camera = cameraOf(job, scene, placed.view, placed.origin);
-  if (job.shutter) openShutter(job, placed, cache);
-  for (const Lamp& lamp : job.file.lamps) addLamp(scene, lamp, placed.origin);
+  if (job.camera.shutter) openShutter(job, placed, cache);
+  for (const Lamp& lamp : job.lamps) addLamp(scene, lamp, placed.origin);
   removeLamps(job, scene);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;
   if (job.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
 }
 
-Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view,
+Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin) {
   chooseSize(job, scene);
   Camera camera = cameraOf(job, scene, view, origin);
-  if (job.shutter) turnCamera(job, scene, view, origin, camera);
+  if (job.camera.shutter) turnCamera(job, scene, view, origin, camera);
   return camera;
 }
 

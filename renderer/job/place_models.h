@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "job/choose_camera.h"
 #include "job/render_job.h"
 #include "scene/scene.h"
 
@@ -23,20 +24,22 @@ struct PlacedModels {
 
 // Reads the models; chooses the camera, and the image's size if the job leaves it to the camera.
 // Moves what the scene file places in the world to the scene's coordinates. With an open shutter,
-// with the motion of models and camera. Throws InputError.
-PlacedModels placeModels(RenderJob& job, ModelCache& cache);
+// with the motion of models and camera. `view`: of other frames; null: to be found. Throws
+// InputError.
+PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
+                         const AutomaticView* view = nullptr);
 
 // The same of models that stand still, of which only the camera is to be placed again.
-Camera placeCamera(RenderJob& job, const Scene& scene, const AutomaticView& view,
+Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// The models at this origin, without lamps; an animated model may have no triangles at its time.
-// `warnings`: each once.
-Scene loadModels(const SceneFile& file, const glm::dvec3& origin, ModelCache& cache,
-                 std::vector<std::string>& warnings);
+// `models`, which are the job's at some time, at this origin and without lamps; an animated model
+// may have no triangles at its time. `warnings`: each once.
+Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                 const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);
 
 // The camera with the job's `orbit` and another turn, degrees; it stands still. Throws InputError.
-Camera cameraOf(const RenderJob& job, const Scene& scene, const AutomaticView& view,
+Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
                 const glm::dvec3& origin, double turn = 0);
 
 }  // namespace chromeball

@@ -11,8 +11,9 @@
 #include "job/arguments.h"
 #include "job/check_job.h"
 #include "job/develop_text.h"
-#include "job/job_changes.h"
+#include "job/plan_composite.h"
 #include "job/scene_file_camera.h"
+#include "job/setting_table.h"
 
 namespace chromeball {
 namespace {
@@ -89,8 +90,9 @@ std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double second
     const double degrees = from.rotation.front();
     return {degrees + (to.rotation.front() - degrees) * elapsed / duration};
   }
-  return numbersOf(between(parseRotation(from.rotation, "rotation_keys"),
-                           parseRotation(to.rotation, "rotation_keys"), elapsed / duration));
+  return between(parseRotation(from.rotation, "rotation_keys"),
+                 parseRotation(to.rotation, "rotation_keys"), elapsed / duration)
+      .numbers();
 }
 
 void mergeCamera(SceneFile& file, const Settings& over) {
@@ -140,7 +142,7 @@ void applyShadowCatcher(SceneFile& file) {
   if (file.composite->localScene.empty()) throwInput("{}: names no node", location);
 }
 
-// The layers of plain renders; those of composites are in CompositePlan.
+// The layers of plain renders; those of composites are in CompositeDescription.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
   const std::string location = file.settings.location("output.aovs");
@@ -198,7 +200,6 @@ RenderSettings integratorSettings(const SceneFile& file) {
     r.maxDiffuseDepth = int(*depth);
   if (const auto depth = s.getIfGiven<uint64_t>("render.max_specular_depth"))
     r.maxSpecularDepth = int(*depth);
-  if (r.path().limitsKinds()) r.guiding = Guiding::Off;  // guided bounces have no kind
   r.integrator = integratorNamed(s.get<std::string>("render.integrator"));
   if (const auto error = s.getIfGiven<double>("render.irradiance_cache"))
     r.cacheError = float(*error);
@@ -226,11 +227,59 @@ RenderSettings integratorSettings(const SceneFile& file) {
 std::optional<Shutter> shutterOf(const Settings& s) {
   const auto open = s.getIfGiven<double>("camera.shutter");
   if (!open || *open == 0) return {};
-  Shutter shutter{*open / s.get<double>("fps")};
+  Shutter shutter{*open, s.get<double>("fps")};
   if (const auto steps = s.getIfGiven<uint64_t>("camera.shutter_steps"))
     shutter.steps = int(*steps);
   shutter.turn = *open * s.getIfGiven<double>("orbit-step").value_or(0);
   return shutter;
+}
+
+CameraDescription plannedCamera(const SceneFile& file) {
+  const Settings& s = file.settings;
+  return {.placed = file.camera,
+          .name = s.getIfGiven<std::string>("camera.name"),
+          .file = s.getIfGiven<std::string>("camera.file"),
+          .lens = file.lens,
+          .optics = file.optics,
+          .orbit = s.getIfGiven<double>("orbit").value_or(0),
+          .turns = s.has("orbit") || s.has("orbit-step"),
+          .shutter = shutterOf(s)};
+}
+
+ProbeDescription plannedProbe(const SceneFile& file) {
+  const Settings& s = file.settings;
+  return {.file = s.getIfGiven<std::string>("probe.file"),
+          .mapping = s.get<std::string>("probe.mapping"),
+          .rotation = parseRotation(s.get<std::vector<double>>("probe.rotation"),
+                                    s.location("probe.rotation")),
+          .scale = colorOf(s.get<std::vector<double>>("probe.scale")),
+          .isScaledByPlate = file.plateScale.has_value()};
+}
+
+LightingDescription plannedLighting(const Settings& s) {
+  const auto from = s.get<std::string>("lighting.from");
+  return {.strategy = named(s, "lighting.strategy"),
+          .from = from == "suns"   ? LightFrom::Suns
+                  : from == "rest" ? LightFrom::Rest
+                                   : LightFrom::All,
+          .lamps = s.get<double>("lighting.lights"),
+          .sunAngle = s.getIfGiven<double>("lighting.sun_angle"),
+          .showLights = s.get<bool>("lighting.show_lights")};
+}
+
+RunDescription plannedRun(const Settings& s) {
+  const auto bytes = [&](const char* name) {
+    const auto gigabytes = s.getIfGiven<double>(name);
+    return gigabytes ? std::optional(1e9 * *gigabytes) : std::nullopt;
+  };
+  return {.memory = bytes("memory"),
+          .textureMemory = bytes("texture-memory"),
+          .cache = s.getIfGiven<std::string>("cache"),
+          .checkpoint = s.getIfGiven<std::string>("checkpoint"),
+          .checkpointEvery = s.get<double>("checkpoint-every"),
+          .writeEvery = s.getIfGiven<double>("write-every"),
+          .resumes = s.get<bool>("resume"),
+          .isOfFrames = s.has("frames")};
 }
 
 // What a .png clips is relative to its white.
@@ -247,36 +296,46 @@ DevelopSettings plannedDevelop(const Settings& s, float exposure) {
   return develop;
 }
 
+OutputDescription plannedOutput(const Settings& s) {
+  OutputDescription output{.files = s.get<std::vector<std::string>>("output.file"),
+                           .layers = s.get<std::vector<std::string>>("output.aovs"),
+                           .stats = s.getIfGiven<std::string>("stats")};
+  output.display = {parseToneOperator(s.get<std::string>("tonemap")),
+                    float(s.get<double>("exposure"))};
+  output.develop = plannedDevelop(s, output.display.exposure);
+  return output;
+}
+
 }  // namespace
 
-RenderJob plannedSettings(SceneFile scene) {
-  RenderJob job;
-  job.file = std::move(scene);
-  const Settings& s = job.file.settings;
-  job.settings = integratorSettings(job.file);
+RenderDescription planJob(SceneFile scene, const Settings& over) {
+  merge(scene, over);
+  applyShadowCatcher(scene);
+  checkJob(scene);
+  RenderDescription job;
+  const Settings& s = scene.settings;
+  for (const Setting& setting : settingTable())
+    if (const auto* given = s.find(setting.name()))
+      job.origins.set(setting.name(), given->location);
+  job.camera = plannedCamera(scene);
+  job.probe = plannedProbe(scene);
+  if (scene.plateScale) job.origins.set("probe.scale", *scene.plateScale);
+  job.lighting = plannedLighting(s);
+  job.settings = integratorSettings(scene);
   job.size = s.getIfGiven<ImageSize>("render.size");
   job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
   job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
-  job.shutter = shutterOf(s);
-  job.strategy = named(s, "lighting.strategy");
-  return job;
-}
-
-RenderJob planJob(SceneFile scene, const Settings& over) {
-  merge(scene, over);
-  applyShadowCatcher(scene);
-  parseRotation(scene.settings.get<std::vector<double>>("probe.rotation"),
-                scene.settings.location("probe.rotation"));
-  checkJob(scene);
-  RenderJob job = plannedSettings(std::move(scene));
-  const Settings& s = job.file.settings;
-  job.outputs = s.get<std::vector<std::string>>("output.file");
-  job.makesOutputFolders = !over.has("output.file");
-  job.display = {parseToneOperator(s.get<std::string>("tonemap")),
-                 float(s.get<double>("exposure"))};
-  job.develop = plannedDevelop(s, job.display.exposure);
-  if (job.file.composite) planComposite(job);
-  job.plannedParts = partsOf(job);
+  job.output = plannedOutput(s);
+  job.output.makesFolders = !over.has("output.file");
+  job.run = plannedRun(s);
+  job.path = std::move(scene.path);
+  job.models = std::move(scene.models);
+  job.lamps = std::move(scene.lamps);
+  job.sources = std::move(scene.sources);
+  job.lightLists = std::move(scene.lightLists);
+  job.surroundings = std::move(scene.surroundings);
+  job.warnings = std::move(scene.warnings);
+  if (scene.composite) planComposite(s, std::move(*scene.composite), job);
   return job;
 }
 

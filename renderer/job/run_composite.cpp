@@ -18,7 +18,8 @@ Rgb flatIrradiance(const LoadedScene& loaded) {
 }
 
 // Fills loaded.projection with the local scene's reflectance.
-CompositeReport::Reflectance solveReflectance(const RenderJob& job, const LoadedScene& loaded,
+CompositeReport::Reflectance solveReflectance(const RenderDescription& job,
+                                              const LoadedScene& loaded,
                                               const PreparedScene& prepared,
                                               const Progress& progress,
                                               const std::atomic<bool>& stop) {
@@ -30,7 +31,7 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   settings.samples = settings.samplesOfAll();
   settings.shard = {};
   const ReflectanceSolution solution =
-      job.composite->reflectance == CompositePlan::Reflectance::Flat
+      job.composite->reflectance == CompositeDescription::Reflectance::Flat
           ? solveFlatReflectance(problem, settings, flatIrradiance(loaded), *loaded.projection,
                                  stop)
           : solveReflectance(problem, settings, job.composite->iterations, *loaded.projection,
@@ -39,12 +40,12 @@ CompositeReport::Reflectance solveReflectance(const RenderJob& job, const Loaded
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
 }
 
-std::string scaledText(std::vector<double> scale, double factor) {
-  for (double& channel : scale) channel *= factor;
-  return fmt::format("{:.2g}", fmt::join(scale, ","));
+std::string scaledText(const glm::dvec3& scale) {
+  if (scale.x == scale.y && scale.y == scale.z) return fmt::format("{:.2g}", scale.x);
+  return fmt::format("{:.2g},{:.2g},{:.2g}", scale.x, scale.y, scale.z);
 }
 
-Messages warningsOf(const CompositeReport& report, const std::vector<double>& scale) {
+Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
   constexpr double kMinClamped = 0.01;
   Messages messages;
   if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped)
@@ -54,7 +55,7 @@ Messages warningsOf(const CompositeReport& report, const std::vector<double>& sc
                      "the plate is {:.3g} times as bright as the model's own reflectance makes it; "
                      "plate and probe may differ in exposure",
                      100 * r->clampedFraction, r->exposureRatio),
-         Remedy{"probe.scale", scaledText(scale, r->exposureRatio)}});
+         Remedy{"probe.scale", scaledText(r->exposureRatio * scale)}});
   if (report.darkerThanBlack)
     messages.push_back(
         {Message::Kind::Warning,
@@ -67,10 +68,10 @@ Messages warningsOf(const CompositeReport& report, const std::vector<double>& sc
 
 }  // namespace
 
-JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
+JobResult renderComposite(const RenderDescription& job, const LoadedScene& loaded,
                           const PreparedScene& prepared, const Progress& progress,
                           const std::atomic<bool>& stop, RenderControl* control) {
-  const CompositePlan& plan = *job.composite;
+  const CompositeDescription& plan = *job.composite;
   const bool solves = loaded.projection != nullptr;
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CompositeReport::Reflectance> reflectance;
@@ -86,8 +87,7 @@ JobResult renderComposite(const RenderJob& job, const LoadedScene& loaded,
   FinishedImage finished =
       finishComposite(finishPlan(job, loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
-  Messages messages =
-      warningsOf(*finished.composite, job.file.settings.get<std::vector<double>>("probe.scale"));
+  Messages messages = warningsOf(*finished.composite, job.probe.scale);
   if (loaded.plateScale)  // nothing better is known
     for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};

@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-JobResult renderPlain(const RenderJob& job, const LoadedScene& loaded,
+JobResult renderPlain(const RenderDescription& job, const LoadedScene& loaded,
                       const PreparedScene& prepared, const Progress& progress,
                       const std::atomic<bool>& stop, RenderControl* control) {
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
@@ -37,7 +37,7 @@ Image cropped(const Image& whole, const Crop& window) {
 }
 
 // The number of groups is known only now.
-void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded, const World& world,
+void checkGroupMemory(const RenderDescription& job, const LoadedScene& loaded, const World& world,
                       const LightSource& lighting) {
   const size_t count = LightGroups(world, lighting).names().size();
   const Crop window = job.settings.window();
@@ -48,14 +48,15 @@ void checkGroupMemory(const RenderJob& job, const LoadedScene& loaded, const Wor
     throw InputError(
         fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
                     "limit is {:.3g} GB",
-                    job.file.settings.location("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
+                    job.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
                     1e-9 * memoryLimit(job)),
         Remedy{"memory", {}});
 }
 
 }  // namespace
 
-FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded, const RenderResult& result) {
+FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
+                      const RenderResult& result) {
   FinishPlan plan{job.settings, {}, result.groups};
   if (!job.composite) return plan;
   const Crop window = job.settings.window();
@@ -65,7 +66,7 @@ FinishPlan finishPlan(const RenderJob& job, const LoadedScene& loaded, const Ren
   return plan;
 }
 
-PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
+PreparedScene prepareScene(const RenderDescription& job, const LoadedScene& loaded) {
   Stopwatch watch;
   PreparedScene prepared;
   prepared.world = std::make_unique<const World>(
@@ -73,7 +74,8 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
       BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(job, loaded);
-  prepared.environment = makeEnvironment(job.settings.integrator, job.strategy.name, loaded);
+  prepared.environment =
+      makeEnvironment(job.settings.integrator, job.lighting.strategy.name, loaded);
   if (job.settings.wantsGroups())
     checkGroupMemory(job, loaded, *prepared.world, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();
@@ -81,9 +83,9 @@ PreparedScene prepareScene(const RenderJob& job, const LoadedScene& loaded) {
   return prepared;
 }
 
-JobResult renderJob(const RenderJob& job, const LoadedScene& loaded, const PreparedScene& prepared,
-                    const Progress& progress, const std::atomic<bool>& stop,
-                    RenderControl* control) {
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded,
+                    const PreparedScene& prepared, const Progress& progress,
+                    const std::atomic<bool>& stop, RenderControl* control) {
   Stopwatch watch;
   JobResult result = job.composite ? renderComposite(job, loaded, prepared, progress, stop, control)
                                    : renderPlain(job, loaded, prepared, progress, stop, control);
@@ -93,7 +95,7 @@ JobResult renderJob(const RenderJob& job, const LoadedScene& loaded, const Prepa
   return result;
 }
 
-JobResult renderJob(const RenderJob& job, const LoadedScene& loaded) {
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded) {
   const std::atomic<bool> never = false;
   return renderJob(
       job, loaded, prepareScene(job, loaded), [](double) {}, never);

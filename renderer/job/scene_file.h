@@ -6,70 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/named_setting.h"
+#include "description/scene_entries.h"
 #include "job/settings.h"
-#include "scene/camera.h"
-#include "scene/gltf/load_gltf.h"
-#include "scene/lamp.h"
-#include "scene/scene.h"
-#include "scene/surroundings.h"
 
 namespace chromeball {
-
-struct ModelEntry {
-  std::string file;
-  Transform placement;  // translation * rotation * scale
-  GltfChoice choice;
-  glm::dvec3 translationRest{0};  // what float rounds off the translation
-};
-
-// The camera of a file, in world coordinates. It is rounded to float relative to the scene's
-// origin.
-struct CameraEntry {
-  glm::dvec3 position, target;
-  vec3 up;
-  Camera lens;           // all but the place
-  std::string location;  // FILE:LINE, begins an error
-
-  // Throws InputError if position and target coincide or if up is parallel to the view.
-  Camera relativeTo(const glm::dvec3& origin) const;
-};
-
-// [surroundings], likewise.
-struct SurroundingsEntry {
-  Surroundings shape;  // all but the places
-  glm::dvec3 min{0}, max{0}, center{0}, capture{0};
-
-  Surroundings relativeTo(const glm::dvec3& origin) const;
-};
-
-// A thin lens; applies to any perspective camera.
-struct Lens {
-  float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
-  std::string location;   // FILE:LINE, begins an error
-};
-
-// What distinguishes the image of a real lens from a pinhole's; applies to any perspective camera.
-struct Optics {
-  std::optional<vec2> principalPoint;  // Camera::principalPoint
-  Distortion distortion;
-  std::string location;  // FILE:LINE, begins an error
-};
-
-// The local scene of [composite], by node names; all other nodes are objects.
-struct CompositeEntry {
-  std::string location;  // of the section: FILE:LINE, begins an error
-  std::vector<NamedSetting> localScene;
-  Rgb groundReflectance{0.25f};
-  vec2 groundReflectanceRange{0.1f, 0.5f};
-};
-
-// A polygon of the probe that becomes a source of its own ([[source]]).
-struct SourceEntry {
-  std::string name, location;       // location: FILE:LINE, begins an error
-  std::vector<glm::dvec2> corners;  // positions in the probe's image, in pixels from its top left
-  bool isIllum = true;
-};
 
 // The rotation of the probe at a time (`rotation_keys`).
 struct ProbeTurn {

@@ -75,17 +75,6 @@ void readPlace(const Section& camera, SceneFile& scene) {
 
 }  // namespace
 
-Camera CameraEntry::relativeTo(const glm::dvec3& origin) const {
-  try {
-    Camera camera = Camera::lookAt(vec3(position - origin), vec3(target - origin), up, lens.fov);
-    camera.orthographic = lens.orthographic;
-    camera.halfHeight = lens.halfHeight;
-    return camera;
-  } catch (const InputError& error) {
-    failAt(location, "{}", error.what());
-  }
-}
-
 void readCamera(const Section& camera, SceneFile& scene) {
   readLens(camera, scene);
   if (const Entry file = camera["file"]) {

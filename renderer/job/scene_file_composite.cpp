@@ -38,14 +38,6 @@ CompositeEntry readComposite(const Section& section, Settings& settings) {
   return composite;
 }
 
-Surroundings SurroundingsEntry::relativeTo(const glm::dvec3& origin) const {
-  Surroundings s = shape;
-  s.min = vec3(min - origin), s.max = vec3(max - origin);
-  s.center = vec3(center - origin);
-  s.capture = vec3(capture - origin);
-  return s;
-}
-
 SurroundingsEntry readSurroundings(const Section& section) {
   const auto need = [&](const char* key) { return section.required(key); };
   const std::string shape = need("shape").choice();

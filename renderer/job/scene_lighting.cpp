@@ -16,8 +16,8 @@ namespace chromeball {
 namespace {
 
 // Throws InputError if the part is to be the suns, and there are none.
-void keepPart(const RenderJob& job, const Scene& scene, Image& latLong) {
-  const LightFrom from = lightFrom(job);
+void keepPart(const RenderDescription& job, const Scene& scene, Image& latLong) {
+  const LightFrom from = job.lighting.from;
   if (from == LightFrom::All) return;
   SunExtraction extraction = extractSuns(latLong);
   if (from == LightFrom::Rest) {
@@ -26,17 +26,14 @@ void keepPart(const RenderJob& job, const Scene& scene, Image& latLong) {
   }
   if (extraction.suns.empty() && scene.suns.empty())
     throwInput("{}: there are no suns, neither in the probe nor in the scene file",
-               job.file.settings.location("lighting.from"));
+               job.origins.of("lighting.from"));
   for (size_t i = 0; i < latLong.texels.size(); ++i)
     latLong.texels[i] -= extraction.remainder.texels[i];
 }
 
-LoadedProbe loadWholeProbe(const RenderJob& job, Scene& scene) {
-  const SceneFile& file = job.file;
-  const auto path = file.settings.getIfGiven<std::string>("probe.file");
-  if (path)
-    return loadProbe(*path, file.settings.get<std::string>("probe.mapping"),
-                     file.settings.location("probe.mapping"));
+LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
+  if (job.probe.file)
+    return loadProbe(*job.probe.file, job.probe.mapping, job.origins.of("probe.mapping"));
   LoadedProbe loaded;
   if (scene.environment) {
     loaded.latLong = std::move(*scene.environment);
@@ -49,13 +46,8 @@ LoadedProbe loadWholeProbe(const RenderJob& job, Scene& scene) {
 
 }  // namespace
 
-LightFrom lightFrom(const RenderJob& job) {
-  const auto name = job.file.settings.get<std::string>("lighting.from");
-  return name == "suns" ? LightFrom::Suns : name == "rest" ? LightFrom::Rest : LightFrom::All;
-}
-
-void removeLamps(const RenderJob& job, Scene& scene) {
-  const LightFrom from = lightFrom(job);
+void removeLamps(const RenderDescription& job, Scene& scene) {
+  const LightFrom from = job.lighting.from;
   if (from == LightFrom::Rest) scene.suns.clear();
   if (from != LightFrom::Suns) return;
   scene.lights.clear();
@@ -66,31 +58,24 @@ void removeLamps(const RenderJob& job, Scene& scene) {
   }
 }
 
-void checkLit(const RenderJob& job, const Scene& scene) {
-  const bool lit = !scene.lights.empty() || std::ranges::any_of(job.file.lamps, [](const Lamp& l) {
+void checkLit(const RenderDescription& job, const Scene& scene) {
+  const bool lit = !scene.lights.empty() || std::ranges::any_of(job.lamps, [](const Lamp& l) {
     return l.sun || l.ambient;
   }) || std::ranges::any_of(scene.materials, &Material::emits);
   if (!lit)
     throw InputError(
-        fmt::format("{}: nothing lights the scene; it needs a probe", job.file.models.front().file),
+        fmt::format("{}: nothing lights the scene; it needs a probe", job.models.front().file),
         Remedy{"probe.file", {}});
 }
 
-LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene) {
+LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
   LoadedProbe loaded = loadWholeProbe(job, scene);
   keepPart(job, scene, loaded.latLong);
   return loaded;
 }
 
-Rotation rotationOf(const RenderJob& job) {
-  const Settings& settings = job.file.settings;
-  return parseRotation(settings.get<std::vector<double>>("probe.rotation"),
-                       settings.location("probe.rotation"));
-}
-
-Probe probeOf(const RenderJob& job, LoadedProbe& loaded) {
-  Probe probe(loaded.latLong, rotationOf(job),
-              colorOf(job.file.settings.get<std::vector<double>>("probe.scale")));
+Probe probeOf(const RenderDescription& job, LoadedProbe& loaded) {
+  Probe probe(loaded.latLong, job.probe.rotation, Rgb(job.probe.scale));
   loaded.latLong = {};
   return probe;
 }
@@ -107,10 +92,10 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal) {
   return Rgb(exactIrradiance(probe.latLong(), {&turned, 1})[0]);
 }
 
-std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
+std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
                                       const Probe& probe) {
-  const std::vector<SourceEntry>& entries = job.file.sources;
-  if (entries.empty() || lightFrom(job) == LightFrom::Suns) return {};
+  const std::vector<SourceEntry>& entries = job.sources;
+  if (entries.empty() || job.lighting.from == LightFrom::Suns) return {};
   if (loaded.fileWidth == 0) throwInput("{}: [[source]] needs a probe", entries.front().location);
   std::vector<PolygonLight> lights;
   Image rest = probe.latLong();
@@ -162,8 +147,8 @@ std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
   return lighting;
 }
 
-std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScene& loaded) {
-  return makeLighting(job.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
+std::unique_ptr<LightSource> makeLighting(const RenderDescription& job, const LoadedScene& loaded) {
+  return makeLighting(job.lighting.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
 }
 
 std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,

@@ -17,19 +17,14 @@ namespace chromeball {
 struct LoadedScene;
 
 // Throws InputError if nothing lights a scene that has no probe.
-void checkLit(const RenderJob& job, const Scene& scene);
-
-// What part of the light renders (`[lighting] from`): the suns of the probe and of the scene file,
-// or all the rest. Both together are the whole.
-enum class LightFrom { All, Suns, Rest };
-LightFrom lightFrom(const RenderJob& job);
+void checkLit(const RenderDescription& job, const Scene& scene);
 
 // Removes the lamps and emission that the job leaves out.
-void removeLamps(const RenderJob& job, Scene& scene);
+void removeLamps(const RenderDescription& job, Scene& scene);
 
 // The probe's map: the job's file, else the model's own environment, which it takes, else black if
 // the scene has lights of its own; of it, the part that the job renders. Throws InputError.
-LoadedProbe loadProbeOf(const RenderJob& job, Scene& scene);
+LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene);
 
 // The polygons of the probe that are sources of their own ([[source]]), and what is left of it.
 struct ProbeSources {
@@ -43,14 +38,11 @@ struct ProbeSources {
   }
 };
 // Nullopt if the job renders none. `loaded`: the file that `probe` is from. Throws InputError.
-std::optional<ProbeSources> sourcesOf(const RenderJob& job, const LoadedProbe& loaded,
+std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
                                       const Probe& probe);
 
-// As `[probe] rotation`. Throws InputError for a quaternion that is not one.
-Rotation rotationOf(const RenderJob& job);
-
 // With the job's rotation and scale; frees the map.
-Probe probeOf(const RenderJob& job, LoadedProbe& loaded);
+Probe probeOf(const RenderDescription& job, LoadedProbe& loaded);
 
 // With every channel times a factor.
 Probe scaled(const Probe& probe, const Rgb& factor);
@@ -63,7 +55,7 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal);
 // unknown name.
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe = false);
-std::unique_ptr<LightSource> makeLighting(const RenderJob& job, const LoadedScene& loaded);
+std::unique_ptr<LightSource> makeLighting(const RenderDescription& job, const LoadedScene& loaded);
 
 // The probe as the integrator uses it, with its suns apart under the strategy `suns`; null if it
 // does not.

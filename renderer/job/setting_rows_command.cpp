@@ -94,7 +94,8 @@ std::vector<Setting> commandRows() {
        .range = kPositive,
        .unit = "GB",
        .absent = "all textures are in memory",
-       .help = "Memory for textures; less than 0.0105 counts as that. If they need more, they go to a temporary "
+       .help = "Memory for textures; less than 0.0105 counts as that. If they need more, they go "
+               "to a temporary "
                "file in $TMPDIR, of which so much is kept in memory. It does not change the image.",
        .effect = Effect::Run},
       {.option = "threads",

@@ -55,6 +55,11 @@ Rotation::Angles Rotation::angles() const {
   return {glm::degrees(std::atan2(z.x, z.z)), pitch, glm::degrees(std::atan2(x.y, y.y))};
 }
 
+std::vector<double> Rotation::numbers() const {
+  if (!isTilted_) return {double(yaw_)};
+  return {exact_.x, exact_.y, exact_.z, exact_.w};
+}
+
 Rotation between(const Rotation& from, const Rotation& to, double t) {
   if (!from.isTilted() && !to.isTilted())
     return Rotation(float(double(from.yaw()) + (double(to.yaw()) - double(from.yaw())) * t));

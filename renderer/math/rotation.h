@@ -2,6 +2,8 @@
 // Rotations of an environment, as a probe's.
 #pragma once
 
+#include <vector>
+
 #include "math/vec.h"
 
 namespace chromeball {
@@ -35,6 +37,8 @@ class Rotation {
   // Yaw and roll from -180 to 180 degrees, pitch from -90 to 90; roll is 0 if pitch is -90 or 90.
   Angles angles() const;
   glm::dquat quaternion() const { return exact_; }
+  // The yaw, or with a tilt the quaternion's x, y, z, w.
+  std::vector<double> numbers() const;
 
   glm::dvec3 operator()(const glm::dvec3& d) const {
     return isTilted_ ? exact_ * d : turnedAboutY(d, double(yaw_));

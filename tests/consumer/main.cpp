@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
-  chromeball::RenderJob job = chromeball::planJob(chromeball::openScene(argv[1]));
+  chromeball::RenderDescription job = chromeball::planJob(chromeball::openScene(argv[1]));
   chromeball::LoadedScene loaded = chromeball::loadScene(job);
   const chromeball::JobResult result = chromeball::renderJob(job, loaded);
 

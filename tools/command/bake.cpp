@@ -22,7 +22,7 @@ namespace chromeball {
 namespace {
 
 // The options of the ambient occlusion that is baked are not those of a render.
-RenderJob plannedJob(const BakeOptions& a) {
+RenderDescription plannedJob(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
     throwInput("{}: a composite cannot be baked; bake its model", scene.composite->location);
@@ -33,7 +33,7 @@ RenderJob plannedJob(const BakeOptions& a) {
   return planJob(std::move(scene), settings);
 }
 
-BakeSettings bakeSettings(const BakeOptions& a, const RenderJob& job) {
+BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& job) {
   BakeSettings settings;
   settings.what = a.light();
   settings.samples = job.settings.samples;
@@ -149,7 +149,7 @@ class Bake {
               {"maxDepth", settings_.maxDepth},
               {"seed", settings_.seed},
               {"invalidSamples", baked.invalid.total()}};
-    if (const auto probe = job_.file.settings.getIfGiven<std::string>("probe.file"))
+    if (const auto& probe = job_.probe.file)
       extras["probe"] = std::filesystem::path(*probe).filename().string();
   }
 
@@ -186,7 +186,7 @@ class Bake {
 
   const BakeOptions& options_;
   Stopwatch watch_;
-  RenderJob job_;
+  RenderDescription job_;
   LoadedScene loaded_;
   BakeSettings settings_;
   std::vector<PlacedMesh> meshes_;

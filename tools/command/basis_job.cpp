@@ -5,7 +5,7 @@
 
 namespace chromeball {
 
-RenderJob basisJob(const SceneOptions& options, const char* what) {
+RenderDescription basisJob(const SceneOptions& options, const char* what) {
   SceneFile scene = openScene(options.scene);
   if (scene.composite)
     throwInput("{}: a composite has no {}; take its model", scene.composite->location, what);
@@ -16,12 +16,12 @@ RenderJob basisJob(const SceneOptions& options, const char* what) {
   scene.sources.clear();
   scene.probeTurns.clear();
   scene.lamps.push_back({.ambient = AmbientLamp{}});  // black: no scene needs a light of its own
-  RenderJob job = planJob(std::move(scene), options.settings);
+  RenderDescription job = planJob(std::move(scene), options.settings);
   job.settings.crop.reset();
   return job;
 }
 
-LoadedScene loadBasisScene(RenderJob& job) {
+LoadedScene loadBasisScene(RenderDescription& job) {
   LoadedScene loaded = loadScene(job);
   std::erase_if(loaded.scene.ambient, [](const auto& lamp) { return isBlack(lamp.radiance); });
   return loaded;

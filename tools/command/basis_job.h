@@ -9,8 +9,8 @@ namespace chromeball {
 
 // Without the scene's probe, which relighting replaces. `what`: "light stage", for errors. Throws
 // InputError for composites and surroundings, which have none.
-RenderJob basisJob(const SceneOptions& options, const char* what);
+RenderDescription basisJob(const SceneOptions& options, const char* what);
 
-LoadedScene loadBasisScene(RenderJob& job);
+LoadedScene loadBasisScene(RenderDescription& job);
 
 }  // namespace chromeball

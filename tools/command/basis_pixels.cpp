@@ -24,7 +24,7 @@ int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
 // The rows of a band: all that there are, if they fit into the memory; else those of whole tiles,
 // in bands that are about as high as each other.
-int rowsOfBand(const RenderJob& job, const LoadedScene& loaded, const DirectionBasis& basis) {
+int rowsOfBand(const RenderDescription& job, const LoadedScene& loaded, const DirectionBasis& basis) {
   constexpr int kTile = TileGrid::kSize;
   const RenderSettings& s = job.settings;
   checkStageSize(basis, s.width, s.height, "--directions");
@@ -46,7 +46,7 @@ int rowsOfBand(const RenderJob& job, const LoadedScene& loaded, const DirectionB
   return ceilDivide(ceilDivide(s.height, bands), kTile) * kTile;
 }
 
-Metadata metadataOf(const SceneOptions& options, const RenderJob& job) {
+Metadata metadataOf(const SceneOptions& options, const RenderDescription& job) {
   return {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
           {"scene", options.scene},
           {"samples", int(job.settings.samples)},
@@ -85,7 +85,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const DirectionBasis basis(own.directions, "--directions");
   checkOutputFile(own.out, {".exr"});
   const ThreadLimit threads = threadLimit(options.settings);
-  RenderJob job = basisJob(options, "light stage");
+  RenderDescription job = basisJob(options, "light stage");
   const LoadedScene loaded = loadBasisScene(job);
   checkDistinct({own.out}, loaded.files);
   const int rows = rowsOfBand(job, loaded, basis);

@@ -30,8 +30,8 @@ void check(const SceneOptions& options, const BasisVerticesOptions& own) {
       throwInput("--{}: has no effect with --at vertices; leave it out", setting.option);
 }
 
-RenderJob transferJob(const SceneOptions& options) {
-  RenderJob job = basisJob(options, "transfer");
+RenderDescription transferJob(const SceneOptions& options) {
+  RenderDescription job = basisJob(options, "transfer");
   if (job.settings.maxDepth < 1)
     throwInput("--max-depth: should be 1 (direct light) or more for transfer");
   return job;
@@ -152,7 +152,7 @@ class BasisVertices {
   const BasisVerticesOptions& own_;
   Stopwatch watch_;
   LightBasis basis_;
-  RenderJob job_;
+  RenderDescription job_;
   LoadedScene loaded_;
   std::string summary_;  // of the compression
 };

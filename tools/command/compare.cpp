@@ -174,7 +174,7 @@ void compare(const CompareArguments& a) {
   scene.composite.reset();
   for (const Setting& setting : settingTable())  // compare() varies or ignores these
     if (setting.renderOnly) scene.settings.erase(setting.name());
-  RenderJob job = planJob(std::move(scene), a.scene.settings);
+  RenderDescription job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(job);
@@ -205,7 +205,7 @@ void compare(const CompareArguments& a) {
     return studyResults(study, store, loadReference(study, store, s.width, s.height));
   };
   ReportScene about{
-      fs::path(a.scene.scene).filename().string(), &loaded.probe, job.display.exposure, {}};
+      fs::path(a.scene.scene).filename().string(), &loaded.probe, job.output.display.exposure, {}};
   for (const std::string& name : study.strategies)
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {

@@ -22,7 +22,7 @@ std::string PassReport::of(const RenderResult& result) {
   return text;
 }
 
-ImageRender::ImageRender(const RenderJob& job, const LoadedScene& loaded, bool showsProgress,
+ImageRender::ImageRender(const RenderDescription& job, const LoadedScene& loaded, bool showsProgress,
                          std::vector<Viewer*> viewers)
     : job_(job),
       loaded_(loaded),
@@ -38,7 +38,7 @@ ImageRender::ImageRender(const RenderJob& job, const LoadedScene& loaded, bool s
 JobResult ImageRender::run(const PreparedScene& prepared,
                            const std::function<double(double)>& fractionOfAll,
                            const std::atomic<bool>& stop) {
-  for (Viewer* viewer : viewers_) viewer->begin(job_.outputs.front());
+  for (Viewer* viewer : viewers_) viewer->begin(job_.output.files.front());
   const auto progress = [&](double fraction) {
     bar_.update(fractionOfAll(fraction));
     for (Viewer* viewer : viewers_) viewer->update(fraction);

@@ -25,7 +25,7 @@ class PassReport {
 class ImageRender {
  public:
   // All references must outlive this. Throws InputError for a checkpoint that does not fit.
-  ImageRender(const RenderJob& job, const LoadedScene& loaded, bool showsProgress,
+  ImageRender(const RenderDescription& job, const LoadedScene& loaded, bool showsProgress,
               std::vector<Viewer*> viewers);
 
   // The image, ready to be written except for its state. Ends early if `stop` is set.
@@ -34,7 +34,7 @@ class ImageRender {
                 const std::atomic<bool>& stop);
 
  private:
-  const RenderJob& job_;
+  const RenderDescription& job_;
   const LoadedScene& loaded_;
   std::vector<Viewer*> viewers_;
   ProgressBar bar_;

@@ -49,12 +49,12 @@ std::string guidedInWords(const RenderResult& render) {
                                                : "light samples and bounces");
 }
 
-void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
+void printOutcome(const RenderDescription& job, const JobResult& result, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
-                                  fmt::join(job.outputs, ", ")));
-  const auto checkpoint = job.file.settings.getIfGiven<std::string>("checkpoint");
+                                  fmt::join(job.output.files, ", ")));
+  const auto& checkpoint = job.run.checkpoint;
   if (render.interrupted)
     throw Interrupted(fmt::format("interrupted; the image so far is saved{}{}",
                                   job.settings.denoise ? ", not denoised" : "",
@@ -64,36 +64,36 @@ void printOutcome(const RenderJob& job, const JobResult& result, bool quiet) {
   if (!quiet)
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
-               inWords(result.denoised), fmt::join(job.outputs, ", "));
+               inWords(result.denoised), fmt::join(job.output.files, ", "));
 }
 
-void writeImages(const RenderJob& job, const LoadedScene& loaded, const JobResult& result,
+void writeImages(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,
                  PhaseSeconds seconds) {
   Stopwatch watch;
   print(writeOutputs(job, result.image), false);
   seconds.render = result.seconds;
   seconds.write = watch.lap();
-  if (const auto stats = job.file.settings.getIfGiven<std::string>("stats"))
+  if (const auto& stats = job.output.stats)
     writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
 }
 
 // Of a part of a render, of the files that were loaded; empty for a whole one.
-std::optional<RenderPart> identified(const RenderJob& job, const LoadedScene& loaded) {
+std::optional<RenderPart> identified(const RenderDescription& job, const LoadedScene& loaded) {
   if (!job.settings.isPart()) return {};
   return RenderPart{renderIdentity(job, loaded), {}};
 }
 
 // Adds the state of a part to its image. After the render, which solves the reflectance of a local
 // scene.
-void addState(const RenderJob& job, const LoadedScene& loaded, std::optional<RenderPart>& part,
-              JobResult& result) {
+void addState(const RenderDescription& job, const LoadedScene& loaded,
+              std::optional<RenderPart>& part, JobResult& result) {
   if (!part) return;
   part->plan = finishPlan(job, loaded, result.render);
   result.image.state = partState(*part, result.render);
 }
 
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
-  RenderJob job = planJob(scene, options.settings);
+  RenderDescription job = planJob(scene, options.settings);
   const Messages outputMessages = checkOutputs(job);
   const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
@@ -117,16 +117,16 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
   addState(job, loaded, part, result);
-  if (result.render.samples == 0) nameAsPartial(job.outputs);
+  if (result.render.samples == 0) nameAsPartial(job.output.files);
   writeImages(job, loaded, result, seconds);
 
   print(resultMessages(job, loaded, prepared, result), options.quiet());
   printOutcome(job, result, options.quiet());
 }
 
-bool isFinished(const RenderJob& job) {
-  const auto stats = job.file.settings.getIfGiven<std::string>("stats");
-  return std::all_of(job.outputs.begin(), job.outputs.end(),
+bool isFinished(const RenderDescription& job) {
+  const auto& stats = job.output.stats;
+  return std::all_of(job.output.files.begin(), job.output.files.end(),
                      [](const std::string& path) { return std::filesystem::exists(path); }) &&
          (!stats || std::filesystem::exists(*stats));
 }
@@ -147,7 +147,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   size_t kept = 0;
   for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
     const SequenceFrame frame = sequence.frame(frames[i]);
-    RenderJob job = planJob(frame.scene, frame.given);
+    RenderDescription job = planJob(frame.scene, frame.given);
     const Messages outputMessages = checkOutputs(job);
     if (!options.settings.get<bool>("overwrite") && isFinished(job)) {
       ++kept;

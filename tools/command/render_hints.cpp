@@ -12,9 +12,9 @@ namespace chromeball {
 namespace {
 
 // The exposure to try if most pixels of a .png are clipped.
-std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loaded,
+std::optional<std::string> whyWhite(const RenderDescription& job, const LoadedScene& loaded,
                                     const RenderResult& result) {
-  const bool hasPng = std::any_of(job.outputs.begin(), job.outputs.end(),
+  const bool hasPng = std::any_of(job.output.files.begin(), job.output.files.end(),
                                   [](const auto& path) { return lowerExtension(path) == ".png"; });
   if (!hasPng) return std::nullopt;
   const Image mean = result.film.mean();
@@ -23,7 +23,7 @@ std::optional<std::string> whyWhite(const RenderJob& job, const LoadedScene& loa
   for (int y = 0; y < mean.height; ++y)
     for (int x = 0; x < mean.width; ++x) {
       brightest.push_back(maxComponent(mean.rgb(x, y)));
-      clipped += maxComponent(display(job.display, mean.rgb(x, y))) >= 1;
+      clipped += maxComponent(display(job.output.display, mean.rgb(x, y))) >= 1;
     }
   if (2 * clipped <= brightest.size()) return std::nullopt;
   const auto high = brightest.begin() + std::ptrdiff_t(brightest.size() * 9 / 10);
@@ -62,7 +62,7 @@ void addExcluded(const RenderResult& result, Messages& messages) {
                         result.layers.empty() ? "the image" : "objects and differences"));
 }
 
-Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
+Messages resultMessages(const RenderDescription& job, const LoadedScene& loaded,
                         const PreparedScene& prepared, const JobResult& result) {
   Messages messages;
   addExcluded(result.render, messages);

@@ -8,7 +8,7 @@ namespace chromeball {
 
 // The messages of `result`, and messages about excluded samples, clamped light, light beyond the
 // depth limits, and images that are nearly black or mostly clipped.
-Messages resultMessages(const RenderJob& job, const LoadedScene& loaded,
+Messages resultMessages(const RenderDescription& job, const LoadedScene& loaded,
                         const PreparedScene& prepared, const JobResult& result);
 
 // Those about excluded samples and clamped light alone.

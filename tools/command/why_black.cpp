@@ -152,7 +152,7 @@ std::string noneInView(const Scene& scene, const Seen& seen) {
 
 }  // namespace
 
-std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loaded,
+std::optional<std::string> whyBlack(const RenderDescription& job, const LoadedScene& loaded,
                                     const Accel& accel, const Image& mean) {
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
@@ -166,9 +166,7 @@ std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loa
   const double black = double(seen.black.size()) / seen.surfaces;
   if (job.settings.maxDepth == 0 || black < kMax) return std::nullopt;  // at 0, only emitters shine
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ", 100 * black);
-  const auto scale = job.file.settings.get<std::vector<double>>("probe.scale");
-  if (std::ranges::all_of(scale, [](double channel) { return channel == 0; }))
-    return what + "--probe-scale 0 turns the probe off";
+  if (job.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
   const std::vector<Target> lights = lightsOf(loaded);
   const auto behindWalls = std::ranges::count_if(
       seen.black, [&](const Surface& surface) { return isBehindWalls(accel, surface, lights); });
@@ -179,7 +177,7 @@ std::optional<std::string> whyBlack(const RenderJob& job, const LoadedScene& loa
            "single-sided walls, which the camera sees through, block the light; "
            "try --single-sided light, or add lamps with [[light]] in a scene file";
   if (black < kNearlyAll) return std::nullopt;
-  if (lights.empty() && job.file.settings.has("probe.file"))
+  if (lights.empty() && job.probe.file)
     return what + "the probe is black; take another, or add lamps with [[light]] in a scene file";
   return what + "no light reaches them; add lamps with [[light]] in a scene file";
 }

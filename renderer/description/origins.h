@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the values of a description are from, for messages.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace chromeball {
+
+// "scene.toml:12" or "--samples" by the names of the table of settings ("render.samples"). A value
+// from memory is named by the name itself.
+class Origins {
+ public:
+  void set(const std::string& name, const std::string& location) { locations_[name] = location; }
+
+  // Whether someone has given the value; else it is a default, or a program's.
+  bool has(std::string_view name) const { return locations_.contains(name); }
+  std::string of(std::string_view name) const {
+    const auto found = locations_.find(name);
+    return found == locations_.end() || found->second.empty() ? std::string(name) : found->second;
+  }
+
+ private:
+  std::map<std::string, std::string, std::less<>> locations_;
+};
+
+}  // namespace chromeball

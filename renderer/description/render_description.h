@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that decides an image, as values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/message.h"
+#include "composite/compose.h"
+#include "composite/render_composite.h"
+#include "description/origins.h"
+#include "description/scene_entries.h"
+#include "image/develop/develop.h"
+#include "image/tonemap.h"
+#include "integrate/render.h"
+#include "math/rotation.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+
+// The time that an image takes, from its own on.
+struct Shutter {
+  double frames = 0, fps = 24;
+  int steps = 8;    // straight pieces in which what moves moves, up to kMostMotionSteps
+  double turn = 0;  // of the camera's orbit, degrees
+
+  double seconds() const { return frames / fps; }
+};
+
+struct CameraDescription {
+  std::optional<CameraEntry> placed;  // nullopt: one of the models, or one that frames them
+  std::optional<std::string> name;    // of the models'; nullopt: the first
+  std::optional<std::string> file;    // from which it was read
+  std::optional<Lens> lens;
+  std::optional<Optics> optics;
+  double orbit = 0;                // turn around the models, degrees
+  bool turns = false;              // by `orbit` or while the shutter is open
+  std::optional<Shutter> shutter;  // nullopt: an image of one instant
+};
+
+struct ProbeDescription {
+  std::optional<std::string> file;  // nullopt: the models' own environment, or none
+  std::string mapping = "auto";
+  Rotation rotation;
+  glm::dvec3 scale{1};
+  bool isScaledByPlate = false;  // so that the ground of a composite looks as in the plate
+};
+
+// What part of the light renders: the suns of the probe and of the scene file, or all the rest.
+// Both together are the whole.
+enum class LightFrom { All, Suns, Rest };
+
+struct LightingDescription {
+  NamedSetting strategy;
+  LightFrom from = LightFrom::All;
+  double lamps = 1;                // factor on the models' punctual lights
+  std::optional<double> sunAngle;  // StrategyOptions::sunAngle
+  bool showLights = false;         // StrategyOptions::showLights
+};
+
+struct CompositeDescription {
+  CompositeEntry entry;
+  std::optional<std::string> plateFile;  // nullopt: a shadow catcher
+  Image plate;                           // of the image's size
+  CompositeMode mode = CompositeMode::Difference;
+  // The source of the local scene's reflectance.
+  enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
+  bool choosesReflectance = false;  // Flat may become Plate
+  int iterations = 1;               // of Reflectance::Plate
+  Passes passes = Passes::One;
+  std::vector<std::string> layers;  // names of all that were requested
+  // A plane under the models: always, or where the local scene names `ground` and the models do
+  // not.
+  enum class GroundPlane { Never, Always, IfNamed } ground = GroundPlane::Never;
+  double groundHeight = 0;                    // in the world, metres
+  std::optional<double> specular, roughness;  // of the local scene's gloss; neither: it has none
+  Messages messages;                          // of the plate's reader
+};
+
+// Limits and files of a run, which do not change the image.
+struct RunDescription {
+  std::optional<double> memory, textureMemory;  // bytes; nullopt: the machine's, and no limit
+  std::optional<std::string> cache;             // file of the irradiance cache
+  std::optional<std::string> checkpoint;
+  double checkpointEvery = 300;      // seconds
+  std::optional<double> writeEvery;  // seconds
+  bool resumes = false;
+  bool isOfFrames = false;  // others follow, of the same files
+};
+
+struct OutputDescription {
+  std::vector<std::string> files;
+  bool makesFolders = false;        // the scene file names the outputs
+  std::vector<std::string> layers;  // as they were asked for
+  std::optional<std::string> stats;
+  DevelopSettings develop;   // of a .png, before `display`
+  DisplayTransform display;  // of a .png
+};
+
+struct RenderDescription {
+  std::string path;                // of the scene file, or of the model if there is none
+  std::vector<ModelEntry> models;  // at least one
+  std::vector<Lamp> lamps;
+  std::vector<SourceEntry> sources;
+  std::vector<std::string> lightLists;  // files that lamps and sources are from
+  std::optional<SurroundingsEntry> surroundings;
+  CameraDescription camera;
+  ProbeDescription probe;
+  LightingDescription lighting;
+  std::optional<CompositeDescription> composite;
+
+  RenderSettings settings;        // of the integrator; the size is final after loadScene()
+  std::optional<ImageSize> size;  // nullopt: determined by the model's camera
+  SingleSided singleSided = SingleSided::Camera;
+  bool straightGlassShadows = false;  // passShadowsStraight()
+
+  OutputDescription output;
+  RunDescription run;
+  Origins origins;
+  std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
+};
+
+}  // namespace chromeball
