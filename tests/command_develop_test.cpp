@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "base/error.h"
+#include "front/develop_text.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "job/develop_text.h"
 #include "run_command.h"
 #include "small_model.h"
 

@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "base/json.h"
+#include "front/arguments.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
 #include "json_file.h"
 #include "probe/irradiance.h"
 #include "probe/probe.h"

@@ -61,15 +61,21 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"description",
      {"base", "math", "image", "image/develop", "probe", "scene", "scene/gltf", "lighting", "film",
       "integrate", "composite"}},
-    {"job",
-     {"description", "base", "math", "image", "image/io", "image/develop", "probe", "scene",
-      "scene/builder", "scene/gltf", "scene/solve", "trace", "lighting", "film", "integrate",
-      "integrate/irradiance_cache", "composite", "denoise", "relight"}},
+    {"front",
+     {"base", "math", "image", "image/io", "image/develop", "probe", "scene", "scene/gltf",
+      "scene/solve", "lighting", "integrate", "composite", "description"}},
+    {"animation", {"base", "scene"}},
+    {"session",
+     {"base", "math", "image", "image/io", "image/develop", "probe", "scene", "scene/builder",
+      "scene/gltf", "trace", "lighting", "film", "integrate", "integrate/irradiance_cache",
+      "composite", "denoise", "relight", "description", "animation"}},
+    {"parts", {"base", "image/io", "integrate", "session"}},
+    {"api", {"base", "front", "session"}},
     {"study",
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "lighting", "film",
-      "integrate", "measure", "job"}},
+      "integrate", "measure", "session"}},
     {"study/report",
-     {"base", "math", "image", "image/io", "probe", "lighting", "measure", "job", "study"}},
+     {"base", "math", "image", "image/io", "probe", "lighting", "measure", "session", "study"}},
 };
 
 // Header of a library: the only folders or files that may include it, as path prefixes.
@@ -85,12 +91,12 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"draco/", {"renderer/scene/gltf/draco.cpp"}},
     {"meshoptimizer.h", {"renderer/scene/gltf/meshopt.cpp"}},
     {"tiny_gltf.h", {"renderer/scene/gltf/"}},
-    {"toml++/", {"renderer/job/toml_section.h"}},
+    {"toml++/", {"renderer/front/toml_section.h"}},
     {"nlohmann/json.hpp", {"renderer/base/json.h"}},
     {"base/json.h",
      {"renderer/base/json_", "renderer/bake/gltf_document.h", "renderer/description/",
-      "renderer/job/", "renderer/lighting/light_", "renderer/scene/gltf/", "renderer/scene/solve/",
-      "renderer/study/", "tools/", "tests/"}},
+      "renderer/front/", "renderer/parts/", "renderer/session/", "renderer/lighting/light_",
+      "renderer/scene/gltf/", "renderer/scene/solve/", "renderer/study/", "tools/", "tests/"}},
     {"Eigen/",
      {"renderer/math/dense_", "renderer/math/least_squares.cpp", "renderer/lighting/fit/",
       "renderer/scene/solve/", "renderer/relight/clustered_pca.cpp"}},
@@ -187,12 +193,12 @@ TEST(House, ClockThatCanBeSetIsForDatesAlone) {
       R"(system_clock|high_resolution_clock|file_clock|last_write_time|gettimeofday|)"
       R"(CLOCK_REALTIME|\btime\((nullptr|NULL|0|&))";
   for (const fs::path& path : projectFiles({".h", ".cpp"}))
-    if (path.generic_string().starts_with("renderer/") && path != "renderer/job/machine.cpp" &&
+    if (path.generic_string().starts_with("renderer/") && path != "renderer/session/machine.cpp" &&
         path != "renderer/image/io/exr_rows_writer.cpp") {
       EXPECT_FALSE(containsMatch(contents(kSourceDir / path), kSettable)) << path;
     }
   EXPECT_TRUE(
-      containsMatch(contents(kSourceDir / fs::path("renderer/job/machine.cpp")), kSettable));
+      containsMatch(contents(kSourceDir / fs::path("renderer/session/machine.cpp")), kSettable));
 }
 
 TEST(House, SourcesStartWithTheirLicence) {

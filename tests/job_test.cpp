@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A job rendered with the library, without the command.
-#include "job/job.h"
+#include "api/job.h"
 #include "base/json.h"
 #include "base/json_text.h"
 
@@ -13,9 +13,9 @@
 #include "base/error.h"
 #include "description/describe.h"
 #include "image/io/write_image.h"
-#include "job/job_description.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "session/job_description.h"
 #include "small_model.h"
 
 namespace chromeball::job_test {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "job/scene_file.h"
+#include "front/scene_file.h"
 #include "lighting/punctual.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -4,11 +4,11 @@
 
 #include <fstream>
 
+#include "api/job.h"
 #include "base/error.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "job/job.h"
 #include "lighting/light_file.h"
 #include "lighting/light_list.h"
 #include "math/icosphere.h"

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "job/denoised_image.h"
 #include "probe/synth.h"
 #include "scene/thin_wall.h"
+#include "session/denoised_image.h"
 #include "study/row.h"
 #include "test_probes.h"
 #include "test_scene.h"

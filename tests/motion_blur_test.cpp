@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "api/job.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
-#include "job/job.h"
 #include "math/sampler.h"
 #include "measure/agreement.h"
 #include "measure/statistics.h"

@@ -2,9 +2,9 @@
 // The keys between which models, lamps and cameras move, and what is said where they do not follow.
 #include <gtest/gtest.h>
 
+#include "api/job.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
-#include "job/job.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "temporary_folder.h"

@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "base/memory_archive.h"
 #include "integrate/sample_sequence.h"
-#include "job/finish.h"
-#include "job/merge.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
+#include "parts/merge.h"
 #include "run_command.h"
+#include "session/finish.h"
 #include "small_scenes.h"
 #include "test_probes.h"
 

@@ -6,12 +6,12 @@
 
 #include <fstream>
 
+#include "api/job.h"
+#include "front/polygon_file.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "integrate/mis.h"
-#include "job/job.h"
-#include "job/polygon_file.h"
 #include "lighting/combined_light.h"
 #include "lighting/importance.h"
 #include "math/icosphere.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/scene_file.h"
+#include "front/scene_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -6,11 +6,11 @@
 
 #include <fstream>
 
+#include "api/job.h"
 #include "base/error.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "integrate/mis.h"
-#include "job/job.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
 #include "run_command.h"

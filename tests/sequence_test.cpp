@@ -4,11 +4,11 @@
 
 #include <fstream>
 
+#include "front/sequence.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
-#include "job/frame_scene.h"
-#include "job/sequence.h"
 #include "run_command.h"
+#include "session/frame_scene.h"
 #include "shared_data.h"
 #include "trace/built_geometry.h"
 
@@ -237,7 +237,7 @@ TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
   const Moving model;
   FrameScene scene;
   RenderDescription first = jobAt(model.scene(), 0), turned = jobAt(model.scene(), 0, 30),
-            later = jobAt(model.scene(), 1);
+                    later = jobAt(model.scene(), 1);
   scene.show(first);
   const World* world = scene.prepared().world.get();
   const LightSource* lighting = scene.prepared().lighting.get();

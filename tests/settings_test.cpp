@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of settings, and the command line, scene file and manual page that use it.
-#include "job/settings.h"
+#include "front/settings.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <set>
 
 #include "base/error.h"
+#include "front/plan_render.h"
+#include "front/settings_page.h"
 #include "integrate/render.h"
-#include "job/render_job.h"
-#include "job/settings_page.h"
 #include "run_command.h"
 
 namespace chromeball::settings_test {

@@ -11,9 +11,9 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
-#include "job/image_memory.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "session/image_memory.h"
 #include "small_model.h"
 #include "whole_stage.h"
 

@@ -11,13 +11,13 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "api/job.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"
 #include "image/io/read_image.h"
-#include "job/job.h"
 #include "json_file.h"
 #include "run_command.h"
 #include "scene/mip_chain.h"

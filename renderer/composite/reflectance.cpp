@@ -8,7 +8,7 @@ namespace {
 
 constexpr Rgb kFirstEstimate(0.25f);         // typical of real surfaces
 constexpr uint32_t kVisibilitySamples = 16;  // per pixel, to find the visible surfaces
-constexpr uint32_t kMaxSamples = 1024;
+constexpr uint32_t kMostSolveSamples = 1024;
 
 PathSettings localSettings(const RenderSettings& settings) {
   PathSettings local = settings.path();
@@ -191,7 +191,7 @@ ReflectanceSolution solveReflectance(const ReflectanceProblem& problem,
 
   RenderSettings step = settings;
   step.aovs = {Aov::Alpha};
-  step.samples = std::min(settings.samples, kMaxSamples);
+  step.samples = std::min(settings.samples, kMostSolveSamples);
   step.timeLimit.reset();
   step.noiseLimit.reset();
   step.adaptive = false;  // images with and without reflectance share their samples

@@ -24,6 +24,10 @@ struct Crop {
   int x, y, width, height;
 };
 
+// The largest that a user may give.
+inline constexpr uint32_t kMaxSamples = 2'000'000'000;
+inline constexpr int kMaxDepth = 1'000'000;
+
 // Names of layers that are by source of light.
 inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
 
@@ -59,7 +63,7 @@ struct RenderSettings {
 
   // Per pixel, of all shards together.
   uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
-  // Whether the image is put together from several renders (job/merge.h).
+  // Whether the image is put together from several renders (parts/merge.h).
   bool isPart() const { return crop || shard.samplesOfAll > 0; }
   bool denoisesAtEnd() const { return denoise && !isPart(); }  // a part: when it is merged
   Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "job/machine.h"
+#include "session/machine.h"
 #include "study/results.h"
 
 namespace chromeball {

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "job/denoised_image.h"
-#include "job/scene_lighting.h"
 #include "scene/thin_wall.h"
+#include "session/denoised_image.h"
+#include "session/scene_lighting.h"
 
 namespace chromeball {
 

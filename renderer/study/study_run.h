@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "integrate/render.h"
-#include "job/load_scene.h"
+#include "session/load_scene.h"
 #include "study/render_store.h"
 #include "study/row.h"
 

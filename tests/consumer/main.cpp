@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene file to an array of floats and prints the image's size and its mean colour.
+#include <chromeball/api/job.h>
 #include <chromeball/base/error.h>
-#include <chromeball/job/job.h>
 
 #include <cstdio>
 #include <vector>

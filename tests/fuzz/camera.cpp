@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `camera solve` and `--camera-file` read: files of fSpy, tables of points and lines, and
 // files with a section [camera].
+#include "front/scene_file.h"
+#include "front/scene_file_camera.h"
 #include "fuzz.h"
-#include "job/scene_file.h"
-#include "job/scene_file_camera.h"
 #include "scene/solve/fspy.h"
 #include "scene/solve/observations.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists of lights and of polygons in a probe; what is read must be usable.
+#include "front/polygon_file.h"
 #include "fuzz.h"
-#include "job/polygon_file.h"
 #include "lighting/light_list.h"
 #include "math/vec.h"
 #include "probe/synth.h"

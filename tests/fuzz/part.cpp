@@ -9,10 +9,10 @@
 #include "fuzz.h"
 #include "image/io/exr_state.h"
 #include "integrate/render_state.h"
-#include "job/finish.h"
-#include "job/merge.h"
 #include "lighting/methods.h"
+#include "parts/merge.h"
 #include "probe/synth.h"
+#include "session/finish.h"
 
 namespace chromeball {
 namespace {

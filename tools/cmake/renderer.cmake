@@ -4,7 +4,7 @@ file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
 list(FILTER renderer_sources EXCLUDE REGEX "/image/imageio/")  # the module
 # Rooms of which a render's time has no part: what is read, planned and reported.
 set(planning_sources ${renderer_sources})
-list(FILTER planning_sources INCLUDE REGEX "/renderer/(job|study|measure|scene/gltf|scene/solve)/")
+list(FILTER planning_sources INCLUDE REGEX "/renderer/(description|front|session|parts|animation|study|measure|scene/gltf|scene/solve)/")
 list(REMOVE_ITEM renderer_sources ${planning_sources})
 add_library(chromeball_planning OBJECT ${planning_sources})
 add_library(chromeball_renderer ${renderer_sources} $<TARGET_OBJECTS:chromeball_planning>)

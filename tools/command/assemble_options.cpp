@@ -4,9 +4,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "probe/capture/photograph.h"
 #include "probe/convert.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assemble_options.h"
 #include "base/error.h"
-#include "job/arguments.h"
+#include "front/arguments.h"
 #include "messages.h"
 #include "probe/capture/find_circle.h"
 #include "probe/capture/photograph.h"

@@ -2,6 +2,7 @@
 // chromeball bake SCENE -o MODEL_BAKED.glb: lightmaps and vertex colours for real-time viewers.
 #include <filesystem>
 
+#include "api/job.h"
 #include "bake/baked_file.h"
 #include "bake/shown_color.h"
 #include "bake/texel_filter.h"
@@ -10,12 +11,11 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/job.h"
-#include "job/memory_estimate.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
+#include "session/memory_estimate.h"
 #include "thread_limit.h"
 
 namespace chromeball {

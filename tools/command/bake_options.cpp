@@ -6,9 +6,9 @@
 
 #include "bake/atlas.h"
 #include "base/error.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 
 namespace chromeball {
 namespace {

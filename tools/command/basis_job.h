@@ -2,7 +2,7 @@
 // The job of `chromeball basis`: a scene whose light comes from everywhere.
 #pragma once
 
-#include "job/job.h"
+#include "api/job.h"
 #include "scene_options.h"
 
 namespace chromeball {

@@ -7,14 +7,14 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "basis_job.h"
+#include "image/io/output_file.h"
 #include "integrate/tile_grid.h"
 #include "interrupt.h"
-#include "job/memory_estimate.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "relight/render_basis.h"
 #include "relight/stage_file.h"
+#include "session/memory_estimate.h"
 #include "thread_limit.h"
 
 namespace chromeball {
@@ -24,7 +24,8 @@ int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
 // The rows of a band: all that there are, if they fit into the memory; else those of whole tiles,
 // in bands that are about as high as each other.
-int rowsOfBand(const RenderDescription& job, const LoadedScene& loaded, const DirectionBasis& basis) {
+int rowsOfBand(const RenderDescription& job, const LoadedScene& loaded,
+               const DirectionBasis& basis) {
   constexpr int kTile = TileGrid::kSize;
   const RenderSettings& s = job.settings;
   checkStageSize(basis, s.width, s.height, "--directions");

@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "basis_job.h"
-#include "job/memory_estimate.h"
-#include "job/output_file.h"
+#include "image/io/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "relight/glossy_model.h"
+#include "session/memory_estimate.h"
 #include "thread_limit.h"
 
 namespace chromeball {

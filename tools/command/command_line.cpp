@@ -12,10 +12,10 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "commands.h"
-#include "job/image_memory.h"
-#include "job/machine.h"
 #include "messages.h"
 #include "option_typos.h"
+#include "session/image_memory.h"
+#include "session/machine.h"
 
 namespace chromeball {
 namespace {

@@ -6,14 +6,14 @@
 
 #include "base/error.h"
 #include "denoise/denoise.h"
+#include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
-#include "job/denoised_image.h"
-#include "job/image_memory.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
+#include "session/denoised_image.h"
+#include "session/image_memory.h"
 
 namespace chromeball {
 namespace {

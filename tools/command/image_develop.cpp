@@ -5,14 +5,14 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "front/arguments.h"
+#include "front/develop_text.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
 #include "input_image.h"
-#include "job/arguments.h"
-#include "job/develop_image.h"
-#include "job/develop_text.h"
-#include "job/output_file.h"
 #include "messages.h"
+#include "session/develop_image.h"
 
 namespace chromeball {
 namespace {

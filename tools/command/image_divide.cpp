@@ -5,10 +5,10 @@
 
 #include "base/error.h"
 #include "image/flat_field.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
 #include "input_image.h"
-#include "job/output_file.h"
 #include "messages.h"
 
 namespace chromeball {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "job/denoised_image.h"
-#include "job/image_noise.h"
+#include "session/denoised_image.h"
+#include "session/image_noise.h"
 
 namespace chromeball {
 

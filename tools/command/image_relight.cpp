@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
 #include "input_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "job/job_report.h"
+#include "session/job_report.h"
 
 namespace chromeball {
 
@@ -22,8 +22,8 @@ std::string PassReport::of(const RenderResult& result) {
   return text;
 }
 
-ImageRender::ImageRender(const RenderDescription& job, const LoadedScene& loaded, bool showsProgress,
-                         std::vector<Viewer*> viewers)
+ImageRender::ImageRender(const RenderDescription& job, const LoadedScene& loaded,
+                         bool showsProgress, std::vector<Viewer*> viewers)
     : job_(job),
       loaded_(loaded),
       viewers_(std::move(viewers)),

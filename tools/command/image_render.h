@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/stopwatch.h"
-#include "job/checkpoint.h"
+#include "parts/checkpoint.h"
 #include "progress_bar.h"
 
 namespace chromeball {

@@ -6,13 +6,13 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "base/suggest.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
 #include "input_image.h"
-#include "job/id_manifest.h"
-#include "job/output_file.h"
 #include "layer_view.h"
 #include "messages.h"
+#include "session/id_manifest.h"
 
 namespace chromeball {
 namespace {

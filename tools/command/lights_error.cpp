@@ -9,7 +9,7 @@
 #include "base/stopwatch.h"
 #include "busy_line.h"
 #include "commands.h"
-#include "job/output_file.h"
+#include "image/io/output_file.h"
 #include "light_options.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/methods.h"

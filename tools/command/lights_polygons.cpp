@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "front/polygon_file.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/output_file.h"
-#include "job/polygon_file.h"
 #include "lighting/light_preview.h"
 #include "messages.h"
 #include "probe/suggest_polygons.h"

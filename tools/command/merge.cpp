@@ -7,16 +7,16 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "commands.h"
+#include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_noise_text.h"
-#include "job/id_manifest.h"
-#include "job/job_report.h"
-#include "job/merge.h"
-#include "job/output_file.h"
 #include "messages.h"
+#include "parts/merge.h"
 #include "progress_bar.h"
 #include "render_hints.h"
+#include "session/id_manifest.h"
+#include "session/job_report.h"
 
 namespace chromeball {
 namespace {

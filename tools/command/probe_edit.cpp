@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "input_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/edit.h"

@@ -2,7 +2,7 @@
 #include "probe_merge_options.h"
 
 #include "base/error.h"
-#include "job/arguments.h"
+#include "front/arguments.h"
 
 namespace chromeball {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "base/error.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "input_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 #include "lighting/row_distribution.h"
 #include "messages.h"
 #include "probe/load.h"

@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/output_file.h"
 #include "light_options.h"
 #include "lighting/light_file.h"
 #include "lighting/light_list.h"

@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "front/arguments.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "probe_commands.h"

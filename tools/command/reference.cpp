@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "job/settings_page.h"
+#include "front/settings_page.h"
 
 namespace chromeball {
 

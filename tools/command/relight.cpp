@@ -4,9 +4,9 @@
 // chromeball relight MODEL_PRT.glb --probe P -o MODEL_LIT.glb: vertices by their transfer.
 #include "base/error.h"
 #include "commands.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
-#include "job/output_file.h"
 #include "relight_model.h"
 #include "relight_stage.h"
 #include "rotation_option.h"
@@ -147,9 +147,10 @@ void addRelightCommand(Command app) {
           "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
           "which the probes are turned and swapped")
       .typeName("[=PORT]");
-  command.addOption("--white", a->white,
-                    "of a model: the light that its white stands for; without it, the smallest power "
-                    "of two, from 1 up, that clips nothing");
+  command.addOption(
+      "--white", a->white,
+      "of a model: the light that its white stands for; without it, the smallest power "
+      "of two, from 1 up, that clips nothing");
   command.addOption("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
   command.addFlag("--allow-external", a->allowsExternal,
                   "of a model: read files outside of its folder");

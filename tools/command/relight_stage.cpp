@@ -6,16 +6,16 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "front/arguments.h"
+#include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "job/arguments.h"
-#include "job/image_memory.h"
-#include "job/output_file.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "relight/light_weights.h"
 #include "relight/reflectance_function.h"
 #include "relight/relit_stage.h"
 #include "relight/stage_photographs.h"
+#include "session/image_memory.h"
 #include "viewers/relight_server.h"
 
 namespace chromeball {

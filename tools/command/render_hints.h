@@ -2,7 +2,7 @@
 // Messages to the user about a rendered image, with suggestions of options.
 #pragma once
 
-#include "job/run_job.h"
+#include "session/run_job.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include "command.h"
 
-#include "job/arguments.h"
+#include "front/arguments.h"
 
 namespace chromeball {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "job/settings_page.h"
+#include "front/settings_page.h"
 #include "progress_bar.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include "command.h"
 
 #include "base/error.h"
-#include "job/settings.h"
+#include "front/settings.h"
 
 namespace chromeball {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "job/settings.h"
+#include "front/settings.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "job/load_scene.h"
+#include "session/load_scene.h"
 #include "trace/accel.h"
 
 namespace chromeball {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "job/machine.h"
 #include "probe/probe.h"
+#include "session/machine.h"
 #include "study/results.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "job/viewer.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

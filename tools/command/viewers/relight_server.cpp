@@ -4,9 +4,9 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "front/arguments.h"
 #include "image/io/write_image.h"
 #include "image/resample.h"
-#include "job/arguments.h"
 #include "viewers/local_server.h"
 
 namespace chromeball {

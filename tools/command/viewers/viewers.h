@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/message.h"
-#include "job/settings.h"
-#include "job/viewer.h"
+#include "front/settings.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

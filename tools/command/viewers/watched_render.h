@@ -12,7 +12,7 @@
 
 #include "base/json.h"
 #include "base/stopwatch.h"
-#include "job/viewer.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

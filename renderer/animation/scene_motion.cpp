@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "animation/scene_motion.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "animation/match_scenes.h"
+
+namespace chromeball {
+namespace {
+
+InstanceMotion::Key keyOf(const Scene& scene, const Instance& instance) {
+  return {scene.meshes.shared(size_t(instance.mesh)), instance.toWorld};
+}
+
+template <class Key>
+bool areEqual(const std::vector<Key>& keys) {
+  return std::ranges::all_of(keys, [&](const Key& key) { return key == keys.front(); });
+}
+
+// The keys of parts and lamps of a scene, the first those of the scene itself.
+struct Keys {
+  std::vector<InstanceMotion> instances;
+  std::vector<std::vector<LampPose>> lamps;
+
+  explicit Keys(const Scene& scene) {
+    for (const Instance& instance : scene.instances)
+      instances.push_back({{keyOf(scene, instance)}});
+    for (const PunctualLight& lamp : scene.lights) lamps.push_back({lamp.poseAt(0)});
+  }
+
+  // Those at a later time. What the scene lacks then keeps its last, and its node is `incomplete`.
+  void add(const Scene& scene, const Scene& then, std::set<int>& incomplete) {
+    const auto parts = partsIn(then, scene);
+    for (size_t i = 0; i < parts.size(); ++i) {
+      if (!parts[i]) incomplete.insert(scene.instances[i].node);
+      if (scene.instances[i].moves)
+        instances[i].keys.push_back(parts[i] ? keyOf(then, *parts[i]) : instances[i].keys.back());
+    }
+    const auto there = lampsIn(then, scene);
+    for (size_t i = 0; i < there.size(); ++i) {
+      if (!there[i]) incomplete.insert(scene.lights[i].node);
+      lamps[i].push_back(there[i] ? there[i]->poseAt(0) : lamps[i].back());
+    }
+  }
+};
+
+// The nodes with parts or lamps.
+std::set<int> nodesOf(const Scene& scene) {
+  std::set<int> nodes;
+  for (const Instance& instance : scene.instances) nodes.insert(instance.node);
+  for (const PunctualLight& lamp : scene.lights) nodes.insert(lamp.node);
+  return nodes;
+}
+
+}  // namespace
+
+std::vector<std::string> addMotion(Scene& scene, const std::vector<Scene>& later) {
+  const std::set<int> known = nodesOf(scene);
+  std::set<int> incomplete;
+  Keys keys(scene);
+  for (const Scene& then : later) {
+    keys.add(scene, then, incomplete);
+    std::ranges::set_difference(nodesOf(then), known, std::inserter(incomplete, incomplete.end()));
+  }
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    if (InstanceMotion& motion = keys.instances[i]; !areEqual(motion.keys)) {
+      scene.instances[i].motion = std::make_shared<const InstanceMotion>(std::move(motion));
+      scene.moves = true;
+    }
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    if (std::vector<LampPose>& poses = keys.lamps[i]; !areEqual(poses)) {
+      scene.lights[i].motion = std::make_shared<const std::vector<LampPose>>(std::move(poses));
+      scene.moves = true;
+    }
+  std::vector<std::string> names;
+  for (const int node : incomplete) names.push_back(scene.nodeNames[size_t(node)]);
+  return names;
+}
+
+}  // namespace chromeball

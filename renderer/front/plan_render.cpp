@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "front/plan_render.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "composite/layers.h"
+#include "front/arguments.h"
+#include "front/check_job.h"
+#include "front/develop_text.h"
+#include "front/plan_composite.h"
+#include "front/scene_file_camera.h"
+#include "front/setting_table.h"
+
+namespace chromeball {
+namespace {
+
+Mis misNamed(const std::string& name) {
+  return name == "off" ? Mis::Off : name == "power" ? Mis::Power : Mis::Balance;
+}
+
+IntegratorKind integratorNamed(const std::string& name) {
+  return IntegratorKind(std::ranges::find(kIntegratorNames, name) - kIntegratorNames.begin());
+}
+
+Guiding guidingNamed(const std::string& name) {
+  return name == "off" ? Guiding::Off : name == "on" ? Guiding::On : Guiding::Auto;
+}
+
+// Whole numbers up to a million, with this character between; nullopt for any other text.
+std::optional<std::vector<uint32_t>> splitNumbers(const std::string& text, char between) {
+  std::vector<uint32_t> numbers;
+  const char *at = text.data(), *end = at + text.size();
+  for (;; ++at) {
+    uint32_t number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || number > 1'000'000) return {};
+    numbers.push_back(number);
+    at = next;
+    if (at == end) return numbers;
+    if (*at != between) return {};
+  }
+}
+
+SingleSided singleSidedNamed(const std::string& name) {
+  return name == "off"     ? SingleSided::Off
+         : name == "light" ? SingleSided::Light
+                           : SingleSided::Camera;
+}
+
+NamedSetting named(const Settings& settings, std::string_view name) {
+  return {settings.get<std::string>(name), settings.location(name)};
+}
+
+// Applies the settings that are stored per model.
+void applyToModels(const Settings& over, SceneFile& file) {
+  const Settings& all = file.settings;
+  for (ModelEntry& model : file.models) {
+    GltfChoice& choice = model.choice;
+    for (const char* name : {"model.time", "model.animation"})
+      if (over.has(name)) {
+        if (!choice.animation) choice.animation.emplace();
+        choice.animation->ifAny =
+            (all.has("frames") || !file.probeTurns.empty()) && !over.has("model.animation");
+        if (choice.animation->location.empty() || name == std::string_view("model.animation"))
+          choice.animation->location = over.location(name);
+      }
+    if (const auto time = over.getIfGiven<double>("model.time")) choice.animation->seconds = *time;
+    if (const auto name = over.getIfGiven<std::string>("model.animation"))
+      choice.animation->name = *name;
+    if (const auto variant = over.getIfGiven<std::string>("model.variant"))
+      choice.variant = {*variant, over.location("model.variant")};
+    choice.lightUnits = parseLightUnits(named(all, "lighting.light_units"));
+    if (all.get<bool>("allow-external")) choice.external = ExternalFiles::Allow;
+  }
+}
+
+// Before the first key and after the last one constant.
+std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
+  const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
+                                      [](double t, const auto& key) { return t < key.seconds; });
+  if (after == keys.begin()) return keys.front().rotation;
+  if (after == keys.end()) return keys.back().rotation;
+  const ProbeTurn &from = *(after - 1), &to = *after;
+  const double elapsed = seconds - from.seconds, duration = to.seconds - from.seconds;
+  if (from.rotation.size() == 1 && to.rotation.size() == 1) {
+    const double degrees = from.rotation.front();
+    return {degrees + (to.rotation.front() - degrees) * elapsed / duration};
+  }
+  return between(parseRotation(from.rotation, "rotation_keys"),
+                 parseRotation(to.rotation, "rotation_keys"), elapsed / duration)
+      .numbers();
+}
+
+void mergeCamera(SceneFile& file, const Settings& over) {
+  const auto path = over.getIfGiven<std::string>("camera.file");
+  if (over.has("camera.name")) {
+    if (path)
+      throwInput("{}: excludes {}; give one", over.location("camera.file"),
+                 over.location("camera.name"));
+    if (file.settings.has("camera.file")) file.optics.reset();
+    file.settings.erase("camera.file");
+    file.camera.reset();
+  }
+  if (path) {
+    file.settings.erase("camera.name");
+    readCameraFile(*path, file);
+  }
+}
+
+// Overrides the settings of the scene file by `over`.
+void merge(SceneFile& file, const Settings& over) {
+  mergeCamera(file, over);
+  const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
+  const auto isGiven = [&](std::string_view name) { return over.has(name); };
+  if (std::any_of(std::begin(limits), std::end(limits), isGiven))  // the limits are one decision
+    for (const std::string_view name : limits) file.settings.erase(name);
+  if (over.has("probe.scale")) file.plateScale.reset();
+  file.settings.merge(over);
+  applyToModels(over, file);
+  if (!file.probeTurns.empty() && !over.has("probe.rotation"))
+    file.settings.set(
+        "probe.rotation",
+        rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
+}
+
+// --shadow-catcher NODE,...: a composite without a plate.
+void applyShadowCatcher(SceneFile& file) {
+  const auto nodes = file.settings.getIfGiven<std::string>("shadow-catcher");
+  if (!nodes) return;
+  const std::string location = file.settings.location("shadow-catcher");
+  if (file.composite)
+    throwInput("{}: the scene file has [composite]; give it mode = \"shadow-catcher\"", location);
+  file.settings.set("composite.mode", std::string("shadow-catcher"), location);
+  file.composite.emplace().location = location;
+  std::istringstream names(*nodes);
+  for (std::string name; std::getline(names, name, ',');)
+    file.composite->localScene.push_back({name, location});
+  if (file.composite->localScene.empty()) throwInput("{}: names no node", location);
+}
+
+// The layers of plain renders; those of composites are in CompositeDescription.
+std::vector<Aov> layersOf(const SceneFile& file) {
+  std::vector<Aov> layers;
+  const std::string location = file.settings.location("output.aovs");
+  for (const auto& name : file.settings.get<std::vector<std::string>>("output.aovs")) {
+    if (isOfLight(name)) continue;
+    const CompositeLayerInfo* composite = findCompositeLayer(name);
+    if (!composite || composite->layer == CompositeLayer::Alpha)
+      layers.push_back(aovFromName(name, location));
+    else if (!file.composite)
+      throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", location,
+                 name);
+  }
+  return layers;
+}
+
+// "K/N": the K-th of N shards of all samples.
+RenderSettings withShard(const Settings& s, RenderSettings whole) {
+  const auto text = s.getIfGiven<std::string>("shard");
+  if (!text) return whole;
+  const auto numbers = splitNumbers(*text, '/');
+  if (!numbers || numbers->size() != 2 || (*numbers)[0] < 1 || (*numbers)[0] > (*numbers)[1])
+    throwInput("{}: `{}` is not a shard; give K/N with K from 1 to N, such as 2/8",
+               s.location("shard"), *text);
+  const uint32_t index = (*numbers)[0] - 1, count = (*numbers)[1];
+  if (whole.samples / 2 < count)
+    throwInput("{}: {} samples per pixel are less than two for each of {} shards",
+               s.location("shard"), whole.samples, count);
+  return shardOf(std::move(whole), index, count);
+}
+
+std::optional<Crop> cropOf(const Settings& s) {
+  const auto text = s.getIfGiven<std::string>("crop");
+  if (!text) return {};
+  const auto numbers = splitNumbers(*text, ',');
+  if (!numbers || numbers->size() != 4 || (*numbers)[2] < 1 || (*numbers)[3] < 1)
+    throwInput("{}: `{}` is not a part of an image; give X,Y,WIDTH,HEIGHT in pixels",
+               s.location("crop"), *text);
+  const auto& n = *numbers;
+  return Crop{int(n[0]), int(n[1]), int(n[2]), int(n[3])};
+}
+
+RenderSettings integratorSettings(const SceneFile& file) {
+  const Settings& s = file.settings;
+  RenderSettings r;
+  r.timeLimit = s.getIfGiven<double>("render.time");
+  r.noiseLimit = s.getIfGiven<double>("render.noise");
+  if (r.noiseLimit) *r.noiseLimit /= 100;
+  r.samples = uint32_t(s.get<uint64_t>("render.samples"));
+  if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
+  r.crop = cropOf(s);
+  r.adaptive = s.get<std::string>("render.adaptive") == "on";
+  r.guiding = guidingNamed(s.get<std::string>("render.guide"));
+  r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
+  if (const auto depth = s.getIfGiven<uint64_t>("render.max_diffuse_depth"))
+    r.maxDiffuseDepth = int(*depth);
+  if (const auto depth = s.getIfGiven<uint64_t>("render.max_specular_depth"))
+    r.maxSpecularDepth = int(*depth);
+  r.integrator = integratorNamed(s.get<std::string>("render.integrator"));
+  if (const auto error = s.getIfGiven<double>("render.irradiance_cache"))
+    r.cacheError = float(*error);
+  r.occlusion.ambient = s.get<bool>("render.ao");
+  r.occlusion.reflection = s.get<bool>("render.reflection_occlusion");
+  if (const auto distance = s.getIfGiven<double>("render.ao_distance"))
+    r.occlusion.distance = float(*distance);
+  r.occlusion.uniformBent = s.get<std::string>("render.bent") == "uniform";
+  r.maxTransmissionDepth = int(s.get<uint64_t>("render.max_transmission_depth"));
+  r.seed = s.get<uint64_t>("render.seed");
+  r.mis = misNamed(s.get<std::string>("lighting.mis"));
+  r.hideProbe = s.get<bool>("transparent");
+  if (const auto clamp = s.getIfGiven<double>("clamp")) r.clamp = float(*clamp);
+  r.aovs = layersOf(file);
+  const auto layers = s.get<std::vector<std::string>>("output.aovs");
+  r.lightGroups = std::ranges::count(layers, kLightGroups) > 0;
+  r.shadowMattes = std::ranges::count(layers, kShadowMattes) > 0;
+  r.regularize = s.get<bool>("render.regularize");
+  r.denoise = s.get<bool>("render.denoise");
+  if (r.hideProbe && std::count(r.aovs.begin(), r.aovs.end(), Aov::Alpha) == 0)
+    r.aovs.push_back(Aov::Alpha);
+  return withShard(s, std::move(r));
+}
+
+std::optional<Shutter> shutterOf(const Settings& s) {
+  const auto open = s.getIfGiven<double>("camera.shutter");
+  if (!open || *open == 0) return {};
+  Shutter shutter{*open, s.get<double>("fps")};
+  if (const auto steps = s.getIfGiven<uint64_t>("camera.shutter_steps"))
+    shutter.steps = int(*steps);
+  shutter.turn = *open * s.getIfGiven<double>("orbit-step").value_or(0);
+  return shutter;
+}
+
+CameraDescription plannedCamera(const SceneFile& file) {
+  const Settings& s = file.settings;
+  return {.placed = file.camera,
+          .name = s.getIfGiven<std::string>("camera.name"),
+          .file = s.getIfGiven<std::string>("camera.file"),
+          .lens = file.lens,
+          .optics = file.optics,
+          .orbit = s.getIfGiven<double>("orbit").value_or(0),
+          .turns = s.has("orbit") || s.has("orbit-step"),
+          .shutter = shutterOf(s)};
+}
+
+ProbeDescription plannedProbe(const SceneFile& file) {
+  const Settings& s = file.settings;
+  return {.file = s.getIfGiven<std::string>("probe.file"),
+          .mapping = s.get<std::string>("probe.mapping"),
+          .rotation = parseRotation(s.get<std::vector<double>>("probe.rotation"),
+                                    s.location("probe.rotation")),
+          .scale = colorOf(s.get<std::vector<double>>("probe.scale")),
+          .isScaledByPlate = file.plateScale.has_value()};
+}
+
+LightingDescription plannedLighting(const Settings& s) {
+  const auto from = s.get<std::string>("lighting.from");
+  return {.strategy = named(s, "lighting.strategy"),
+          .from = from == "suns"   ? LightFrom::Suns
+                  : from == "rest" ? LightFrom::Rest
+                                   : LightFrom::All,
+          .lamps = s.get<double>("lighting.lights"),
+          .sunAngle = s.getIfGiven<double>("lighting.sun_angle"),
+          .showLights = s.get<bool>("lighting.show_lights")};
+}
+
+RunDescription plannedRun(const Settings& s) {
+  const auto bytes = [&](const char* name) {
+    const auto gigabytes = s.getIfGiven<double>(name);
+    return gigabytes ? std::optional(1e9 * *gigabytes) : std::nullopt;
+  };
+  return {.memory = bytes("memory"),
+          .textureMemory = bytes("texture-memory"),
+          .cache = s.getIfGiven<std::string>("cache"),
+          .checkpoint = s.getIfGiven<std::string>("checkpoint"),
+          .checkpointEvery = s.get<double>("checkpoint-every"),
+          .writeEvery = s.getIfGiven<double>("write-every"),
+          .resumes = s.get<bool>("resume"),
+          .isOfFrames = s.has("frames")};
+}
+
+// What a .png clips is relative to its white.
+DevelopSettings plannedDevelop(const Settings& s, float exposure) {
+  const auto text = s.getIfGiven<std::string>("output.develop");
+  if (!text) return {};
+  const std::string location = s.location("output.develop");
+  DevelopSettings develop = parseDevelop(*text, location);
+  if (develop.clip) *develop.clip *= std::exp2(-exposure);
+  if (develop.lens &&
+      std::ranges::count(s.get<std::vector<std::string>>("output.aovs"), "depth") == 0)
+    throw InputError(fmt::format("{}: depth-blur needs the layer `depth`", location),
+                     Remedy{"output.aovs", "depth"});
+  return develop;
+}
+
+OutputDescription plannedOutput(const Settings& s) {
+  OutputDescription output{.files = s.get<std::vector<std::string>>("output.file"),
+                           .layers = s.get<std::vector<std::string>>("output.aovs"),
+                           .stats = s.getIfGiven<std::string>("stats")};
+  output.display = {parseToneOperator(s.get<std::string>("tonemap")),
+                    float(s.get<double>("exposure"))};
+  output.develop = plannedDevelop(s, output.display.exposure);
+  return output;
+}
+
+}  // namespace
+
+RenderDescription planJob(SceneFile scene, const Settings& over) {
+  merge(scene, over);
+  applyShadowCatcher(scene);
+  checkJob(scene);
+  RenderDescription job;
+  const Settings& s = scene.settings;
+  for (const Setting& setting : settingTable())
+    if (const auto* given = s.find(setting.name()))
+      job.origins.set(setting.name(), given->location);
+  job.camera = plannedCamera(scene);
+  job.probe = plannedProbe(scene);
+  if (scene.plateScale) job.origins.set("probe.scale", *scene.plateScale);
+  job.lighting = plannedLighting(s);
+  job.settings = integratorSettings(scene);
+  job.size = s.getIfGiven<ImageSize>("render.size");
+  job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
+  job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
+  job.output = plannedOutput(s);
+  job.output.makesFolders = !over.has("output.file");
+  job.run = plannedRun(s);
+  job.path = std::move(scene.path);
+  job.models = std::move(scene.models);
+  job.lamps = std::move(scene.lamps);
+  job.sources = std::move(scene.sources);
+  job.lightLists = std::move(scene.lightLists);
+  job.surroundings = std::move(scene.surroundings);
+  job.warnings = std::move(scene.warnings);
+  if (scene.composite) planComposite(s, std::move(*scene.composite), job);
+  return job;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a scene file and given settings to the description of a render.
+#pragma once
+
+#include "description/render_description.h"
+#include "front/scene_file.h"
+
+namespace chromeball {
+
+// Given settings override the scene file's, which override the defaults. Reads the plate of a
+// composite. Throws InputError for settings that contradict each other, and for an unreadable
+// plate.
+RenderDescription planJob(SceneFile scene, const Settings& over = {});
+
+}  // namespace chromeball

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "front/scene_file.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "front/arguments.h"
+#include "front/scene_file_camera.h"
+#include "front/scene_file_composite.h"
+#include "front/scene_file_light.h"
+#include "front/scene_file_source.h"
+#include "front/toml_section.h"
+
+namespace chromeball {
+namespace {
+
+glm::quat readRotation(const Entry& entry) {
+  if (entry.isArrayOf(4)) {
+    const auto component = [&](size_t i) { return float(entry.element(i).number()); };
+    const glm::quat q(component(3), component(0), component(1), component(2));
+    if (!(glm::length(q) > 1e-6f) || !std::isfinite(glm::length(q)))
+      entry.mustBe("a quaternion x, y, z, w of length above 0");
+    return glm::normalize(q);
+  }
+  if (!entry.isArrayOf(3)) entry.mustBe("three angles in degrees or a quaternion x, y, z, w");
+  const vec3 angles = glm::radians(entry.vector());
+  return glm::angleAxis(angles.z, vec3(0, 0, 1)) * glm::angleAxis(angles.y, vec3(0, 1, 0)) *
+         glm::angleAxis(angles.x, vec3(1, 0, 0));
+}
+
+vec3 readScale(const Entry& entry) {
+  const vec3 scale = entry.isArray() ? entry.vector() : vec3(float(entry.number()));
+  if (scale.x * scale.y * scale.z == 0) entry.mustBe("other than 0");
+  return scale;
+}
+
+ModelEntry readModel(const Entry& entry) {
+  if (entry.node->is_string()) return {existingFile(entry), {}, {}};
+  if (!entry.node->is_table()) entry.mustBe("a file name or a table");
+  const Section model(entry.file, "model", *entry.node->as_table());
+  ModelEntry result{existingFile(model.required("file")), {}, {}};
+  Transform& placement = result.placement;
+  if (const Entry e = model["rotation"]) placement.linear = glm::mat3_cast(readRotation(e));
+  if (const Entry e = model["scale"]) {
+    const vec3 scale = readScale(e);
+    for (int axis = 0; axis < 3; ++axis) placement.linear[axis] *= scale[axis];
+  }
+  if (const Entry e = model["translation"]) {
+    placement.translation = e.vector();
+    result.translationRest = e.point() - glm::dvec3(placement.translation);
+  }
+  const Entry animation = model["animation"], time = model["time"];
+  if (animation || time) {
+    AnimationTime& when = result.choice.animation.emplace();
+    when.location = (animation ? animation : time).location();
+    if (animation) when.name = animation.text();
+    if (time) when.seconds = time.number();
+  }
+  if (const Entry e = model["variant"]) result.choice.variant = {e.text(), e.location()};
+  return result;
+}
+
+void readProbeTurns(const Entry& keys, SceneFile& scene) {
+  if (!keys) return;
+  if (!keys.isArray()) keys.mustBe(keys.setting->form);
+  forEach(keys, [&](const Entry& key) {
+    if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, rotation]");
+    const double seconds = key.element(0).number();
+    if (!scene.probeTurns.empty() && !(seconds > scene.probeTurns.back().seconds))
+      failAt(key.location(), "the times of `rotation_keys` must ascend: {:g} s is not after {:g} s",
+             seconds, scene.probeTurns.back().seconds);
+    Entry rotation = key.element(1);
+    rotation.setting = findSetting("probe", "rotation");
+    scene.probeTurns.push_back({seconds, rotation.numbers()});
+    parseRotation(scene.probeTurns.back().rotation, rotation.location());
+  });
+}
+
+// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. The location.
+std::optional<std::string> takePlateScale(const std::string& path, toml::table& table) {
+  toml::table* probe = table["probe"].as_table();
+  const toml::node* scale = probe ? probe->get("scale") : nullptr;
+  if (!scale || !scale->is_string() || scale->as_string()->get() != "plate") return std::nullopt;
+  const std::string location = fmt::format("{}:{}", path, scale->source().begin.line);
+  probe->erase("scale");
+  return location;
+}
+
+}  // namespace
+
+SceneFile readSceneFile(const std::string& path) {
+  toml::table table = parseToml(path);
+  const std::optional<std::string> plateScale = takePlateScale(path, table);
+  const Section root(path, table,
+                     {"model", "camera", "probe", "lighting", "light", "source", "render", "output",
+                      "composite", "surroundings"});
+  SceneFile scene;
+  scene.path = path;
+  scene.plateScale = plateScale;
+  forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
+  if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
+  for (const char* section : {"camera", "probe", "lighting", "render", "output"})
+    root.section(section).read(scene.settings);
+  readCamera(root.section("camera"), scene);
+  readProbeTurns(root.section("probe")["rotation_keys"], scene);
+  forEach(root["light"], [&](const Entry& e) {
+    for (Lamp& lamp : readLamps(e, scene.lightLists)) scene.lamps.push_back(std::move(lamp));
+  });
+  forEach(root["source"], [&](const Entry& e) {
+    for (SourceEntry& source : readSources(e, scene.lightLists))
+      scene.sources.push_back(std::move(source));
+  });
+  if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
+  if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));
+  return scene;
+}
+
+SceneFile openScene(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".toml") return readSceneFile(path);
+  if (extension != ".gltf" && extension != ".glb" && !beginsAsGltf(path))
+    throwInput("{}: not a scene; give a scene file (.toml) or a model (.gltf, .glb)", path);
+  SceneFile scene;
+  scene.path = path;
+  scene.models.push_back({path, {}, {}});
+  return scene;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables [[light]] of a scene file.
+#pragma once
+
+#include "front/toml_section.h"
+#include "scene/lamp.h"
+
+namespace chromeball {
+
+// Reads one table: a lamp, or the lamps of a list (lighting/light_list.h), whose path is added to
+// `files`. Throws InputError.
+std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files);
+
+}  // namespace chromeball

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables [[source]] of a scene file: polygons of the probe that become sources of their own.
+#pragma once
+
+#include "front/scene_file.h"
+#include "front/toml_section.h"
+
+namespace chromeball {
+
+// Reads one table: a polygon, or the polygons of a file (polygon_file.h), whose path is added to
+// `files`. Throws InputError.
+std::vector<SourceEntry> readSources(const Entry& entry, std::vector<std::string>& files);
+
+}  // namespace chromeball

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frames of an animation.
+#pragma once
+
+#include <vector>
+
+#include "front/scene_file.h"
+
+namespace chromeball {
+
+// A frame is a still, with settings that say when it is and where the camera has turned to.
+struct SequenceFrame {
+  int number;
+  SceneFile scene;  // with the frame's number in the names of output files
+  Settings given;   // over the scene's, as for planJob()
+};
+
+// The frames that `--frames` names, or that of them which `--frame` names. Frame k is at k / fps
+// seconds. The camera turns by (k - first) / (last + step - first) of `orbit`, so that a last turn
+// of the same size would close a circle.
+class Sequence {
+ public:
+  // Throws InputError.
+  Sequence(const SceneFile& scene, const Settings& given);
+
+  const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
+  SequenceFrame frame(int number) const;                        // throws InputError
+
+ private:
+  const SceneFile& scene_;
+  const Settings& given_;
+  int first_ = 0, end_ = 1;  // the end: the frame after the last
+  std::vector<int> numbers_;
+};
+
+// Replaces the last row of # by the number, with at least as many digits.
+std::string withNumber(const std::string& pattern, int number);
+
+}  // namespace chromeball

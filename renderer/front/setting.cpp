@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "front/setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/printable.h"
+#include "base/suggest.h"
+#include "front/arguments.h"
+
+namespace chromeball {
+namespace {
+
+using Type = SettingType;
+
+std::string describeRange(const Range& range, bool whole) {
+  const auto number = [](double x) {
+    return x == std::floor(x) && std::abs(x) < 1e15 ? fmt::format("{:.0f}", x)
+                                                    : fmt::format("{:g}", x);
+  };
+  const bool hasMin = std::isfinite(range.min), hasMax = std::isfinite(range.max);
+  const std::string kind = whole ? "a whole number" : hasMax ? "a number" : "a finite number";
+  if (!hasMin && !hasMax) return kind;
+  if (!hasMax)
+    return kind + (range.excludesMin ? " above " + number(range.min)
+                                     : ", " + number(range.min) + " or more");
+  if (range.excludesMin && !range.excludesMax)
+    return fmt::format("{} above {}, at most {}", kind, number(range.min), number(range.max));
+  return fmt::format("{} {} {} {} {}", kind, range.excludesMin ? "between" : "from",
+                     number(range.min), range.excludesMin ? "and" : "to", number(range.max));
+}
+
+template <class Number>
+bool parseWhole(std::string_view text, Number& number) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+[[noreturn]] void refuse(const Setting& setting, std::string_view text,
+                         const std::string& location) {
+  throwInput("{}: `{}` is not {}", location, printableName(text), expected(setting));
+}
+
+void checkChoice(const Setting& setting, const std::string& name, const std::string& location) {
+  const std::vector<std::string_view> known = setting.choices();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throwInput("{}: `{}` is not known; {}", location, printableName(name), didYouMean(name, known));
+}
+
+// Splits words at commas; each word may contain several names.
+std::vector<std::string> split(const std::vector<std::string>& words) {
+  std::vector<std::string> names;
+  for (const std::string& word : words)
+    for (size_t begin = 0; begin <= word.size();) {
+      const size_t end = std::min(word.find(',', begin), word.size());
+      if (end > begin) names.push_back(word.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  return names;
+}
+
+double parseNumber(const Setting& setting, std::string text, const std::string& location) {
+  if (setting.type == Type::Factor && text == "off") return 0;
+  const std::string given = text;
+  if (setting.unit == "percent" && text.ends_with('%')) text.pop_back();
+  double number = 0;
+  if (!parseWhole(text, number)) refuse(setting, given, location);
+  return number;
+}
+
+// With commas between; an empty one is refused.
+std::vector<double> parseList(const Setting& setting, const std::string& text,
+                              const std::string& location) {
+  std::vector<double> numbers;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    if (!parseWhole(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
+      refuse(setting, text, location);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+// One of several numbers.
+std::string expectedElement(Setting setting) {
+  setting.type = Type::Number;
+  return expected(setting);
+}
+
+void checkNumbers(const Setting& setting, const SettingValue& value, const std::string& location) {
+  const auto& numbers = std::get<std::vector<double>>(value);
+  if (std::ranges::count(setting.counts, numbers.size()) == 0)
+    refuse(setting, toText(value), location);
+  for (const double x : numbers)
+    if (!(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
+      throwInput("{}: `{}` is not {}", location, x, expectedElement(setting));
+}
+
+}  // namespace
+
+std::string Setting::name() const {
+  if (key.empty()) return std::string(option);
+  return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
+}
+
+std::string expected(const Setting& s) {
+  const std::string unit = s.unit.empty() ? "" : fmt::format(" ({})", s.unit);
+  switch (s.type) {
+    case Type::Flag:
+      return "true or false";
+    case Type::Integer:
+      return describeRange(s.range, true) + unit;
+    case Type::Number:
+      return describeRange(s.range, false) + unit;
+    case Type::Factor:
+      return "\"off\" or a factor, 0 or more";
+    case Type::Choice:
+      return fmt::format("one of {}", fmt::join(s.choices(), ", "));
+    case Type::Choices:
+      return fmt::format("one or several of {}", fmt::join(s.choices(), ", "));
+    case Type::Name:
+      return "a string";
+    case Type::File:
+    case Type::Files:
+      return "a file name";
+    case Type::Size:
+      return "[width, height]";
+    case Type::Numbers:
+    case Type::Compound:
+      break;
+  }
+  return std::string(s.form);
+}
+
+SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,
+                          const std::string& location) {
+  SettingValue value;
+  const std::string text = words.empty() ? "" : words.back();
+  switch (setting.type) {
+    case Type::Flag:
+      if (!text.empty() && text != "true" && text != "false") refuse(setting, text, location);
+      value = text != "false";
+      break;
+    case Type::Integer: {
+      uint64_t number = 0;
+      if (!parseWhole(text, number)) refuse(setting, text, location);
+      value = number;
+      break;
+    }
+    case Type::Number:
+    case Type::Factor:
+      value = parseNumber(setting, text, location);
+      break;
+    case Type::Numbers:
+      value = parseList(setting, text, location);
+      break;
+    case Type::Choices:
+      value = split(words);
+      break;
+    case Type::Files:
+      value = words;
+      break;
+    case Type::Size:
+      value = parseSize(text, location);
+      break;
+    default:
+      value = text;
+  }
+  checkSetting(setting, value, location);
+  return value;
+}
+
+void checkSetting(const Setting& setting, const SettingValue& value, const std::string& location) {
+  const auto refuseNumber = [&](auto x) { refuse(setting, fmt::format("{}", x), location); };
+  const auto requireType = [&](bool matches) {
+    if (!matches) refuse(setting, toText(value), location);
+  };
+  switch (setting.type) {
+    case Type::Flag:
+      return requireType(std::holds_alternative<bool>(value));
+    case Type::Integer:
+      requireType(std::holds_alternative<uint64_t>(value));
+      if (const uint64_t x = std::get<uint64_t>(value); !setting.range.contains(double(x)))
+        refuseNumber(x);
+      return;
+    case Type::Number:
+    case Type::Factor:
+      requireType(std::holds_alternative<double>(value));
+      if (const double x = std::get<double>(value);
+          !(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
+        refuseNumber(x);
+      return;
+    case Type::Numbers:
+      requireType(std::holds_alternative<std::vector<double>>(value));
+      return checkNumbers(setting, value, location);
+    case Type::Choice:
+      requireType(std::holds_alternative<std::string>(value));
+      return checkChoice(setting, std::get<std::string>(value), location);
+    case Type::Choices:
+      requireType(std::holds_alternative<std::vector<std::string>>(value));
+      for (const std::string& name : std::get<std::vector<std::string>>(value))
+        checkChoice(setting, name, location);
+      return;
+    case Type::Files:
+      return requireType(std::holds_alternative<std::vector<std::string>>(value));
+    case Type::Name:
+    case Type::File:
+      requireType(std::holds_alternative<std::string>(value));
+      if (std::get<std::string>(value).empty()) throwInput("{}: is empty", location);
+      return;
+    case Type::Size:
+      return requireType(std::holds_alternative<ImageSize>(value));
+    case Type::Compound:
+      throwInput("{}: `{}` belongs into a scene file", location, setting.name());
+  }
+}
+
+std::string toText(const SettingValue& value) {
+  struct {
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(uint64_t number) const { return fmt::format("{}", number); }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::vector<double>& numbers) const {
+      return fmt::format("{}", fmt::join(numbers, ","));
+    }
+    std::string operator()(const std::string& text) const { return text; }
+    std::string operator()(const std::vector<std::string>& names) const {
+      return fmt::format("{}", fmt::join(names, ","));
+    }
+    std::string operator()(const ImageSize& size) const {
+      return fmt::format("{}x{}", size.width, size.height);
+    }
+  } format;
+  return std::visit(format, value);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "front/toml_section.h"
+
+#include <cfloat>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/printable.h"
+#include "front/setting_table.h"
+#include "front/toml_keys.h"
+
+namespace chromeball {
+namespace {
+
+constexpr size_t kMaxFileBytes = size_t(4) << 20;
+
+std::string describe(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", printableName(text->get()));
+  if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
+  if (node.is_table()) return "a table";
+  if (node.is_boolean()) return "a boolean";
+  return "a date or time";
+}
+
+// Describes valid numbers of the setting.
+std::string expectedNumber(Setting setting, const Range& range) {
+  if (setting.type == SettingType::Compound || setting.type == SettingType::Numbers)
+    setting.type = SettingType::Number;
+  setting.range = range;
+  return expected(setting);
+}
+
+}  // namespace
+
+void Entry::mustBe(std::string_view what) const {
+  failAt(location(), "`{}` must be {}, not {}", key, what, describe(*node));
+}
+
+std::string Entry::text() const {
+  if (!node->is_string() || node->as_string()->get().empty()) mustBe("a string");
+  const std::string& text = node->as_string()->get();
+  if (text.find('\0') != std::string::npos)  // it would end a file name
+    mustBe("a string without U+0000");
+  return text;
+}
+
+std::string Entry::choice() const {
+  const std::string name = text();
+  checkSetting(*setting,
+               setting->type == SettingType::Choices ? SettingValue(std::vector<std::string>{name})
+                                                     : SettingValue(name),
+               fmt::format("{}: `{}`", location(), key));
+  return name;
+}
+
+bool Entry::flag() const {
+  if (!node->is_boolean()) mustBe(expected(*setting));
+  return node->as_boolean()->get();
+}
+
+uint64_t Entry::integer() const {
+  const auto* number = node->as_integer();
+  if (!number || number->get() < 0 || !setting->range.contains(double(number->get()))) {
+    Setting whole = *setting;
+    whole.type = SettingType::Integer;
+    mustBe(expected(whole));
+  }
+  return uint64_t(number->get());
+}
+
+double Entry::number() const { return number(setting->range); }
+
+double Entry::number(const Range& range) const {
+  const auto number = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!number || !(std::abs(*number) <= FLT_MAX) || !range.contains(*number))
+    mustBe(expectedNumber(*setting, range));
+  return *number;
+}
+
+std::vector<double> Entry::numbers() const {
+  std::vector<double> all;
+  forEach(*this, [&](const Entry& e) { all.push_back(e.number()); });
+  if (std::ranges::count(setting->counts, all.size()) == 0) mustBe(expected(*setting));
+  return all;
+}
+
+vec3 Entry::vector() const { return vec3(point()); }
+
+glm::dvec3 Entry::point() const {
+  if (!isArrayOf(3)) mustBe("three numbers");
+  return {element(0).number(), element(1).number(), element(2).number()};
+}
+
+SettingValue Entry::value() const {
+  switch (setting->type) {
+    case SettingType::Flag:
+      return flag();
+    case SettingType::Integer:
+      return integer();
+    case SettingType::Number:
+      return number();
+    case SettingType::Factor:
+      return node->is_string() && text() == "off" ? 0.0 : number();
+    case SettingType::Numbers:
+      return numbers();
+    case SettingType::Choice:
+      return choice();
+    case SettingType::Choices: {
+      std::vector<std::string> names;
+      forEach(*this, [&](const Entry& e) { names.push_back(e.choice()); });
+      return names;
+    }
+    case SettingType::Name:
+      return text();
+    case SettingType::File:
+      return existingFile(*this);
+    case SettingType::Files: {
+      std::vector<std::string> paths;
+      forEach(*this, [&](const Entry& e) { paths.push_back(resolvedPath(e)); });
+      return paths;
+    }
+    case SettingType::Size:
+      if (!isArrayOf(2)) mustBe(expected(*setting));
+      return ImageSize{int(element(0).integer()), int(element(1).integer())};
+    case SettingType::Compound:
+      break;
+  }
+  throw std::logic_error("a compound setting has its own reader: " + setting->name());
+}
+
+Section::Section(const std::string& file, std::string section, const toml::table& table)
+    : file_(file), name_(std::move(section)), table_(table) {
+  checkKeys(keysOf(name_));
+}
+
+Section::Section(const std::string& file, const toml::table& table,
+                 const std::vector<std::string_view>& keys)
+    : file_(file), table_(table) {
+  checkKeys(keys);
+}
+
+void Section::checkKeys(const std::vector<std::string_view>& known) const {
+  for (const auto& [key, node] : table_)
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
+             printableName(key.str()), name_.empty() ? "" : " in " + heading(),
+             didYouMean(key.str(), known));
+}
+
+Entry Section::required(std::string_view key) const {
+  const Entry entry = (*this)[key];
+  if (!entry)
+    failAt(location(), "{} has no `{}`{}", heading(), key,
+           entry.setting->choices ? ": " + expected(*entry.setting) : "");
+  return entry;
+}
+
+std::string Section::heading() const {
+  for (const SettingSection& section : settingSections())
+    if (section.name == name_ && section.heading.starts_with('['))
+      return std::string(section.heading);
+  return "[[" + name_ + "]]";  // [[model]]
+}
+
+Section Section::section(std::string_view key) const {
+  static const toml::table kEmpty;
+  const Entry entry = (*this)[key];
+  if (entry && !entry.node->is_table()) entry.mustBe("a table");
+  return Section(file_, std::string(key), entry ? *entry.node->as_table() : kEmpty);
+}
+
+void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_view owner) const {
+  for (const auto& [key, node] : table_)
+    if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
+      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
+             owner, printableName(key.str()), fmt::join(keys, ", "));
+}
+
+void Section::read(Settings& settings) const {
+  for (const Setting& setting : settingTable())
+    if (setting.section == name_ && setting.type != SettingType::Compound)
+      if (const Entry entry = (*this)[setting.key])
+        settings.set(setting.name(), entry.value(), entry.location());
+}
+
+std::string resolvedPath(const Entry& entry) {
+  const auto folder = std::filesystem::path(entry.file).parent_path();
+  return (folder / entry.text()).lexically_normal().string();
+}
+
+std::string existingFile(const Entry& entry, std::string_view relativeTo) {
+  const std::string path = resolvedPath(entry);
+  try {
+    checkReadable(path);
+  } catch (const InputError& error) {
+    failAt(entry.location(), "`{}`: {} (paths are relative to {})", entry.key, error.what(),
+           relativeTo);
+  }
+  return path;
+}
+
+toml::table parseToml(const std::string& path) {
+  checkReadable(path);
+  if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
+    throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
+  const std::vector<uint8_t> bytes = readFile(path);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  checkKeyDepth(text, path);
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
+           error.description());
+  }
+}
+
+}  // namespace chromeball

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parts/checkpoint.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "image/io/exr_state.h"
+#include "image/io/write_exr.h"
+#include "session/develop_image.h"
+#include "session/job_description.h"
+#include "session/job_report.h"
+
+namespace chromeball {
+
+JobControl::JobControl(const RenderDescription& job, const LoadedScene& loaded,
+                       std::function<void(const RenderState&)> onPass, std::vector<Viewer*> viewers)
+    : job_(job),
+      loaded_(loaded),
+      onPass_(std::move(onPass)),
+      path_(job.run.checkpoint),
+      viewers_(std::move(viewers)),
+      images_(job.run.writeEvery),
+      checkpoints_(path_ ? std::optional(job.run.checkpointEvery) : std::nullopt) {
+  if (!path_) return;
+  path_ = std::filesystem::weakly_canonical(std::filesystem::absolute(*path_)).string();  // links
+  lock_.emplace(*path_);
+  part_.identity = renderIdentity(job, loaded);
+  if (!std::filesystem::exists(*path_)) return;
+  if (!job.run.resumes)
+    throw InputError(fmt::format("{}: exists; continue that render, or remove the file", *path_),
+                     Remedy{"resume", {}});
+  const std::string stored = readPartHeader(*path_).identity;
+  if (stored != part_.identity)
+    throwInput("{}: is a checkpoint of another render: {}", *path_,
+               differenceOf(stored, part_.identity));
+}
+
+bool JobControl::restore(RenderState& state) {
+  if (!path_ || !std::filesystem::exists(*path_)) return false;
+  readExrState(*path_, [&](Archive& a) {
+    RenderPart part;  // has been compared
+    part.archive(a);
+    part.plan.archiveImages(a);
+    state.archive(a);
+  });
+  noteSamples(state);
+  return true;
+}
+
+void JobControl::noteSamples(const RenderState& restored) {
+  const uint32_t pass = restored.finished.empty() ? 0 : restored.wanted;  // in progress
+  const uint32_t samples = std::max(restored.done, pass), asked = job_.settings.samples;
+  if (samples > asked)
+    messages_.push_back({Message::Kind::Note,
+                         fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
+                                     "image keeps them",
+                                     *path_, samples, asked)});
+}
+
+void JobControl::endPass(const RenderState& state) {
+  if (onPass_) onPass_(state);
+  publish(state);
+}
+
+bool JobControl::wantsPause(const RenderState& state) const {
+  return filesAreDue(state) || viewIsDue() || checkpointIsDue(state);
+}
+
+void JobControl::pause(RenderState& state) {
+  publish(state);
+  if (checkpointIsDue(state)) writeCheckpoint(state);
+}
+
+void JobControl::end(RenderState& state) {
+  if (path_) writeCheckpoint(state);
+}
+
+bool JobControl::filesAreDue(const RenderState& state) const {
+  if (state.result.samples == 0) return false;  // some pixels may have none
+  return images_.isDue() || std::ranges::any_of(viewers_, &Viewer::wantsFiles);
+}
+
+bool JobControl::viewIsDue() const {
+  return views_.isDue() && std::ranges::any_of(viewers_, &Viewer::wantsImage);
+}
+
+bool JobControl::checkpointIsDue(const RenderState& state) const {
+  return checkpoints_.isDue() && state.canBeStored();
+}
+
+void JobControl::publish(const RenderState& state) {
+  if (filesAreDue(state)) writeFiles(state);
+  if (viewIsDue()) show(state);
+}
+
+void JobControl::writeFiles(const RenderState& state) {
+  const OutputImage image = imageOf(state).image;
+  try {
+    writeOutputs(job_, image);
+  } catch (const std::runtime_error& error) {  // a long render does not end for want of a file
+    const std::string text = fmt::format("while rendering: {}", error.what());
+    if (messages_.empty() || messages_.back().text != text)
+      messages_.push_back({Message::Kind::Warning, text});
+  }
+  images_.restart();
+  for (Viewer* viewer : viewers_) viewer->wroteFiles();
+}
+
+void JobControl::show(const RenderState& state) {
+  constexpr double kMostOfTime = 0.1, kLeastInterval = 0.2;  // seconds
+  const Stopwatch watch;
+  const auto shown = std::make_shared<const ImageSoFar>(imageSoFar(imageOf(state), state.result));
+  for (Viewer* viewer : viewers_)
+    if (viewer->wantsImage()) viewer->show(shown);
+  views_.restart(std::max(kLeastInterval, watch.seconds() / kMostOfTime));
+}
+
+FinishedImage JobControl::imageOf(const RenderState& state) const {
+  FinishPlan plan = finishPlan(job_, loaded_, state.result);
+  plan.settings.denoise = false;
+  const std::atomic<bool> never = false;
+  FinishedImage finished = finish(
+      plan, state.result, [](double) {}, never);
+  finished.image.metadata =
+      imageMetadata(job_, loaded_, finished, state.result, rendering_.seconds());
+  return finished;
+}
+
+void JobControl::writeCheckpoint(RenderState& state) {
+  OutputImage image = imageOf(state).image;
+  part_.plan = finishPlan(job_, loaded_, state.result);
+  image.state = [&](Archive& a) {
+    part_.archive(a);
+    part_.plan.archiveImages(a);
+    state.archive(a);
+  };
+  writeExr(*path_, image);
+  checkpoints_.restart();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images and checkpoints that are written while a render runs, so that it can be looked at and
+// continued.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/file_lock.h"
+#include "base/message.h"
+#include "base/stopwatch.h"
+#include "integrate/render_state.h"
+#include "parts/render_part.h"
+#include "session/run_job.h"
+#include "session/viewer.h"
+
+namespace chromeball {
+
+// Calls something again and again, so many seconds after its last call has ended.
+class Interval {
+ public:
+  explicit Interval(std::optional<double> seconds) : seconds_(seconds) {}  // nullopt: never
+  bool isDue() const { return seconds_ && watch_.seconds() >= *seconds_; }
+  void restart() { watch_ = Stopwatch(); }
+  void restart(double seconds) { seconds_ = seconds, restart(); }
+
+ private:
+  std::optional<double> seconds_;
+  Stopwatch watch_;
+};
+
+// Writes the job's images every `write-every` seconds, without denoising, and its checkpoint every
+// `checkpoint-every` seconds and at the end; shows the image to those who watch.
+class JobControl : public RenderControl {
+ public:
+  // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
+  // or if there is a checkpoint of another job, or one that the job is not to resume.
+  // `onPass` is called after each pass. The viewers must outlive this.
+  JobControl(const RenderDescription& job, const LoadedScene& loaded,
+             std::function<void(const RenderState&)> onPass = {},
+             std::vector<Viewer*> viewers = {});
+
+  // Throws InputError for a damaged checkpoint.
+  bool restore(RenderState& state) override;
+  void endPass(const RenderState& state) override;
+  bool wantsPause(const RenderState& state) const override;
+  void pause(RenderState& state) override;
+  void end(RenderState& state) override;
+
+  const Messages& messages() const { return messages_; }
+
+ private:
+  bool filesAreDue(const RenderState& state) const;
+  bool viewIsDue() const;
+  bool checkpointIsDue(const RenderState& state) const;
+  void publish(const RenderState& state);
+  FinishedImage imageOf(const RenderState& state) const;
+  void writeFiles(const RenderState& state);
+  void show(const RenderState& state);
+  void noteSamples(const RenderState& restored);
+  void writeCheckpoint(RenderState& state);
+
+  const RenderDescription& job_;
+  const LoadedScene& loaded_;
+  std::function<void(const RenderState&)> onPass_;
+  std::optional<std::string> path_;  // of the checkpoint
+  std::optional<FileLock> lock_;
+  RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded
+  std::vector<Viewer*> viewers_;
+  Interval images_, checkpoints_, views_{0};
+  Stopwatch rendering_;
+  Messages messages_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The irradiance cache of a render, and the file that keeps it for later ones (--cache).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "integrate/irradiance_cache/irradiance_cache.h"
+#include "session/load_scene.h"
+
+namespace chromeball {
+
+class CacheFile {
+ public:
+  // For a job with RenderSettings::cacheError. Reads the job's file if it has one that exists.
+  // Throws InputError if that is damaged, or of another scene or light; and as checkReplaceable().
+  CacheFile(const RenderDescription& job, const LoadedScene& loaded);
+
+  IrradianceCache& cache() { return cache_; }
+
+  // Replaces the file, if the job has one and there are new records. Throws RunError.
+  void write();
+
+ private:
+  void read();
+
+  IrradianceCache cache_;
+  std::optional<std::string> path_;
+  std::string identity_;  // of scene and light
+  size_t inFile_ = 0;     // records
+};
+
+}  // namespace chromeball

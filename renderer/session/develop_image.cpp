@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/develop_image.h"
+
+#include <fmt/format.h>
+
+#include "base/file.h"
+
+namespace chromeball {
+namespace {
+
+const Image* findDepth(const OutputImage& image) {
+  for (const Layer& layer : image.layers)
+    if (layer.name == "depth") return &layer.image;
+  return nullptr;
+}
+
+Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
+
+// A finished render is written even if its camera does not allow what was to be developed.
+DevelopSettings possible(DevelopSettings settings, const ViewFrame& frame, const Image* depth,
+                         Messages& messages) {
+  if (settings.needsFov() && !(frame.fov > 0)) {
+    messages.push_back(
+        warning("develop: vignette, glare and depth-blur are left out: the camera has no field of "
+                "view"));
+    settings.lens.reset(), settings.glare = false, settings.vignette = 0;
+  }
+  if (settings.lens && !depth) {
+    messages.push_back(warning("develop: depth-blur is left out: the image has no layer `depth`"));
+    settings.lens.reset();
+  }
+  return settings;
+}
+
+OutputImage developed(const RenderDescription& job, const OutputImage& image, Messages& messages) {
+  const Layer& color = image.layers.front();
+  OutputImage result{{color}, image.metadata};
+  const Image* depth = findDepth(image);
+  const ViewFrame frame = viewFrame(color.image, image.placement, image.metadata);
+  const DevelopSettings settings = possible(job.output.develop, frame, depth, messages);
+  for (Message& message : inWords(develop(result.layers.front().image, settings, depth, frame)))
+    messages.push_back(std::move(message));
+  return result;
+}
+
+}  // namespace
+
+ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placement,
+                    const Metadata& metadata) {
+  ViewFrame frame{0, 0, image.width, image.height, 0};
+  if (placement) frame = {placement->x, placement->y, placement->width, placement->height, 0};
+  if (const auto found = metadata.find("cameraFov"); found != metadata.end()) {
+    const float* number = std::get_if<float>(&found->second);
+    const int* whole = std::get_if<int>(&found->second);
+    const double fov = number ? double(*number) : whole ? *whole : 0;
+    if (fov > 0 && fov < 180) frame.fov = fov;
+  }
+  return frame;
+}
+
+Messages inWords(const DevelopReport& report) {
+  Messages messages;
+  if (report.invalid > 0)
+    messages.push_back(
+        warning(fmt::format("develop: {} pixel{} NaN or infinite; as 0, they do not spread",
+                            report.invalid, report.invalid == 1 ? " is" : "s are")));
+  if (report.limited > 0)
+    messages.push_back(
+        warning(fmt::format("develop: the depth blur of {} pixels is limited to a radius of {} "
+                            "pixels",
+                            report.limited, kMaxConfusionRadius)));
+  return messages;
+}
+
+Messages writeOutputs(const RenderDescription& job, const OutputImage& image) {
+  Messages messages;
+  std::optional<OutputImage> shown;
+  for (const std::string& path : job.output.files) {
+    const bool isShown = lowerExtension(path) == ".png" && !job.output.develop.isEmpty();
+    if (isShown && !shown) shown = developed(job, image, messages);
+    const Messages lost = writeImage(path, isShown ? *shown : image, job.output.display);
+    messages.insert(messages.end(), lost.begin(), lost.end());
+  }
+  return messages;
+}
+
+}  // namespace chromeball

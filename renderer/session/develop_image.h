@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Develops the image of a render or of a file (image/develop/develop.h).
+#pragma once
+
+#include "base/message.h"
+#include "description/render_description.h"
+#include "image/develop/develop.h"
+#include "image/io/write_image.h"
+
+namespace chromeball {
+
+// How an image with this metadata lies in the view of its camera: `cameraFov` is the vertical field
+// of view in degrees, 0 of an orthographic camera.
+ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placement,
+                    const Metadata& metadata);
+
+// Warnings of invalid pixels and of discs that were made smaller.
+Messages inWords(const DevelopReport& report);
+
+// Writes the outputs of a job: .png developed as job.output.develop says, others as rendered.
+// Returns warnings; what the image has no data for (a field of view, depth) is left out with one of
+// them. Throws as writeImage() does.
+Messages writeOutputs(const RenderDescription& job, const OutputImage& image);
+
+}  // namespace chromeball

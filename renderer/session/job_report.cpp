@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/job_report.h"
+
+#include <cmath>
+
+#include "base/json.h"
+#include "base/parallel.h"
+#include "session/id_manifest.h"
+#include "session/job_description.h"
+#include "session/machine.h"
+#include "session/memory_estimate.h"
+
+namespace chromeball {
+namespace {
+
+using nlohmann::json;
+
+// What was stated before the render, and the peak since the process began.
+json describe(const MemoryEstimate& stated) {
+  return {
+      {"process", stated.process},         {"images", stated.images}, {"textures", stated.textures},
+      {"geometry", stated.geometry},       {"probe", stated.probe},   {"stated_peak", stated.peak},
+      {"measured_peak", peakMemoryBytes()}};
+}
+
+json describe(const CompositeReport& report) {
+  json j = {
+      {"composite", {{"objects", report.coverage}, {"darker_than_black", report.darkerThanBlack}}}};
+  if (const auto& r = report.reflectance)
+    j["reflectance"] = {{"pixels", r->pixels},
+                        {"clamped", r->clampedFraction},
+                        {"exposure_ratio", r->exposureRatio},
+                        {"last_change", r->lastChange}};
+  return j;
+}
+
+json describe(const RenderResult& result) {
+  const DepthCut& cut = result.depthCut;
+  return {
+      {"samples_per_pixel", result.samples},
+      {"adaptive", result.adaptive},
+      {"guided", result.guidedRegions > 0},
+      {"caustics_guided", result.causticFraction > 0},
+      {"width", result.film.width()},
+      {"height", result.film.height()},
+      {"rays",
+       {{"camera", result.rays.camera},
+        {"shadow", result.rays.shadow},
+        {"bounce", result.rays.bounce}}},
+      {"invalid_samples", result.invalid.total()},
+      {"invalid",
+       {{"nan", result.invalid.of(Defect::Nan)},
+        {"infinite", result.invalid.of(Defect::Infinite)},
+        {"negative", result.invalid.of(Defect::Negative)}}},
+      {"clamped",
+       {{"samples", result.clamped.count}, {"light_removed", result.clamped.fractionRemoved()}}},
+      {"depth_cut",
+       {{"max_depth", cut.fraction(cut.byDepth)},
+        {"max_transmission_depth", cut.fraction(cut.byTransmission)}}},
+      {"interrupted", result.interrupted},
+  };
+}
+
+}  // namespace
+
+json statistics(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,
+                const PhaseSeconds& seconds) {
+  json j = {
+      {"version", CHROMEBALL_VERSION},
+      {"command", commandLine()},
+      {"job", describeJob(job, loaded)},
+      {"scene", job.path},
+      {"strategy", resolveStrategy(job.lighting.strategy.name)},
+      {"seed", job.settings.seed},
+      {"max_depth", job.settings.maxDepth},
+      {"max_transmission_depth", job.settings.maxTransmissionDepth},
+      {"threads", threadCount()},
+      {"seconds",
+       {{"load", seconds.load},
+        {"build", seconds.build},
+        {"prepare", seconds.prepare},
+        {"render", seconds.render},
+        {"write", seconds.write}}},
+      {"noise", result.noise.noise},  // NaN becomes null
+      {"noise_median", result.noise.median},
+      {"noise_p95", result.noise.p95},
+      {"triangles", loaded.scene.triangleCount()},
+      {"scene_bytes", loaded.scene.byteCount()},
+      {"texture_bytes", loaded.scene.texelByteCount()},
+      {"texture_file_bytes", loaded.scene.texelFileByteCount()},
+      {"peak_memory_bytes", peakMemoryBytes()},
+      {"memory", describe(estimateMemory(job, loaded))},
+  };
+  j.update(describe(result.render));
+  if (const auto& d = result.denoised)
+    j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
+  if (result.composite) j.update(describe(*result.composite));
+  if (const auto& found = loaded.plateScale)
+    j["probe_scale"] = {{"scale", {found->scale.x, found->scale.y, found->scale.z}},
+                        {"scatter", found->scatter},
+                        {"pixels", found->pixels}};
+  return j;
+}
+
+Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render) {
+  const RayCounts& rays = render.rays;
+  Metadata metadata;
+  metadata["samples"] = int(render.samples);
+  metadata["rays"] = std::to_string(rays.camera + rays.shadow + rays.bounce);
+  metadata["noise"] = float(finished.noise.noise);
+  metadata["noise_median"] = float(finished.noise.median);
+  metadata["noise_p95"] = float(finished.noise.p95);
+  if (finished.denoised && std::isfinite(finished.denoised->noise))
+    metadata["denoised_noise"] = float(finished.denoised->noise);
+  if (render.clamped.kept + render.clamped.removed > 0)  // else nothing was to be clamped
+    metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
+  return metadata;
+}
+
+Metadata imageMetadata(const RenderDescription& job, const LoadedScene& loaded,
+                       const FinishedImage& finished, const RenderResult& render, double seconds) {
+  Metadata metadata = toMetadata(describeJob(job, loaded));
+  metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
+  metadata["command"] = commandLine();
+  metadata["seconds"] = float(seconds);
+  metadata.merge(sampleMetadata(finished, render));
+  if (job.settings.clamp) metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
+  metadata.merge(idManifests(finished.image, loaded.scene));
+  return metadata;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The statistics of a render, and the attributes of its EXR file.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "session/run_job.h"
+
+namespace chromeball {
+
+// Seconds that the phases of a job take.
+struct PhaseSeconds {
+  double load = 0, build = 0, prepare = 0, render = 0, write = 0;
+};
+
+// The statistics of `chromeball render --stats`: the job (job_description.h), samples, rays,
+// seconds, noise, memory. Numbers that are unknown are null.
+nlohmann::json statistics(const RenderDescription& job, const LoadedScene& loaded,
+                          const JobResult& result, const PhaseSeconds& seconds);
+
+// The attributes of the EXR file: the job, and the noise, samples, rays and seconds of the render.
+Metadata imageMetadata(const RenderDescription& job, const LoadedScene& loaded,
+                       const FinishedImage& finished, const RenderResult& render, double seconds);
+
+// Those that depend on the samples.
+Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
+
+}  // namespace chromeball

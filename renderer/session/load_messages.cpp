@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/load_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/file.h"
+#include "session/memory_estimate.h"
+
+namespace chromeball {
+namespace {
+
+class Collector {
+ public:
+  void note(std::string text) { messages_.push_back({Message::Kind::Note, std::move(text)}); }
+  void warn(std::string text) { messages_.push_back({Message::Kind::Warning, std::move(text)}); }
+  void add(const Messages& more) { messages_.insert(messages_.end(), more.begin(), more.end()); }
+  Messages take() { return std::move(messages_); }
+
+ private:
+  Messages messages_;
+};
+
+bool hasBodies(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
+    return scene.materials[size_t(i.material)].isBody();
+  });
+}
+
+void addMemory(const RenderDescription& job, const LoadedScene& loaded, Collector& messages) {
+  constexpr double kMinBytes = 1e9;
+  if (const MemoryEstimate estimate = estimateMemory(job, loaded); estimate.peak > kMinBytes)
+    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.path, 1e-9 * estimate.peak,
+                              inWords(estimate)));
+}
+
+// Lamps of the scene file that are among the scene's lights.
+size_t ofSceneFile(const RenderDescription& job, const Scene& scene) {
+  if (scene.lights.empty()) return 0;  // left out (--light-from)
+  return size_t(
+      std::ranges::count_if(job.lamps, [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
+}
+
+void addLights(const RenderDescription& job, const Scene& scene, Collector& messages) {
+  const std::string& model = job.models.front().file;
+  if (scene.environment)
+    messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
+  else if (const size_t count = scene.lights.size() - ofSceneFile(job, scene))
+    messages.note(fmt::format("{}: no probe; lit by the model's {} light{}", model, count,
+                              count == 1 ? "" : "s"));
+}
+
+// `guide = "on"` where nothing can be guided.
+void addGuide(const RenderDescription& job, Collector& messages) {
+  if (job.settings.guiding != Guiding::On) return;
+  const std::string location = job.origins.of("render.guide");
+  if (job.settings.path().limitsKinds())
+    messages.note(fmt::format(
+        "{}: nothing is guided, since limits of depth by kind do not know guided bounces",
+        location));
+  else if (GuideTraining::samplesOf(job.settings) == 0)
+    messages.note(fmt::format("{}: nothing is guided with fewer than {} samples per pixel",
+                              location, GuideTraining::kMinSamples));
+}
+
+void addSources(const LoadedScene& loaded, Collector& messages) {
+  constexpr double kMaxUnevenness = 0.02;
+  if (!loaded.sources) return;
+  std::vector<PolygonSource> sources;
+  for (const PolygonLight& light : loaded.sources->lights) sources.push_back(light.source);
+  if (const double change = unevenness(sources); change > kMaxUnevenness)
+    messages.warn(fmt::format(
+        "[[source]]: the probe is uneven in the polygons; one constant radiance for each changes "
+        "irradiance by up to {:.2g}% of that on surfaces facing them; smaller polygons (`lights "
+        "--suggest` with a larger number) change it less",
+        100 * change));
+}
+
+void addProbe(const std::string& path, const LoadedProbe& probe, Collector& messages) {
+  for (const Message& message : probe.messages)
+    message.kind == Message::Kind::Note ? messages.note(message.text) : messages.warn(message.text);
+  for (const std::string& line : warnings(probe, path)) messages.warn(line);
+  if (!probe.detected) return;
+  const std::string mapping = mappingName(probe.mapping);
+  messages.note(fmt::format("{}: detected as {} {} probe because {}", path,
+                            mapping.starts_with('a') ? "an" : "a", mapping, probe.reason));
+}
+
+void addPlate(const std::string& path, Collector& messages) {
+  const std::string extension = lowerExtension(path);
+  const bool isLinear =
+      extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".pfm";
+  if (!isLinear) messages.note(fmt::format("{}: decoded from sRGB", path));
+}
+
+std::string plateScaleText(const CompositeEntry& composite, const PlateScale& found) {
+  const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
+  const double grey = luminance(glm::dvec3(assumed));
+  const vec2& range = composite.groundReflectanceRange;
+  return fmt::format(
+      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
+      "{:.3g}; "
+      "they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} times "
+      "that",
+      scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
+      grey / double(range.y), grey / double(range.x));
+}
+
+}  // namespace
+
+Messages loadMessages(const RenderDescription& job, const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  Collector messages;
+  for (const std::string& line : job.warnings) messages.warn(line);
+  if (job.composite) messages.add(job.composite->messages);
+  for (const std::string& line : loaded.modelWarnings) messages.warn(line);
+  for (const std::string& line : scene.notes) messages.note(line);
+  if (!scene.lights.empty() && hasBodies(scene))
+    messages.warn(
+        "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
+        "are in full shadow; light from emissive surfaces passes");
+  addMemory(job, loaded, messages);
+  if (const auto& probe = job.probe.file)
+    addProbe(*probe, loaded.loadedProbe, messages);
+  else
+    addLights(job, scene, messages);
+  addGuide(job, messages);
+  addSources(loaded, messages);
+  if (const auto& scale = loaded.plateScale)
+    messages.note(plateScaleText(job.composite->entry, *scale));
+  if (job.composite && job.composite->plateFile) addPlate(*job.composite->plateFile, messages);
+  return messages.take();
+}
+
+}  // namespace chromeball

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/load_scene.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/error.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/gltf/model_cache.h"
+#include "session/load_messages.h"
+#include "session/memory_estimate.h"
+#include "session/place_models.h"
+#include "session/prepare_composite.h"
+#include "session/scene_lighting.h"
+
+namespace chromeball {
+namespace {
+
+// Null unless the surroundings are a model.
+std::unique_ptr<const Room> loadRoom(const RenderDescription& job, const glm::dvec3& origin,
+                                     ModelCache& cache, std::vector<std::string>& files) {
+  const auto& surroundings = job.surroundings;
+  if (!surroundings || surroundings->shape.shape != Surroundings::Shape::Model) return nullptr;
+  GltfChoice choice = job.models.front().choice;
+  choice.animation.reset();
+  choice.variant.reset();
+  choice.environment = false;
+  choice.origin = origin;
+  choice.cache = &cache;
+  Scene model = loadGltf(
+      surroundings->shape.model, {}, [](const std::string&) {}, choice);
+  files.insert(files.end(), model.files.begin(), model.files.end());
+  return std::make_unique<const Room>(std::move(model), surroundings->relativeTo(origin).capture,
+                                      surroundings->shape.model);
+}
+
+std::optional<Surroundings> surroundingsOf(const RenderDescription& job, const glm::dvec3& origin) {
+  if (!job.surroundings) return {};
+  return job.surroundings->relativeTo(origin);
+}
+
+// Gives `scene` the meshes of an earlier one where they are equal and do not move: lamps.
+void shareMeshes(const Scene& earlier, Scene& scene) {
+  for (const Instance& instance : scene.instances) {
+    const size_t i = size_t(instance.mesh);
+    if (!instance.moves && i < earlier.meshes.size() &&
+        scene.meshes.shared(i) != earlier.meshes.shared(i) && scene.meshes[i] == earlier.meshes[i])
+      scene.meshes.share(i, earlier.meshes.shared(i));
+  }
+}
+
+// Whether rays see the same: materials are not animated, and new ones come with their instances.
+bool isSameWorld(const Scene& a, const Scene& b) {
+  return a.instances == b.instances && a.lights == b.lights && a.meshes == b.meshes;
+}
+
+void checkInside(const Scene& scene, Surroundings surroundings, const std::string& file) {
+  surroundings.grow(1e-4f);  // objects on the floor touch it
+  const auto check = [&](const vec3& p) {
+    if (!surroundings.contains(p))
+      throwInput("{}: the model must lie inside [surroundings]; it reaches to ({:g}, {:g}, {:g})",
+                 file, p.x, p.y, p.z);
+  };
+  for (const Instance& instance : scene.instances) {
+    const uint32_t vertices = uint32_t(scene.meshes[instance.mesh].positions.size());
+    for (const vec3& position : scene.meshes[instance.mesh].positions)
+      check(instance.point(position));
+    if (instance.motion)
+      for (const InstanceMotion::Key& key : instance.motion->keys)
+        for (uint32_t i = 0; i < vertices; ++i) check(key.point(i));
+  }
+}
+
+// The probe of the job's frame, if it has turned or is another file.
+void replaceProbe(RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
+  const auto& file = job.probe.file;
+  const bool isOther = file && *file != loaded.probeFile;
+  if (isOther) {
+    std::ranges::replace(loaded.files, loaded.probeFile, *file);
+    loaded.probeFile = *file;
+  }
+  if (isOther || !(loaded.probe.rotation() == job.probe.rotation)) {
+    loaded.loadedProbe = loadProbeOf(job, loaded.scene);
+    loaded.probe = probeOf(job, loaded.loadedProbe);
+    loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
+    change.lighting = true;
+  }
+}
+
+void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cache,
+                   FrameChange& change) {
+  PlacedModels models = placeModels(job, cache, &loaded.view);
+  if (job.surroundings && !loaded.room)
+    checkInside(models.scene, *surroundingsOf(job, models.origin), job.models.front().file);
+  loaded.view = models.view;
+  loaded.camera = models.camera;
+  loaded.modelWarnings = std::move(models.warnings);
+  if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
+  shareMeshes(loaded.scene, models.scene);
+  change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
+  if (change.geometry) loaded.scene = std::move(models.scene);
+  if (models.origin != loaded.origin) {
+    change.lighting = true;
+    loaded.origin = models.origin;
+    loaded.surroundings = surroundingsOf(job, loaded.origin);
+    std::vector<std::string> known;
+    loaded.room = loadRoom(job, loaded.origin, cache, known);
+  }
+}
+
+}  // namespace
+
+LoadedScene loadScene(RenderDescription& job, ModelCache* shared, const AutomaticView* view) {
+  ModelCache own;
+  ModelCache& cache = shared ? *shared : own;
+  if (job.run.textureMemory) cache.texels.memory = *job.run.textureMemory;
+  cache.texels.limit = memoryLimit(job);
+  PlacedModels models = placeModels(job, cache, view);
+  Scene& scene = models.scene;
+  std::vector<std::string> files = scene.files;
+  const auto& lists = job.lightLists;
+  files.insert(files.end(), lists.begin(), lists.end());
+  if (job.probe.file) files.push_back(*job.probe.file);
+  if (job.camera.file) files.push_back(*job.camera.file);
+  if (job.composite && job.composite->plateFile) files.push_back(*job.composite->plateFile);
+  std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
+  if (job.surroundings && !room)
+    checkInside(scene, *surroundingsOf(job, models.origin), job.models.front().file);
+  LoadedProbe loaded = loadProbeOf(job, scene);
+  Probe probe = probeOf(job, loaded);
+  std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
+  LoadedScene result{
+      std::move(scene),      models.camera,           models.view,
+      std::move(loaded),     std::move(probe),        surroundingsOf(job, models.origin),
+      std::move(room),       models.origin,           std::move(sources),
+      job.lighting.sunAngle, job.lighting.showLights, std::move(files)};
+  result.probeFile = job.probe.file.value_or("");
+  result.modelWarnings = std::move(models.warnings);
+  if (job.composite) {
+    prepareLocalScene(job, result);
+    scaleProbeByPlate(job, result);
+  }
+  checkMemory(job, result);
+  const Messages found = loadMessages(job, result);
+  result.messages.insert(result.messages.end(), found.begin(), found.end());
+  return result;
+}
+
+FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache) {
+  assert(!job.composite);
+  FrameChange change;
+  replaceProbe(job, loaded, change);
+  if (loaded.scene.isAnimated)
+    replaceModels(job, loaded, cache, change);
+  else
+    loaded.camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
+  checkMemory(job, loaded);
+  loaded.messages = loadMessages(job, loaded);
+  return change;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contents of a job's files, ready to be rendered.
+#pragma once
+
+#include "base/message.h"
+#include "composite/objects.h"
+#include "composite/plate_scale.h"
+#include "description/render_description.h"
+#include "lighting/strategy.h"
+#include "probe/load.h"
+#include "scene/projection.h"
+#include "scene/scene.h"
+#include "session/choose_camera.h"
+#include "session/scene_lighting.h"
+#include "trace/room.h"
+
+namespace chromeball {
+
+struct LoadedScene {
+  Scene scene;
+  Camera camera;            // the camera of the image
+  AutomaticView view;       // what the models decide of it
+  LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
+  Probe probe;              // black if only the scene's own lights are used
+  std::optional<Surroundings> surroundings;  // the model is inside
+  std::unique_ptr<const Room> room;          // null unless the surroundings are a model
+  glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
+  std::optional<ProbeSources> sources;       // polygons of the probe
+  std::optional<double> sunAngle;            // StrategyOptions::sunAngle
+  bool showLights;                           // StrategyOptions::showLights
+  std::vector<std::string> files;            // all that were read; no output may replace one
+  Messages messages;                       // of the job's settings, of the models and of the probe
+  std::string probeFile;                   // of these files; empty: none
+  std::vector<std::string> modelWarnings;  // of their files and their motion
+
+  // For composites; otherwise empty.
+  ObjectMask isObject;                     // the rest of the scene is the local scene
+  std::unique_ptr<Projection> projection;  // of the local scene's reflectance, where it is solved
+  std::optional<PlateScale> plateScale;    // by which the probe was scaled
+};
+
+// Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
+// camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
+// have decided; both may be null. Throws InputError.
+LoadedScene loadScene(RenderDescription& job, ModelCache* shared = nullptr,
+                      const AutomaticView* view = nullptr);
+
+struct FrameChange {
+  bool geometry = false;  // or lights of the scene
+  bool lighting = false;  // the probe, or its surroundings
+};
+
+// Replaces the camera, the probe if it has turned or is another file, and, where a model is
+// animated, what moves with it, for another frame of the same job. Not for composites; a probe that
+// turns must have a file.
+FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache);
+
+}  // namespace chromeball

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/memory_estimate.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "composite/render_composite.h"
+#include "image/io/texel_file.h"
+#include "session/image_memory.h"
+
+namespace chromeball {
+namespace {
+
+// Of Embree for a triangle, with its copy of the vertices; measured with grids of two triangles per
+// vertex, which is the ratio of closed surfaces.
+constexpr double kBuiltTriangle = 84, kBuildingTriangle = 116;
+// Of a texel: radiance as read and in the probe; the cumulative distribution.
+constexpr double kProbeTexel = 3 * sizeof(float), kTableTexel = sizeof(double);
+
+double triangleCountOfMeshes(const Scene& scene) {
+  double count = 0;
+  for (const Mesh& mesh : scene.meshes) count += double(mesh.triangles.size());
+  for (const Instance& instance : scene.instances)
+    if (instance.motion && !instance.motion->isRigid())
+      count += double(scene.meshes[size_t(instance.mesh)].triangles.size()) *
+               double(instance.motion->keys.size() - 1);
+  return count;
+}
+
+double bytesOfFiles(const Scene& scene) {
+  double bytes = 0;
+  for (const std::string& path : scene.files) {
+    std::error_code unreadable;
+    const auto size = std::filesystem::file_size(path, unreadable);
+    if (!unreadable) bytes += double(size);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+double imageBytes(const RenderDescription& job) {
+  const RenderSettings& s = job.settings;
+  const double composite = job.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
+  return imageBytes(s) + composite * s.width * s.height;
+}
+
+double memoryLimit(const RenderDescription& job) { return job.run.memory.value_or(memoryBudget()); }
+
+MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  const double texels = double(scene.texelByteCount());
+  const double meshes = double(scene.byteCount()) - texels;
+  const double triangles = triangleCountOfMeshes(scene);
+  const double mapTexels = double(loaded.probe.width()) * loaded.probe.height();
+  const double fileTexels = double(loaded.loadedProbe.fileWidth) * loaded.loadedProbe.fileHeight;
+  const double map = kProbeTexel * mapTexels;
+
+  MemoryEstimate e;
+  e.process = kProcessBytes;
+  e.images = imageBytes(job);
+  e.textures = texels;
+  if (const auto& file = scene.texelFile)
+    e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
+  const bool keepsFiles = job.run.isOfFrames && scene.isAnimated;
+  e.geometry = meshes + kBuiltTriangle * triangles + (keepsFiles ? bytesOfFiles(scene) : 0);
+  e.probe = map + kTableTexel * mapTexels;
+
+  const double always = e.process + e.textures + meshes;
+  const double readingModels = always + bytesOfFiles(scene);
+  const double readingProbe = always + map + kProbeTexel * std::max(mapTexels, fileTexels);
+  const double building = always + map + kBuildingTriangle * triangles;
+  const double rendering = e.process + e.textures + e.geometry + e.probe + e.images;
+  e.peak = std::max({readingModels, readingProbe, building, rendering});
+  return e;
+}
+
+std::string inWords(const MemoryEstimate& e) {
+  return fmt::format("images {:.2g} GB, textures {:.2g} GB, geometry {:.2g} GB, probe {:.2g} GB",
+                     1e-9 * e.images, 1e-9 * e.textures, 1e-9 * e.geometry, 1e-9 * e.probe);
+}
+
+void checkMemory(const RenderDescription& job, const LoadedScene& loaded) {
+  const MemoryEstimate estimate = estimateMemory(job, loaded);
+  const double limit = memoryLimit(job);
+  if (estimate.peak > limit)
+    throw InputError(fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB",
+                                 job.path, 1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
+                     Remedy{"memory", {}});
+}
+
+}  // namespace chromeball

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// States what a loaded scene's render will take, before the acceleration structure, the tables of
+// the probe and the images are allocated.
+#pragma once
+
+#include "session/load_scene.h"
+
+namespace chromeball {
+
+// Bytes.
+struct MemoryEstimate {
+  double process = 0;   // the program, its libraries and its fixed tables
+  double images = 0;    // film, layers and output
+  double textures = 0;  // texels in memory, or the cache of those in a file
+  double geometry = 0;  // vertices, triangles and the acceleration structure
+  double probe = 0;     // radiance and the tables to sample it
+  double peak = 0;      // the most at any one time; files are freed before images are allocated
+};
+
+MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded);
+
+// The job's limit: `--memory`, or memoryBudget().
+double memoryLimit(const RenderDescription& job);
+
+// The film, layers and output images of a job of known size.
+double imageBytes(const RenderDescription& job);
+
+// "images 1.2 GB, textures 0.1 GB, ..."
+std::string inWords(const MemoryEstimate& estimate);
+
+// Throws InputError if the peak exceeds the limit.
+void checkMemory(const RenderDescription& job, const LoadedScene& loaded);
+
+}  // namespace chromeball

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/open_shutter.h"
+
+#include <algorithm>
+
+#include "animation/motion_error.h"
+#include "animation/scene_motion.h"
+#include "base/error.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/gltf/model_cache.h"
+#include "session/memory_estimate.h"
+
+namespace chromeball {
+namespace {
+
+constexpr double kMovingVertex = 80;  // bytes of a key: attributes, and Embree's copy
+
+// The models at a fraction of the shutter's time.
+Scene modelsAt(const RenderDescription& job, double fraction, const glm::dvec3& origin,
+               ModelCache& cache) {
+  std::vector<ModelEntry> later = job.models;
+  for (ModelEntry& model : later)
+    if (model.choice.animation)
+      model.choice.animation->seconds += fraction * job.camera.shutter->seconds();
+  std::vector<std::string> known;
+  return loadModels(job, later, origin, cache, known);
+}
+
+bool isSameView(const Camera& a, const Camera& b) {
+  return a.position == b.position && a.right == b.right && a.up == b.up && a.fov == b.fov &&
+         a.halfHeight == b.halfHeight;
+}
+
+void setMotion(std::vector<Camera> keys, Camera& camera) {
+  if (std::ranges::all_of(keys, [&](const Camera& key) { return isSameView(key, camera); })) return;
+  camera.motion = std::make_shared<const std::vector<Camera>>(std::move(keys));
+}
+
+// The models have one key in memory; they will have one for each step.
+void checkMotionMemory(const RenderDescription& job, const Scene& scene) {
+  double moving = 0;
+  for (const Instance& instance : scene.instances)
+    if (instance.moves)
+      moving += double(scene.meshes[size_t(instance.mesh)].positions.size()) * kMovingVertex;
+  const double needed = moving * job.camera.shutter->steps;
+  if (needed > memoryLimit(job))
+    throw InputError(
+        fmt::format("{}: {} steps of what moves take {:.3g} GB of memory; the limit is {:.3g} GB",
+                    job.origins.of("camera.shutter"), job.camera.shutter->steps, 1e-9 * needed,
+                    1e-9 * memoryLimit(job)),
+        Remedy{"memory", {}});
+}
+
+const std::string& modelOf(const RenderDescription& job) { return job.models.front().file; }
+
+// `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
+void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Camera& camera,
+                MotionError& error) {
+  std::vector<Camera> keys;
+  for (size_t i = 0; i < halfSteps.size(); i += 2) keys.push_back(halfSteps[i]);
+  setMotion(std::move(keys), camera);
+  error.addTurn(shutter.turn, shutter.steps);
+  for (size_t i = 1; i < halfSteps.size(); i += 2)
+    error.add(camera, halfSteps[i], float(i) / float(halfSteps.size() - 1));
+}
+
+}  // namespace
+
+void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache) {
+  const auto warn = [&](std::vector<std::string> lines) {
+    placed.warnings.insert(placed.warnings.end(), lines.begin(), lines.end());
+  };
+  if (!placed.scene.isAnimated)
+    return warn(turnCamera(job, placed.scene, placed.view, placed.origin, placed.camera));
+  checkMotionMemory(job, placed.scene);
+  const int steps = job.camera.shutter->steps;
+  std::vector<Camera> cameras(2 * size_t(steps) + 1, placed.camera);  // at half steps
+  const auto modelsAtHalfStep = [&](int i) {
+    const double fraction = double(i) / (2 * steps);
+    Scene scene = modelsAt(job, fraction, placed.origin, cache);
+    cameras[size_t(i)] =
+        cameraOf(job, scene, placed.view, placed.origin, fraction * job.camera.shutter->turn);
+    return scene;
+  };
+  std::vector<Scene> later;
+  for (int k = 1; k <= steps; ++k) later.push_back(modelsAtHalfStep(2 * k));
+  for (const std::string& node : addMotion(placed.scene, later))
+    placed.warnings.push_back(fmt::format(
+        "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
+        "rendered as it was before",
+        modelOf(job), node));
+  // Also where no key differs: what turns by whole turns between keys seems to stand still.
+  MotionError error;
+  for (int k = 0; k < steps; ++k)
+    error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
+  moveCamera(*job.camera.shutter, cameras, placed.camera, error);
+  warn(error.warnings(modelOf(job), steps));
+}
+
+std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
+                                    const AutomaticView& view, const glm::dvec3& origin,
+                                    Camera& camera) {
+  const Shutter& shutter = *job.camera.shutter;
+  if (shutter.turn == 0) return {};
+  std::vector<Camera> cameras;
+  for (int i = 0; i <= 2 * shutter.steps; ++i)
+    cameras.push_back(cameraOf(job, scene, view, origin, shutter.turn * i / (2 * shutter.steps)));
+  MotionError error;
+  moveCamera(shutter, cameras, camera, error);
+  return error.warnings(modelOf(job), shutter.steps);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// How models, lamps and camera move while a job's shutter is open: they are read at equally spaced
+// times, and move along straight lines between these (scene/motion.h).
+#pragma once
+
+#include "session/place_models.h"
+
+namespace chromeball {
+
+// Gives the models, their lamps and the camera their motion. Warns where straight lines are far
+// from it, and of parts and lamps that appear, vanish or are mirrored: what is there when the
+// shutter opens stays as it was, and nothing else comes. Throws InputError.
+void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache);
+
+// The camera's turn around models that stand still. Returns warnings.
+std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
+                                    const AutomaticView& view, const glm::dvec3& origin,
+                                    Camera& camera);
+
+}  // namespace chromeball

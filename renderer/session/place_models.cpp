@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/place_models.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "scene/bounds.h"
+#include "scene/builder/add_lamp.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/thin_wall.h"
+#include "session/memory_estimate.h"
+#include "session/open_shutter.h"
+#include "session/scene_lighting.h"
+
+namespace chromeball {
+namespace {
+
+// The origin of the scene's coordinates in the world. Floats have a relative precision of 1e-7, so
+// a scene that is small compared with its distance from the origin is moved to its own centre. The
+// distant probe is not affected.
+glm::dvec3 originFor(const Scene& scene, const std::string& file) {
+  constexpr float kMaxReach = 1e9f, kFar = 1000;
+  const Bounds box = bounds(scene);
+  if (box.empty()) return glm::dvec3(0);
+  const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+  if (!(maxComponent(reach) < kMaxReach))
+    throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", file,
+               maxComponent(reach), kMaxReach);
+  const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+  return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
+}
+
+// The job's size; else the default height, with the aspect ratio of the model's camera. Throws
+// InputError if the image does not fit into the job's memory.
+void chooseSize(RenderDescription& job, const Scene& scene) {
+  RenderSettings& settings = job.settings;
+  if (job.size) {
+    settings.width = job.size->width;
+    settings.height = job.size->height;
+  } else if (!job.camera.placed && !scene.cameras.empty()) {
+    const float aspect = chooseCamera(job, scene, {}).aspect;
+    if (aspect > 0.05f && aspect < 20)
+      settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
+  }
+  if (const auto& crop = settings.crop)
+    if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
+      throwInput("{}: is not within the image of {}x{} pixels", job.origins.of("crop"),
+                 settings.width, settings.height);
+  const double needed = imageBytes(job), budget = memoryLimit(job);
+  if (needed > budget)
+    throw InputError(
+        fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
+                    job.origins.has("render.size") ? job.origins.of("render.size") + ": " : "",
+                    settings.width, settings.height, needed * 1e-9, budget * 1e-9),
+        Remedy{"memory", {}});
+}
+
+PlacedModels modelsAtOrigin(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                            ModelCache& cache) {
+  PlacedModels placed;
+  placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
+  placed.origin = originFor(placed.scene, models.front().file);
+  if (placed.origin != glm::dvec3(0))
+    placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
+  return placed;
+}
+
+// That of time 0, also in the coordinates of that time: with the same rounding for all times.
+AutomaticView viewAtStart(const RenderDescription& job, const PlacedModels& now,
+                          ModelCache& cache) {
+  const AutomaticView view = automaticView(job, now.scene, now.origin);
+  if (!now.scene.isAnimated || !(view.camera || job.camera.turns)) return view;
+  std::vector<ModelEntry> start = job.models;
+  for (ModelEntry& model : start)
+    if (model.choice.animation) model.choice.animation->seconds = 0;
+  const PlacedModels first = modelsAtOrigin(job, start, cache);
+  return automaticView(job, first.scene, first.origin);
+}
+
+}  // namespace
+
+Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                 const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {
+  Scene scene;
+  std::set<std::string> known(warnings.begin(), warnings.end());
+  const auto add = [&](const std::string& line) {
+    if (known.insert(line).second) warnings.push_back(line);
+  };
+  for (const ModelEntry& model : models) {
+    GltfChoice choice = model.choice;
+    // Near the world's origin the translation is as exact as all coordinates.
+    choice.origin = origin == glm::dvec3(0) ? origin : origin - model.translationRest;
+    choice.cache = &cache;
+    choice.environment = !job.probe.file;
+    append(scene, loadGltf(model.file, model.placement, add, choice));
+  }
+  const float factor = float(job.lighting.lamps);
+  if (factor == 0) scene.lights.clear();
+  for (PunctualLight& light : scene.lights) light.intensity *= factor;
+  return scene;
+}
+
+Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
+                const glm::dvec3& origin, double turn) {
+  const AutomaticView here = view.seenFrom(origin);
+  const Camera camera = chooseCamera(job, scene, here);
+  if (!fillsImage(camera, double(job.settings.width) / job.settings.height))
+    throwInput(
+        "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
+        "ascend; `distortion` may be for another `fov`",
+        job.camera.optics->location);
+  return camera.turnedAround(here.centre, job.camera.orbit + turn);
+}
+
+PlacedModels placeModels(RenderDescription& job, ModelCache& cache, const AutomaticView* view) {
+  PlacedModels placed = modelsAtOrigin(job, job.models, cache);
+  if (placed.scene.instances.empty() && !placed.scene.isAnimated)
+    throwInput("{}: the model has no triangles to render", job.models.front().file);
+  Scene& scene = placed.scene;
+  chooseSize(job, scene);
+  placed.view = view ? *view : viewAtStart(job, placed, cache);
+  placed.camera = cameraOf(job, scene, placed.view, placed.origin);
+  if (job.camera.shutter) openShutter(job, placed, cache);
+  for (const Lamp& lamp : job.lamps) addLamp(scene, lamp, placed.origin);
+  removeLamps(job, scene);
+  for (Material& material : scene.materials) material.singleSided = job.singleSided;
+  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
+  return placed;
+}
+
+Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
+                   const glm::dvec3& origin) {
+  chooseSize(job, scene);
+  Camera camera = cameraOf(job, scene, view, origin);
+  if (job.camera.shutter) turnCamera(job, scene, view, origin, camera);
+  return camera;
+}
+
+}  // namespace chromeball

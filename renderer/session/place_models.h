@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The models of a job in the scene's coordinates, and its camera.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "description/render_description.h"
+#include "scene/scene.h"
+#include "session/choose_camera.h"
+
+namespace chromeball {
+
+struct ModelCache;
+
+// With the scene file's lamps.
+struct PlacedModels {
+  Scene scene;
+  Camera camera;
+  AutomaticView view;
+  glm::dvec3 origin{0};  // of the scene's coordinates in the world, metres
+  std::vector<std::string> warnings;
+};
+
+// Reads the models; chooses the camera, and the image's size if the job leaves it to the camera.
+// Moves what the scene file places in the world to the scene's coordinates. With an open shutter,
+// with the motion of models and camera. `view`: of other frames; null: to be found. Throws
+// InputError.
+PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
+                         const AutomaticView* view = nullptr);
+
+// The same of models that stand still, of which only the camera is to be placed again.
+Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
+                   const glm::dvec3& origin);
+
+// `models`, which are the job's at some time, at this origin and without lamps; an animated model
+// may have no triangles at its time. `warnings`: each once.
+Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+                 const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);
+
+// The camera with the job's `orbit` and another turn, degrees; it stands still. Throws InputError.
+Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
+                const glm::dvec3& origin, double turn = 0);
+
+}  // namespace chromeball

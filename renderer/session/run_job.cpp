@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/run_job.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "integrate/light_groups.h"
+#include "session/cache_file.h"
+#include "session/memory_estimate.h"
+#include "session/run_composite.h"
+#include "session/scene_lighting.h"
+
+namespace chromeball {
+namespace {
+
+JobResult renderPlain(const RenderDescription& job, const LoadedScene& loaded,
+                      const PreparedScene& prepared, const Progress& progress,
+                      const std::atomic<bool>& stop, RenderControl* control) {
+  const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
+  std::optional<CacheFile> records;
+  if (job.settings.cacheError) records.emplace(job, loaded);
+  RenderResult result = render(*prepared.world, loaded.camera, *prepared.lighting, job.settings,
+                               [&](double fraction) { progress(share * fraction); }, stop, control,
+                               {prepared.environment.get(), records ? &records->cache() : nullptr});
+  if (records) records->write();
+  FinishedImage finished = finish(finishPlan(job, loaded, result), result, progress, stop);
+  return {std::move(finished), std::move(result)};
+}
+
+// The part of an image of the whole size that the job renders.
+Image cropped(const Image& whole, const Crop& window) {
+  Image part(window.width, window.height, whole.channels);
+  for (int y = 0; y < window.height; ++y)
+    std::copy_n(whole.at(window.x, window.y + y), window.width * whole.channels, part.at(0, y));
+  return part;
+}
+
+// The number of groups is known only now.
+void checkGroupMemory(const RenderDescription& job, const LoadedScene& loaded, const World& world,
+                      const LightSource& lighting) {
+  const size_t count = LightGroups(world, lighting).names().size();
+  const Crop window = job.settings.window();
+  const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
+                        window.width * window.height;
+  const double needed = estimateMemory(job, loaded).peak + layers;
+  if (needed > memoryLimit(job))
+    throw InputError(
+        fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
+                    "limit is {:.3g} GB",
+                    job.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
+                    1e-9 * memoryLimit(job)),
+        Remedy{"memory", {}});
+}
+
+}  // namespace
+
+FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
+                      const RenderResult& result) {
+  FinishPlan plan{job.settings, {}, result.groups};
+  if (!job.composite) return plan;
+  const Crop window = job.settings.window();
+  plan.composite = {job.composite->mode, job.composite->layers, {}, {}};
+  if (!job.composite->plate.empty()) plan.composite->plate = cropped(job.composite->plate, window);
+  if (loaded.projection) plan.composite->reflectance = cropped(loaded.projection->colors(), window);
+  return plan;
+}
+
+PreparedScene prepareScene(const RenderDescription& job, const LoadedScene& loaded) {
+  Stopwatch watch;
+  PreparedScene prepared;
+  prepared.world = std::make_unique<const World>(
+      loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>(),
+      BsdfTables(loaded.scene.materials, job.settings.regularize));
+  prepared.buildSeconds = watch.lap();
+  prepared.lighting = makeLighting(job, loaded);
+  prepared.environment =
+      makeEnvironment(job.settings.integrator, job.lighting.strategy.name, loaded);
+  if (job.settings.wantsGroups())
+    checkGroupMemory(job, loaded, *prepared.world, *prepared.lighting);
+  prepared.prepareSeconds = watch.lap();
+  loaded.scene.checkTexels();
+  return prepared;
+}
+
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded,
+                    const PreparedScene& prepared, const Progress& progress,
+                    const std::atomic<bool>& stop, RenderControl* control) {
+  Stopwatch watch;
+  JobResult result = job.composite ? renderComposite(job, loaded, prepared, progress, stop, control)
+                                   : renderPlain(job, loaded, prepared, progress, stop, control);
+  loaded.scene.checkTexels();
+  result.render.interrupted |= job.settings.denoisesAtEnd() && !result.denoised;
+  result.seconds = watch.lap();
+  return result;
+}
+
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded) {
+  const std::atomic<bool> never = false;
+  return renderJob(
+      job, loaded, prepareScene(job, loaded), [](double) {}, never);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders a job with a loaded scene: builds the acceleration structure and the lighting strategy,
+// and calls the integrators.
+#pragma once
+
+#include <atomic>
+
+#include "description/render_description.h"
+#include "integrate/environment_light.h"
+#include "integrate/world.h"
+#include "session/finish.h"
+#include "session/load_scene.h"
+
+namespace chromeball {
+
+// The data that a render needs besides the scene, which must outlive it.
+struct PreparedScene {
+  std::unique_ptr<const World> world;
+  std::unique_ptr<LightSource> lighting;
+  std::unique_ptr<const EnvironmentLight> environment;  // null: the integrator needs none
+  double buildSeconds = 0, prepareSeconds = 0;          // of the world, of the lighting
+};
+
+// Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
+// that take more memory than the job may.
+PreparedScene prepareScene(const RenderDescription& job, const LoadedScene& loaded);
+
+// How the image is made of the job's samples.
+FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
+                      const RenderResult& result);
+
+struct JobResult : FinishedImage {
+  RenderResult render;
+  Messages messages = {};
+  double seconds = 0;  // of rendering
+
+  const Image& color() const { return image.layers.front().image; }  // linear RGB or RGBA
+};
+
+// Renders until the job's limit of samples, time or noise is reached, or `stop` is set. In the
+// latter case render.interrupted is true, and the image contains the samples so far. `control`
+// (integrate/render_state.h) may be null; not for composites of two passes.
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded,
+                    const PreparedScene& prepared, const Progress& progress,
+                    const std::atomic<bool>& stop, RenderControl* control = nullptr);
+
+// The same without progress reports and interruption.
+JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded);
+
+}  // namespace chromeball

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/scene_lighting.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "lighting/combined_light.h"
+#include "lighting/finite_surroundings.h"
+#include "lighting/split_probe.h"
+#include "probe/irradiance.h"
+#include "probe/polygon_corners.h"
+#include "session/load_scene.h"
+
+namespace chromeball {
+namespace {
+
+// Throws InputError if the part is to be the suns, and there are none.
+void keepPart(const RenderDescription& job, const Scene& scene, Image& latLong) {
+  const LightFrom from = job.lighting.from;
+  if (from == LightFrom::All) return;
+  SunExtraction extraction = extractSuns(latLong);
+  if (from == LightFrom::Rest) {
+    latLong = std::move(extraction.remainder);
+    return;
+  }
+  if (extraction.suns.empty() && scene.suns.empty())
+    throwInput("{}: there are no suns, neither in the probe nor in the scene file",
+               job.origins.of("lighting.from"));
+  for (size_t i = 0; i < latLong.texels.size(); ++i)
+    latLong.texels[i] -= extraction.remainder.texels[i];
+}
+
+LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
+  if (job.probe.file)
+    return loadProbe(*job.probe.file, job.probe.mapping, job.origins.of("probe.mapping"));
+  LoadedProbe loaded;
+  if (scene.environment) {
+    loaded.latLong = std::move(*scene.environment);
+    return loaded;
+  }
+  checkLit(job, scene);
+  loaded.latLong = Image(2, 1, 3);
+  return loaded;
+}
+
+}  // namespace
+
+void removeLamps(const RenderDescription& job, Scene& scene) {
+  const LightFrom from = job.lighting.from;
+  if (from == LightFrom::Rest) scene.suns.clear();
+  if (from != LightFrom::Suns) return;
+  scene.lights.clear();
+  scene.ambient.clear();
+  for (Material& material : scene.materials) {
+    material.emission = Rgb(0);
+    if (material.unlit) material.baseColor = vec4(0, 0, 0, material.baseColor.w);
+  }
+}
+
+void checkLit(const RenderDescription& job, const Scene& scene) {
+  const bool lit = !scene.lights.empty() || std::ranges::any_of(job.lamps, [](const Lamp& l) {
+    return l.sun || l.ambient;
+  }) || std::ranges::any_of(scene.materials, &Material::emits);
+  if (!lit)
+    throw InputError(
+        fmt::format("{}: nothing lights the scene; it needs a probe", job.models.front().file),
+        Remedy{"probe.file", {}});
+}
+
+LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
+  LoadedProbe loaded = loadWholeProbe(job, scene);
+  keepPart(job, scene, loaded.latLong);
+  return loaded;
+}
+
+Probe probeOf(const RenderDescription& job, LoadedProbe& loaded) {
+  Probe probe(loaded.latLong, job.probe.rotation, Rgb(job.probe.scale));
+  loaded.latLong = {};
+  return probe;
+}
+
+Probe scaled(const Probe& probe, const Rgb& factor) {
+  Image map = probe.latLong();
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, factor * map.rgb(x, y));
+  return Probe(map, probe.rotation());
+}
+
+Rgb irradianceOn(const Probe& probe, const vec3& normal) {
+  const vec3 turned = probe.rotation().back(normal);
+  return Rgb(exactIrradiance(probe.latLong(), {&turned, 1})[0]);
+}
+
+std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
+                                      const Probe& probe) {
+  const std::vector<SourceEntry>& entries = job.sources;
+  if (entries.empty() || job.lighting.from == LightFrom::Suns) return {};
+  if (loaded.fileWidth == 0) throwInput("{}: [[source]] needs a probe", entries.front().location);
+  std::vector<PolygonLight> lights;
+  Image rest = probe.latLong();
+  // First the illums: what they take stays visible.
+  const auto take = [&](bool isIllum) {
+    std::vector<SphericalPolygon> polygons;
+    const size_t first = lights.size();
+    std::vector<std::string> locations;
+    for (const SourceEntry& entry : entries) {
+      if (entry.isIllum != isIllum) continue;
+      polygons.push_back(polygonOf(entry.corners, loaded, entry.location));
+      locations.push_back(entry.location);
+      lights.push_back({{polygons.back(), dvec3(0)}, isIllum, entry.name});
+    }
+    PolygonExtraction extraction = extractPolygons(rest, polygons);
+    for (size_t i = 0; i < polygons.size(); ++i) {
+      if (extraction.sources[i].coveredTexels == 0)
+        throwInput("{}: the polygon is smaller than the probe's texels", locations[i]);
+      lights[first + i].source = extraction.sources[i];
+    }
+    rest = std::move(extraction.remainder);
+  };
+  take(true);
+  Image hidden = probe.latLong();
+  for (size_t i = 0; i < hidden.texels.size(); ++i) hidden.texels[i] -= rest.texels[i];
+  take(false);
+  return ProbeSources{std::move(lights), std::move(hidden), Probe(rest, probe.rotation())};
+}
+
+std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
+                                          const LoadedScene& loaded, bool splitsProbe) {
+  const auto& sources = loaded.sources;
+  const Probe& sampled = sources ? sources->remainder : loaded.probe;
+  auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
+                               strategy.location);
+  if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
+    lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
+  if (sources) {
+    std::vector<std::unique_ptr<LightSource>> parts;
+    parts.push_back(std::move(lighting));
+    parts.push_back(
+        std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
+    lighting = std::make_unique<CombinedLight>(std::move(parts));
+  }
+  if (loaded.surroundings)
+    lighting = std::make_unique<FiniteSurroundings>(
+        std::move(lighting), loaded.probe, *loaded.surroundings, loaded.room.get(),
+        loaded.showLights || (sources && sources->areSeen()));
+  return lighting;
+}
+
+std::unique_ptr<LightSource> makeLighting(const RenderDescription& job, const LoadedScene& loaded) {
+  return makeLighting(job.lighting.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
+}
+
+std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,
+                                                        const std::string& strategy,
+                                                        const LoadedScene& loaded) {
+  if (!usesEnvironment(integrator)) return nullptr;
+  const bool splitsSuns = resolveStrategy(strategy) == "suns";
+  return std::make_unique<EnvironmentLight>(loaded.probe, loaded.scene, splitsSuns);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light of a job: its probe, and the strategy that samples it.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "description/render_description.h"
+#include "integrate/environment_light.h"
+#include "lighting/polygon_lights.h"
+#include "lighting/strategy.h"
+#include "probe/load.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+struct LoadedScene;
+
+// Throws InputError if nothing lights a scene that has no probe.
+void checkLit(const RenderDescription& job, const Scene& scene);
+
+// Removes the lamps and emission that the job leaves out.
+void removeLamps(const RenderDescription& job, Scene& scene);
+
+// The probe's map: the job's file, else the model's own environment, which it takes, else black if
+// the scene has lights of its own; of it, the part that the job renders. Throws InputError.
+LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene);
+
+// The polygons of the probe that are sources of their own ([[source]]), and what is left of it.
+struct ProbeSources {
+  std::vector<PolygonLight> lights;
+  Image hidden;  // PolygonLights
+  Probe remainder;
+
+  // Whether the camera sees a polygon in place of the probe's texels.
+  bool areSeen() const {
+    return std::ranges::any_of(lights, [](const PolygonLight& l) { return !l.isIllum; });
+  }
+};
+// Nullopt if the job renders none. `loaded`: the file that `probe` is from. Throws InputError.
+std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
+                                      const Probe& probe);
+
+// With the job's rotation and scale; frees the map.
+Probe probeOf(const RenderDescription& job, LoadedProbe& loaded);
+
+// With every channel times a factor.
+Probe scaled(const Probe& probe, const Rgb& factor);
+
+// W/m^2 on an unoccluded surface with this unit normal.
+Rgb irradianceOn(const Probe& probe, const vec3& normal);
+
+// The strategy, with the probe mapped onto the scene's surroundings. `splitsProbe`: for light
+// groups, tells the probe's suns from the rest. `loaded` must outlive it. Throws InputError for an
+// unknown name.
+std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
+                                          const LoadedScene& loaded, bool splitsProbe = false);
+std::unique_ptr<LightSource> makeLighting(const RenderDescription& job, const LoadedScene& loaded);
+
+// The probe as the integrator uses it, with its suns apart under the strategy `suns`; null if it
+// does not.
+std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,
+                                                        const std::string& strategy,
+                                                        const LoadedScene& loaded);
+
+}  // namespace chromeball
