@@ -102,7 +102,10 @@ DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
 ImageFile readHdr(const fs::path& path) {
   RadianceHdr hdr = readRadianceHdr(path);
   ImageFile file{std::move(hdr.image), {"R", "G", "B"}, {}};
-  file.metadata.insert(hdr.comments.begin(), hdr.comments.end());
+  // Other comments are no attributes of an .exr: they may have any name, also a reserved one.
+  constexpr const char* kMapping = "mapping";  // of a probe (probe/load.h)
+  if (const auto comment = hdr.comments.find(kMapping); comment != hdr.comments.end())
+    file.metadata.insert(*comment);
   file.primaries = hdr.primaries;
   file.messages = std::move(hdr.messages);
   return file;
