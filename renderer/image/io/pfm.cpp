@@ -30,7 +30,8 @@ std::string_view nextWord(std::string_view text, size_t& position) {
 template <class Number>
 Number parse(const std::filesystem::path& path, std::string_view word) {
   Number number{};
-  if (word.starts_with('+')) word.remove_prefix(1);  // which from_chars does not know
+  if (word.starts_with('+') && !word.starts_with("+-"))
+    word.remove_prefix(1);  // which from_chars does not know
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (error != std::errc() || end != word.data() + word.size())
     throwInput("{}: the PFM header should be: PF, width, height, scale", path.string());
