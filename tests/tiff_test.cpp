@@ -220,6 +220,12 @@ TEST_F(Tiff, ZeroIsWhiteOfAnyBits) {
     const std::vector<float> stored = read({{2, 1, light + dark, 0, 1, bits}}).image.texels,
                              plain = read({{2, 1, dark + light, 1, 1, bits}}).image.texels;
     for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(stored[i], plain[i], 1e-6) << bits;
+    // Alpha, which is not associated, is as it is stored.
+    const std::vector<TiffEntry> unassociated = {{338, 3, {2}}};
+    const std::vector<float>
+        clear = read({{1, 1, light + dark, 0, 2, bits, 1, 1, unassociated}}).image.texels,
+        same = read({{1, 1, dark + dark, 1, 2, bits, 1, 1, unassociated}}).image.texels;
+    for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(clear[i], same[i], 1e-6) << bits;
   }
 }
 

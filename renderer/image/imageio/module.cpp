@@ -38,11 +38,7 @@ class OpenedImage : public ModuleImage {
         spec.tile_width ? input_->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, texels)
                         : readRows(spec, texels);
     if (!wasRead || input_->has_error()) throw std::runtime_error(input_->geterror());
-    if (isWhiteZero(spec) && header_.integerBits > 8)  // the library turns those of 8 bits alone
-      for (size_t i = 0; i < spec.image_pixels(); ++i) {
-        float& grey = texels[i * size_t(spec.nchannels)];
-        grey = 1 - grey;
-      }
+    if (isWhiteZero(spec) && header_.integerBits > 0) turnGrey(spec, texels);
   }
 
  private:
@@ -55,6 +51,15 @@ class OpenedImage : public ModuleImage {
                                   OIIO::TypeDesc::FLOAT, texels + size_t(y) * rowLength))
         return false;
     return true;
+  }
+
+  // Where 0 is white, of the grey and not of alpha. The library has turned all channels of 8 bits,
+  // and no others.
+  void turnGrey(const OIIO::ImageSpec& spec, float* texels) const {
+    const size_t channels = size_t(spec.nchannels);
+    const bool isTurned = header_.integerBits == 8;
+    for (size_t i = 0; i < spec.image_pixels() * channels; ++i)
+      if ((i % channels == 0) != isTurned) texels[i] = 1 - texels[i];
   }
 
   // TIFF 6.0, PhotometricInterpretation: 0 is white.
