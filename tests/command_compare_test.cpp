@@ -157,6 +157,10 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError(with(kSmall, {"--seed", "1"}), "another folder");
   const fs::path stored = renders().begin()->first;
   const ImageFile file = readImageFile(stored);
+  for (const char* other : {"bsdf-1spp-2.exr", "bsdf-4spp-1.exr", "importance-1spp-1.exr"}) {
+    fs::copy_file(stored.parent_path() / other, stored, fs::copy_options::overwrite_existing);
+    expectInputError(kSmall, "is damaged or was changed");
+  }
   for (const Layer& spoilt : {Layer{"", "RGB", Image(8, 8, 3)}, Layer{"N", "XYZ", file.image}}) {
     writeImage(stored, OutputImage{{spoilt}, file.metadata});
     expectInputError(kSmall, "is damaged or was changed");

@@ -135,6 +135,23 @@ TEST(CommandImage, ErrorImage) {
   EXPECT_LT(error["flip"], 1);
 }
 
+// Integers are display-referred, whatever the file is called.
+TEST(CommandImage, FlipDependsOnTheContent) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    const std::string png = folder / std::string(name) + ".png";
+    writeImage(png, filled(16, 8, 3, *name == 'a' ? 0.2f : 0.6f));
+    std::filesystem::copy(png, folder / name);
+  }
+  const auto flipOf = [&](const std::string& extension) -> double {
+    return parseJson(run({"image", "error", (folder / "a") + extension, (folder / "b") + extension,
+                          "--json", "--flip"})
+                         .out)["flip"];
+  };
+  EXPECT_GT(flipOf(".png"), 0.1);
+  EXPECT_EQ(flipOf(""), flipOf(".png"));
+}
+
 TEST(CommandImage, ViewAppliesExposureAndTransfer) {
   const TemporaryFolder folder;
   writeImage(folder / "a.exr", filled(2, 2, 3, 0.125f));

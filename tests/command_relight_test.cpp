@@ -275,6 +275,9 @@ TEST_F(CommandRelight, RefusesBadPhotographs) {
       "\xef\xbb\xbf"
       "none.exr,0,0,1\n",
       "/none.exr: no such file");
+  refusesList("\"n, 1\", 0,0,\"1\"\n", "/n, 1: no such file");  // as spreadsheets quote
+  refusesList("\"the \"\"n\"\"\",0,0,1\n", "/the \"n\": no such file");
+  refusesList("n\".exr,0,0,1\n", "/n\".exr: no such file");
   refusesList("a.exr,0,1,0\nb.exr,1,x,0\n", "d.csv:2: should be FILE,X,Y,Z");
   refusesList("a.exr,0,1,0\nb.exr,1,nan,0\n", "d.csv:2: should be");
   refusesList("a.exr,0,1,0\nb.exr\n", "d.csv:2: should be");

@@ -206,6 +206,9 @@ TEST(GltfFile, BuffersByUri) {
   EXPECT_EQ(errorMessage("DATA:application/octet-stream;BASE64,"
                          "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"),
             "");
+  EXPECT_EQ(errorMessage("data:application/octet-stream;base64,"  // of %2B for +, %3D for =
+                         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAg%44%38%41AAAA%3D%3D"),
+            "");
   EXPECT_EQ(errorMessage("data:application/octet-stream;base64,AA*A"),
             "buffers[0].uri: invalid data URI");
   EXPECT_EQ(errorMessage("none.bin"),
@@ -227,11 +230,13 @@ TEST(GltfFile, FilesOutsideTheFolderNeedPermission) {
   std::filesystem::create_symlink(elsewhere.folder(), w.folder() / "link");
   std::filesystem::create_symlink("../data.bin", w.folder() / "sub/inside.bin");
   EXPECT_EQ(errorMessage("sub/inside.bin", ExternalFiles::Refuse), "");
+  EXPECT_EQ(errorMessage("sub/../data.bin", ExternalFiles::Refuse), "");  // does not lead out
 
   const std::string other = elsewhere.folder().filename().string() + "/data.bin";
   const std::pair<std::string, const char*> outside[] = {
       {"../" + other, "is outside of the model's folder by \"..\""},
       {"sub/../../" + other, "is outside of the model's folder by \"..\""},
+      {"link/../" + other, "is outside of the model's folder by \"..\""},
       {"%2e%2e/" + other, "is outside of the model's folder by \"..\""},
       {(elsewhere.folder() / "data.bin").string(), "is an absolute path"},
       {"link/data.bin", "is outside of the model's folder through a link"}};

@@ -46,6 +46,7 @@ TEST(ImageError, InvalidNumbersAreCountedAndIgnored) {
   const ImageError error = imageError(a, filled(2, 2, 1));
   EXPECT_EQ(error.invalid, 2u);
   EXPECT_NEAR(error.mse, 0.25, 1e-12);
+  EXPECT_THROW(imageError(filled(2, 2, std::nanf("")), filled(2, 2, 1)), InputError);  // not 0
 }
 
 TEST(ImageError, SizesMustAgree) {

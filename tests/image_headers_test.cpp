@@ -84,6 +84,21 @@ TEST(ImageHeaders, RepeatedLinesAreSaidOnce) {
 }
 
 // Sides beyond 32 and 64 bits.
+// Their names would be those of attributes of the .exr: reserved, of another type, or none.
+TEST(ImageHeaders, CommentsOfAnHdrAreNoAttributes) {
+  const TemporaryFolder folder;
+  const std::string path =
+      saved(folder / "a.hdr", hdr("# channels=x\n# compression=x\n# pixelAspectRatio=2\n# =x\n"
+                                  "# envmap=latlong\n# chromaticities=x\n# mapping=angular\n"));
+  EXPECT_EQ(readImageFile(path).metadata, (Metadata{{kMappingAttribute, "angular"}}));
+  const CommandResult result = runCommand({"image", "develop", path, folder / "a.exr"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  const Metadata written = readExrMetadata(folder / "a.exr");
+  EXPECT_EQ(std::get<float>(written.at("pixelAspectRatio")), 1);
+  for (const char* name : {kEnvmapAttribute, "chromaticities"})
+    EXPECT_FALSE(written.contains(name));
+}
+
 TEST(ImageHeaders, SidesOfAnHdrDoNotWrap) {
   const TemporaryFolder folder;
   for (const char* side : {"4294967297", "18446744073709551617", "99999999999999999999999999"}) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "exif_block.h"
 #include "gltf_writer.h"
 #include "image/io/decode_image.h"
 #include "image/io/read_image.h"
@@ -218,6 +219,32 @@ TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
   // Chunks that say what the profile does are used.
   const Bytes linear = chunk("gAMA", {0, 1, 0x86, 0xa0});
   EXPECT_FALSE(isSaid("a.png", inserted(kPng, 8 + 25, joined({chunk("iCCP", wide), linear}))));
+}
+
+// Cameras that are set to Adobe RGB tell so by EXIF's ColorSpace, often alone.
+TEST(ImageMetadata, ColoursOfExifThatAreNotAppliedAreNamed) {
+  constexpr uint16_t kColorSpace = 0xa001;
+  const TemporaryFolder folder;
+  const auto isSaid = [&](const Bytes& bytes, IntegerTexels integers = IntegerTexels::Srgb) {
+    const Messages messages = readImageFile(saved(folder / "a", bytes), integers).messages;
+    return std::ranges::any_of(messages, [](const Message& message) {
+      return message.text.find("states other colours than those of sRGB") != std::string::npos;
+    });
+  };
+  const Bytes jpeg = seed("a.jpg"), tiff = seed("a.tif");
+  for (const auto& [space, isOther] : {std::pair{1, false}, {2, true}, {65535, true}}) {
+    const std::string block = exifBlock({{kColorSpace, uint32_t(space), 0}});
+    const std::string file = withExif({jpeg.begin(), jpeg.end()}, block);
+    const Bytes photograph(file.begin(), file.end());
+    EXPECT_EQ(isSaid(photograph), isOther) << space;
+    EXPECT_FALSE(isSaid(photograph, IntegerTexels::Linear));
+    const Bytes profile = joined({text("ICC_PROFILE"), {0, 1, 1}, text("xx sRGB IEC61966-2.1")});
+    EXPECT_FALSE(isSaid(inserted(photograph, 2, segment(0xe2, profile))));  // tells more
+  }
+  const std::string noColors = withExif({jpeg.begin(), jpeg.end()}, exifBlock({isoSpeed(100)}));
+  EXPECT_FALSE(isSaid({noColors.begin(), noColors.end()}));
+  EXPECT_FALSE(isSaid(jpeg));
+  EXPECT_FALSE(isSaid(tiff));
 }
 
 // Models with the texture `jpeg`: in a file, in a data URI and in a buffer view.

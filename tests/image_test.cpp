@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <fstream>
 #include <limits>
 
@@ -108,6 +109,31 @@ TEST(Image, HdrExposureAndOrientationAreApplied) {
   EXPECT_EQ(image.rgb(0, 0), Rgb(0.0625f, 0.5f, 0.0625f));
 }
 
+// "Radiance File Formats", picture files: the first axis is that of the rows in their order.
+TEST(Image, HdrRowsInEachOrder) {
+  const TemporaryFolder folder;
+  std::string texels;
+  for (int i = 0; i < 6; ++i) texels += {char(0x80 + i), 0, 0, char(0x81)};
+  for (const char first : {'-', '+'})
+    for (const char second : {'-', '+'})
+      for (const bool areColumns : {false, true}) {
+        const std::string order = fmt::format("{}{} 2 {}{} 3", first, areColumns ? 'X' : 'Y',
+                                              second, areColumns ? 'Y' : 'X');
+        write(folder / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + order + "\n" + texels);
+        const Image image = readImage(folder / "a.hdr");
+        ASSERT_EQ(image.width, areColumns ? 2 : 3) << order;
+        ASSERT_EQ(image.height, areColumns ? 3 : 2);
+        for (int i = 0; i < 6; ++i) {
+          const int row = i / 3, texel = i % 3;
+          const int x = areColumns ? (first == '+' ? row : 1 - row)
+                                   : (second == '+' ? texel : 2 - texel),
+                    y = areColumns ? (second == '-' ? texel : 2 - texel)
+                                   : (first == '-' ? row : 1 - row);
+          EXPECT_EQ(image.rgb(x, y).x, float(0x80 + i) / 0x80) << order << " texel " << i;
+        }
+      }
+}
+
 TEST(Image, HdrMatchesReferenceDecoder) {
   for (const char* name : {"image1", "old-rle", "rgbr4x4", "scale"}) {
     const auto hdr = sharedData(std::string("reference/hdr_decode/") + name + ".hdr");
@@ -127,7 +153,8 @@ TEST(Image, DamagedHdrIsRejected) {
   expectError(head + "-Y 100000 +X 100000\n", "exceed the limit");
   expectError(head + "-Y 0 +X 5\n", "0");
   expectError(head + "-Y -5 +X 5\n", "-5");
-  expectError(head + "+X 5 -Y 5\n", "resolution");
+  for (const char* order : {"+X 5 -X 5", "-Y 5 +Y 5", "Y 5 X 5", "-Y 5", "-Z 5 +X 5"})
+    expectError(head + order + "\n", "resolution");
   expectError(head + "-Y 8000 +X 8000\n" + std::string("\2\2\x1f\x40", 4), "too short");
   expectError(head + "-Y 1 +X 8\n" + std::string("\2\2\0\x8\xff\1------", 12), "a run exceeds");
   expectError(head + "-Y 1 +X 4\n" + std::string("\1\1\1\4", 4), "a run exceeds");
@@ -145,6 +172,14 @@ TEST(Image, PfmBigEndianAndGrey) {
   EXPECT_EQ(image.rgb(0, 1), Rgb(1));
   write(folder / "dos.pfm", "Pf\r\n1 2\r\n1.0\r\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
   EXPECT_EQ(readImage(folder / "dos.pfm").texels, image.texels);
+  for (const char* scale : {"1.0 \n", "1.0 \t\r\n", "+1.0\n", "1 "}) {
+    write(folder / "a.pfm",
+          std::string("Pf\n1 2\n") + scale + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
+    EXPECT_EQ(readImage(folder / "a.pfm").texels, image.texels) << scale;
+  }
+  // A texel may begin with what ends a line.
+  write(folder / "a.pfm", "Pf\n1 1\n1.0\n" + std::string("\n\n\0\0", 4));
+  EXPECT_EQ(readImage(folder / "a.pfm").rgb(0, 0), Rgb(std::bit_cast<float>(0x0a0a0000)));
   // The magnitude of the scale is a factor, which is said.
   for (const char* scale : {"2.0", "0.25", "1e10"}) {
     write(folder / "scaled.pfm",

@@ -282,6 +282,7 @@ TEST_F(SceneFileTest, LongKeysAndValuesAreShortened) {
 
 TEST_F(SceneFileTest, WrongTypeNamesKeyAndLine) {
   expectError("[render]\n\nsamples = '16'\n", 4, {"`samples`", "whole number", "\"16\""});
+  expectError("[render]\nsamples = 16.0\n", 3, {"whole number", "not 16.0"});
   expectError("[render]\nsamples = 1.5\n", 3, {"`samples`", "1.5"});
   expectError("[render]\nsize = 800\n", 3, {"`size`", "[width, height]"});
   expectError("[render]\nsize = [800]\n", 3, {"`size`", "an array of 1"});

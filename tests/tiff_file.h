@@ -17,8 +17,8 @@ struct TiffEntry {
 
 struct TiffImage {
   int width, height;
-  std::string texels;  // one strip
-  uint16_t photometric = 2, samples = 3, bits = 8, compression = 1, format = 1;
+  std::string texels;                                                            // one strip
+  uint16_t photometric = 2, samples = 3, bits = 8, compression = 1, format = 1;  // 0 bits: unstated
   std::vector<TiffEntry> more = {};
   std::vector<TiffImage> below = {};  // in directories that an entry points to
 };
@@ -49,7 +49,7 @@ class TiffWriter {
       below.values.push_back(uint32_t(append(other).directory));
     std::vector<TiffEntry> entries = {{256, 4, {uint32_t(image.width)}},
                                       {257, 4, {uint32_t(image.height)}},
-                                      {258, 3, std::vector<uint32_t>(image.samples, image.bits)},
+                                      {kBits, 3, std::vector<uint32_t>(image.samples, image.bits)},
                                       {259, 3, {image.compression}},
                                       {262, 3, {image.photometric}},
                                       {kStripOffsets, 4, {0}},
@@ -59,6 +59,8 @@ class TiffWriter {
                                       {339, 3, std::vector<uint32_t>(image.samples, image.format)}};
     entries.insert(entries.end(), image.more.begin(), image.more.end());
     if (!below.values.empty()) entries.push_back(below);
+    if (image.bits == 0)
+      std::erase_if(entries, [](const TiffEntry& entry) { return entry.tag == kBits; });
     std::ranges::sort(entries, {}, &TiffEntry::tag);
     std::string directory = number(entries.size(), 2);
     for (const TiffEntry& entry : entries) {
@@ -88,7 +90,7 @@ class TiffWriter {
     return text;
   }
 
-  static constexpr uint16_t kStripOffsets = 273;
+  static constexpr uint16_t kBits = 258, kStripOffsets = 273;
   std::string file_;
 };
 

@@ -157,6 +157,78 @@ TEST_F(Tiff, TruncatedFilesAreRefused) {
   }
 }
 
+// What OpenImageIO returns black or as far as it goes: strips of compressions that libtiff was
+// built without (JPEG 2000, JPEG XL), and damaged ones.
+TEST_F(Tiff, TexelsThatCannotBeDecodedAreRefused) {
+  constexpr uint16_t kLzw = 5, kAdobeDeflate = 8, kDeflate = 32946, kJpeg2000 = 34712,
+                     kJpegXl = 50002;
+  for (const uint16_t compression : {kLzw, kAdobeDeflate, kDeflate, kJpeg2000, kJpegXl}) {
+    TiffImage image = rgb();
+    image.compression = compression;
+    refuse({image}, "cannot be read: ");
+    refuse({thumbnail(), image}, "cannot be read: ");
+  }
+}
+
+// zlib's bound on what it makes of a strip is none on what others may.
+TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
+  const TiffImage plain = rgb();
+  TiffImage deflated = plain;
+  deflated.compression = 8;
+  deflated.texels = "\x78\x01";
+  uint32_t a = 1, b = 0;  // Adler-32, RFC 1950
+  for (size_t i = 0; i < plain.texels.size(); ++i) {
+    const char texel = plain.texels[i];
+    const bool isLast = i + 1 == plain.texels.size();
+    deflated.texels += std::string({char(isLast), 1, 0, char(0xfe), char(0xff), texel});  // stored
+    a = (a + uint8_t(texel)) % 65521;
+    b = (a + b) % 65521;
+  }
+  for (const uint32_t byte : {b >> 8, b, a >> 8, a}) deflated.texels += char(byte);
+  EXPECT_EQ(read({deflated}).image.texels, read({plain}).image.texels);
+}
+
+// libtiff's conversion tints it: white of L*a*b* is (1, 1, 0.83).
+TEST_F(Tiff, LabIsRefused) {
+  for (const uint16_t photometric : {8, 9, 10}) {
+    TiffImage image = rgb();
+    image.photometric = photometric;
+    refuse({image}, "L*a*b*");
+  }
+}
+
+// TIFF 6.0, section 8: without BitsPerSample a sample has one bit. Scanners and PIL leave it out.
+TEST_F(Tiff, ASampleHasOneBitUnlessBitsAreStated) {
+  const std::string rows("\x80\x40\xa5\xff", 4);  // 8 x 4 texels
+  for (const uint16_t photometric : {0, 1}) {
+    const TiffImage stated{8, 4, rows, photometric, 1, 1};
+    TiffImage unstated = stated;
+    unstated.bits = 0;
+    const std::vector<float> found = read({unstated}).image.texels;
+    EXPECT_EQ(found, read({stated}).image.texels);
+    EXPECT_EQ(found[0], photometric == 1 ? 1.0f : 0.0f);
+    unstated.more = {{kOrientation, 3, {1}}};  // one entry more, one less
+    EXPECT_EQ(read({unstated}).image.texels, found);
+    EXPECT_EQ(read({thumbnail(), unstated}).image.texels, found);
+  }
+}
+
+// PhotometricInterpretation 0; OpenImageIO turns the texels of 8 bits alone.
+TEST_F(Tiff, ZeroIsWhiteOfAnyBits) {
+  for (const uint16_t bits : {8, 16, 32}) {
+    const std::string light(bits / 8, '\xc0'), dark(bits / 8, '\x3f');
+    const std::vector<float> stored = read({{2, 1, light + dark, 0, 1, bits}}).image.texels,
+                             plain = read({{2, 1, dark + light, 1, 1, bits}}).image.texels;
+    for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(stored[i], plain[i], 1e-6) << bits;
+    // Alpha, which is not associated, is as it is stored.
+    const std::vector<TiffEntry> unassociated = {{338, 3, {2}}};
+    const std::vector<float>
+        clear = read({{1, 1, light + dark, 0, 2, bits, 1, 1, unassociated}}).image.texels,
+        same = read({{1, 1, dark + dark, 1, 2, bits, 1, 1, unassociated}}).image.texels;
+    for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(clear[i], same[i], 1e-6) << bits;
+  }
+}
+
 // No file of 5 kB holds 400 MB, however it is compressed; nothing is decoded to find this out.
 TEST_F(Tiff, FilesTooShortForTheirTexelsAreRefused) {
   constexpr uint16_t kNone = 1, kLzw = 5, kJpeg = 7, kAdobeDeflate = 8, kPackBits = 32773,

@@ -16,7 +16,7 @@ constexpr size_t kMaxFileBytes = size_t(4) << 20;
 
 std::string describe(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", printableName(text->get()));
   if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
   if (node.is_table()) return "a table";

@@ -74,7 +74,8 @@ ImageError imageError(const Image& a, const Image& b, const Image* varianceA,
     sumReference += y;
     peak = std::max(peak, std::fabs(y));
   }
-  const double n = double(std::max<size_t>(count, 1));
+  if (count == 0) throwInput("the images have no number that is finite in both");
+  const double n = double(count);
   error.mse /= n;
   error.relMse /= n;
   error.bias = sumDifference == 0 ? 0 : sumDifference / sumReference;

@@ -31,7 +31,7 @@ struct ImageError {
 
 // `b` is the reference image. The variances are squared standard errors of the pixels, in the shape
 // of the images; null if unknown, which counts as 0 (z-scores need at least one). Throws InputError
-// if sizes or channels differ.
+// if sizes or channels differ, or if no pair of numbers is finite.
 ImageError imageError(const Image& a, const Image& b, const Image* varianceA = nullptr,
                       const Image* varianceB = nullptr);
 

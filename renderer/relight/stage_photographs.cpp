@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -18,13 +19,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> fieldsOf(const std::string& line) {
+std::string trimmed(std::string_view field) {
+  const size_t first = field.find_first_not_of(" \t"), last = field.find_last_not_of(" \t");
+  return std::string(first == field.npos ? "" : field.substr(first, last - first + 1));
+}
+
+// In quotation marks, as spreadsheets write them, a field may have commas; a doubled mark is one
+// (RFC 4180, section 2).
+std::vector<std::string> fieldsOf(std::string_view line) {
   std::vector<std::string> fields;
-  std::istringstream in(line);
-  for (std::string field; std::getline(in, field, ',');) {
-    const size_t first = field.find_first_not_of(" \t"), last = field.find_last_not_of(" \t");
-    fields.push_back(first == std::string::npos ? "" : field.substr(first, last - first + 1));
+  std::string field;
+  bool isQuoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && (isQuoted || trimmed(field).empty())) {
+      const bool isDoubled = isQuoted && line.substr(i + 1).starts_with('"');
+      if (isDoubled) field += line[i++];
+      isQuoted = isDoubled || !isQuoted;
+    } else if (line[i] == ',' && !isQuoted) {
+      fields.push_back(trimmed(field));
+      field.clear();
+    } else {
+      field += line[i];
+    }
   }
+  if (!field.empty() || fields.empty()) fields.push_back(trimmed(field));
   return fields;
 }
 

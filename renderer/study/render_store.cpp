@@ -30,6 +30,14 @@ double numberIn(const Metadata& metadata, const std::string& key) {
   return number;
 }
 
+// What a file says of which render it is, so that none is taken for another.
+Metadata attributesOf(const RenderKey& key, uint64_t studySeed) {
+  return {
+      {"strategy", key.strategy},
+      {key.budget.timed ? "budgetSeconds" : "budgetSamples", fmt::format("{}", key.budget.amount)},
+      {"seed", std::to_string(seedOf(key, studySeed))}};
+}
+
 }  // namespace
 
 void RenderStore::makeFolder() const {
@@ -53,8 +61,13 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   if (const std::string stored = textIn(metadata, "study"); stored != study_.identity)
     throwInput("--output: {} belongs to another comparison: {}; choose another folder", path(key),
                differenceOf(stored, study_.identity));
+  const Metadata own = attributesOf(key, study_.seed);
+  const bool isOther = std::ranges::any_of(own, [&](const auto& attribute) {
+    const auto found = metadata.find(attribute.first);
+    return found == metadata.end() || found->second != attribute.second;
+  });
   const std::optional<Image> color = findColor(file);
-  if (!color || color->width != size_.width || color->height != size_.height)
+  if (isOther || !color || color->width != size_.width || color->height != size_.height)
     throwInput("--output: {} is damaged or was changed; delete it to render it again", path(key));
   StoredRender render;
   render.image = *color;
@@ -70,20 +83,16 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
 
 void RenderStore::save(const RenderKey& key, const StoredRender& render) const {
   const auto text = [](double number) { return fmt::format("{}", number); };
-  writeImage(
-      path(key),
-      OutputImage{{{"", "RGB", render.image}},
-                  {{"study", study_.identity},
-                   {"strategy", key.strategy},
+  Metadata metadata = attributesOf(key, study_.seed);
+  metadata.insert({{"study", study_.identity},
                    {"unbiased", render.unbiased ? "yes" : "no"},
-                   {key.budget.timed ? "budgetSeconds" : "budgetSamples", text(key.budget.amount)},
-                   {"seed", std::to_string(seedOf(key, study_.seed))},
                    {"samples", text(render.samples)},
                    {"seconds", text(render.seconds)},
                    {"prepareSeconds", text(render.prepareSeconds)},
                    {"noise", text(render.noise)},
                    {"rays", text(render.rays)},
-                   {"invalidSamples", text(render.invalidSamples)}}});
+                   {"invalidSamples", text(render.invalidSamples)}});
+  writeImage(path(key), OutputImage{{{"", "RGB", render.image}}, metadata});
 }
 
 std::vector<RenderKey> RenderStore::firstRepeats() const {

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/suggest.h"
@@ -71,25 +70,20 @@ void print(const Findings& findings) {
 struct Side {
   Image color;
   std::optional<Image> variance;
+  bool isDisplayReferred;  // of integers; FLIP compares others at several exposures
 
   explicit Side(const std::string& path) {
     ImageFile file = openImageFile(path);
     variance = layerOf(file, "variance", path);
+    isDisplayReferred = file.integers;
     color = colorOf(std::move(file), path);
   }
   const Image* varianceOrNull() const { return variance ? &*variance : nullptr; }
 };
 
-// Integer files are display-referred; FLIP compares others at several exposures.
-bool isDisplayReferred(const std::string& path) {
-  const std::string extension = lowerExtension(path);
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-}
-
-Image flipOf(const ImageErrorArguments& arguments, const Side& a, const Side& b) {
-  return isDisplayReferred(arguments.a) && isDisplayReferred(arguments.b)
-             ? flip(b.color, a.color)
-             : hdrFlip(b.color, a.color);
+Image flipOf(const Side& a, const Side& b) {
+  return a.isDisplayReferred && b.isDisplayReferred ? flip(b.color, a.color)
+                                                    : hdrFlip(b.color, a.color);
 }
 
 // A false-color image; prints its scale.
@@ -130,7 +124,7 @@ void run(const ImageErrorArguments& arguments) {
                     std::nullopt};
   Image flipped;
   if (arguments.flip || arguments.map == "flip") {
-    flipped = flipOf(arguments, a, b);
+    flipped = flipOf(a, b);
     double sum = 0;
     for (const float number : flipped.texels) sum += number;
     findings.flip = sum / double(flipped.texels.size());

@@ -33,11 +33,40 @@ class OpenedImage : public ModuleImage {
   const ModuleImageHeader& header() const override { return header_; }
 
   void read(float* texels) override {
-    if (!input_->read_image(0, 0, 0, input_->spec().nchannels, OIIO::TypeDesc::FLOAT, texels))
-      throw std::runtime_error(input_->geterror());
+    const OIIO::ImageSpec& spec = input_->spec();
+    const bool wasRead =
+        spec.tile_width ? input_->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, texels)
+                        : readRows(spec, texels);
+    if (!wasRead || input_->has_error()) throw std::runtime_error(input_->geterror());
+    if (isWhiteZero(spec) && header_.integerBits > 0) turnGrey(spec, texels);
   }
 
  private:
+  // Whole strips the library inflates by itself: it returns damaged ones as they are, and cuts
+  // those that are longer than zlib would make them. libtiff reads the rows.
+  bool readRows(const OIIO::ImageSpec& spec, float* texels) {
+    const size_t rowLength = size_t(spec.width) * size_t(spec.nchannels);
+    for (int y = 0; y < spec.height; ++y)
+      if (!input_->read_scanlines(0, 0, spec.y + y, spec.y + y + 1, spec.z, 0, spec.nchannels,
+                                  OIIO::TypeDesc::FLOAT, texels + size_t(y) * rowLength))
+        return false;
+    return true;
+  }
+
+  // Where 0 is white, of the grey and not of alpha. The library has turned all channels of 8 bits,
+  // and no others.
+  void turnGrey(const OIIO::ImageSpec& spec, float* texels) const {
+    const size_t channels = size_t(spec.nchannels);
+    const bool isTurned = header_.integerBits == 8;
+    for (size_t i = 0; i < spec.image_pixels() * channels; ++i)
+      if ((i % channels == 0) != isTurned) texels[i] = 1 - texels[i];
+  }
+
+  // TIFF 6.0, PhotometricInterpretation: 0 is white.
+  static bool isWhiteZero(const OIIO::ImageSpec& spec) {
+    return spec.get_int_attribute("tiff:PhotometricInterpretation", -1) == 0;
+  }
+
   // The reader is given by name, because OpenImageIO passes a file that one reader rejects to all
   // others in turn, among them readers of film, camera and medical formats; one of these allocates
   // 2 GB for a file of 400 bytes. The mutex is needed because version 2.4 looks up ICC and EXIF

@@ -12,12 +12,18 @@ namespace {
 // XMP, IPTC, Photoshop, EXIF, ICC, GPS, interoperability; orientation.
 constexpr std::array<uint64_t, 8> kMetadataTags = {700,   33723, 34377, 34665,
                                                    34675, 34853, 40965, 274};
+constexpr uint64_t kBitsPerSample = 258, kDefaultBits = 1, kShort = 3;
 
 uint64_t number(std::span<const uint8_t> bytes, bool bigEndian) {
   uint64_t value = 0;
   for (size_t i = 0; i < bytes.size(); ++i)
     value |= uint64_t(bytes[i]) << 8 * (bigEndian ? bytes.size() - 1 - i : i);
   return value;
+}
+
+void append(std::vector<uint8_t>& bytes, uint64_t value, size_t count, bool bigEndian) {
+  for (size_t i = 0; i < count; ++i)
+    bytes.push_back(uint8_t(value >> 8 * (bigEndian ? count - 1 - i : i)));
 }
 
 }  // namespace
@@ -35,22 +41,39 @@ std::vector<uint8_t> stripTiff(std::span<const uint8_t> file) {
   const size_t first = directory + countBytes;
   if (count > (file.size() - first) / entryBytes) return stripped;  // the library rejects it
 
-  // Close the gaps between the kept entries, and move the offset of the next directory after them.
-  size_t to = first;
-  uint64_t kept = 0;
-  const size_t end = first + count * entryBytes;
-  for (size_t from = first; from < end; from += entryBytes) {
-    const uint64_t tag = number(file.subspan(from, 2), bigEndian);
-    if (std::find(kMetadataTags.begin(), kMetadataTags.end(), tag) != kMetadataTags.end()) continue;
-    std::copy_n(file.begin() + std::ptrdiff_t(from), entryBytes,
-                stripped.begin() + std::ptrdiff_t(to));
-    to += entryBytes;
-    ++kept;
+  const auto entryOf = [&](size_t i) { return file.subspan(first + i * entryBytes, entryBytes); };
+  const auto tagOf = [&](size_t i) { return number(entryOf(i).first(2), bigEndian); };
+  bool statesBits = false;
+  for (size_t i = 0; i < count; ++i) statesBits = statesBits || tagOf(i) == kBitsPerSample;
+  std::vector<uint8_t> entries;
+  for (size_t i = 0; i < count; ++i) {
+    if (std::ranges::count(kMetadataTags, tagOf(i)) > 0) continue;
+    if (!statesBits && tagOf(i) > kBitsPerSample) {  // entries ascend
+      append(entries, kBitsPerSample, 2, bigEndian);
+      append(entries, kShort, 2, bigEndian);
+      append(entries, 1, offsetBytes, bigEndian);  // number, and its value
+      append(entries, kDefaultBits, 2, bigEndian);
+      append(entries, 0, offsetBytes - 2, bigEndian);
+      statesBits = true;
+    }
+    entries.insert(entries.end(), entryOf(i).begin(), entryOf(i).end());
   }
-  const size_t next = std::min(offsetBytes, file.size() - end);
-  std::copy_n(file.begin() + std::ptrdiff_t(end), next, stripped.begin() + std::ptrdiff_t(to));
-  for (size_t i = 0; i < countBytes; ++i)
-    stripped[directory + i] = uint8_t(kept >> 8 * (bigEndian ? countBytes - 1 - i : i));
+
+  // In place of the directory, or behind the image if it has become longer.
+  const size_t end = first + count * entryBytes, next = std::min(offsetBytes, file.size() - end);
+  std::vector<uint8_t> kept;
+  append(kept, entries.size() / entryBytes, countBytes, bigEndian);
+  kept.insert(kept.end(), entries.begin(), entries.end());
+  kept.insert(kept.end(), file.begin() + ptrdiff_t(end), file.begin() + ptrdiff_t(end + next));
+  size_t at = directory;
+  if (entries.size() > count * entryBytes) {
+    at = (file.size() + 1) / 2 * 2;
+    stripped.resize(at + kept.size());
+    std::vector<uint8_t> offset;
+    append(offset, at, offsetBytes, bigEndian);
+    std::ranges::copy(offset, stripped.begin() + ptrdiff_t(offsetBytes));
+  }
+  std::ranges::copy(kept, stripped.begin() + ptrdiff_t(at));
   return stripped;
 }
 

@@ -4,6 +4,9 @@
 // beyond the end of the profile. Of the orientation libtiff applies a half, mirrored but with its
 // sides unswapped, to the images that it converts to RGB (YCbCr, JPEG), so that our reader, which
 // turns all alike, would turn these twice.
+//
+// States BitsPerSample where a file leaves it out, as files of black and white do: TIFF 6.0's
+// default is 1, OpenImageIO's is 8.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +15,7 @@
 
 namespace chromeball {
 
-// Removes the metadata entries from the first directory; other directories are not read. Files of
-// other formats stay as they are.
+// Changes the first directory; others are not read. Files of other formats stay as they are.
 std::vector<uint8_t> stripTiff(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -21,6 +21,7 @@ enum Tag : uint16_t {
   kFNumber = 0x829d,
   kExifDirectory = 0x8769,
   kPhotographicSensitivity = 0x8827,
+  kColorSpace = 0xa001,
   kFocalLengthIn35mmFilm = 0xa405
 };
 
@@ -42,12 +43,17 @@ std::span<const uint8_t> blockOf(std::span<const uint8_t> file) {
   }
 }
 
-Exif parse(const TiffBlock& block) {
+// In the directory of EXIF.
+std::optional<double> findExif(const TiffBlock& block, Tag tag) {
   constexpr double kMostBytes = 0x1p53;  // of a file, so that a double tells its positions
   if (!block.isTiff()) return {};
   const auto pointer = block.find(block.firstDirectory(), kExifDirectory);
   if (!pointer || *pointer > kMostBytes) return {};
-  const auto find = [&](Tag tag) { return block.find(uint64_t(*pointer), tag); };
+  return block.find(uint64_t(*pointer), tag);
+}
+
+Exif parse(const TiffBlock& block) {
+  const auto find = [&](Tag tag) { return findExif(block, tag); };
   return {find(kExposureTime), find(kFNumber), find(kPhotographicSensitivity),
           find(kFocalLengthIn35mmFilm)};
 }
@@ -76,6 +82,11 @@ int exifOrientation(std::span<const uint8_t> file) {
   if (!block.isTiff()) return 1;
   const double stated = block.find(block.firstDirectory(), kOrientation).value_or(1);
   return stated <= 8 ? int(stated) : 1;
+}
+
+bool exifStatesOtherColors(std::span<const uint8_t> file) {
+  constexpr double kSrgb = 1;  // others: 65535, uncalibrated; 2, Adobe RGB in older files
+  return findExif(TiffBlock(blockOf(file)), kColorSpace).value_or(kSrgb) != kSrgb;
 }
 
 }  // namespace chromeball

@@ -27,4 +27,8 @@ Exif readExif(const std::filesystem::path& path);
 // tell.
 int exifOrientation(std::span<const uint8_t> file);
 
+// Whether the colours of a JPEG, PNG or TIFF are stated to be others than those of sRGB: cameras
+// that are set to Adobe RGB state it here, often without a profile.
+bool exifStatesOtherColors(std::span<const uint8_t> file);
+
 }  // namespace chromeball

@@ -68,9 +68,10 @@ void setMetadata(const Metadata& metadata, Imf::Header& header) {
       std::copy(matrix->begin(), matrix->end(), m.getValue());
       header.insert(name, Imf::M44fAttribute(m));
     } else if (const auto* text = std::get_if<std::string>(&contents)) {
-      if (name == kEnvmapAttribute)
-        header.insert(name, Imf::EnvmapAttribute(*text == kEnvmapCube ? Imf::ENVMAP_CUBE
-                                                                      : Imf::ENVMAP_LATLONG));
+      if (name == kEnvmapAttribute && *text == kEnvmapCube)
+        header.insert(name, Imf::EnvmapAttribute(Imf::ENVMAP_CUBE));
+      else if (name == kEnvmapAttribute && *text == kEnvmapLatLong)
+        header.insert(name, Imf::EnvmapAttribute(Imf::ENVMAP_LATLONG));
       else
         header.insert(name, Imf::StringAttribute(*text));
     } else if (const auto* number = std::get_if<float>(&contents)) {

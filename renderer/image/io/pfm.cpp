@@ -18,9 +18,10 @@ static_assert(std::endian::native == std::endian::little);
 
 namespace {
 
+constexpr std::string_view kSpace = " \t\r\n";
+
 // The next word of the header. Moves `position` to the white space after it.
 std::string_view nextWord(std::string_view text, size_t& position) {
-  constexpr std::string_view kSpace = " \t\r\n";
   const size_t begin = std::min(text.find_first_not_of(kSpace, position), text.size());
   position = std::min(text.find_first_of(kSpace, begin), text.size());
   return text.substr(begin, position - begin);
@@ -29,6 +30,8 @@ std::string_view nextWord(std::string_view text, size_t& position) {
 template <class Number>
 Number parse(const std::filesystem::path& path, std::string_view word) {
   Number number{};
+  if (word.starts_with('+') && !word.starts_with("+-"))
+    word.remove_prefix(1);  // which from_chars does not know
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (error != std::errc() || end != word.data() + word.size())
     throwInput("{}: the PFM header should be: PF, width, height, scale", path.string());
@@ -57,13 +60,16 @@ Image readPfm(const std::filesystem::path& path, Messages& messages) {
          fmt::format("{}: its texels are multiplied by the scale of its header, {:g}",
                      path.string(), factor)});
   const bool littleEndian = scale < 0;
-  size_t begin = position + 1;  // one white space, or a line's end of two
+  size_t begin = position + 1;  // one white space
 
   const int channels = magic == "PF" ? 3 : 1;
   checkImageSize(path, width, height, channels);
   checkImageMemory(path, width, height, channels);
   const size_t rowBytes = size_t(width) * channels * sizeof(float);
-  if (text.substr(position, 2) == "\r\n" && bytes.size() == begin + 1 + rowBytes * height) ++begin;
+  // Or all up to the line's end, of which nothing but the length of the file can tell.
+  if (const size_t end = text.find('\n', position);
+      end < text.find_first_not_of(kSpace, position) && bytes.size() == end + 1 + rowBytes * height)
+    begin = end + 1;
   if (bytes.size() < begin || bytes.size() - begin < rowBytes * height)
     throwInput("{}: {} x {} texels need {} bytes, but the file has {}", path.string(), width,
                height, begin + rowBytes * height, bytes.size());

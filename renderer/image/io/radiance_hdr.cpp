@@ -28,13 +28,14 @@ class Reader {
   RadianceHdr read() {
     readHeader();
     checkFileLength();
-    Image image(width_, height_, 3);
+    Image image(areColumns_ ? height_ : width_, areColumns_ ? width_ : height_, 3);
     std::vector<Rgbe> row(width_);
     for (int y = 0; y < height_; ++y) {
       readRow(row);
-      for (int x = 0; x < width_; ++x)
-        image.setRgb(rightToLeft_ ? width_ - 1 - x : x, bottomUp_ ? height_ - 1 - y : y,
-                     decode(row[x]));
+      for (int x = 0; x < width_; ++x) {
+        const int u = reversesRows_ ? width_ - 1 - x : x, v = reversesOrder_ ? height_ - 1 - y : y;
+        image.setRgb(areColumns_ ? v : u, areColumns_ ? u : v, decode(row[x]));
+      }
     }
     return {std::move(image), primaries_, std::move(comments_), std::move(messages_)};
   }
@@ -73,23 +74,37 @@ class Reader {
     readResolution(std::string(line()));
   }
 
+  // The number of rows, then their length. Rows may also be columns: +X first.
   void readResolution(const std::string& text) {
-    char ySign = 0, xSign = 0, rows[32] = {}, columns[32] = {};
-    std::sscanf(text.c_str(), "%cY %31s %cX %31s", &ySign, rows, &xSign, columns);
-    const int64_t height = sideOf(rows), width = sideOf(columns);
+    char order[3] = {}, direction[3] = {}, rows[32] = {}, length[32] = {};
+    std::sscanf(text.c_str(), "%2s %31s %2s %31s", order, rows, direction, length);
+    areColumns_ = order[1] == 'X';
+    const bool isKnown =
+        isSign(order[0]) && isSign(direction[0]) &&
+        (areColumns_ ? direction[1] == 'Y' : order[1] == 'Y' && direction[1] == 'X');
+    if (!isKnown) failResolution();
+    const int64_t height = sideOf(rows), width = sideOf(length);
     checkImageSize(path_, width, height, 3);
     checkImageMemory(path_, width, height, 3);
     height_ = int(height);
     width_ = int(width);
-    bottomUp_ = ySign == '+';
-    rightToLeft_ = xSign == '-';
+    const char left = areColumns_ ? order[0] : direction[0],
+               up = areColumns_ ? direction[0] : order[0];
+    reversesOrder_ = areColumns_ ? left == '-' : up == '+';
+    reversesRows_ = areColumns_ ? up == '+' : left == '-';
+  }
+
+  static bool isSign(char c) { return c == '+' || c == '-'; }
+
+  [[noreturn]] void failResolution() const {
+    fail("the resolution line should read: -Y height +X width");
   }
 
   // A number beyond 64 bits becomes the nearest, which is too large as well.
   int64_t sideOf(const char* word) const {
     char* end = nullptr;
     const int64_t side = std::strtoll(word, &end, 10);
-    if (end == word || *end) fail("the resolution line should read: -Y height +X width");
+    if (end == word || *end) failResolution();
     return side;
   }
 
@@ -223,8 +238,8 @@ class Reader {
   std::filesystem::path path_;
   std::vector<uint8_t> bytes_;
   size_t position_ = 0;
-  int width_ = 0, height_ = 0;
-  bool bottomUp_ = false, rightToLeft_ = false;
+  int width_ = 0, height_ = 0;  // of the rows, as they are stored
+  bool areColumns_ = false, reversesOrder_ = false, reversesRows_ = false;
   double exposure_ = 1;  // the products of these lines
   glm::dvec3 correction_{1}, scale_{1};
   std::optional<Chromaticities> primaries_;

@@ -102,7 +102,10 @@ DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
 ImageFile readHdr(const fs::path& path) {
   RadianceHdr hdr = readRadianceHdr(path);
   ImageFile file{std::move(hdr.image), {"R", "G", "B"}, {}};
-  file.metadata.insert(hdr.comments.begin(), hdr.comments.end());
+  // Other comments are no attributes of an .exr: they may have any name, also a reserved one.
+  constexpr const char* kMapping = "mapping";  // of a probe (probe/load.h)
+  if (const auto comment = hdr.comments.find(kMapping); comment != hdr.comments.end())
+    file.metadata.insert(*comment);
   file.primaries = hdr.primaries;
   file.messages = std::move(hdr.messages);
   return file;
@@ -119,6 +122,18 @@ void warnOfProfile(std::span<const uint8_t> profile, const fs::path& path, Messa
                       fmt::format("{}: has a colour profile that is not applied; its colours are "
                                   "read as sRGB",
                                   path.string())});
+}
+
+// Warns too of colours that the file's EXIF states, where no profile tells which they are. A PNG
+// has chunks for that.
+void warnOfColors(std::span<const uint8_t> profile, std::span<const uint8_t> file,
+                  const fs::path& path, Messages& messages) {
+  warnOfProfile(profile, path, messages);
+  if (profile.empty() && exifStatesOtherColors(file))
+    messages.push_back({Message::Kind::Warning,
+                        fmt::format("{}: its EXIF states other colours than those of sRGB, such as "
+                                    "Adobe RGB; they are read as sRGB",
+                                    path.string())});
 }
 
 // Of light: unless other chunks of a PNG say what the profile does.
@@ -152,7 +167,9 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   file.image = Image(layout.width, layout.height, layout.channels);
   const DecodeSample decode = sampleDecoder(format, bytes, integers, file);
   if (integers != IntegerTexels::Linear)
-    warnOfProfile(unreadProfile(format, bytes), path, file.messages);
+    warnOfColors(unreadProfile(format, bytes),
+                 format == ImageFormat::Jpeg ? std::span(bytes) : std::span<const uint8_t>(), path,
+                 file.messages);
   if (layout.bits == 8)
     readSamples<uint8_t>(*reader, decode, file.image);
   else
@@ -186,7 +203,7 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   if (file.integers && integers != IntegerTexels::Linear) {
     constexpr uint16_t kProfileTag = 34675;
     const TiffBlock tiff(bytes);
-    warnOfProfile(tiff.bytes(tiff.firstDirectory(), kProfileTag), path, file.messages);
+    warnOfColors(tiff.bytes(tiff.firstDirectory(), kProfileTag), bytes, path, file.messages);
   }
   // A strip may be the whole image, which the module decodes in memory of its own; grey becomes
   // RGB.

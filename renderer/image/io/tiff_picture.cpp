@@ -30,9 +30,12 @@ enum PictureTag : uint16_t {
   kDngVersion = 50706
 };
 
-// TIFF 6.0; TIFF/EP and DNG; libtiff's for LogLuv.
+// TIFF 6.0 and its technical notes; TIFF/EP and DNG; libtiff's for LogLuv.
 enum Photometric {
   kTransparencyMask = 4,
+  kCieLab = 8,
+  kIccLab,
+  kItuLab,
   kColorFilterArray = 32803,
   kLogL = 32844,
   kLogLuv,
@@ -172,6 +175,11 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
     throw std::runtime_error(
         "its texels are LogL or LogLuv, of which only 8 bits would be read: convert it to .exr, "
         ".hdr or a .tif of floats");
+  // libtiff takes its white, D50, as that of sRGB, and ICC's numbers as CIE's.
+  if (photometric >= kCieLab && photometric <= kItuLab)
+    throw std::runtime_error(
+        "its texels are L*a*b*, of which only 8 bits would be read, tinted: "
+        "convert it to RGB");
   checkWhole(tiff, picture, file.size());
   checkRatio(tiff, picture, file.size());
   return picture;

@@ -49,11 +49,15 @@ bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes) {
     bytes.assign(text.begin(), text.end());
     return true;
   }
-  bytes.reserve((uri.size() - comma) / 4 * 3);
+  // Some writers escape its + / and =.
+  const bool isEscaped = uri.find('%', comma) != std::string::npos;
+  const std::string unescaped = isEscaped ? decodePercent(uri.substr(comma + 1)) : "";
+  const std::string_view digits = isEscaped ? unescaped : std::string_view(uri).substr(comma + 1);
+  bytes.reserve(digits.size() / 4 * 3);
   uint32_t bits = 0;
   int count = 0;
-  for (size_t i = comma + 1; i < uri.size() && uri[i] != '='; ++i) {
-    const int bits6 = sextet(uri[i]);
+  for (size_t i = 0; i < digits.size() && digits[i] != '='; ++i) {
+    const int bits6 = sextet(digits[i]);
     if (bits6 < 0) return false;
     bits = (bits << 6) | uint32_t(bits6);
     count += 6;
@@ -88,14 +92,15 @@ void checkInside(const fs::path& folder, const std::string& name) {
   constexpr const char* kRemedy = "--allow-external permits that";
   const fs::path path(name);
   if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
-  if (std::find(path.begin(), path.end(), "..") != path.end())
-    failUri("is outside of the model's folder by \"..\"; {}", kRemedy);
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
   const fs::path target = fs::weakly_canonical(root / path, error);
   if (error) failUri("cannot be found: {}", error.message());
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-  if (end != root.end()) failUri("is outside of the model's folder through a link; {}", kRemedy);
+  if (end == root.end()) return;
+  const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
+  failUri("is outside of the model's folder {}; {}", climbs ? "by \"..\"" : "through a link",
+          kRemedy);
 }
 
 }  // namespace chromeball
