@@ -248,6 +248,37 @@ TEST(CausticGuide, LeavesTheFurnaceWhite) {
   EXPECT_NEAR(pixels.mean, 1, 2e-3);
 }
 
+// A white ball that refracts 0.8 and scatters 0.2 of the light: some paths stay inside for tens of
+// bounces. If each that the guide does not choose raised their weight, light would be missing from
+// the image far beyond its stated error, and a few samples would have it all.
+TEST(SlowCausticGuide, LongPathsKeepTheirWeight) {
+  Scene scene;
+  Material ball;
+  ball.metallic = 0;
+  ball.roughness = 0;
+  ball.extended = ExtendedMaterial();
+  ball.extended->transmission = 0.8f;
+  ball.extended->thinWalled = false;
+  addSphere(scene, addMaterial(scene, ball), vec3(0), 1, 96);
+  const Camera camera = Camera::lookAt({0, 0, 3}, vec3(0), kUp, glm::radians(30.0f));
+  const Probe probe(constantProbe({16, 8}, Rgb(1)));
+  constexpr int kSeeds = 6;
+  double sum = 0;  // of squared errors, over the squares of the stated ones
+  for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+    RenderSettings settings = guidedRender(8, 8, 1024, Guiding::On, seed);
+    settings.adaptive = false;
+    const RenderResult r = renderScene(scene, camera, probe, "importance", settings);
+    EXPECT_GT(r.causticFraction, 0);
+    const PixelErrors errors = r.film.errors();
+    double squared = 0;
+    for (const glm::dvec4& error : squaredStandardErrors(errors)) squared += error.w / (64 * 64);
+    const double error = Moments::of(errors.luminances).mean - 1;
+    sum += error * error / squared;
+    EXPECT_LT(squared, 0.01 * 0.01);
+  }
+  EXPECT_LT(sum / kSeeds, 5);
+}
+
 double relMse(const Image& a, const Image& reference) {
   double sum = 0;
   for (int y = 0; y < a.height; ++y)

@@ -2,6 +2,8 @@
 // render --integrator, compare --integrators and image relight --probe as commands.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/json.h"
 #include "base/json_text.h"
 #include "image/io/read_image.h"
@@ -66,10 +68,34 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--ao-distance", "0", "--aov", "ao"}, "--ao-distance");
   refuses({"--integrator", "environment-map", "--regularize"}, "--regularize");
   refuses({"--integrator", "environment-map", "--aov", "light_groups"}, "light groups");
+  refuses({"--integrator", "environment-map", "--strategy", "median-cut:4", "--show-lights"},
+          "leave --show-lights out");
   refuses({"--integrator", "ambient-occlusion", "--max-diffuse-depth", "2"}, "limits of depth");
   refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
   refuses({"--bent", "flat"}, "--bent");
   refuses({"--bent", "uniform"}, "--bent: is for the layer");
+}
+
+TEST_F(CommandIntegrators, RefuseSources) {
+  std::ofstream(folder_ / "sources.toml")
+      << "model = \"plate.gltf\"\n[probe]\nfile = \"probe.exr\"\n"
+         "[[source]]\nprobe_polygon = [[4, 4], [12, 4], [8, 8]]\n";
+  const Strings render{"render", folder_ / "sources.toml", "--size", "8x8", "--samples", "4",
+                       "-o",     folder_ / "o.exr"};
+  EXPECT_EQ(runCommand(render).status, 0);
+  Strings mapped = render;
+  mapped.insert(mapped.end(), {"--integrator", "environment-map"});
+  expectError(mapped, "leave [[source]] out");
+}
+
+TEST_F(CommandIntegrators, HeedTheAngleOfSuns) {
+  Image sky = constantProbe({256, 128}, Rgb(0.1f));
+  sky.setRgb(0, 40, Rgb(9000));
+  writeImage(folder_ / "probe.exr", sky);
+  const Strings suns{"--integrator", "environment-map", "--strategy", "suns", "--samples", "16"};
+  Strings wide = suns;
+  wide.insert(wide.end(), {"--sun-angle", "60"});
+  EXPECT_NE(findColor(render(suns))->texels, findColor(render(wide))->texels);
 }
 
 TEST_F(CommandIntegrators, CacheIrradiance) {

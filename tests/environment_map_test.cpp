@@ -5,7 +5,9 @@
 
 #include "base/parallel.h"
 #include "integrate/environment_map.h"
+#include "math/frame.h"
 #include "probe/sky.h"
+#include "probe/sun_extraction.h"
 #include "probe/synth.h"
 #include "study/row.h"
 #include "test_probes.h"
@@ -220,6 +222,24 @@ TEST(EnvironmentMap, SunsCastShadows) {
   Scene roofed = open;
   addQuad(roofed, 0, {-50, 2, -50}, {100, 0, 0}, {0, 0, 100});
   EXPECT_LT(mean("suns+ambient-occlusion", roofed), 0.02 * mean("suns+ambient-occlusion", open));
+}
+
+// As the discs of the strategy `suns`: E / (pi sin^2(angle / 2)) within the given diameter.
+TEST(EnvironmentMap, SunsHaveTheGivenAngle) {
+  Image map = constantProbe({256, 128}, Rgb(0.5f));
+  map.setRgb(40, 20, Rgb(1e5f));
+  const Probe probe(map);
+  const Sun sun = extractSuns(map).suns.at(0);
+  const EnvironmentLight environment(probe, Scene(), true, 30.0);
+  for (const double degrees : {0.0, 14.0, 16.0}) {
+    const Frame frame(vec3(sun.direction));
+    const double angle = glm::radians(degrees);
+    const vec3 wi = frame.toWorld({float(std::sin(angle)), 0, float(std::cos(angle))});
+    const double radiance = sun.irradiance.x / (kPiD * std::pow(std::sin(glm::radians(15.0)), 2));
+    EXPECT_NEAR(environment.suns()->background(vec3(0), wi).x, degrees < 15 ? radiance : 0,
+                1e-4 * radiance)
+        << degrees;
+  }
 }
 
 TEST(EnvironmentMap, BearsExtremesAndAnyThreadCount) {

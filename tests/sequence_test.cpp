@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "front/plan_render.h"
 #include "front/sequence.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"

@@ -96,6 +96,8 @@ void checkIntegrator(const SceneFile& file) {
   };
   if (file.composite) refuse("[composite]");
   if (file.surroundings) refuse("[surroundings]");
+  if (!file.sources.empty()) refuse("[[source]]");
+  if (s.get<bool>("lighting.show_lights")) refuse("--show-lights");
   if (std::ranges::any_of(layers, isOfLight)) refuse("the light groups");
   if (s.get<std::string>("render.guide") == "on") refuse("--guide on");
   if (s.get<bool>("render.regularize")) refuse("--regularize");

@@ -43,12 +43,13 @@ struct EnvironmentLight::Parts {
   std::unique_ptr<const LightSource> suns;
   Probe sharp;
 
-  Parts(const Probe& probe, bool splitsSuns) : sharp(probe) {
+  Parts(const Probe& probe, bool splitsSuns, std::optional<double> sunAngle) : sharp(probe) {
     if (!splitsSuns) return;
     SunExtraction extraction = extractSuns(probe.latLong());
     if (extraction.suns.empty()) return;
     std::vector<SunLamp> lamps;
     for (Sun& sun : extraction.suns) {
+      sun.angle = sunAngle.value_or(sun.angle);
       sun.direction = probe.rotation()(sun.direction);
       lamps.push_back({sun, true, "sun"});
     }
@@ -57,8 +58,9 @@ struct EnvironmentLight::Parts {
   }
 };
 
-EnvironmentLight::EnvironmentLight(const Probe& probe, const Scene& scene, bool splitsSuns)
-    : EnvironmentLight(Parts(probe, splitsSuns), scene) {}
+EnvironmentLight::EnvironmentLight(const Probe& probe, const Scene& scene, bool splitsSuns,
+                                   std::optional<double> sunAngle)
+    : EnvironmentLight(Parts(probe, splitsSuns, sunAngle), scene) {}
 
 EnvironmentLight::EnvironmentLight(Parts parts, const Scene& scene)
     : suns_(std::move(parts.suns)),

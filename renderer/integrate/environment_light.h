@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "lighting/light_source.h"
 #include "probe/prefiltered_probe.h"
@@ -11,10 +12,12 @@
 namespace chromeball {
 
 // Prefiltered maps for the roughnesses that occur in a scene. With `splitsSuns` the maps are of the
-// probe without its suns, which are light sources of their own (HDRI book, section 9.8.2).
+// probe without its suns, which are light sources of their own (HDRI book, section 9.8.2), with
+// the diameter `sunAngle` in degrees if it is given, as in lighting/suns.h.
 class EnvironmentLight {
  public:
-  EnvironmentLight(const Probe& probe, const Scene& scene, bool splitsSuns);
+  EnvironmentLight(const Probe& probe, const Scene& scene, bool splitsSuns,
+                   std::optional<double> sunAngle = {});
 
   EnvironmentLight(const EnvironmentLight&) = delete;
 

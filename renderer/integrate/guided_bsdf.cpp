@@ -26,6 +26,7 @@ bool GuidedBsdf::sampleLobes(const PixelSampler& sampler, Bounce& out) const {
   out.bsdfPdf = value.pdf;
   out.lobesPdf = chosen.pdf;
   out.fraction = fraction_;
+  if (value.pdf > 0) out.ratio = mixed(value.pdf, chosen.pdf) / value.pdf;
   return completeSample({value.fCos, mixed(value.pdf, chosen.pdf)}, out);
 }
 
@@ -36,12 +37,14 @@ bool GuidedBsdf::sample(const PixelSampler& sampler, Bounce& out) const {
   out.bsdfPdf = out.pdf;
   if (!lobes_) return true;
   if (out.isDelta || out.lobes == Lobes::Narrow) {
-    out.weight /= 1 - fraction_;
+    out.ratio = 1 - fraction_;
+    out.weight /= out.ratio;
     return true;
   }
   out.lobesPdf = lobes_->pdf(position_, out.wi);
   out.fraction = fraction_;
   out.pdf = mixed(out.bsdfPdf, out.lobesPdf);
+  out.ratio = out.pdf / out.bsdfPdf;
   out.weight *= out.bsdfPdf / out.pdf;
   return true;
 }

@@ -87,13 +87,19 @@ Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
          weight;
 }
 
+// Each bounce that the guide does not choose has 1 / (1 - fraction) of the BSDF's weight: on long
+// paths the product would grow without bound, and the variance with it.
+const CausticGuide* PathTracer::guideOf(const PathState& state) const {
+  constexpr float kLeastRatio = 1.0f / 8;
+  return state.guideRatio < kLeastRatio ? nullptr : settings_.caustics;
+}
+
 // A bounce that the guide might have chosen. The rest of the first one is recorded.
 void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                             const PathContext& context) {
   constexpr float kLargest = 1e20f;  // no overflow on long paths
-  if (bounce.bsdfPdf > 0)
-    state.guideRatio = std::min(state.guideRatio * bounce.pdf / bounce.bsdfPdf, kLargest);
-  if (context.records && state.guided.record.lobesPdf == 0)
+  state.guideRatio = std::min(state.guideRatio * bounce.ratio, kLargest);
+  if (context.records && bounce.lobesPdf > 0 && state.guided.record.lobesPdf == 0)
     state.guided = {{0, bounce.lobesPdf, bounce.bsdfPdf, bounce.fraction}, {}, true};
 }
 
@@ -108,7 +114,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   state.from = {surface.position, bsdf.normal(),    &bsdf,
                 state.depth,      bsdf.transmits(), surface.time};
   state.region = nullptr;
-  const GuidedBsdf guided(bsdf, surface.position, -state.ray.direction, settings_.caustics);
+  const GuidedBsdf guided(bsdf, surface.position, -state.ray.direction, guideOf(state));
   if (!atLimit) {
     const bool broad = bsdf.has(Lobes::Broad);
     if (settings_.guide && broad)
@@ -137,7 +143,7 @@ bool PathTracer::scatterAs(PathState& state, const Surface& surface, const Bsdf&
   }
   const Rgb throughputBefore = state.throughput;
   state.throughput *= next.weight;
-  if (next.lobesPdf > 0) noteGuided(state, next, context);
+  if (settings_.caustics) noteGuided(state, next, context);
   if (!survivesRoulette(state.throughput, state.guideRatio, state.depth, sampler)) return false;
   ++state.depth;
   ++context.counts.bounce;

@@ -137,6 +137,8 @@ class PathTracer {
                  PathContext& context) const;
   // Removes the lobes whose limit of depth the path has reached. Returns false if all are.
   bool limitKinds(const PathState& state, Bsdf& bsdf) const;
+  // The guide of the bounces from here; null: none.
+  const CausticGuide* guideOf(const PathState& state) const;
   static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                          const PathContext& context);
   void followTwice(PathState& state, const Hit& hit, PathContext& context) const;

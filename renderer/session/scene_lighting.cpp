@@ -155,7 +155,8 @@ std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrato
                                                         const LoadedScene& loaded) {
   if (!usesEnvironment(integrator)) return nullptr;
   const bool splitsSuns = resolveStrategy(strategy) == "suns";
-  return std::make_unique<EnvironmentLight>(loaded.probe, loaded.scene, splitsSuns);
+  return std::make_unique<EnvironmentLight>(loaded.probe, loaded.scene, splitsSuns,
+                                            loaded.sunAngle);
 }
 
 }  // namespace chromeball

@@ -26,9 +26,9 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     if (built.row.has(Mode::Guide) && !built.strategy->canBeGuided())
       throwInput("{}: {}: only renders with the strategy `importance` are guided", location, row);
     built.environment = makeEnvironment(built.row.integrator, built.row.strategy, loaded);
-    if (usesEnvironment(built.row.integrator) && loaded.surroundings)
-      throwInput("{}: {}: knows only light of a distant probe; the scene has [surroundings]",
-                 location, row);
+    if (usesEnvironment(built.row.integrator) && (loaded.surroundings || loaded.sources))
+      throwInput("{}: {}: knows only light of a distant probe; the scene has {}", location, row,
+                 loaded.surroundings ? "[surroundings]" : "[[source]]");
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");
