@@ -12,9 +12,11 @@
 
 #include "base/error.h"
 #include "description/describe.h"
+#include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "scene/builder/scene_builder.h"
 #include "session/job_description.h"
 #include "small_model.h"
 
@@ -32,7 +34,7 @@ TEST(Job, RendersASceneFileToAnImageAndPrintsNothing) {
   testing::internal::CaptureStderr();
   RenderDescription job = planJob(openScene(folder / "scene.toml"));
   const LoadedScene loaded = loadScene(job);
-  const JobResult result = renderJob(job, loaded);
+  const JobResult result = renderJob(loaded);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 
@@ -72,7 +74,7 @@ void expectFound(const std::string& scene, const char* name, const Change& chang
     RenderDescription job = planJob(openScene(scene));
     prepare(job);
     const LoadedScene loaded = loadScene(job);
-    return std::pair(describeJob(job, loaded), renderIdentity(job, loaded));
+    return std::pair(describeJob(loaded), renderIdentity(loaded));
   };
   const auto [header, identity] = describe([](RenderDescription&) {});
   const auto [changedHeader, changedIdentity] = describe(change);
@@ -164,10 +166,79 @@ TEST(Job, LoadingChangesNothingOfTheDescription) {
   for (const char* scene : {"plain.toml", "composite.toml", "far.toml"}) {
     RenderDescription job = planJob(openScene(folder / scene));
     nlohmann::ordered_json before = describe(job);
-    loadScene(job);
-    nlohmann::ordered_json after = describe(job);
+    nlohmann::ordered_json after = describe(loadScene(job).description);
     before.erase("size"), after.erase("size");
     EXPECT_EQ(jsonText(before), jsonText(after)) << scene;
+  }
+}
+
+// A triangle and a probe from arrays.
+RenderDescription fromMemory(float height, float radiance) {
+  Scene scene;
+  SceneBuilder builder(scene);
+  Material white;
+  white.metallic = 0;
+  white.specular = 0;
+  white.doubleSided = true;
+  const int material = builder.addMaterial(white);
+  Mesh soup;
+  soup.positions = {{-1, height, 1}, {1, height, 1}, {0, height, -1}};
+  builder.addInstance(builder.addMesh(soup, material), material, builder.addNode("soup"));
+  RenderDescription description;
+  description.scene = std::make_shared<const Scene>(std::move(scene));
+  description.probe.map = std::make_shared<const Image>(constantProbe({8, 4}, Rgb(radiance)));
+  description.lighting.strategy.name = "auto";
+  description.size = ImageSize{16, 12};
+  description.settings.samples = 64;
+  return description;
+}
+
+// A white surface under a white probe vanishes; the bits are those of the same model in a file.
+TEST(Job, RendersArrays) {
+  const RenderDescription description = fromMemory(0, 0.5f);
+  const LoadedScene loaded = loadScene(description);
+  const JobResult result = renderJob(loaded);
+  ASSERT_EQ(result.color().width, 16);
+  double sum = 0;
+  for (const float texel : result.color().texels) sum += double(texel);
+  EXPECT_NEAR(sum / double(result.color().texels.size()), 0.5, 0.005);
+  EXPECT_TRUE(loaded.messages.empty());
+
+  GltfWriter w;
+  w.add("materials", {{"doubleSided", true},
+                      {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
+  const int mesh = w.mesh(
+      {{"attributes", {{"POSITION", w.vec3s({-1, 0, 1, 1, 0, 1, 0, 0, -1})}}}, {"material", 0}});
+  w.add("nodes", {{"mesh", mesh}});
+  RenderDescription file = description;
+  file.scene.reset();
+  file.models.push_back({w.save(), {}, {}});
+  EXPECT_EQ(renderJob(loadScene(file)).color().texels, result.color().texels);
+}
+
+TEST(Job, ArraysAreInHeaderAndIdentity) {
+  const auto identity = [](const RenderDescription& d) { return renderIdentity(loadScene(d)); };
+  const RenderDescription first = fromMemory(0, 0.5f);
+  EXPECT_EQ(identity(first), identity(fromMemory(0, 0.5f)));
+  EXPECT_NE(identity(first), identity(fromMemory(0.01f, 0.5f)));
+  EXPECT_NE(identity(first), identity(fromMemory(0, 0.6f)));
+  EXPECT_NE(describe(first), describe(fromMemory(0.01f, 0.5f)));
+  EXPECT_NE(describe(first), describe(fromMemory(0, 0.6f)));
+}
+
+TEST(Job, AProbeFromAnArrayIsChecked) {
+  RenderDescription description = fromMemory(0, 1);
+  for (const float bad : {NAN, INFINITY, -1.0f}) {
+    Image map = constantProbe({8, 4}, Rgb(1));
+    *map.at(3, 2) = bad;
+    description.probe.map = std::make_shared<const Image>(map);
+    try {
+      loadScene(description);
+      ADD_FAILURE() << bad;
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), "the probe's map: texel 3, 2 must be finite, and not negative");
+    }
   }
 }
 

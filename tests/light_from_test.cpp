@@ -71,7 +71,7 @@ std::vector<double> tileSums(const WhiteFloor& folder, const std::string& strate
   file.settings.set("output.file", std::vector<std::string>{folder / "o.exr"});
   RenderDescription job = planJob(file);
   const LoadedScene loaded = loadScene(job);
-  const JobResult result = renderJob(job, loaded);
+  const JobResult result = renderJob(loaded);
   std::vector<double> sums(8);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 16; ++x)

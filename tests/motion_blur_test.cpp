@@ -104,7 +104,7 @@ Settings settingsOf(double time, std::optional<double> shutter, uint64_t seed, u
 Image rendered(const std::string& path, const Settings& settings) {
   RenderDescription job = planJob(openScene(path), settings);
   const LoadedScene loaded = loadScene(job);
-  return renderJob(job, loaded).color();
+  return renderJob(loaded).color();
 }
 
 // The square moves by its width w: at x, the fraction of the time for which it covers x rises from

@@ -248,7 +248,7 @@ TEST(TexelFile, AFailureToReadEndsTheRender) {
   const LoadedScene loaded = loadScene(job);
   ASSERT_EQ(ftruncate(openTexelFile(), 0), 0);
   try {
-    renderJob(job, loaded);
+    renderJob(loaded);
     ADD_FAILURE() << "the texels are lost";
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find("cannot be read"), std::string::npos) << error.what();

@@ -3,7 +3,7 @@
 //
 //   RenderDescription job = planJob(openScene("scene.toml"));
 //   LoadedScene loaded = loadScene(job);
-//   JobResult result = renderJob(job, loaded);
+//   JobResult result = renderJob(loaded);
 //   const Image& image = result.color();   // linear RGB, row 0 at the top
 //
 // All of these throw InputError or RunError (base/error.h); none prints or writes anything.

@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "description/scene_hash.h"
 #include "film/aov.h"
 #include "integrate/integrator_kind.h"
 #include "lighting/strategy.h"
@@ -249,6 +250,7 @@ void addCamera(const CameraDescription& camera, Json& d) {
 
 // Options that hold for all models.
 void addModels(const RenderDescription& description, Json& d) {
+  if (description.models.empty()) return;
   const GltfChoice& choice = description.models.front().choice;
   const Origins& origins = description.origins;
   const auto& animation = choice.animation;
@@ -274,6 +276,9 @@ void addComposite(const RenderDescription& description, Json& d) {
 
 void addParts(const RenderDescription& description, Json& d) {
   addPart("models", description.models, d);
+  if (description.scene) d["scene-in-memory"] = fmt::format("{:016x}", hashOf(*description.scene));
+  if (const auto& map = description.probe.map)
+    d["probe-in-memory"] = fmt::format("{:016x}", pixelHash(*map));
   addPart("scene-camera", description.camera.placed, d);
   addPart("lens", description.camera.lens, d);
   addPart("optics", description.camera.optics, d);
@@ -292,7 +297,7 @@ std::vector<std::string> layerNames(const RenderDescription& description) {
 }
 
 Json describe(const RenderDescription& description) {
-  Json all = {{"scene", description.path}};
+  Json all = {{"scene", description.path.empty() ? Json() : Json(description.path)}};
   addRender(description, all);
   addLight(description, all);
   addCamera(description.camera, all);

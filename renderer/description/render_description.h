@@ -2,6 +2,7 @@
 // Everything that decides an image, as values.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "integrate/render.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
+#include "scene/scene.h"
 
 namespace chromeball {
 
@@ -40,7 +42,8 @@ struct CameraDescription {
 };
 
 struct ProbeDescription {
-  std::optional<std::string> file;  // nullopt: the models' own environment, or none
+  std::optional<std::string> file;   // nullopt: the models' own environment, or none
+  std::shared_ptr<const Image> map;  // in place of a file: lat-long, radiance; null: none
   std::string mapping = "auto";
   Rotation rotation;
   glm::dvec3 scale{1};
@@ -100,7 +103,9 @@ struct OutputDescription {
 
 struct RenderDescription {
   std::string path;                // of the scene file, or of the model if there is none
-  std::vector<ModelEntry> models;  // at least one
+  std::vector<ModelEntry> models;  // at least one, unless there is a `scene`
+  std::shared_ptr<const Scene>
+      scene;  // from memory (scene/builder), in place of models; null: none
   std::vector<Lamp> lamps;
   std::vector<SourceEntry> sources;
   std::vector<std::string> lightLists;  // files that lamps and sources are from
@@ -119,6 +124,9 @@ struct RenderDescription {
   RunDescription run;
   Origins origins;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
+
+  // For messages: that of the first model.
+  std::string sceneName() const { return models.empty() ? "the scene" : models.front().file; }
 };
 
 }  // namespace chromeball

@@ -12,21 +12,20 @@
 
 namespace chromeball {
 
-JobControl::JobControl(const RenderDescription& job, const LoadedScene& loaded,
-                       std::function<void(const RenderState&)> onPass, std::vector<Viewer*> viewers)
-    : job_(job),
-      loaded_(loaded),
+JobControl::JobControl(const LoadedScene& loaded, std::function<void(const RenderState&)> onPass,
+                       std::vector<Viewer*> viewers)
+    : loaded_(loaded),
       onPass_(std::move(onPass)),
-      path_(job.run.checkpoint),
+      path_(loaded.description.run.checkpoint),
       viewers_(std::move(viewers)),
-      images_(job.run.writeEvery),
-      checkpoints_(path_ ? std::optional(job.run.checkpointEvery) : std::nullopt) {
+      images_(loaded.description.run.writeEvery),
+      checkpoints_(path_ ? std::optional(loaded.description.run.checkpointEvery) : std::nullopt) {
   if (!path_) return;
   path_ = std::filesystem::weakly_canonical(std::filesystem::absolute(*path_)).string();  // links
   lock_.emplace(*path_);
-  part_.identity = renderIdentity(job, loaded);
+  part_.identity = renderIdentity(loaded);
   if (!std::filesystem::exists(*path_)) return;
-  if (!job.run.resumes)
+  if (!loaded.description.run.resumes)
     throw InputError(fmt::format("{}: exists; continue that render, or remove the file", *path_),
                      Remedy{"resume", {}});
   const std::string stored = readPartHeader(*path_).identity;
@@ -49,7 +48,8 @@ bool JobControl::restore(RenderState& state) {
 
 void JobControl::noteSamples(const RenderState& restored) {
   const uint32_t pass = restored.finished.empty() ? 0 : restored.wanted;  // in progress
-  const uint32_t samples = std::max(restored.done, pass), asked = job_.settings.samples;
+  const uint32_t samples = std::max(restored.done, pass),
+                 asked = loaded_.description.settings.samples;
   if (samples > asked)
     messages_.push_back({Message::Kind::Note,
                          fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
@@ -96,7 +96,7 @@ void JobControl::publish(const RenderState& state) {
 void JobControl::writeFiles(const RenderState& state) {
   const OutputImage image = imageOf(state).image;
   try {
-    writeOutputs(job_, image);
+    writeOutputs(loaded_.description, image);
   } catch (const std::runtime_error& error) {  // a long render does not end for want of a file
     const std::string text = fmt::format("while rendering: {}", error.what());
     if (messages_.empty() || messages_.back().text != text)
@@ -116,19 +116,18 @@ void JobControl::show(const RenderState& state) {
 }
 
 FinishedImage JobControl::imageOf(const RenderState& state) const {
-  FinishPlan plan = finishPlan(job_, loaded_, state.result);
+  FinishPlan plan = finishPlan(loaded_, state.result);
   plan.settings.denoise = false;
   const std::atomic<bool> never = false;
   FinishedImage finished = finish(
       plan, state.result, [](double) {}, never);
-  finished.image.metadata =
-      imageMetadata(job_, loaded_, finished, state.result, rendering_.seconds());
+  finished.image.metadata = imageMetadata(loaded_, finished, state.result, rendering_.seconds());
   return finished;
 }
 
 void JobControl::writeCheckpoint(RenderState& state) {
   OutputImage image = imageOf(state).image;
-  part_.plan = finishPlan(job_, loaded_, state.result);
+  part_.plan = finishPlan(loaded_, state.result);
   image.state = [&](Archive& a) {
     part_.archive(a);
     part_.plan.archiveImages(a);

@@ -38,8 +38,7 @@ class JobControl : public RenderControl {
   // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
   // or if there is a checkpoint of another job, or one that the job is not to resume.
   // `onPass` is called after each pass. The viewers must outlive this.
-  JobControl(const RenderDescription& job, const LoadedScene& loaded,
-             std::function<void(const RenderState&)> onPass = {},
+  JobControl(const LoadedScene& loaded, std::function<void(const RenderState&)> onPass = {},
              std::vector<Viewer*> viewers = {});
 
   // Throws InputError for a damaged checkpoint.
@@ -62,7 +61,6 @@ class JobControl : public RenderControl {
   void noteSamples(const RenderState& restored);
   void writeCheckpoint(RenderState& state);
 
-  const RenderDescription& job_;
   const LoadedScene& loaded_;
   std::function<void(const RenderState&)> onPass_;
   std::optional<std::string> path_;  // of the checkpoint

@@ -22,11 +22,11 @@ constexpr size_t kHeader = kMagic.size() + sizeof(uint64_t);
 
 }  // namespace
 
-CacheFile::CacheFile(const RenderDescription& job, const LoadedScene& loaded)
-    : cache_(job.settings.cacheError.value()), path_(job.run.cache) {
+CacheFile::CacheFile(const LoadedScene& loaded)
+    : cache_(loaded.description.settings.cacheError.value()), path_(loaded.description.run.cache) {
   if (!path_) return;
   checkReplaceable(*path_);
-  identity_ = lightIdentity(job, loaded);
+  identity_ = lightIdentity(loaded);
   if (std::filesystem::exists(*path_)) read();
 }
 

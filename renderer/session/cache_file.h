@@ -14,7 +14,7 @@ class CacheFile {
  public:
   // For a job with RenderSettings::cacheError. Reads the job's file if it has one that exists.
   // Throws InputError if that is damaged, or of another scene or light; and as checkReplaceable().
-  CacheFile(const RenderDescription& job, const LoadedScene& loaded);
+  explicit CacheFile(const LoadedScene& loaded);
 
   IrradianceCache& cache() { return cache_; }
 

@@ -5,7 +5,7 @@
 
 namespace chromeball {
 
-void FrameScene::show(RenderDescription& job) {
+void FrameScene::show(const RenderDescription& job) {
   if (!loaded_ || job.composite) return load(job);
   const bool turns = !(job.probe.rotation == loaded_->probe.rotation());
   if (turns && !job.probe.file) return load(job);  // the model's own environment
@@ -19,17 +19,17 @@ void FrameScene::show(RenderDescription& job) {
         std::make_unique<const World>(loaded_->scene, std::vector<RayMask>(), tables, built);
   }
   if (!change.lighting) return;
-  prepared_.lighting = makeLighting(job, *loaded_);
+  prepared_.lighting = makeLighting(*loaded_);
   prepared_.environment =
       makeEnvironment(job.settings.integrator, job.lighting.strategy.name, *loaded_);
 }
 
-void FrameScene::load(RenderDescription& job) {
+void FrameScene::load(const RenderDescription& job) {
   const std::optional<AutomaticView> view = loaded_ ? std::optional(loaded_->view) : std::nullopt;
   prepared_ = {};
   models_.keepsFiles = true;
   loaded_ = std::make_unique<LoadedScene>(loadScene(job, &models_, view ? &*view : nullptr));
-  prepared_ = prepareScene(job, *loaded_);
+  prepared_ = prepareScene(*loaded_);
 }
 
 }  // namespace chromeball

@@ -79,11 +79,12 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
 }
 
 // The description, with contents of files instead of their names, and without limits.
-Json describeContents(const RenderDescription& job, const LoadedScene& loaded) {
-  Json identity = describeJob(job, loaded);
+Json describeContents(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
+  Json identity = describeJob(loaded);
   for (const char* name : kPaths) identity.erase(name);
   for (const char* name : kLimits) identity.erase(name);
-  identity["contents of scene"] = fingerprint(job.path);
+  if (!job.path.empty()) identity["contents of scene"] = fingerprint(job.path);
   for (const std::string& file : loaded.files) {
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
@@ -101,7 +102,8 @@ uint64_t hashOf(const std::vector<PunctualLight>& lights) {
 
 }  // namespace
 
-Json describeJob(const RenderDescription& job, const LoadedScene& loaded) {
+Json describeJob(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   Json d = describe(job);
   if (job.probe.file) d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
   if (const auto& found = loaded.plateScale)
@@ -129,23 +131,24 @@ Metadata toMetadata(const Json& description) {
   return metadata;
 }
 
-std::string identityOf(const RenderDescription& job, const LoadedScene& loaded) {
-  Json identity = describeContents(job, loaded);
+std::string identityOf(const LoadedScene& loaded) {
+  Json identity = describeContents(loaded);
   for (const char* name : kVariedByComparisons) identity.erase(name);
   identity["threads"] = threadCount();
   return jsonText(identity);
 }
 
-std::string renderIdentity(const RenderDescription& job, const LoadedScene& loaded) {
-  Json identity = describeContents(job, loaded);
+std::string renderIdentity(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
+  Json identity = describeContents(loaded);
   identity["layers"] = layerNames(job);
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
     identity["samples"] = job.settings.samplesOfAll();
   return jsonText(identity);
 }
 
-std::string lightIdentity(const RenderDescription& job, const LoadedScene& loaded) {
-  Json identity = describeContents(job, loaded);
+std::string lightIdentity(const LoadedScene& loaded) {
+  Json identity = describeContents(loaded);
   for (const char* name : kOfImage) identity.erase(name);
   if (std::ranges::none_of(loaded.scene.instances, &Instance::moves)) {
     for (const char* name : {"animation", "animation-time"}) identity.erase(name);

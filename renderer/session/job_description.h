@@ -22,7 +22,7 @@ namespace chromeball {
 //                             corner and (1, 1) at the bottom right
 // The number of samples is left out: if a limit determined it, the limit reproduces the image, but
 // the number does not, since the passes differ.
-nlohmann::ordered_json describeJob(const RenderDescription& job, const LoadedScene& loaded);
+nlohmann::ordered_json describeJob(const LoadedScene& loaded);
 
 // The same as attributes of an EXR file: matrices as such, other lists as JSON.
 Metadata toMetadata(const nlohmann::ordered_json& description);
@@ -30,14 +30,14 @@ Metadata toMetadata(const nlohmann::ordered_json& description);
 // The common properties of all renders of a comparison, as JSON: the description without the
 // settings that the comparison varies, hashes of the contents of all files, and the number of
 // threads, on which times depend.
-std::string identityOf(const RenderDescription& job, const LoadedScene& loaded);
+std::string identityOf(const LoadedScene& loaded);
 
 // The same for parts of one render (render_part.h): also with the settings that a comparison
 // varies, and without threads.
-std::string renderIdentity(const RenderDescription& job, const LoadedScene& loaded);
+std::string renderIdentity(const LoadedScene& loaded);
 // The same for a scene and its light, whatever the camera, the image and the sampling, and the time
 // of an animation in which no geometry moves.
-std::string lightIdentity(const RenderDescription& job, const LoadedScene& loaded);
+std::string lightIdentity(const LoadedScene& loaded);
 std::string withoutParts(const std::string& identity);  // without `shard` and `crop`
 
 // The first difference between two identities: "`mis` was off and is power".

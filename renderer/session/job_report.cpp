@@ -63,12 +63,12 @@ json describe(const RenderResult& result) {
 
 }  // namespace
 
-json statistics(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,
-                const PhaseSeconds& seconds) {
+json statistics(const LoadedScene& loaded, const JobResult& result, const PhaseSeconds& seconds) {
+  const RenderDescription& job = loaded.description;
   json j = {
       {"version", CHROMEBALL_VERSION},
       {"command", commandLine()},
-      {"job", describeJob(job, loaded)},
+      {"job", describeJob(loaded)},
       {"scene", job.path},
       {"strategy", resolveStrategy(job.lighting.strategy.name)},
       {"seed", job.settings.seed},
@@ -89,7 +89,7 @@ json statistics(const RenderDescription& job, const LoadedScene& loaded, const J
       {"texture_bytes", loaded.scene.texelByteCount()},
       {"texture_file_bytes", loaded.scene.texelFileByteCount()},
       {"peak_memory_bytes", peakMemoryBytes()},
-      {"memory", describe(estimateMemory(job, loaded))},
+      {"memory", describe(estimateMemory(loaded))},
   };
   j.update(describe(result.render));
   if (const auto& d = result.denoised)
@@ -117,9 +117,10 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
   return metadata;
 }
 
-Metadata imageMetadata(const RenderDescription& job, const LoadedScene& loaded,
-                       const FinishedImage& finished, const RenderResult& render, double seconds) {
-  Metadata metadata = toMetadata(describeJob(job, loaded));
+Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
+                       const RenderResult& render, double seconds) {
+  const RenderDescription& job = loaded.description;
+  Metadata metadata = toMetadata(describeJob(loaded));
   metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
   metadata["command"] = commandLine();
   metadata["seconds"] = float(seconds);

@@ -15,12 +15,12 @@ struct PhaseSeconds {
 
 // The statistics of `chromeball render --stats`: the job (job_description.h), samples, rays,
 // seconds, noise, memory. Numbers that are unknown are null.
-nlohmann::json statistics(const RenderDescription& job, const LoadedScene& loaded,
-                          const JobResult& result, const PhaseSeconds& seconds);
+nlohmann::json statistics(const LoadedScene& loaded, const JobResult& result,
+                          const PhaseSeconds& seconds);
 
 // The attributes of the EXR file: the job, and the noise, samples, rays and seconds of the render.
-Metadata imageMetadata(const RenderDescription& job, const LoadedScene& loaded,
-                       const FinishedImage& finished, const RenderResult& render, double seconds);
+Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
+                       const RenderResult& render, double seconds);
 
 // Those that depend on the samples.
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);

@@ -28,9 +28,10 @@ bool hasBodies(const Scene& scene) {
   });
 }
 
-void addMemory(const RenderDescription& job, const LoadedScene& loaded, Collector& messages) {
+void addMemory(const LoadedScene& loaded, Collector& messages) {
+  const RenderDescription& job = loaded.description;
   constexpr double kMinBytes = 1e9;
-  if (const MemoryEstimate estimate = estimateMemory(job, loaded); estimate.peak > kMinBytes)
+  if (const MemoryEstimate estimate = estimateMemory(loaded); estimate.peak > kMinBytes)
     messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.path, 1e-9 * estimate.peak,
                               inWords(estimate)));
 }
@@ -43,7 +44,7 @@ size_t ofSceneFile(const RenderDescription& job, const Scene& scene) {
 }
 
 void addLights(const RenderDescription& job, const Scene& scene, Collector& messages) {
-  const std::string& model = job.models.front().file;
+  const std::string model = job.sceneName();
   if (scene.environment)
     messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
   else if (const size_t count = scene.lights.size() - ofSceneFile(job, scene))
@@ -109,7 +110,8 @@ std::string plateScaleText(const CompositeEntry& composite, const PlateScale& fo
 
 }  // namespace
 
-Messages loadMessages(const RenderDescription& job, const LoadedScene& loaded) {
+Messages loadMessages(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   const Scene& scene = loaded.scene;
   Collector messages;
   for (const std::string& line : job.warnings) messages.warn(line);
@@ -120,10 +122,10 @@ Messages loadMessages(const RenderDescription& job, const LoadedScene& loaded) {
     messages.warn(
         "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
         "are in full shadow; light from emissive surfaces passes");
-  addMemory(job, loaded, messages);
+  addMemory(loaded, messages);
   if (const auto& probe = job.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);
-  else
+  else if (!job.probe.map)
     addLights(job, scene, messages);
   addGuide(job, messages);
   addSources(loaded, messages);

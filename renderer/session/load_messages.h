@@ -7,6 +7,6 @@
 namespace chromeball {
 
 // Messages about the job's settings, the models, the probe and the plate.
-Messages loadMessages(const RenderDescription& job, const LoadedScene& loaded);
+Messages loadMessages(const LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -21,7 +21,7 @@ std::unique_ptr<const Room> loadRoom(const RenderDescription& job, const glm::dv
                                      ModelCache& cache, std::vector<std::string>& files) {
   const auto& surroundings = job.surroundings;
   if (!surroundings || surroundings->shape.shape != Surroundings::Shape::Model) return nullptr;
-  GltfChoice choice = job.models.front().choice;
+  GltfChoice choice = job.models.empty() ? GltfChoice() : job.models.front().choice;
   choice.animation.reset();
   choice.variant.reset();
   choice.environment = false;
@@ -91,7 +91,7 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
                    FrameChange& change) {
   PlacedModels models = placeModels(job, cache, &loaded.view);
   if (job.surroundings && !loaded.room)
-    checkInside(models.scene, *surroundingsOf(job, models.origin), job.models.front().file);
+    checkInside(models.scene, *surroundingsOf(job, models.origin), job.sceneName());
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.modelWarnings = std::move(models.warnings);
@@ -110,7 +110,9 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
 
 }  // namespace
 
-LoadedScene loadScene(RenderDescription& job, ModelCache* shared, const AutomaticView* view) {
+LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
+                      const AutomaticView* view) {
+  RenderDescription job = description;
   ModelCache own;
   ModelCache& cache = shared ? *shared : own;
   if (job.run.textureMemory) cache.texels.memory = *job.run.textureMemory;
@@ -125,37 +127,49 @@ LoadedScene loadScene(RenderDescription& job, ModelCache* shared, const Automati
   if (job.composite && job.composite->plateFile) files.push_back(*job.composite->plateFile);
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.surroundings && !room)
-    checkInside(scene, *surroundingsOf(job, models.origin), job.models.front().file);
+    checkInside(scene, *surroundingsOf(job, models.origin), job.sceneName());
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
-  LoadedScene result{
-      std::move(scene),      models.camera,           models.view,
-      std::move(loaded),     std::move(probe),        surroundingsOf(job, models.origin),
-      std::move(room),       models.origin,           std::move(sources),
-      job.lighting.sunAngle, job.lighting.showLights, std::move(files)};
+  LoadedScene result{{},
+                     std::move(scene),
+                     models.camera,
+                     models.view,
+                     std::move(loaded),
+                     std::move(probe),
+                     surroundingsOf(job, models.origin),
+                     std::move(room),
+                     models.origin,
+                     std::move(sources),
+                     job.lighting.sunAngle,
+                     job.lighting.showLights,
+                     std::move(files)};
   result.probeFile = job.probe.file.value_or("");
   result.modelWarnings = std::move(models.warnings);
-  if (job.composite) {
-    prepareLocalScene(job, result);
-    scaleProbeByPlate(job, result);
+  result.description = std::move(job);
+  if (result.description.composite) {
+    prepareLocalScene(result);
+    scaleProbeByPlate(result);
   }
-  checkMemory(job, result);
-  const Messages found = loadMessages(job, result);
+  checkMemory(result);
+  const Messages found = loadMessages(result);
   result.messages.insert(result.messages.end(), found.begin(), found.end());
   return result;
 }
 
-FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache) {
-  assert(!job.composite);
+FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded,
+                      ModelCache& cache) {
+  assert(!description.composite);
+  loaded.description = description;
+  RenderDescription& job = loaded.description;
   FrameChange change;
   replaceProbe(job, loaded, change);
   if (loaded.scene.isAnimated)
     replaceModels(job, loaded, cache, change);
   else
     loaded.camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
-  checkMemory(job, loaded);
-  loaded.messages = loadMessages(job, loaded);
+  checkMemory(loaded);
+  loaded.messages = loadMessages(loaded);
   return change;
 }
 

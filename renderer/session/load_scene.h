@@ -17,6 +17,8 @@
 namespace chromeball {
 
 struct LoadedScene {
+  RenderDescription description;  // with what its files decide: the image's size, and the source of
+                                  // the local scene's reflectance
   Scene scene;
   Camera camera;            // the camera of the image
   AutomaticView view;       // what the models decide of it
@@ -39,10 +41,10 @@ struct LoadedScene {
   std::optional<PlateScale> plateScale;    // by which the probe was scaled
 };
 
-// Reads models and probe, chooses the camera, and the image's size if the job leaves it to the
-// camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
+// Reads models and probe, chooses the camera, and the image's size if the description leaves it to
+// the camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
 // have decided; both may be null. Throws InputError.
-LoadedScene loadScene(RenderDescription& job, ModelCache* shared = nullptr,
+LoadedScene loadScene(const RenderDescription& description, ModelCache* shared = nullptr,
                       const AutomaticView* view = nullptr);
 
 struct FrameChange {
@@ -53,6 +55,6 @@ struct FrameChange {
 // Replaces the camera, the probe if it has turned or is another file, and, where a model is
 // animated, what moves with it, for another frame of the same job. Not for composites; a probe that
 // turns must have a file.
-FrameChange loadFrame(RenderDescription& job, LoadedScene& loaded, ModelCache& cache);
+FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
 
 }  // namespace chromeball

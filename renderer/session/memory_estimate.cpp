@@ -48,7 +48,8 @@ double imageBytes(const RenderDescription& job) {
 
 double memoryLimit(const RenderDescription& job) { return job.run.memory.value_or(memoryBudget()); }
 
-MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded) {
+MemoryEstimate estimateMemory(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   const Scene& scene = loaded.scene;
   const double texels = double(scene.texelByteCount());
   const double meshes = double(scene.byteCount()) - texels;
@@ -81,8 +82,9 @@ std::string inWords(const MemoryEstimate& e) {
                      1e-9 * e.images, 1e-9 * e.textures, 1e-9 * e.geometry, 1e-9 * e.probe);
 }
 
-void checkMemory(const RenderDescription& job, const LoadedScene& loaded) {
-  const MemoryEstimate estimate = estimateMemory(job, loaded);
+void checkMemory(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
+  const MemoryEstimate estimate = estimateMemory(loaded);
   const double limit = memoryLimit(job);
   if (estimate.peak > limit)
     throw InputError(fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB",

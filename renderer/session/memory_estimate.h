@@ -17,7 +17,7 @@ struct MemoryEstimate {
   double peak = 0;      // the most at any one time; files are freed before images are allocated
 };
 
-MemoryEstimate estimateMemory(const RenderDescription& job, const LoadedScene& loaded);
+MemoryEstimate estimateMemory(const LoadedScene& loaded);
 
 // The job's limit: `--memory`, or memoryBudget().
 double memoryLimit(const RenderDescription& job);
@@ -29,6 +29,6 @@ double imageBytes(const RenderDescription& job);
 std::string inWords(const MemoryEstimate& estimate);
 
 // Throws InputError if the peak exceeds the limit.
-void checkMemory(const RenderDescription& job, const LoadedScene& loaded);
+void checkMemory(const LoadedScene& loaded);
 
 }  // namespace chromeball

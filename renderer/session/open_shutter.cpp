@@ -51,7 +51,7 @@ void checkMotionMemory(const RenderDescription& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
-const std::string& modelOf(const RenderDescription& job) { return job.models.front().file; }
+std::string modelOf(const RenderDescription& job) { return job.sceneName(); }
 
 // `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
 void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Camera& camera,

@@ -60,6 +60,7 @@ PlacedModels modelsAtOrigin(const RenderDescription& job, const std::vector<Mode
                             ModelCache& cache) {
   PlacedModels placed;
   placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
+  if (job.scene) return placed;
   placed.origin = originFor(placed.scene, models.front().file);
   if (placed.origin != glm::dvec3(0))
     placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
@@ -83,6 +84,7 @@ AutomaticView viewAtStart(const RenderDescription& job, const PlacedModels& now,
 Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {
   Scene scene;
+  if (job.scene) scene = *job.scene;
   std::set<std::string> known(warnings.begin(), warnings.end());
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) warnings.push_back(line);
@@ -116,7 +118,7 @@ Camera cameraOf(const RenderDescription& job, const Scene& scene, const Automati
 PlacedModels placeModels(RenderDescription& job, ModelCache& cache, const AutomaticView* view) {
   PlacedModels placed = modelsAtOrigin(job, job.models, cache);
   if (placed.scene.instances.empty() && !placed.scene.isAnimated)
-    throwInput("{}: the model has no triangles to render", job.models.front().file);
+    throwInput("{}: the model has no triangles to render", job.sceneName());
   Scene& scene = placed.scene;
   chooseSize(job, scene);
   placed.view = view ? *view : viewAtStart(job, placed, cache);

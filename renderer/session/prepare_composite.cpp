@@ -77,7 +77,8 @@ void placeGround(const RenderDescription& job, LoadedScene& loaded) {
 
 }  // namespace
 
-void prepareLocalScene(RenderDescription& job, LoadedScene& loaded) {
+void prepareLocalScene(LoadedScene& loaded) {
+  RenderDescription& job = loaded.description;
   CompositeDescription& composite = *job.composite;
   const CompositeEntry& entry = composite.entry;
   Scene& scene = loaded.scene;
@@ -116,7 +117,8 @@ void prepareLocalScene(RenderDescription& job, LoadedScene& loaded) {
                float(composite.roughness.value_or(0.2)));
 }
 
-void scaleProbeByPlate(const RenderDescription& job, LoadedScene& loaded) {
+void scaleProbeByPlate(LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   if (!job.probe.isScaledByPlate) return;
   const std::string location = job.origins.of("probe.scale");
   if (hasLamps(loaded.scene))

@@ -8,10 +8,10 @@ namespace chromeball {
 
 // Adds the ground if the composite has one, determines the objects and the local scene, and sets
 // the local scene's reflectance and gloss. Throws InputError.
-void prepareLocalScene(RenderDescription& job, LoadedScene& loaded);
+void prepareLocalScene(LoadedScene& loaded);
 
 // Scales the probe as the plate tells, if it is to be, after prepareLocalScene(). Throws
 // InputError.
-void scaleProbeByPlate(const RenderDescription& job, LoadedScene& loaded);
+void scaleProbeByPlate(LoadedScene& loaded);
 
 }  // namespace chromeball

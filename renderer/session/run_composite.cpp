@@ -18,11 +18,11 @@ Rgb flatIrradiance(const LoadedScene& loaded) {
 }
 
 // Fills loaded.projection with the local scene's reflectance.
-CompositeReport::Reflectance solveReflectance(const RenderDescription& job,
-                                              const LoadedScene& loaded,
+CompositeReport::Reflectance solveReflectance(const LoadedScene& loaded,
                                               const PreparedScene& prepared,
                                               const Progress& progress,
                                               const std::atomic<bool>& stop) {
+  const RenderDescription& job = loaded.description;
   const ReflectanceProblem problem{*prepared.world, loaded.camera, *prepared.lighting,
                                    job.composite->plate};
   RenderSettings settings = job.settings;
@@ -68,16 +68,17 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
 
 }  // namespace
 
-JobResult renderComposite(const RenderDescription& job, const LoadedScene& loaded,
-                          const PreparedScene& prepared, const Progress& progress,
-                          const std::atomic<bool>& stop, RenderControl* control) {
+JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
+                          const Progress& progress, const std::atomic<bool>& stop,
+                          RenderControl* control) {
+  const RenderDescription& job = loaded.description;
   const CompositeDescription& plan = *job.composite;
   const bool solves = loaded.projection != nullptr;
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CompositeReport::Reflectance> reflectance;
   if (solves)
     reflectance = solveReflectance(
-        job, loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
+        loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
       *prepared.world, loaded.camera, *prepared.lighting, plan.plate, job.settings, plan.passes,
@@ -85,7 +86,7 @@ JobResult renderComposite(const RenderDescription& job, const LoadedScene& loade
       [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
       control);
   FinishedImage finished =
-      finishComposite(finishPlan(job, loaded, rendered.result), rendered, progress, stop);
+      finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
   Messages messages = warningsOf(*finished.composite, job.probe.scale);
   if (loaded.plateScale)  // nothing better is known

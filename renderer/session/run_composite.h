@@ -7,8 +7,8 @@
 namespace chromeball {
 
 // Estimates the local scene's reflectance if the job requests it, then renders the composite.
-JobResult renderComposite(const RenderDescription& job, const LoadedScene& loaded,
-                          const PreparedScene& prepared, const Progress& progress,
-                          const std::atomic<bool>& stop, RenderControl* control);
+JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
+                          const Progress& progress, const std::atomic<bool>& stop,
+                          RenderControl* control);
 
 }  // namespace chromeball

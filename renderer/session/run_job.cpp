@@ -14,17 +14,18 @@
 namespace chromeball {
 namespace {
 
-JobResult renderPlain(const RenderDescription& job, const LoadedScene& loaded,
-                      const PreparedScene& prepared, const Progress& progress,
-                      const std::atomic<bool>& stop, RenderControl* control) {
+JobResult renderPlain(const LoadedScene& loaded, const PreparedScene& prepared,
+                      const Progress& progress, const std::atomic<bool>& stop,
+                      RenderControl* control) {
+  const RenderDescription& job = loaded.description;
   const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CacheFile> records;
-  if (job.settings.cacheError) records.emplace(job, loaded);
+  if (job.settings.cacheError) records.emplace(loaded);
   RenderResult result = render(*prepared.world, loaded.camera, *prepared.lighting, job.settings,
                                [&](double fraction) { progress(share * fraction); }, stop, control,
                                {prepared.environment.get(), records ? &records->cache() : nullptr});
   if (records) records->write();
-  FinishedImage finished = finish(finishPlan(job, loaded, result), result, progress, stop);
+  FinishedImage finished = finish(finishPlan(loaded, result), result, progress, stop);
   return {std::move(finished), std::move(result)};
 }
 
@@ -37,13 +38,13 @@ Image cropped(const Image& whole, const Crop& window) {
 }
 
 // The number of groups is known only now.
-void checkGroupMemory(const RenderDescription& job, const LoadedScene& loaded, const World& world,
-                      const LightSource& lighting) {
+void checkGroupMemory(const LoadedScene& loaded, const World& world, const LightSource& lighting) {
+  const RenderDescription& job = loaded.description;
   const size_t count = LightGroups(world, lighting).names().size();
   const Crop window = job.settings.window();
   const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
                         window.width * window.height;
-  const double needed = estimateMemory(job, loaded).peak + layers;
+  const double needed = estimateMemory(loaded).peak + layers;
   if (needed > memoryLimit(job))
     throw InputError(
         fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
@@ -55,8 +56,8 @@ void checkGroupMemory(const RenderDescription& job, const LoadedScene& loaded, c
 
 }  // namespace
 
-FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
-                      const RenderResult& result) {
+FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result) {
+  const RenderDescription& job = loaded.description;
   FinishPlan plan{job.settings, {}, result.groups};
   if (!job.composite) return plan;
   const Crop window = job.settings.window();
@@ -66,39 +67,40 @@ FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
   return plan;
 }
 
-PreparedScene prepareScene(const RenderDescription& job, const LoadedScene& loaded) {
+PreparedScene prepareScene(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   Stopwatch watch;
   PreparedScene prepared;
   prepared.world = std::make_unique<const World>(
       loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>(),
       BsdfTables(loaded.scene.materials, job.settings.regularize));
   prepared.buildSeconds = watch.lap();
-  prepared.lighting = makeLighting(job, loaded);
+  prepared.lighting = makeLighting(loaded);
   prepared.environment =
       makeEnvironment(job.settings.integrator, job.lighting.strategy.name, loaded);
-  if (job.settings.wantsGroups())
-    checkGroupMemory(job, loaded, *prepared.world, *prepared.lighting);
+  if (job.settings.wantsGroups()) checkGroupMemory(loaded, *prepared.world, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();
   loaded.scene.checkTexels();
   return prepared;
 }
 
-JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded,
-                    const PreparedScene& prepared, const Progress& progress,
-                    const std::atomic<bool>& stop, RenderControl* control) {
+JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
+                    const Progress& progress, const std::atomic<bool>& stop,
+                    RenderControl* control) {
+  const RenderDescription& job = loaded.description;
   Stopwatch watch;
-  JobResult result = job.composite ? renderComposite(job, loaded, prepared, progress, stop, control)
-                                   : renderPlain(job, loaded, prepared, progress, stop, control);
+  JobResult result = job.composite ? renderComposite(loaded, prepared, progress, stop, control)
+                                   : renderPlain(loaded, prepared, progress, stop, control);
   loaded.scene.checkTexels();
   result.render.interrupted |= job.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   return result;
 }
 
-JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded) {
+JobResult renderJob(const LoadedScene& loaded) {
   const std::atomic<bool> never = false;
   return renderJob(
-      job, loaded, prepareScene(job, loaded), [](double) {}, never);
+      loaded, prepareScene(loaded), [](double) {}, never);
 }
 
 }  // namespace chromeball

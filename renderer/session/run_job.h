@@ -23,11 +23,10 @@ struct PreparedScene {
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
 // that take more memory than the job may.
-PreparedScene prepareScene(const RenderDescription& job, const LoadedScene& loaded);
+PreparedScene prepareScene(const LoadedScene& loaded);
 
 // How the image is made of the job's samples.
-FinishPlan finishPlan(const RenderDescription& job, const LoadedScene& loaded,
-                      const RenderResult& result);
+FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result);
 
 struct JobResult : FinishedImage {
   RenderResult render;
@@ -40,11 +39,11 @@ struct JobResult : FinishedImage {
 // Renders until the job's limit of samples, time or noise is reached, or `stop` is set. In the
 // latter case render.interrupted is true, and the image contains the samples so far. `control`
 // (integrate/render_state.h) may be null; not for composites of two passes.
-JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded,
-                    const PreparedScene& prepared, const Progress& progress,
-                    const std::atomic<bool>& stop, RenderControl* control = nullptr);
+JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
+                    const Progress& progress, const std::atomic<bool>& stop,
+                    RenderControl* control = nullptr);
 
 // The same without progress reports and interruption.
-JobResult renderJob(const RenderDescription& job, const LoadedScene& loaded);
+JobResult renderJob(const LoadedScene& loaded);
 
 }  // namespace chromeball

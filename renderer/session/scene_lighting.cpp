@@ -30,10 +30,25 @@ void keepPart(const RenderDescription& job, const Scene& scene, Image& latLong) 
     latLong.texels[i] -= extraction.remainder.texels[i];
 }
 
+void checkProbeMap(const Image& map) {
+  if (map.channels != 3 || map.width < 1 || map.height < 1)
+    throwInput("the probe's map is {} x {} with {} channels; it must be lat-long, with 3",
+               map.width, map.height, map.channels);
+  for (size_t i = 0; i < map.texels.size(); ++i)
+    if (!(map.texels[i] >= 0 && std::isfinite(map.texels[i])))
+      throwInput("the probe's map: texel {}, {} must be finite, and not negative",
+                 i / 3 % size_t(map.width), i / 3 / size_t(map.width));
+}
+
 LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
   if (job.probe.file)
     return loadProbe(*job.probe.file, job.probe.mapping, job.origins.of("probe.mapping"));
   LoadedProbe loaded;
+  if (job.probe.map) {
+    checkProbeMap(*job.probe.map);
+    loaded.latLong = *job.probe.map;
+    return loaded;
+  }
   if (scene.environment) {
     loaded.latLong = std::move(*scene.environment);
     return loaded;
@@ -62,9 +77,8 @@ void checkLit(const RenderDescription& job, const Scene& scene) {
     return l.sun || l.ambient;
   }) || std::ranges::any_of(scene.materials, &Material::emits);
   if (!lit)
-    throw InputError(
-        fmt::format("{}: nothing lights the scene; it needs a probe", job.models.front().file),
-        Remedy{"probe.file", {}});
+    throw InputError(fmt::format("{}: nothing lights the scene; it needs a probe", job.sceneName()),
+                     Remedy{"probe.file", {}});
 }
 
 LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
@@ -146,7 +160,8 @@ std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
   return lighting;
 }
 
-std::unique_ptr<LightSource> makeLighting(const RenderDescription& job, const LoadedScene& loaded) {
+std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
   return makeLighting(job.lighting.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
 }
 

@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
   chromeball::RenderDescription job = chromeball::planJob(chromeball::openScene(argv[1]));
   chromeball::LoadedScene loaded = chromeball::loadScene(job);
-  const chromeball::JobResult result = chromeball::renderJob(job, loaded);
+  const chromeball::JobResult result = chromeball::renderJob(loaded);
 
   // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
   const chromeball::Image& image = result.color();

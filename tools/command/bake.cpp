@@ -48,9 +48,8 @@ class Bake {
  public:
   explicit Bake(const BakeOptions& options)
       : options_(options),
-        job_(plannedJob(options)),
-        loaded_(loadScene(job_)),
-        settings_(bakeSettings(options, job_)),
+        loaded_(loadScene(plannedJob(options))),
+        settings_(bakeSettings(options, loaded_.description)),
         meshes_(placedMeshes(loaded_.scene)) {
     checkDistinct({options.output, options.toVertices() ? "" : options.lightmapPath()},
                   loaded_.files);
@@ -113,7 +112,7 @@ class Bake {
   }
 
   BakeResult bakePoints(const std::vector<BakePoint>& points) {
-    prepared_ = prepareScene(job_, loaded_);
+    prepared_ = prepareScene(loaded_);
     tracer_.emplace(*prepared_.world, *prepared_.lighting, PathSettings{});
     light_.emplace(*tracer_, settings_.what, settings_.distance);
     print(loaded_.messages, options_.quiet());  // after the last error that input can cause
@@ -136,7 +135,8 @@ class Bake {
     file.scale = float(options_.scale.value_or(1));
     file.origin = loaded_.origin;
     file.camera = loaded_.camera;
-    file.aspect = float(job_.settings.width) / float(job_.settings.height);
+    file.aspect =
+        float(loaded_.description.settings.width) / float(loaded_.description.settings.height);
     return file;
   }
 
@@ -149,7 +149,7 @@ class Bake {
               {"maxDepth", settings_.maxDepth},
               {"seed", settings_.seed},
               {"invalidSamples", baked.invalid.total()}};
-    if (const auto& probe = job_.probe.file)
+    if (const auto& probe = loaded_.description.probe.file)
       extras["probe"] = std::filesystem::path(*probe).filename().string();
   }
 
@@ -161,13 +161,13 @@ class Bake {
   void checkPageMemory(int size) const {
     constexpr double kBytesPerTexel = 7 * sizeof(float) + 20 + sizeof(BakePoint) +
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);
-    const double needed = kBytesPerTexel * size * size + estimateMemory(job_, loaded_).peak;
-    if (needed > memoryLimit(job_))
+    const double needed = kBytesPerTexel * size * size + estimateMemory(loaded_).peak;
+    if (needed > memoryLimit(loaded_.description))
       throw InputError(
           fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with all "
                       "else; the limit is {:.3g} GB",
                       options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
-                      1e-9 * memoryLimit(job_)),
+                      1e-9 * memoryLimit(loaded_.description)),
           Remedy{"memory", {}});
   }
 
@@ -186,7 +186,6 @@ class Bake {
 
   const BakeOptions& options_;
   Stopwatch watch_;
-  RenderDescription job_;
   LoadedScene loaded_;
   BakeSettings settings_;
   std::vector<PlacedMesh> meshes_;

@@ -21,7 +21,7 @@ RenderDescription basisJob(const SceneOptions& options, const char* what) {
   return job;
 }
 
-LoadedScene loadBasisScene(RenderDescription& job) {
+LoadedScene loadBasisScene(const RenderDescription& job) {
   LoadedScene loaded = loadScene(job);
   std::erase_if(loaded.scene.ambient, [](const auto& lamp) { return isBlack(lamp.radiance); });
   return loaded;

@@ -11,6 +11,6 @@ namespace chromeball {
 // InputError for composites and surroundings, which have none.
 RenderDescription basisJob(const SceneOptions& options, const char* what);
 
-LoadedScene loadBasisScene(RenderDescription& job);
+LoadedScene loadBasisScene(const RenderDescription& job);
 
 }  // namespace chromeball

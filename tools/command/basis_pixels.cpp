@@ -24,12 +24,12 @@ int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
 // The rows of a band: all that there are, if they fit into the memory; else those of whole tiles,
 // in bands that are about as high as each other.
-int rowsOfBand(const RenderDescription& job, const LoadedScene& loaded,
-               const DirectionBasis& basis) {
+int rowsOfBand(const LoadedScene& loaded, const DirectionBasis& basis) {
+  const RenderDescription& job = loaded.description;
   constexpr int kTile = TileGrid::kSize;
   const RenderSettings& s = job.settings;
   checkStageSize(basis, s.width, s.height, "--directions");
-  const MemoryEstimate estimate = estimateMemory(job, loaded);
+  const MemoryEstimate estimate = estimateMemory(loaded);
   const double limit = memoryLimit(job);
   const double row = elementBytes(basis) * s.width + estimate.images / s.height;
   const double rest = estimate.peak - estimate.images + StageWriter::bufferBytes(basis, s.width);
@@ -89,7 +89,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   RenderDescription job = basisJob(options, "light stage");
   const LoadedScene loaded = loadBasisScene(job);
   checkDistinct({own.out}, loaded.files);
-  const int rows = rowsOfBand(job, loaded, basis);
+  const int rows = rowsOfBand(loaded, basis);
   const RenderSettings& s = job.settings;
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
   print(loaded.messages, options.quiet());  // after the last error that input can cause

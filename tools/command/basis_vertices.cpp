@@ -43,8 +43,7 @@ class BasisVertices {
       : options_(options),
         own_(own),
         basis_(own.basis, "--basis"),
-        job_(transferJob(options)),
-        loaded_(loadBasisScene(job_)) {
+        loaded_(loadBasisScene(transferJob(options))) {
     checkDistinct({own.output}, loaded_.files);
   }
 
@@ -59,7 +58,8 @@ class BasisVertices {
     own_.isGlossy ? writeGlossy(world, meshes, points) : writeDiffuse(world, meshes, points);
     if (!options_.quiet())
       fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
-                 watch_.seconds(), basis_.name(), job_.settings.samples, summary_, own_.output);
+                 watch_.seconds(), basis_.name(), loaded_.description.settings.samples, summary_,
+                 own_.output);
   }
 
  private:
@@ -99,18 +99,19 @@ class BasisVertices {
   }
 
   TransferSettings settings() const {
-    return {job_.settings.samples, job_.settings.seed, job_.settings.maxDepth};
+    return {loaded_.description.settings.samples, loaded_.description.settings.seed,
+            loaded_.description.settings.maxDepth};
   }
 
   // The values, their columns, the bytes of the file's buffer and those of the file.
   void checkMemory(size_t points) const {
     const double values = double(points) * double(basis_.size() + 1) * sizeof(Rgb);
-    const double needed = 4 * values + estimateMemory(job_, loaded_).peak;
-    if (needed > memoryLimit(job_))
+    const double needed = 4 * values + estimateMemory(loaded_).peak;
+    if (needed > memoryLimit(loaded_.description))
       throw InputError(fmt::format("--basis {}: {} vertices with {} values take {:.3g} GB of "
                                    "memory with all else; the limit is {:.3g} GB",
                                    basis_.name(), points, basis_.size(), 1e-9 * needed,
-                                   1e-9 * memoryLimit(job_)),
+                                   1e-9 * memoryLimit(loaded_.description)),
                        Remedy{"memory", {}});
     constexpr double kMostInFile = 4e9;
     if (values > kMostInFile)
@@ -123,13 +124,12 @@ class BasisVertices {
     const double count = ViewGrid::kCount * double(basis_.size() + 1);
     const double product = std::min(double(points), 3 * count);
     const double needed = 5 * double(points) * count * sizeof(Rgb) +
-                          3 * sizeof(double) * product * product +
-                          estimateMemory(job_, loaded_).peak;
-    if (needed > memoryLimit(job_))
+                          3 * sizeof(double) * product * product + estimateMemory(loaded_).peak;
+    if (needed > memoryLimit(loaded_.description))
       throw InputError(fmt::format("--glossy: {} vertices with matrices of {} x {} take {:.3g} GB "
                                    "of memory with all else; the limit is {:.3g} GB",
                                    points, ViewGrid::kCount, basis_.size() + 1, 1e-9 * needed,
-                                   1e-9 * memoryLimit(job_)),
+                                   1e-9 * memoryLimit(loaded_.description)),
                        Remedy{"memory", {}});
   }
 
@@ -137,12 +137,13 @@ class BasisVertices {
     BakedFile file{.look = BakedLook::Lit, .what = BakedLight::Irradiance};
     file.origin = loaded_.origin;
     file.camera = loaded_.camera;
-    file.aspect = float(job_.settings.width) / float(job_.settings.height);
+    file.aspect =
+        float(loaded_.description.settings.width) / float(loaded_.description.settings.height);
     const glm::dvec3& o = loaded_.origin;
     file.extras["chromeball"] = {{"basis", basis_.name()},
-                                 {"samples", job_.settings.samples},
-                                 {"maxDepth", job_.settings.maxDepth},
-                                 {"seed", job_.settings.seed},
+                                 {"samples", loaded_.description.settings.samples},
+                                 {"maxDepth", loaded_.description.settings.maxDepth},
+                                 {"seed", loaded_.description.settings.seed},
                                  {"origin", {o.x, o.y, o.z}},
                                  {"invalidSamples", invalid.total()}};
     return file;
@@ -152,7 +153,6 @@ class BasisVertices {
   const BasisVerticesOptions& own_;
   Stopwatch watch_;
   LightBasis basis_;
-  RenderDescription job_;
   LoadedScene loaded_;
   std::string summary_;  // of the compression
 };

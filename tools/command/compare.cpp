@@ -178,11 +178,12 @@ void compare(const CompareArguments& a) {
   Study study = planStudy(a);
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(job);
+  job = loaded.description;
   const ReportFiles files(a.folder);
   checkOutputs(files, a, loaded);
   job.settings.noiseLimit.reset();
   study.seed = job.settings.seed;
-  study.identity = identityOf(job, loaded);
+  study.identity = identityOf(loaded);
 
   const RenderStore store(study, {job.settings.width, job.settings.height});
   showStored(study, store);

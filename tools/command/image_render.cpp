@@ -22,14 +22,13 @@ std::string PassReport::of(const RenderResult& result) {
   return text;
 }
 
-ImageRender::ImageRender(const RenderDescription& job, const LoadedScene& loaded,
-                         bool showsProgress, std::vector<Viewer*> viewers)
-    : job_(job),
-      loaded_(loaded),
+ImageRender::ImageRender(const LoadedScene& loaded, bool showsProgress,
+                         std::vector<Viewer*> viewers)
+    : loaded_(loaded),
       viewers_(std::move(viewers)),
       bar_(showsProgress),
       control_(
-          job, loaded,
+          loaded,
           [this, showsProgress](const RenderState& state) {
             if (showsProgress) bar_.describe(report_.of(state.result));
           },
@@ -38,15 +37,16 @@ ImageRender::ImageRender(const RenderDescription& job, const LoadedScene& loaded
 JobResult ImageRender::run(const PreparedScene& prepared,
                            const std::function<double(double)>& fractionOfAll,
                            const std::atomic<bool>& stop) {
-  for (Viewer* viewer : viewers_) viewer->begin(job_.output.files.front());
+  const RenderDescription& job = loaded_.description;
+  for (Viewer* viewer : viewers_) viewer->begin(job.output.files.front());
   const auto progress = [&](double fraction) {
     bar_.update(fractionOfAll(fraction));
     for (Viewer* viewer : viewers_) viewer->update(fraction);
   };
-  const bool isReference = job_.composite && job_.composite->passes == Passes::Two;
+  const bool isReference = job.composite && job.composite->passes == Passes::Two;
   JobResult result =
-      renderJob(job_, loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
-  result.image.metadata = imageMetadata(job_, loaded_, result, result.render, result.seconds);
+      renderJob(loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
+  result.image.metadata = imageMetadata(loaded_, result, result.render, result.seconds);
   const Messages& more = control_.messages();
   result.messages.insert(result.messages.end(), more.begin(), more.end());
   if (!viewers_.empty()) {

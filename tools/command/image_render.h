@@ -25,8 +25,7 @@ class PassReport {
 class ImageRender {
  public:
   // All references must outlive this. Throws InputError for a checkpoint that does not fit.
-  ImageRender(const RenderDescription& job, const LoadedScene& loaded, bool showsProgress,
-              std::vector<Viewer*> viewers);
+  ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers);
 
   // The image, ready to be written except for its state. Ends early if `stop` is set.
   // `fractionOfAll`: of all work, by that of this image.
@@ -34,7 +33,6 @@ class ImageRender {
                 const std::atomic<bool>& stop);
 
  private:
-  const RenderDescription& job_;
   const LoadedScene& loaded_;
   std::vector<Viewer*> viewers_;
   ProgressBar bar_;

@@ -74,21 +74,20 @@ void writeImages(const RenderDescription& job, const LoadedScene& loaded, const 
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto& stats = job.output.stats)
-    writeText(*stats, jsonText(statistics(job, loaded, result, seconds), 2) + "\n");
+    writeText(*stats, jsonText(statistics(loaded, result, seconds), 2) + "\n");
 }
 
 // Of a part of a render, of the files that were loaded; empty for a whole one.
-std::optional<RenderPart> identified(const RenderDescription& job, const LoadedScene& loaded) {
-  if (!job.settings.isPart()) return {};
-  return RenderPart{renderIdentity(job, loaded), {}};
+std::optional<RenderPart> identified(const LoadedScene& loaded) {
+  if (!loaded.description.settings.isPart()) return {};
+  return RenderPart{renderIdentity(loaded), {}};
 }
 
 // Adds the state of a part to its image. After the render, which solves the reflectance of a local
 // scene.
-void addState(const RenderDescription& job, const LoadedScene& loaded,
-              std::optional<RenderPart>& part, JobResult& result) {
+void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, JobResult& result) {
   if (!part) return;
-  part->plan = finishPlan(job, loaded, result.render);
+  part->plan = finishPlan(loaded, result.render);
   result.image.state = partState(*part, result.render);
 }
 
@@ -101,14 +100,15 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   Stopwatch watch;
   PhaseSeconds seconds;
   const LoadedScene loaded = loadScene(job);
+  job = loaded.description;
   seconds.load = watch.lap();
-  const PreparedScene prepared = prepareScene(job, loaded);
+  const PreparedScene prepared = prepareScene(loaded);
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(job, loaded.files);
-  std::optional<RenderPart> part = identified(job, loaded);
+  std::optional<RenderPart> part = identified(loaded);
   JobResult result = [&] {
-    ImageRender render(job, loaded, options.showsProgress(), viewers.all());
+    ImageRender render(loaded, options.showsProgress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
@@ -116,11 +116,11 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
-  addState(job, loaded, part, result);
+  addState(loaded, part, result);
   if (result.render.samples == 0) nameAsPartial(job.output.files);
   writeImages(job, loaded, result, seconds);
 
-  print(resultMessages(job, loaded, prepared, result), options.quiet());
+  print(resultMessages(loaded, prepared, result), options.quiet());
   printOutcome(job, result, options.quiet());
 }
 
@@ -155,12 +155,13 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     }
     Stopwatch watch;
     scene.show(job);
+    job = scene.loaded().description;
     const PhaseSeconds seconds{.load = watch.lap()};
     prepareOutputs(job, scene.loaded().files);
-    std::optional<RenderPart> part = identified(job, scene.loaded());
+    std::optional<RenderPart> part = identified(scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
     JobResult result = [&] {
-      ImageRender render(job, scene.loaded(), options.showsProgress(), viewers.all());
+      ImageRender render(scene.loaded(), options.showsProgress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
       printNew(scene.loaded().messages, printed, options.quiet());
@@ -169,10 +170,9 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
           interrupted);
     }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
-    addState(job, scene.loaded(), part, result);
+    addState(scene.loaded(), part, result);
     writeImages(job, scene.loaded(), result, seconds);
-    printNew(resultMessages(job, scene.loaded(), scene.prepared(), result), printed,
-             options.quiet());
+    printNew(resultMessages(scene.loaded(), scene.prepared(), result), printed, options.quiet());
     if (!options.quiet()) fmt::print("frame {}: ", frame.number);
     printOutcome(job, result, options.quiet());
   }

@@ -12,8 +12,8 @@ namespace chromeball {
 namespace {
 
 // The exposure to try if most pixels of a .png are clipped.
-std::optional<std::string> whyWhite(const RenderDescription& job, const LoadedScene& loaded,
-                                    const RenderResult& result) {
+std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResult& result) {
+  const RenderDescription& job = loaded.description;
   const bool hasPng = std::any_of(job.output.files.begin(), job.output.files.end(),
                                   [](const auto& path) { return lowerExtension(path) == ".png"; });
   if (!hasPng) return std::nullopt;
@@ -62,8 +62,9 @@ void addExcluded(const RenderResult& result, Messages& messages) {
                         result.layers.empty() ? "the image" : "objects and differences"));
 }
 
-Messages resultMessages(const RenderDescription& job, const LoadedScene& loaded,
-                        const PreparedScene& prepared, const JobResult& result) {
+Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
+                        const JobResult& result) {
+  const RenderDescription& job = loaded.description;
   Messages messages;
   addExcluded(result.render, messages);
   const DepthCut& cut = result.render.depthCut;
@@ -79,9 +80,9 @@ Messages resultMessages(const RenderDescription& job, const LoadedScene& loaded,
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   if (job.composite || job.settings.isPart()) return messages;
   if (!result.render.interrupted)
-    if (const auto why = whyBlack(job, loaded, prepared.world->accel, result.render.film.mean()))
+    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render.film.mean()))
       messages.push_back({Message::Kind::Warning, *why});
-  if (const auto why = whyWhite(job, loaded, result.render))
+  if (const auto why = whyWhite(loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
 }

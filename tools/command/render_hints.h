@@ -8,8 +8,8 @@ namespace chromeball {
 
 // The messages of `result`, and messages about excluded samples, clamped light, light beyond the
 // depth limits, and images that are nearly black or mostly clipped.
-Messages resultMessages(const RenderDescription& job, const LoadedScene& loaded,
-                        const PreparedScene& prepared, const JobResult& result);
+Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
+                        const JobResult& result);
 
 // Those about excluded samples and clamped light alone.
 void addExcluded(const RenderResult& result, Messages& messages);

@@ -152,8 +152,9 @@ std::string noneInView(const Scene& scene, const Seen& seen) {
 
 }  // namespace
 
-std::optional<std::string> whyBlack(const RenderDescription& job, const LoadedScene& loaded,
-                                    const Accel& accel, const Image& mean) {
+std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
+                                    const Image& mean) {
+  const RenderDescription& job = loaded.description;
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
   constexpr int kGrid = 48, kFine = 1024;

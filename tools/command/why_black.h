@@ -12,7 +12,7 @@ namespace chromeball {
 
 // The likely cause, with the option to try, if no surface is in view or nearly all that are have
 // remained black; nullopt otherwise. `mean`: the image, RGB.
-std::optional<std::string> whyBlack(const RenderDescription& job, const LoadedScene& loaded,
-                                    const Accel& accel, const Image& mean);
+std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
+                                    const Image& mean);
 
 }  // namespace chromeball
