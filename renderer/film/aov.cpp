@@ -129,6 +129,14 @@ void AovFilm::add(const AovFilm& part, int left, int top) {
     }
 }
 
+void AovFilm::copyPixels(const AovFilm& from, const PixelRect& rect) {
+  if (empty()) return;
+  for (size_t i = 0; i < sums_.size(); ++i)
+    rect.copy(from.sums_[i].sums, sums_[i].sums, width_, size_t(sums_[i].channels));
+  rect.copy(from.samples_, samples_, width_);
+  rect.copy(from.hits_, hits_, width_);
+}
+
 void AovFilm::archive(Archive& a, Rows rows) {
   if (empty()) return;
   for (Sum& sum : sums_) a.items(rows.of(sum.sums, size_t(width_ * sum.channels)));

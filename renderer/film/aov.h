@@ -85,8 +85,9 @@ class AovFilm {
   void add(int x, int y, const FirstHit& first);
   void add(int x, int y, Defect defect);
 
-  // As Film::add() and archive(). Of indices, this film's stay.
+  // As Film::add(), copyPixels() and archive(). Of indices, this film's stay.
   void add(const AovFilm& part, int x, int y);
+  void copyPixels(const AovFilm& from, const PixelRect& rect);
   void archive(Archive& a, Rows rows);
 
   Image finished(Aov aov) const;

@@ -25,6 +25,9 @@ class FeatureFilm {
   void weigh(double weight);
   // As Film::add() and archive().
   void add(const FeatureFilm& part, int x, int y);
+  void copyPixels(const FeatureFilm& from, const PixelRect& rect) {
+    if (!empty()) rect.copy(from.pixels_, pixels_, width_);
+  }
   void archive(Archive& a, Rows rows) {
     if (!empty()) a.items(rows.of(pixels_, size_t(width_)));
   }

@@ -59,6 +59,11 @@ void Film::add(const Film& part, int x, int y) {
     }
 }
 
+void Film::copyPixels(const Film& from, const PixelRect& rect) {
+  rect.copy(from.pixels_, pixels_, width_);
+  if (isWeighed()) rect.copy(from.early_, early_, width_);
+}
+
 void Film::archive(Archive& a, Rows rows) {
   a.items(rows.of(pixels_, size_t(width_)));
   if (isWeighed()) a.items(rows.of(early_, size_t(width_)));

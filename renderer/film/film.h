@@ -56,6 +56,8 @@ class Film {
   // before parts of them are added or read by several threads.
   bool isWeighed() const { return !early_.empty(); }
   void beWeighed() { early_.resize(pixels_.size()); }
+  // Takes these pixels of a film of the same size, weighed as this one.
+  void copyPixels(const Film& from, const PixelRect& rect);
   void archive(Archive& a, Rows rows);
 
   Image mean() const;            // RGB radiance

@@ -52,6 +52,12 @@ void LayerFilm::add(const LayerFilm& part, int left, int top) {
       }
 }
 
+void LayerFilm::copyPixels(const LayerFilm& from, const PixelRect& rect) {
+  if (empty()) return;
+  rect.copy(from.counts_, counts_, width_, size_t(halves_));
+  rect.copy(from.values_, values_, width_, size_t(halves_) * layers_.size());
+}
+
 void LayerFilm::archive(Archive& a, Rows rows) {
   if (empty()) return;
   const size_t perRow = size_t(width_) * size_t(halves_);

@@ -34,6 +34,7 @@ class LayerFilm {
 
   // As Film::add() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);
+  void copyPixels(const LayerFilm& from, const PixelRect& rect);
   void archive(Archive& a, Rows rows);
 
   uint32_t count(int x, int y) const;  // samples

@@ -19,6 +19,21 @@ struct Rows {
   }
 };
 
+// Pixels (x, y) to (x + width - 1, y + height - 1).
+struct PixelRect {
+  int x, y, width, height;
+
+  // Copies of each of these pixels `perPixel` items of an image that is `across` pixels wide.
+  template <class T>
+  void copy(const std::vector<T>& from, std::vector<T>& to, int across, size_t perPixel = 1) const {
+    for (int row = y; row < y + height; ++row) {
+      const size_t first = (size_t(row) * size_t(across) + size_t(x)) * perPixel;
+      std::copy_n(from.begin() + ptrdiff_t(first), size_t(width) * perPixel,
+                  to.begin() + ptrdiff_t(first));
+    }
+  }
+};
+
 // Some megabytes of sums each.
 struct Bands {
   int width, height;

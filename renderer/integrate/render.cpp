@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "integrate/guide_training.h"
+#include "integrate/live_result.h"
 #include "integrate/pixel_renderer.h"
 #include "integrate/render_state.h"
 #include "integrate/tile_grid.h"
@@ -19,12 +20,13 @@ constexpr double kRaysOfHit = 3;  // of a path from a camera ray that hits somet
 class Renderer {
  public:
   Renderer(const Integrator& integrator, const World& world, const Camera& camera,
-           const RenderSettings& settings, RenderState& state)
+           const RenderSettings& settings, RenderState& state, LiveResult* live)
       : integrator_(integrator),
         world_(world),
         camera_(camera),
         settings_(settings),
         state_(state),
+        live_(live),
         tiles_{settings.window().width, settings.window().height},
         pixels_(integrator, world, camera, settings, state.result),
         workers_([this] { return pixels_.makeWorker(); }) {}
@@ -35,6 +37,7 @@ class Renderer {
 
   // Starts the pass that raises the image's mean number of samples per pixel to `wanted`.
   void startPass(uint32_t wanted) {
+    const auto lock = lockLive();
     RenderResult& result = state_.result;
     if (state_.schedule.endsPilot()) {
       state_.allocation.emplace(result.film.errors(), state_.done, leastRate());
@@ -74,10 +77,12 @@ class Renderer {
   }
 
   void endPass() {
+    const auto lock = lockLive();
     RenderResult& result = state_.result;
     if (trains_)
       if (const auto weight = state_.training->learnLights();
           weight && result.layers.empty()) {  // layers have no weights, and must fit the film
+        if (live_) live_->replaced();
         result.film.weigh(*weight);
         result.features.weigh(*weight);
       }
@@ -88,12 +93,19 @@ class Renderer {
   }
 
  private:
+  // Nobody watches as long as the lock exists.
+  std::unique_lock<std::mutex> lockLive() {
+    return live_ ? live_->lock() : std::unique_lock<std::mutex>();
+  }
+
   void renderTile(PixelWorker& worker, size_t tile, const Beam& beam) {
+    if (live_) live_->beginTile(tile);
     tiles_.forPixels(tile, [&](int x, int y) {
       const uint64_t pixel = uint64_t(y) * uint64_t(tiles_.width) + uint64_t(x);
       worker.context.records = trains_ ? state_.training->recordsOf(tile, pixel) : nullptr;
       pixels_.render(worker, x, y, countOf(x, y, state_.done), countOf(x, y, state_.wanted), beam);
     });
+    if (live_) live_->endTile(tile);
     world_.scene.checkTexels();
     state_.finished[tile] = 1;
   }
@@ -114,6 +126,7 @@ class Renderer {
 
   // They have served to learn from.
   void forgetRepeated() {
+    if (live_) live_->replaced();
     RenderResult own(settings_, integrator_.layers());
     own.rays = state_.result.rays;
     own.groups = std::move(state_.result.groups);
@@ -130,6 +143,7 @@ class Renderer {
 
   // Moves what the threads have counted to the result.
   void gather() {
+    const auto lock = lockLive();
     RenderResult& result = state_.result;
     workers_.forEach([&](PixelWorker& worker) {
       result.rays.add(std::exchange(worker.context.counts, {}));
@@ -144,6 +158,7 @@ class Renderer {
   const Camera& camera_;
   const RenderSettings& settings_;
   RenderState& state_;
+  LiveResult* live_;  // null: nobody watches
   TileGrid tiles_;
   PixelRenderer pixels_;
   PerThread<PixelWorker> workers_;
@@ -201,6 +216,27 @@ void RenderResult::addTotals(const RenderResult& part) {
   interrupted |= part.interrupted;
 }
 
+void RenderResult::copyPixels(const RenderResult& from, const PixelRect& rect) {
+  film.copyPixels(from.film, rect);
+  aovs.copyPixels(from.aovs, rect);
+  layers.copyPixels(from.layers, rect);
+  features.copyPixels(from.features, rect);
+}
+
+void RenderResult::copyTotals(const RenderResult& from) {
+  groups = from.groups;
+  rays = from.rays;
+  depthCut = from.depthCut;
+  invalid = from.invalid;
+  clamped = from.clamped;
+  samples = from.samples;
+  isRepeated = from.isRepeated;
+  adaptive = from.adaptive;
+  guidedRegions = from.guidedRegions;
+  causticFraction = from.causticFraction;
+  interrupted = from.interrupted;
+}
+
 void RenderResult::archive(Archive& a) {
   archiveTotals(a);
   const Bands bands{film.width(), film.height()};
@@ -239,11 +275,19 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
                     .allocation = {},
                     .schedule = Schedule(settings),
                     .training = training};
-  Renderer renderer(integrator, world, camera, settings, state);
+  LiveResult* const live = control ? control->live() : nullptr;
+  Renderer renderer(integrator, world, camera, settings, state, live);
   state.result.groups = integrator.groups();
   state.result.isRepeated = settings.shard.index > 0 && settings.shard.repeated > 0;
   if (!control || !control->restore(state)) renderer.tracePhotons();
-  renderPasses(renderer, state, progress, stop, control);
+  if (live) live->begin(state.result);
+  try {
+    renderPasses(renderer, state, progress, stop, control);
+  } catch (...) {
+    if (live) live->end();
+    throw;
+  }
+  if (live) live->end();
   RenderResult& result = state.result;
   if (training) {
     result.guidedRegions = training->lights().guidedRegions();

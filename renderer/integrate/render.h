@@ -27,6 +27,9 @@ struct RenderResult {
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
   void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
   void addTotals(const RenderResult& part);                // what is not per pixel
+  // Takes the pixels, or all else, of a result of the same settings.
+  void copyPixels(const RenderResult& from, const PixelRect& rect);
+  void copyTotals(const RenderResult& from);
 
   // The totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "film/rows.h"
+
 namespace chromeball {
 
 struct TileGrid {
@@ -16,13 +18,18 @@ struct TileGrid {
   int rows() const { return (height + kSize - 1) / kSize; }
   size_t count() const { return size_t(columns()) * size_t(rows()); }
 
+  PixelRect rectOf(size_t tile) const {
+    const int left = int(tile % size_t(columns())) * kSize;
+    const int top = int(tile / size_t(columns())) * kSize;
+    return {left, top, std::min(kSize, width - left), std::min(kSize, height - top)};
+  }
+
   // In scanline order.
   template <class Visit>
   void forPixels(size_t tile, const Visit& visit) const {
-    const int left = int(tile % size_t(columns())) * kSize;
-    const int top = int(tile / size_t(columns())) * kSize;
-    for (int y = top; y < std::min(top + kSize, height); ++y)
-      for (int x = left; x < std::min(left + kSize, width); ++x) visit(x, y);
+    const PixelRect rect = rectOf(tile);
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      for (int x = rect.x; x < rect.x + rect.width; ++x) visit(x, y);
   }
 };
 

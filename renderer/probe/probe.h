@@ -31,6 +31,10 @@ class Probe {
   // The image times the scale, not rotated; and the rotation.
   Image latLong() const;
   const Rotation& rotation() const { return rotation_; }
+  void turnTo(const Rotation& rotation) {
+    rotation_ = rotation;
+    turn_ = MapTurn(rotation);
+  }
 
   // A position in the map: the cell, (s, t) in [0, 1]^2 inside it, and the sine of the polar angle.
   struct Position {

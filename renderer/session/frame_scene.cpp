@@ -7,8 +7,6 @@ namespace chromeball {
 
 void FrameScene::show(const RenderDescription& job) {
   if (!loaded_ || job.composite) return load(job);
-  const bool turns = !(job.probe.rotation == loaded_->probe.rotation());
-  if (turns && !job.probe.file) return load(job);  // the model's own environment
   const FrameChange change = loadFrame(job, *loaded_, models_);
   if (change.geometry) {
     BsdfTables tables = prepared_.world->bsdfTables;

@@ -72,19 +72,22 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 }
 
 // The probe of the job's frame, if it has turned or is another file.
-void replaceProbe(RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
-  const auto& file = job.probe.file;
-  const bool isOther = file && *file != loaded.probeFile;
+void replaceProbe(const ProbeDescription& earlier, LoadedScene& loaded, FrameChange& change) {
+  const RenderDescription& job = loaded.description;
+  const ProbeDescription& probe = job.probe;
+  const bool isOther = probe.file != earlier.file || probe.map != earlier.map ||
+                       probe.mapping != earlier.mapping || probe.scale != earlier.scale;
+  if (!isOther && loaded.probe.rotation() == probe.rotation) return;
   if (isOther) {
-    std::ranges::replace(loaded.files, loaded.probeFile, *file);
-    loaded.probeFile = *file;
-  }
-  if (isOther || !(loaded.probe.rotation() == job.probe.rotation)) {
+    if (probe.file) std::ranges::replace(loaded.files, loaded.probeFile, *probe.file);
+    loaded.probeFile = probe.file.value_or("");
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
-    loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
-    change.lighting = true;
+  } else {
+    loaded.probe.turnTo(probe.rotation);
   }
+  loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
+  change.lighting = true;
 }
 
 void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cache,
@@ -160,10 +163,11 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded,
                       ModelCache& cache) {
   assert(!description.composite);
+  const ProbeDescription earlier = loaded.description.probe;
   loaded.description = description;
   RenderDescription& job = loaded.description;
   FrameChange change;
-  replaceProbe(job, loaded, change);
+  replaceProbe(earlier, loaded, change);
   if (loaded.scene.isAnimated)
     replaceModels(job, loaded, cache, change);
   else

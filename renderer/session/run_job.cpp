@@ -67,13 +67,21 @@ FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result) {
   return plan;
 }
 
-PreparedScene prepareScene(const LoadedScene& loaded) {
+PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earlier) {
   const RenderDescription& job = loaded.description;
   Stopwatch watch;
   PreparedScene prepared;
-  prepared.world = std::make_unique<const World>(
-      loaded.scene, job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>(),
-      BsdfTables(loaded.scene.materials, job.settings.regularize));
+  const std::vector<RayMask> masks =
+      job.composite ? rayMasks(loaded.isObject) : std::vector<RayMask>();
+  if (earlier) {
+    BsdfTables tables = earlier->world->bsdfTables;
+    tables.complete(loaded.scene.materials, job.settings.regularize);
+    prepared.world =
+        std::make_unique<const World>(loaded.scene, masks, tables, earlier->world->accel.built());
+  } else {
+    prepared.world = std::make_unique<const World>(
+        loaded.scene, masks, BsdfTables(loaded.scene.materials, job.settings.regularize));
+  }
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(loaded);
   prepared.environment =

@@ -23,7 +23,9 @@ struct PreparedScene {
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
 // that take more memory than the job may.
-PreparedScene prepareScene(const LoadedScene& loaded);
+// `earlier`: of the same LoadedScene before its contents changed, from which what did not change is
+// taken; null: none.
+PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earlier = nullptr);
 
 // How the image is made of the job's samples.
 FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result);

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// A render in the background: snapshots, changes, two at once, and its end.
+#include "session/session.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+
+#include "base/error.h"
+#include "probe/synth.h"
+#include "scene/builder/scene_builder.h"
+#include "test_scene.h"
+
+namespace chromeball::session_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A ball on a floor; `lift` moves the ball by its transform, while the meshes stay.
+struct Stage {
+  std::shared_ptr<const Mesh> ball, floor;
+
+  Stage() {
+    Scene scene;
+    addSphere(scene, addMaterial(scene, lambert(Rgb(0.5f))), {0, 0.5f, 0}, 0.5f, 16);
+    addQuad(scene, 0, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+    ball = scene.meshes.shared(0), floor = scene.meshes.shared(1);
+  }
+
+  std::shared_ptr<const Scene> scene(float lift = 0, Rgb color = Rgb(0.7f, 0.5f, 0.3f)) const {
+    auto scene = std::make_shared<Scene>();
+    SceneBuilder builder(*scene);
+    const int material = builder.addMaterial(lambert(color));
+    const int node = builder.addNode("ball");
+    Transform up;
+    up.translation.y = lift;
+    builder.addInstance(builder.addMesh(ball), material, node, up);
+    builder.addInstance(builder.addMesh(floor), material, node, Transform());
+    return scene;
+  }
+};
+
+RenderDescription stageDescription(const Stage& stage, uint32_t samples = 16) {
+  RenderDescription d;
+  d.scene = stage.scene();
+  d.probe.map = std::make_shared<const Image>(gradientProbe({64, 32}, Rgb(0.5f), {0.1, 0.3, 0.2}));
+  d.lighting.strategy.name = "importance";
+  d.camera.placed =
+      CameraEntry{.position = {0, 1, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}, .lens = {}};
+  d.size = ImageSize{48, 32};
+  d.settings.samples = samples;
+  return d;
+}
+
+std::vector<float> freshRender(const RenderDescription& description) {
+  return renderJob(loadScene(description)).color().texels;
+}
+
+TEST(Session, GivesTheBitsOfARenderInTheForeground) {
+  const RenderDescription description = stageDescription(Stage());
+  Session session(description);
+  session.start();
+  EXPECT_EQ(session.wait().color().texels, freshRender(description));
+  EXPECT_FALSE(session.isRunning());
+  const auto snapshot = session.snapshot();
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ(snapshot->image.image.layers.front().image.texels, session.wait().color().texels);
+  EXPECT_NEAR(snapshot->samples, 16, 1);  // an adaptive render
+}
+
+// Each snapshot has more samples than the one before, and none is invalid; the render's bits stay.
+TEST(Session, SnapshotsGrow) {
+  const RenderDescription description = stageDescription(Stage(), 1024);
+  Session session(description);
+  session.start();
+  double last = 0;
+  int taken = 0;
+  while (session.isRunning()) {
+    const auto snapshot = session.snapshot();
+    if (!snapshot) continue;
+    ++taken;
+    EXPECT_GE(snapshot->samples, last);
+    last = snapshot->samples;
+    const Image& color = snapshot->image.image.layers.front().image;
+    EXPECT_EQ(color.width, 48);
+    for (const float texel : color.texels) EXPECT_TRUE(std::isfinite(texel) && texel >= 0);
+  }
+  EXPECT_GT(taken, 2);
+  EXPECT_EQ(session.wait().color().texels, freshRender(description));
+}
+
+// After any change the bits are those of a new session, and only what the change touches is done
+// again.
+TEST(Session, UpdateRedoesWhatDiffers) {
+  const Stage stage;
+  RenderDescription d = stageDescription(stage);
+  Session session(d);
+  session.start();
+  session.wait();
+  EXPECT_TRUE(session.work().loadedScene);
+  const auto change = [&](const char* what, const std::function<void()>& edit) {
+    edit();
+    session.update(d);
+    session.start();
+    EXPECT_EQ(session.wait().color().texels, freshRender(d)) << what;
+    return session.work();
+  };
+  const auto isOnly = [](const Session::Work& w, bool scene, bool probe, bool lighting) {
+    return w.loadedScene == scene && w.builtWorld == scene && w.loadedProbe == probe &&
+           w.preparedLighting == lighting;
+  };
+  EXPECT_TRUE(isOnly(change("camera", [&] { d.camera.placed->position.x = 1; }), 0, 0, 0));
+  EXPECT_TRUE(isOnly(change("size", [&] { d.size = ImageSize{32, 32}; }), 0, 0, 0));
+  EXPECT_TRUE(isOnly(change("seed", [&] { d.settings.seed = 3; }), 0, 0, 0));
+  EXPECT_TRUE(isOnly(change("depth", [&] { d.settings.maxDepth = 2; }), 0, 0, 0));
+  EXPECT_TRUE(isOnly(change("rotation", [&] { d.probe.rotation = Rotation(40); }), 0, 1, 1));
+  EXPECT_TRUE(isOnly(change("tilt",
+                            [&] {
+                              d.probe.rotation = Rotation::ofAngles({10, 20, 30});
+                            }),
+                     0, 1, 1));
+  EXPECT_TRUE(isOnly(change("scale", [&] { d.probe.scale = glm::dvec3(0.1, 2, 3); }), 0, 1, 1));
+  EXPECT_TRUE(
+      isOnly(change("strategy", [&] { d.lighting.strategy.name = "median-cut:16"; }), 0, 0, 1));
+  EXPECT_TRUE(isOnly(change("mis",
+                            [&] {
+                              d.lighting.strategy.name = "importance";
+                              d.settings.mis = Mis::Power;
+                            }),
+                     0, 0, 1));
+  EXPECT_TRUE(
+      isOnly(change("map",
+                    [&] {
+                      d.probe.map = std::make_shared<const Image>(constantProbe({16, 8}, Rgb(2)));
+                    }),
+             0, 1, 1));
+  EXPECT_TRUE(change("moved", [&] { d.scene = stage.scene(0.5f); }).loadedScene);
+  EXPECT_TRUE(change("material", [&] { d.scene = stage.scene(0.5f, Rgb(0.1f)); }).loadedScene);
+}
+
+TEST(Session, AMovedNodeKeepsTheStructuresOfMeshes) {
+  const Stage stage;
+  RenderDescription d = stageDescription(stage);
+  Session session(d);
+  session.start();
+  session.wait();
+  const int builds = session.meshBuilds();
+  d.scene = stage.scene(1);
+  session.update(d);
+  session.start();
+  session.wait();
+  EXPECT_EQ(session.meshBuilds(), builds);
+}
+
+TEST(Session, CancelsAndBeginsAnew) {
+  RenderDescription d = stageDescription(Stage(), kMaxSamples);
+  Session session(d);
+  session.start();
+  while (!session.snapshot()) std::this_thread::sleep_for(1ms);
+  session.cancel();
+  EXPECT_FALSE(session.isRunning());
+  EXPECT_TRUE(session.wait().render.interrupted);
+  d.settings.samples = 4;
+  session.update(d);
+  session.start();
+  EXPECT_EQ(session.wait().color().texels, freshRender(d));
+}
+
+TEST(Session, TwoAtOnceDoNotDisturbEachOther) {
+  const Stage stage;
+  const RenderDescription first = stageDescription(stage, 64);
+  RenderDescription second = first;
+  second.probe.rotation = Rotation(90);
+  Session a(first), b(second);
+  a.start();
+  b.start();
+  EXPECT_EQ(a.wait().color().texels, freshRender(first));
+  EXPECT_EQ(b.wait().color().texels, freshRender(second));
+}
+
+TEST(Session, ErrorsAreThrownByWait) {
+  RenderDescription d = stageDescription(Stage());
+  d.lighting.strategy.name = "none";
+  Session session(d);
+  session.start();
+  EXPECT_THROW(session.wait(), InputError);
+  d.lighting.strategy.name = "uniform";
+  session.update(d);
+  session.start();
+  EXPECT_EQ(session.wait().color().texels, freshRender(d));
+}
+
+}  // namespace
+}  // namespace chromeball::session_test
