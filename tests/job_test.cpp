@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A job rendered with the library, without the command.
-#include "api/job.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "front/plan_render.h"
+#include "session/run_job.h"
 
 #include <gtest/gtest.h>
 

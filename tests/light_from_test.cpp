@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "api/job.h"
 #include "base/error.h"
+#include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
@@ -18,6 +18,7 @@
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "session/run_job.h"
 #include "shared_data.h"
 #include "small_model.h"
 #include "test_scene.h"

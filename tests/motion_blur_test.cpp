@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "api/job.h"
+#include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "math/sampler.h"
@@ -14,6 +14,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/moving_camera.h"
+#include "session/run_job.h"
 #include "shared_data.h"
 #include "temporary_folder.h"
 #include "test_probes.h"

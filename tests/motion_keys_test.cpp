@@ -2,11 +2,12 @@
 // The keys between which models, lamps and cameras move, and what is said where they do not follow.
 #include <gtest/gtest.h>
 
-#include "api/job.h"
+#include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "session/run_job.h"
 #include "temporary_folder.h"
 #include "test_probes.h"
 

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "api/job.h"
+#include "front/plan_render.h"
 #include "front/polygon_file.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
@@ -21,6 +21,7 @@
 #include "probe/suggest_polygons.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "session/run_job.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"

@@ -6,14 +6,15 @@
 
 #include <fstream>
 
-#include "api/job.h"
 #include "base/error.h"
+#include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "integrate/mis.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
 #include "run_command.h"
+#include "session/run_job.h"
 #include "small_model.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"

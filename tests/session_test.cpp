@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "probe/synth.h"
 #include "scene/builder/scene_builder.h"
+#include "session/run_job.h"
 #include "test_scene.h"
 
 namespace chromeball::session_test {
@@ -65,7 +66,7 @@ TEST(Session, GivesTheBitsOfARenderInTheForeground) {
   EXPECT_FALSE(session.isRunning());
   const auto snapshot = session.snapshot();
   ASSERT_TRUE(snapshot);
-  EXPECT_EQ(snapshot->image.image.layers.front().image.texels, session.wait().color().texels);
+  EXPECT_EQ(snapshot->color().texels, session.wait().color().texels);
   EXPECT_NEAR(snapshot->samples, 16, 1);  // an adaptive render
 }
 
@@ -82,7 +83,7 @@ TEST(Session, SnapshotsGrow) {
     ++taken;
     EXPECT_GE(snapshot->samples, last);
     last = snapshot->samples;
-    const Image& color = snapshot->image.image.layers.front().image;
+    const Image& color = snapshot->color();
     EXPECT_EQ(color.width, 48);
     for (const float texel : color.texels) EXPECT_TRUE(std::isfinite(texel) && texel >= 0);
   }
@@ -107,8 +108,7 @@ TEST(Session, UpdateRedoesWhatDiffers) {
     return session.work();
   };
   const auto isOnly = [](const Session::Work& w, bool scene, bool probe, bool lighting) {
-    return w.loadedScene == scene && w.builtWorld == scene && w.loadedProbe == probe &&
-           w.preparedLighting == lighting;
+    return w.loadedScene == scene && w.loadedProbe == probe && w.preparedLighting == lighting;
   };
   EXPECT_TRUE(isOnly(change("camera", [&] { d.camera.placed->position.x = 1; }), 0, 0, 0));
   EXPECT_TRUE(isOnly(change("size", [&] { d.size = ImageSize{32, 32}; }), 0, 0, 0));
@@ -145,12 +145,12 @@ TEST(Session, AMovedNodeKeepsTheStructuresOfMeshes) {
   Session session(d);
   session.start();
   session.wait();
-  const int builds = session.meshBuilds();
+  const int builds = session.work().meshBuilds;
   d.scene = stage.scene(1);
   session.update(d);
   session.start();
   session.wait();
-  EXPECT_EQ(session.meshBuilds(), builds);
+  EXPECT_EQ(session.work().meshBuilds, builds);
 }
 
 TEST(Session, CancelsAndBeginsAnew) {
@@ -160,7 +160,7 @@ TEST(Session, CancelsAndBeginsAnew) {
   while (!session.snapshot()) std::this_thread::sleep_for(1ms);
   session.cancel();
   EXPECT_FALSE(session.isRunning());
-  EXPECT_TRUE(session.wait().render.interrupted);
+  EXPECT_FALSE(session.wait().isComplete);
   d.settings.samples = 4;
   session.update(d);
   session.start();

@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "api/job.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"
 #include "image/io/read_image.h"
@@ -22,6 +22,7 @@
 #include "run_command.h"
 #include "scene/mip_chain.h"
 #include "scene/texture.h"
+#include "session/run_job.h"
 #include "shared_data.h"
 
 namespace chromeball::texel_file_test {

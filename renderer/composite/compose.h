@@ -3,12 +3,11 @@
 #pragma once
 
 #include "composite/differential_film.h"
+#include "composite/modes.h"
 #include "film/noise.h"
 #include "image/image.h"
 
 namespace chromeball {
-
-enum class CompositeMode { Difference, Ratio, ShadowCatcher };
 
 // The composite image. With alpha the fraction of samples that see an object, L_objects the
 // radiance of these samples, and L_obj, L_noobj the radiance of the other samples with and without

@@ -3,14 +3,10 @@
 #pragma once
 
 #include "composite/differential.h"
+#include "composite/modes.h"
 #include "integrate/render.h"
 
 namespace chromeball {
-
-enum class Passes {
-  One,  // both worlds along shared paths (differential.h)
-  Two,  // two independent renders, subtracted: slow, as a reference
-};
 
 struct CompositeRender {
   RenderResult result;  // of the only pass, or of the pass with objects

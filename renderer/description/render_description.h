@@ -2,24 +2,27 @@
 // Everything that decides an image, as values.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/message.h"
-#include "composite/compose.h"
-#include "composite/render_composite.h"
+#include "composite/modes.h"
 #include "description/origins.h"
 #include "description/scene_entries.h"
 #include "image/develop/develop.h"
 #include "image/tonemap.h"
-#include "integrate/render.h"
+#include "integrate/render_settings.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
 #include "scene/scene.h"
 
 namespace chromeball {
+
+class LightSource;
+class Probe;
 
 // The time that an image takes, from its own on.
 struct Shutter {
@@ -60,6 +63,9 @@ struct LightingDescription {
   double lamps = 1;                // factor on the models' punctual lights
   std::optional<double> sunAngle;  // StrategyOptions::sunAngle
   bool showLights = false;         // StrategyOptions::showLights
+  // A program's own strategy, which takes the place of the named one; empty: none. The probe
+  // outlives what it makes. `strategy` names it in headers and identities.
+  std::function<std::unique_ptr<LightSource>(const Probe&)> make = {};
 };
 
 struct CompositeDescription {

@@ -58,6 +58,31 @@ LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
   return loaded;
 }
 
+const Probe& sampledProbe(const LoadedScene& loaded) {
+  return loaded.sources ? loaded.sources->remainder : loaded.probe;
+}
+
+// The probe's light with the polygons that are sources of their own, mapped onto the surroundings.
+std::unique_ptr<LightSource> withSources(std::unique_ptr<LightSource> lighting,
+                                         const LoadedScene& loaded, bool splitsProbe) {
+  const auto& sources = loaded.sources;
+  const Probe& sampled = sampledProbe(loaded);
+  if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
+    lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
+  if (sources) {
+    std::vector<std::unique_ptr<LightSource>> parts;
+    parts.push_back(std::move(lighting));
+    parts.push_back(
+        std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
+    lighting = std::make_unique<CombinedLight>(std::move(parts));
+  }
+  if (loaded.surroundings)
+    lighting = std::make_unique<FiniteSurroundings>(
+        std::move(lighting), loaded.probe, *loaded.surroundings, loaded.room.get(),
+        loaded.showLights || (sources && sources->areSeen()));
+  return lighting;
+}
+
 }  // namespace
 
 void removeLamps(const RenderDescription& job, Scene& scene) {
@@ -140,29 +165,18 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
 
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe) {
-  const auto& sources = loaded.sources;
-  const Probe& sampled = sources ? sources->remainder : loaded.probe;
-  auto lighting = makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
-                               strategy.location);
-  if (splitsProbe && lighting->groups() == std::vector<std::string>{"probe"})
-    lighting = std::make_unique<SplitProbe>(std::move(lighting), sampled);
-  if (sources) {
-    std::vector<std::unique_ptr<LightSource>> parts;
-    parts.push_back(std::move(lighting));
-    parts.push_back(
-        std::make_unique<PolygonLights>(sources->lights, sources->hidden, sampled.rotation()));
-    lighting = std::make_unique<CombinedLight>(std::move(parts));
-  }
-  if (loaded.surroundings)
-    lighting = std::make_unique<FiniteSurroundings>(
-        std::move(lighting), loaded.probe, *loaded.surroundings, loaded.room.get(),
-        loaded.showLights || (sources && sources->areSeen()));
-  return lighting;
+  const Probe& sampled = sampledProbe(loaded);
+  return withSources(makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
+                                  strategy.location),
+                     loaded, splitsProbe);
 }
 
 std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded) {
   const RenderDescription& job = loaded.description;
-  return makeLighting(job.lighting.strategy, job.settings.mis, loaded, job.settings.wantsGroups());
+  const bool splitsProbe = job.settings.wantsGroups();
+  if (job.lighting.make)
+    return withSources(job.lighting.make(sampledProbe(loaded)), loaded, splitsProbe);
+  return makeLighting(job.lighting.strategy, job.settings.mis, loaded, splitsProbe);
 }
 
 std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,

@@ -55,6 +55,7 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal);
 // unknown name.
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe = false);
+// Of the description: its own one, or the named one.
 std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded);
 
 // The probe as the integrator uses it, with its suns apart under the strategy `suns`; null if it

@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <set>
+#include <thread>
 
 #include "base/error.h"
 #include "base/json.h"
 #include "description/describe.h"
+#include "integrate/live_result.h"
 #include "integrate/render_state.h"
+#include "scene/gltf/model_cache.h"
+#include "session/run_job.h"
 #include "session/scene_lighting.h"
 #include "trace/built_geometry.h"
 
@@ -58,10 +63,8 @@ std::set<std::string> differences(const RenderDescription& a, const RenderDescri
   return names;
 }
 
-}  // namespace
-
 // Shows the result to those who watch; a session has no checkpoints.
-class Session::Control : public RenderControl {
+class WatchedRender : public RenderControl {
  public:
   bool restore(RenderState&) override { return false; }
   bool wantsPause(const RenderState&) const override { return false; }
@@ -73,11 +76,50 @@ class Session::Control : public RenderControl {
   LiveResult live_;
 };
 
-Session::Session(RenderDescription description) : description_(std::move(description)) {}
+double meanCount(const Image& counts) {
+  double sum = 0;
+  for (const float count : counts.texels) sum += double(count);
+  return sum / double(std::max<size_t>(counts.texels.size(), 1));
+}
 
-Session::~Session() { cancel(); }
+}  // namespace
 
-void Session::start() {
+class Session::Implementation {
+ public:
+  explicit Implementation(RenderDescription description) : description_(std::move(description)) {}
+  ~Implementation() { cancel(); }
+
+  void start();
+  void cancel();
+  void update(RenderDescription description);
+  bool isRunning() const { return isRunning_; }
+  double fraction() const { return fraction_; }
+  const SessionImage& wait();
+  std::optional<SessionImage> snapshot();
+  Messages messages() const { return loaded_ ? loaded_->messages : Messages(); }
+  Work work() const { return work_; }
+
+ private:
+  void run();
+  void prepare();
+  void load();
+  void changeWhatDiffers();
+
+  RenderDescription description_;
+  std::optional<RenderDescription> given_;  // that of loaded_
+  std::unique_ptr<LoadedScene> loaded_;
+  PreparedScene prepared_;
+  ModelCache models_;
+  Work work_;
+  std::unique_ptr<WatchedRender> control_;
+  std::optional<SessionImage> result_;
+  std::exception_ptr error_;
+  std::atomic<bool> stop_ = false, isRunning_ = false, isReady_ = false;
+  std::atomic<double> fraction_ = 0;
+  std::thread thread_;
+};
+
+void Session::Implementation::start() {
   if (thread_.joinable()) return;
   stop_ = false;
   isReady_ = false;
@@ -85,39 +127,41 @@ void Session::start() {
   fraction_ = 0;
   result_.reset();
   error_ = nullptr;
-  control_ = std::make_unique<Control>();
+  control_ = std::make_unique<WatchedRender>();
   thread_ = std::thread([this] { run(); });
 }
 
-void Session::cancel() {
+void Session::Implementation::cancel() {
   stop_ = true;
   if (thread_.joinable()) thread_.join();
 }
 
-void Session::update(RenderDescription description) {
+void Session::Implementation::update(RenderDescription description) {
   cancel();
   description_ = std::move(description);
   result_.reset();
   control_.reset();
 }
 
-const JobResult& Session::wait() {
+const SessionImage& Session::Implementation::wait() {
   if (thread_.joinable()) thread_.join();
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
   if (!result_) throw Interrupted("the session was cancelled before it rendered");
   return *result_;
 }
 
-void Session::run() {
+void Session::Implementation::run() {
   try {
     prepare();
     if (!stop_) {
       isReady_ = true;
-      const bool hasTwoPasses =
-          description_.composite && description_.composite->passes == Passes::Two;
-      result_ = renderJob(
+      const auto& composite = description_.composite;
+      const bool hasTwoPasses = composite && composite->passes == Passes::Two;
+      JobResult result = renderJob(
           *loaded_, prepared_, [this](double fraction) { fraction_ = fraction; }, stop_,
           hasTwoPasses ? nullptr : control_.get());
+      result_ = {std::move(result.image), meanCount(result.render.film.sampleCounts()),
+                 result.noise.noise, !result.render.interrupted, std::move(result.messages)};
     }
   } catch (...) {
     error_ = std::current_exception();
@@ -126,20 +170,20 @@ void Session::run() {
   isRunning_ = false;
 }
 
-void Session::prepare() {
+void Session::Implementation::prepare() {
   work_ = {};
   loaded_ && !given_->composite && !description_.composite ? changeWhatDiffers() : load();
   given_ = description_;
+  work_.meshBuilds = prepared_.world->accel.built()->builds();
 }
 
-void Session::load() {
-  work_ = {.loadedScene = true, .builtWorld = true, .loadedProbe = true, .preparedLighting = true};
-  PreparedScene earlier = std::move(prepared_);
+void Session::Implementation::load() {
+  work_ = {.loadedScene = true, .loadedProbe = true, .preparedLighting = true};
+  const PreparedScene earlier = std::move(prepared_);
   prepared_ = {};
   LoadedScene scene = loadScene(description_, &models_);
   if (loaded_ && earlier.world) {
-    std::shared_ptr<BuiltGeometry> built = earlier.world->accel.built();
-    *loaded_ = std::move(scene);
+    *loaded_ = std::move(scene);  // in its place, where the structures over meshes expect it
     prepared_ = prepareScene(*loaded_, &earlier);
   } else {
     loaded_ = std::make_unique<LoadedScene>(std::move(scene));
@@ -147,7 +191,7 @@ void Session::load() {
   }
 }
 
-void Session::changeWhatDiffers() {
+void Session::Implementation::changeWhatDiffers() {
   const std::set<std::string> names = differences(*given_, description_);
   const auto differs = [&](const auto& of) {
     return std::ranges::any_of(names, [&](const std::string& name) { return has(of, name); });
@@ -161,34 +205,39 @@ void Session::changeWhatDiffers() {
   if (!keepsScene || (differs(kOfProbe) && !(hasProbe(*given_) && hasProbe(description_))))
     return load();
   const FrameChange change = loadFrame(description_, *loaded_, models_);
-  work_.loadedProbe = change.lighting;
   if (change.geometry) return load();
-  if (!change.lighting && !differs(kOfLighting)) return;
+  work_.loadedProbe = change.lighting;
+  if (!change.lighting && !differs(kOfLighting) && !description_.lighting.make) return;
   work_.preparedLighting = true;
   prepared_.lighting = makeLighting(*loaded_);
   prepared_.environment = makeEnvironment(description_.settings.integrator,
                                           description_.lighting.strategy.name, *loaded_);
 }
 
-int Session::meshBuilds() const {
-  return prepared_.world ? prepared_.world->accel.built()->builds() : 0;
-}
-
-std::optional<Session::Snapshot> Session::snapshot() {
+std::optional<SessionImage> Session::Implementation::snapshot() {
   if (!isReady_ || !control_) return {};
   const RenderResult* result = control_->live()->update();
-  if (!result) return {};
+  const double samples = result ? meanCount(result->film.sampleCounts()) : 0;
+  if (samples == 0) return {};
   FinishPlan plan = finishPlan(*loaded_, *result);
   plan.settings.denoise = false;
   const std::atomic<bool> never = false;
-  Snapshot snapshot{finish(
-                        plan, *result, [](double) {}, never),
-                    0};
-  const Image counts = result->film.sampleCounts();
-  for (const float count : counts.texels) snapshot.samples += double(count);
-  snapshot.samples /= double(std::max<size_t>(counts.texels.size(), 1));
-  if (snapshot.samples == 0) return {};
-  return snapshot;
+  FinishedImage finished = finish(
+      plan, *result, [](double) {}, never);
+  return SessionImage{std::move(finished.image), samples, finished.noise.noise, false, {}};
 }
+
+Session::Session(RenderDescription description)
+    : own_(std::make_unique<Implementation>(std::move(description))) {}
+Session::~Session() = default;
+void Session::start() { own_->start(); }
+void Session::cancel() { own_->cancel(); }
+void Session::update(RenderDescription description) { own_->update(std::move(description)); }
+bool Session::isRunning() const { return own_->isRunning(); }
+double Session::fraction() const { return own_->fraction(); }
+const SessionImage& Session::wait() { return own_->wait(); }
+std::optional<SessionImage> Session::snapshot() { return own_->snapshot(); }
+Messages Session::messages() const { return own_->messages(); }
+Session::Work Session::work() const { return own_->work(); }
 
 }  // namespace chromeball

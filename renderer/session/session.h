@@ -2,18 +2,25 @@
 // A render in the background.
 #pragma once
 
-#include <atomic>
-#include <exception>
 #include <memory>
 #include <optional>
-#include <thread>
 
+#include "base/message.h"
 #include "description/render_description.h"
-#include "integrate/live_result.h"
-#include "scene/gltf/model_cache.h"
-#include "session/run_job.h"
+#include "image/io/write_image.h"
 
 namespace chromeball {
+
+// An image with its layers, during a render or after it.
+struct SessionImage {
+  OutputImage image;        // the colour first, linear RGB or RGBA
+  double samples = 0;       // mean per pixel
+  double noise = 0;         // of the colour (film/noise.h), a fraction; NaN if unknown
+  bool isComplete = false;  // else the render goes on, or was cancelled
+  Messages messages = {};   // of the render
+
+  const Image& color() const { return image.layers.front().image; }
+};
 
 // Loads and renders a description in a thread of its own, hands out what there is so far without
 // stopping those that render, and takes other descriptions, of which it redoes only what differs
@@ -30,52 +37,30 @@ class Session {
 
   // Begins, if it has not begun: reads files, builds structures and renders.
   void start();
-  // Stops as soon as the step in work or the tiles in work are finished. start() begins anew.
+  // Stops as soon as the step or the tiles in work are finished.
   void cancel();
-  // Cancels, and takes the new description, to be started.
+  // Cancels, and takes another description, for the next start().
   void update(RenderDescription description);
 
-  bool isRunning() const { return isRunning_; }
-  double fraction() const { return fraction_; }  // of rendering; NaN if unknown
-  // Waits for the end of the render. `interrupted` of the result's render if it was cancelled.
-  const JobResult& wait();
-  // Of the description as it was loaded; null before.
-  const LoadedScene* loaded() const { return isRunning_ ? nullptr : loaded_.get(); }
+  bool isRunning() const;
+  double fraction() const;  // of the render's work that is done; NaN if unknown
+  // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered.
+  const SessionImage& wait();
+  // What there is, also while it renders; not denoised. nullopt before the first samples.
+  std::optional<SessionImage> snapshot();
+  // Notes and warnings of the files and the description; after wait().
+  Messages messages() const;
 
-  // What there is while it renders, and afterwards.
-  struct Snapshot {
-    FinishedImage image;  // the colour and the layers, not denoised
-    double samples = 0;   // mean per pixel
-  };
-  std::optional<Snapshot> snapshot();  // nullopt before the first samples
-
-  // What the last start() did, for tests and statistics.
+  // What the last start() did, after wait().
   struct Work {
-    bool loadedScene = false, builtWorld = false, loadedProbe = false, preparedLighting = false;
+    bool loadedScene = false, loadedProbe = false, preparedLighting = false;
+    int meshBuilds = 0;  // structures over meshes, by all starts so far
   };
-  const Work& work() const { return work_; }
-  // Structures over meshes that were built so far; 0 before the first.
-  int meshBuilds() const;
+  Work work() const;
 
  private:
-  class Control;
-  void run();
-  void prepare();
-  void load();
-  void changeWhatDiffers();
-
-  RenderDescription description_;
-  std::optional<RenderDescription> given_;  // that of loaded_
-  std::unique_ptr<LoadedScene> loaded_;
-  PreparedScene prepared_;
-  ModelCache models_;
-  Work work_;
-  std::unique_ptr<Control> control_;
-  std::optional<JobResult> result_;
-  std::exception_ptr error_;
-  std::atomic<bool> stop_ = false, isRunning_ = false, isReady_ = false;
-  std::atomic<double> fraction_ = 0;
-  std::thread thread_;
+  class Implementation;
+  std::unique_ptr<Implementation> own_;
 };
 
 }  // namespace chromeball

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene file to an array of floats and prints the image's size and its mean colour.
-#include <chromeball/api/job.h>
-#include <chromeball/base/error.h>
+#include <chromeball/render.h>
 
 #include <cstdio>
 #include <vector>
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
-  chromeball::RenderDescription job = chromeball::planJob(chromeball::openScene(argv[1]));
-  chromeball::LoadedScene loaded = chromeball::loadScene(job);
-  const chromeball::JobResult result = chromeball::renderJob(loaded);
+  chromeball::Session session(chromeball::planJob(chromeball::openScene(argv[1])));
+  session.start();
 
   // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
-  const chromeball::Image& image = result.color();
+  const chromeball::Image& image = session.wait().color();
   const std::vector<float>& radiance = image.texels;
   double sum[3] = {};
   for (size_t i = 0; i < radiance.size(); ++i) sum[i % 3] += radiance[i];

@@ -2,7 +2,6 @@
 // chromeball bake SCENE -o MODEL_BAKED.glb: lightmaps and vertex colours for real-time viewers.
 #include <filesystem>
 
-#include "api/job.h"
 #include "bake/baked_file.h"
 #include "bake/shown_color.h"
 #include "bake/texel_filter.h"
@@ -11,11 +10,13 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands.h"
+#include "front/plan_render.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/memory_estimate.h"
+#include "session/run_job.h"
 #include "thread_limit.h"
 
 namespace chromeball {

@@ -2,8 +2,9 @@
 // The job of `chromeball basis`: a scene whose light comes from everywhere.
 #pragma once
 
-#include "api/job.h"
+#include "front/plan_render.h"
 #include "scene_options.h"
+#include "session/run_job.h"
 
 namespace chromeball {
 

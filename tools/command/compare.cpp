@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "api/job.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "commands.h"
+#include "front/plan_render.h"
 #include "front/setting_table.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
@@ -17,6 +17,7 @@
 #include "scene_options.h"
 #include "session/job_description.h"
 #include "session/machine.h"
+#include "session/run_job.h"
 #include "study/reference.h"
 #include "study/report/report.h"
 #include "study/report/sampled_directions.h"

@@ -4,12 +4,12 @@
 #include <optional>
 #include <set>
 
-#include "api/job.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "commands.h"
+#include "front/plan_render.h"
 #include "front/sequence.h"
 #include "image/io/output_file.h"
 #include "image_noise_text.h"
@@ -24,6 +24,7 @@
 #include "session/job_description.h"
 #include "session/job_outputs.h"
 #include "session/job_report.h"
+#include "session/run_job.h"
 #include "thread_limit.h"
 #include "viewers/viewers.h"
 

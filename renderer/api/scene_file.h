@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+// Descriptions from scene files and models:
+//
+//   RenderDescription description = planJob(openScene("scene.toml"));
+#pragma once
+
+#include "front/plan_render.h"
+#include "front/scene_file.h"
