@@ -243,6 +243,31 @@ TEST(Job, AProbeFromAnArrayIsChecked) {
   }
 }
 
+TEST(Job, AnUnlitLocalSceneIsWarnedOf) {
+  for (const bool unlit : {false, true}) {
+    Scene scene;
+    SceneBuilder builder(scene);
+    Material floor;
+    floor.unlit = unlit;
+    const int material = builder.addMaterial(floor), matte = builder.addMaterial({});
+    Mesh triangle;
+    triangle.positions = {{-1, 0, 1}, {1, 0, 1}, {0, 0, -1}};
+    builder.addInstance(builder.addMesh(triangle, material), material, builder.addNode("floor"));
+    for (vec3& p : triangle.positions) p.y = 0.5f;
+    builder.addInstance(builder.addMesh(triangle, matte), matte, builder.addNode("object"));
+    RenderDescription description = fromMemory(0, 1);
+    description.scene = std::make_shared<const Scene>(std::move(scene));
+    CompositeDescription& composite = description.composite.emplace();
+    composite.mode = CompositeMode::ShadowCatcher;
+    composite.entry.localScene = {{"floor", ""}};
+    const LoadedScene loaded = loadScene(description);
+    EXPECT_EQ(std::ranges::any_of(
+                  loaded.messages,
+                  [](const Message& m) { return m.text.find("is unlit") != std::string::npos; }),
+              unlit);
+  }
+}
+
 TEST(Job, ErrorsSuggestASetting) {
   const TemporaryFolder folder;
   writeSmallModel(folder / "model.gltf");

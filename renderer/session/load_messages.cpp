@@ -28,6 +28,15 @@ bool hasBodies(const Scene& scene) {
   });
 }
 
+// Whether some of a composite's local scene is unlit.
+bool receivesNoShadow(const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  for (size_t i = 0; i < loaded.isObject.size(); ++i)
+    if (!loaded.isObject[i] && scene.materials[size_t(scene.instances[i].material)].unlit)
+      return true;
+  return false;
+}
+
 void addMemory(const LoadedScene& loaded, Collector& messages) {
   const RenderDescription& job = loaded.description;
   constexpr double kMinBytes = 1e9;
@@ -122,6 +131,10 @@ Messages loadMessages(const LoadedScene& loaded) {
     messages.warn(
         "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
         "are in full shadow; light from emissive surfaces passes");
+  if (receivesNoShadow(loaded))
+    messages.warn(
+        "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light of the "
+        "objects; give it a material that is lit");
   addMemory(loaded, messages);
   if (const auto& probe = job.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -133,6 +134,12 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+// Whether the command has an option --memory.
+bool hasMemoryLimit(std::string_view command) {
+  constexpr std::array kCommands = {"render", "compare", "bake", "basis", "relight"};
+  return std::ranges::find(kCommands, command) != kCommands.end();
+}
+
 }  // namespace
 
 int runCommandLine(int argc, char** argv) {
@@ -146,9 +153,12 @@ int runCommandLine(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return report(kBadInput, fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::bad_alloc&) {
-    return report(kFailed, fmt::format("out of memory: had {:.2g} GB; see --memory, whose default "
-                                       "here is {:.2g} GB",
-                                       1e-9 * double(peakMemoryBytes()), 1e-9 * memoryBudget()));
+    const std::string had =
+        fmt::format("out of memory: had {:.2g} GB", 1e-9 * double(peakMemoryBytes()));
+    return report(kFailed, hasMemoryLimit(argv[1])
+                               ? fmt::format("{}; see --memory, whose default here is {:.2g} GB",
+                                             had, 1e-9 * memoryBudget())
+                               : had);
   } catch (const std::exception& error) {
     return report(kFailed, error.what());
   }

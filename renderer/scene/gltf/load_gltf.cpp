@@ -59,7 +59,7 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
                              : lens.yfov > 0 && lens.yfov < kPiD;
     if (!isValid || !isInvertible(glm::dmat3(tree.toWorld[size_t(i)]))) {
       file.warnOnce("camera \"" + printableName(camera.name) +
-                    "\" has no field of view and is ignored");
+                    "\" is ignored: it has no field of view, or its node a scale of 0");
       continue;
     }
     placeCamera(tree.toWorld[size_t(i)], camera);
