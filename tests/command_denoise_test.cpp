@@ -100,7 +100,7 @@ TEST_F(CommandDenoise, RefusesWhatItCannotDenoise) {
   expectError({"image", "denoise", plain, folder_ / "out.txt"}, "out.txt");
   expectError({"render", scene("demo"), "--samples", "1", "--denoise", "-o", out},
               "at least 2 samples");
-  expectError({"render", scene("terrace"), "--aov", "denoise", "-o", out}, "give --denoise");
+  expectError({"render", scene("terrace"), "--aov", "denoise", "-o", out}, "denoise the render");
   expectError({"render", scene("terrace"), "--two-pass", "--denoise", "-o", out}, "is biased");
   EXPECT_FALSE(std::filesystem::exists(out));
 }

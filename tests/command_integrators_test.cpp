@@ -69,7 +69,7 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--integrator", "environment-map", "--regularize"}, "--regularize");
   refuses({"--integrator", "environment-map", "--aov", "light_groups"}, "light groups");
   refuses({"--integrator", "environment-map", "--strategy", "median-cut:4", "--show-lights"},
-          "leave --show-lights out");
+          "see --show-lights");
   refuses({"--integrator", "ambient-occlusion", "--max-diffuse-depth", "2"}, "limits of depth");
   refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
   refuses({"--bent", "flat"}, "--bent");
@@ -126,7 +126,7 @@ TEST_F(CommandIntegrators, CacheIrradiance) {
   for (const char* error : {"0", "-1", "nan", "1.5", "x"})
     refuses({"--irradiance-cache", error}, "--irradiance-cache");
   refuses({"--irradiance-cache", "0.2", "--regularize"}, "--regularize");
-  refuses({"--irradiance-cache", "0.2", "--integrator", "direct"}, "--integrator direct");
+  refuses({"--irradiance-cache", "0.2", "--integrator", "direct"}, "not with another integrator");
   refuses({"--irradiance-cache", "0.2", "--strategy", "bsdf"}, "without light samples");
   refuses({"--irradiance-cache", "0.2", "--aov", "light_groups"}, "light groups");
   refuses({"--irradiance-cache", "0.2", "--max-diffuse-depth", "2"}, "limits of depth");

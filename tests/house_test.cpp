@@ -75,7 +75,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
       "description", "front", "session"}},
     {"study",
      {"base", "math", "image", "image/io", "probe", "scene", "trace", "lighting", "film",
-      "integrate", "measure", "session"}},
+      "integrate", "measure", "description", "session"}},
     {"study/report",
      {"base", "math", "image", "image/io", "probe", "lighting", "measure", "session", "study"}},
 };

@@ -105,10 +105,26 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
       {"diffuse", [](RenderDescription& j) { j.settings.maxDiffuseDepth = 3; }},
       {"specular", [](RenderDescription& j) { j.settings.maxSpecularDepth = 3; }},
       {"integrator", [](RenderDescription& j) { j.settings.integrator = IntegratorKind::Direct; }},
-      {"ao", [](RenderDescription& j) { j.settings.occlusion.ambient = true; }},
-      {"reflections", [](RenderDescription& j) { j.settings.occlusion.reflection = true; }},
-      {"distance", [](RenderDescription& j) { j.settings.occlusion.distance = 2; }},
-      {"bent", [](RenderDescription& j) { j.settings.occlusion.uniformBent = true; }},
+      {"ao",
+       [](RenderDescription& j) {
+         j.settings.integrator = IntegratorKind::EnvironmentMap;
+         j.settings.occlusion.ambient = true;
+       }},
+      {"reflections",
+       [](RenderDescription& j) {
+         j.settings.integrator = IntegratorKind::EnvironmentMap;
+         j.settings.occlusion.reflection = true;
+       }},
+      {"distance",
+       [](RenderDescription& j) {
+         j.settings.integrator = IntegratorKind::AmbientOcclusion;
+         j.settings.occlusion.distance = 2;
+       }},
+      {"bent",
+       [](RenderDescription& j) {
+         j.settings.aovs = {Aov::BentNormal};
+         j.settings.occlusion.uniformBent = true;
+       }},
       {"cache", [](RenderDescription& j) { j.settings.cacheError = 0.2f; }},
       {"mis", [](RenderDescription& j) { j.settings.mis = Mis::Power; }},
       {"seed", [](RenderDescription& j) { j.settings.seed = 5; }},

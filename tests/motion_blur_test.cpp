@@ -480,9 +480,10 @@ TEST(MotionBlur, RefusesWhatHasNoMeaning) {
   refuses({"--shutter", "nan"}, "--shutter");
   refuses({"--shutter", "1", "--shutter-steps", "0"}, "--shutter-steps");
   refuses({"--shutter", "1", "--shutter-steps", "129"}, "--shutter-steps");
-  refuses({"--orbit-step", "3"}, "--orbit-step: needs --shutter");
+  refuses({"--orbit-step", "3"}, "--orbit-step: needs an open shutter; see --shutter");
   refuses({"--frames", "0:1", "--orbit-step", "3"}, "--orbit-step: frames turn by --orbit");
-  refuses({"--shutter", "0.5", "--irradiance-cache", "0.1"}, "not with --shutter");
+  refuses({"--shutter", "0.5", "--irradiance-cache", "0.1"},
+          "not with an open shutter; leave one of the two out; see --shutter");
   refuses({"--probe-sequence", "p.#.exr"}, "--probe-sequence: needs --frames");
   refuses({"--frames", "0:1", "--probe-sequence", "p.exr"}, "has no #");
   refuses({"--frames", "0:1", "--probe-sequence", out / "p.#.exr"}, "p.0.exr");

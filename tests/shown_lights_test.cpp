@@ -144,7 +144,7 @@ TEST(ShownLights, InASceneFile) {
     return std::vector<std::string>{"render", folder / "a.toml", "--size",          "4x4",
                                     "-o",     folder / "a.exr",  "--probe-mapping", "lat-long"};
   };
-  expectError(scene("product"), "a.toml:5: the strategy `product` has no lights");
+  expectError(scene("product"), "a.toml:5: the strategy has no lights");
   const CommandResult result = runCommand(scene("median-cut-area:4"));
   EXPECT_EQ(result.status, 0) << result.error;
 }

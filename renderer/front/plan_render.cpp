@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "composite/layers.h"
+#include "description/capabilities.h"
 #include "front/arguments.h"
-#include "front/check_job.h"
 #include "front/develop_text.h"
 #include "front/plan_composite.h"
 #include "front/scene_file_camera.h"
@@ -311,7 +311,6 @@ OutputDescription plannedOutput(const Settings& s) {
 RenderDescription planJob(SceneFile scene, const Settings& over) {
   merge(scene, over);
   applyShadowCatcher(scene);
-  checkJob(scene);
   RenderDescription job;
   const Settings& s = scene.settings;
   for (const Setting& setting : settingTable())
@@ -336,6 +335,7 @@ RenderDescription planJob(SceneFile scene, const Settings& over) {
   job.surroundings = std::move(scene.surroundings);
   job.warnings = std::move(scene.warnings);
   if (scene.composite) planComposite(s, std::move(*scene.composite), job);
+  checkCapabilities(job);
   return job;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "description/capabilities.h"
 #include "front/setting_table.h"
 
 namespace chromeball {
@@ -127,6 +128,12 @@ std::string settingsPage() {
     for (const Setting& setting : settingTable())
       if (setting.section == section.name) page += row(setting, hasKeys);
   }
+  page +=
+      "\n## What does not go together\n\nOther features may be combined.\n\n"
+      "| This | and | |\n| --- | --- | --- |\n";
+  for (const Conflict& conflict : conflicts())
+    page +=
+        fmt::format("| {} | {} | {} |\n", conflict.feature.name, conflict.with.name, conflict.why);
   return page;
 }
 

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "description/capabilities.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
 #include "session/load_messages.h"
@@ -115,6 +116,7 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
 
 LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                       const AutomaticView* view) {
+  checkCapabilities(description);
   RenderDescription job = description;
   ModelCache own;
   ModelCache& cache = shared ? *shared : own;

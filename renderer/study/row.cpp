@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "description/capabilities.h"
 #include "lighting/methods.h"
 
 namespace chromeball {
@@ -72,22 +73,12 @@ void addMode(const std::string& name, const std::string& location, Row& row) {
              fmt::join(known, ", "), kDiffuseDepth, kSpecularDepth, kCache);
 }
 
+// As a render of nothing else would be checked.
 void check(const Row& row, const std::string& location) {
-  const bool hasOcclusion = row.has(Mode::AmbientOcclusion) || row.has(Mode::ReflectionOcclusion);
-  if (hasOcclusion && row.integrator != IntegratorKind::EnvironmentMap)
-    throwInput("{}: {}: ao and reflection-occlusion are modes of environment-map", location,
-               row.name());
-  if (row.cacheError && (row.integrator != IntegratorKind::Path || row.has(Mode::Regularize) ||
-                         row.diffuseDepth || row.specularDepth))
-    throwInput("{}: {}: {}ERROR goes with adaptive, guide, glass-shadows and denoise only",
-               location, row.name(), kCache);
-  if (row.cacheError && row.strategy == "bsdf")
-    throwInput("{}: {}: {}ERROR needs a strategy with light samples", location, row.name(), kCache);
-  if (!usesEnvironment(row.integrator)) return;
-  if (row.has(Mode::Guide) || row.has(Mode::Regularize) || row.has(Mode::GlassShadows) ||
-      row.diffuseDepth || row.specularDepth)
-    throwInput("{}: {}: {} follows no paths", location, row.name(),
-               kIntegratorNames[size_t(row.integrator)]);
+  RenderDescription alone;
+  row.applyTo(alone);
+  if (const Conflict* found = conflictIn(alone))
+    throwInput("{}: {}: {}: {}", location, row.name(), found->feature.name, found->why);
 }
 
 }  // namespace
@@ -123,6 +114,12 @@ RenderSettings Row::applied(RenderSettings settings) const {
   settings.maxDiffuseDepth = diffuseDepth.value_or(settings.maxDiffuseDepth);
   settings.maxSpecularDepth = specularDepth.value_or(settings.maxSpecularDepth);
   return settings;
+}
+
+void Row::applyTo(RenderDescription& description) const {
+  description.settings = applied(description.settings);
+  description.lighting.strategy.name = strategy;
+  description.straightGlassShadows = has(Mode::GlassShadows);
 }
 
 Row rowNamed(const std::string& name, const std::string& location) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "integrate/render_settings.h"
+#include "description/render_description.h"
 
 namespace chromeball {
 
@@ -37,6 +37,8 @@ struct Row {
   std::string name() const;
   // `settings` with these modes, and no others.
   RenderSettings applied(RenderSettings settings) const;
+  // The same of a description, with the strategy.
+  void applyTo(RenderDescription& description) const;
 };
 
 // `location` (an option) begins the InputError thrown for an unknown mode. The strategy is resolved

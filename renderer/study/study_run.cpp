@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "description/capabilities.h"
 #include "scene/thin_wall.h"
 #include "session/denoised_image.h"
 #include "session/scene_lighting.h"
@@ -26,9 +27,12 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     if (built.row.has(Mode::Guide) && !built.strategy->canBeGuided())
       throwInput("{}: {}: only renders with the strategy `importance` are guided", location, row);
     built.environment = makeEnvironment(built.row.integrator, built.row.strategy, loaded);
-    if (usesEnvironment(built.row.integrator) && (loaded.surroundings || loaded.sources))
-      throwInput("{}: {}: knows only light of a distant probe; the scene has {}", location, row,
-                 loaded.surroundings ? "[surroundings]" : "[[source]]");
+    RenderDescription whole;
+    whole.surroundings = loaded.description.surroundings;
+    whole.sources = loaded.description.sources;
+    built.row.applyTo(whole);
+    if (const Conflict* found = conflictIn(whole))
+      throwInput("{}: {}: {}", location, row, found->why);
     built.prepareSeconds = watch.seconds();
   };
   for (const std::string& name : study.strategies) build(name, name, "--strategies");

@@ -88,6 +88,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const ThreadLimit threads = threadLimit(options.settings);
   RenderDescription job = basisJob(options, "light stage");
   const LoadedScene loaded = loadBasisScene(job);
+  job = loaded.description;
   checkDistinct({own.out}, loaded.files);
   const int rows = rowsOfBand(loaded, basis);
   const RenderSettings& s = job.settings;

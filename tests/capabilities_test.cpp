@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of what cannot be combined.
+#include "description/capabilities.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+
+namespace chromeball::capabilities_test {
+namespace {
+
+using D = RenderDescription;
+
+void composite(D& d, CompositeMode mode) {
+  CompositeDescription& c = d.composite.emplace();
+  c.mode = mode;
+  c.ground = CompositeDescription::GroundPlane::Always;
+}
+
+// A description without conflicts.
+D plain() {
+  D d;
+  d.lighting.strategy.name = "importance";
+  d.probe.file = "sky.exr";
+  return d;
+}
+
+// What brings a feature into a description, by its name.
+const std::map<std::string_view, std::function<void(D&)>> kBring = {
+    {"a composite", [](D& d) { composite(d, CompositeMode::Ratio); }},
+    {"a composite with a plate", [](D& d) { composite(d, CompositeMode::Difference); }},
+    {"a shadow catcher", [](D& d) { composite(d, CompositeMode::ShadowCatcher); }},
+    {"a reference of two passes",
+     [](D& d) {
+       if (!d.composite) composite(d, CompositeMode::Difference);
+       d.composite->passes = Passes::Two;
+     }},
+    {"a clamp", [](D& d) { d.settings.clamp = 1.0f; }},
+    {"regularisation", [](D& d) { d.settings.regularize = true; }},
+    {"denoising", [](D& d) { d.settings.denoise = true; }},
+    {"layers to denoise later", [](D& d) { d.output.layers.push_back("denoise"); }},
+    {"straight shadows of glass", [](D& d) { d.straightGlassShadows = true; }},
+    {"a guide that is on", [](D& d) { d.settings.guiding = Guiding::On; }},
+    {"visible lights of a strategy", [](D& d) { d.lighting.showLights = true; }},
+    {"layers by light", [](D& d) { d.settings.lightGroups = true; }},
+    {"ambient occlusion of an environment map", [](D& d) { d.settings.occlusion.ambient = true; }},
+    {"occlusion of reflections", [](D& d) { d.settings.occlusion.reflection = true; }},
+    {"a distance of occlusion", [](D& d) { d.settings.occlusion.distance = 1; }},
+    {"uniform bent normals", [](D& d) { d.settings.occlusion.uniformBent = true; }},
+    {"an integrator that follows no paths",
+     [](D& d) { d.settings.integrator = IntegratorKind::EnvironmentMap; }},
+    {"an irradiance cache", [](D& d) { d.settings.cacheError = 0.1f; }},
+    {"a file of a cache", [](D& d) { d.run.cache = "a.cache"; }},
+    {"finite surroundings", [](D& d) { d.surroundings.emplace(); }},
+    {"sources in the probe", [](D& d) { d.sources.emplace_back(); }},
+    {"lamps of the scene file", [](D& d) { d.lamps.emplace_back(); }},
+    {"a part of the light", [](D& d) { d.lighting.from = LightFrom::Suns; }},
+    {"limits of depth by kind", [](D& d) { d.settings.maxDiffuseDepth = 1; }},
+    {"an open shutter", [](D& d) { d.camera.shutter.emplace(); }},
+    {"a turned camera", [](D& d) { d.camera.orbit = 3; }},
+    {"a turn while the shutter is open", [](D& d) { d.origins.set("orbit-step", "--orbit-step"); }},
+    {"a transparent background", [](D& d) { d.settings.hideProbe = true; }},
+    {"a shard", [](D& d) { d.settings = shardOf(d.settings, 0, 2); }},
+    {"a crop",
+     [](D& d) {
+       d.settings.crop = Crop{0, 0, 1, 1};
+     }},
+    {"a checkpoint", [](D& d) { d.run.checkpoint = "a.exr"; }},
+    {"a time between checkpoints",
+     [](D& d) { d.origins.set("checkpoint-every", "--checkpoint-every"); }},
+    {"going on", [](D& d) { d.run.resumes = true; }},
+    {"images while it renders", [](D& d) { d.run.writeEvery = 1.0; }},
+    {"a preview", [](D& d) { d.origins.set("preview", "--preview"); }},
+    {"a display", [](D& d) { d.origins.set("display", "--display"); }},
+    {"a probe scaled by the plate", [](D& d) { d.probe.isScaledByPlate = true; }},
+    {"no plate",
+     [](D& d) {
+       d.composite.reset();
+       d.origins.set("two-pass", "--two-pass");
+     }},
+    {"no ground of a composite",
+     [](D& d) {
+       composite(d, CompositeMode::Difference);
+       d.composite->ground = CompositeDescription::GroundPlane::Never;
+     }},
+    {"no probe's file",
+     [](D& d) {
+       composite(d, CompositeMode::Difference);
+       d.probe.file.reset();
+     }},
+    {"another strategy than importance", [](D& d) { d.lighting.strategy.name = "uniform"; }},
+    {"a strategy without light samples", [](D& d) { d.lighting.strategy.name = "bsdf"; }},
+    {"a strategy without lights", [](D&) {}},
+    {"one sample per pixel", [](D& d) { d.settings.samples = 1; }},
+    {"another integrator than environment-map", [](D&) {}},
+    {"another integrator than path", [](D& d) { d.settings.integrator = IntegratorKind::Direct; }},
+    {"no ambient occlusion", [](D&) {}},
+    {"no layer of bent normals", [](D&) {}},
+    {"no irradiance cache", [](D&) {}},
+    {"a closed shutter", [](D&) {}},
+    {"no checkpoint", [](D&) {}},
+};
+
+TEST(Capabilities, APlainDescriptionHasNoConflict) {
+  const D d = plain();
+  EXPECT_EQ(conflictIn(d), nullptr);
+  EXPECT_NO_THROW(checkCapabilities(d));
+}
+
+// Every row is refused when both features are there, and neither alone (but for what is missing).
+TEST(Capabilities, EveryConflictIsFound) {
+  std::set<std::string_view> used;
+  for (const Conflict& c : conflicts()) {
+    const std::string what = fmt::format("{} and {}", c.feature.name, c.with.name);
+    ASSERT_TRUE(kBring.contains(c.feature.name)) << c.feature.name;
+    ASSERT_TRUE(kBring.contains(c.with.name)) << c.with.name;
+    used.insert({c.feature.name, c.with.name});
+    D d = plain();
+    if (c.feature.name == "a probe scaled by the plate" && !d.composite)
+      composite(d, CompositeMode::Difference);
+    kBring.at(c.feature.name)(d);
+    kBring.at(c.with.name)(d);
+    EXPECT_TRUE(c.feature.isIn(d)) << what;
+    EXPECT_TRUE(c.with.isIn(d)) << what;
+    const Conflict* found = conflictIn(d);
+    ASSERT_TRUE(found) << what;
+    d.origins.set(std::string(found->feature.setting), "scene.toml:7");
+    try {
+      checkCapabilities(d);
+      ADD_FAILURE() << what;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), fmt::format("scene.toml:7: {}", found->why));
+    }
+  }
+  EXPECT_EQ(used.size(), kBring.size()) << "a feature is in no row";
+}
+
+// A row says a thing once: no two rows have the same features, in either order.
+TEST(Capabilities, NoConflictIsThereTwice) {
+  std::set<std::set<std::string_view>> pairs;
+  for (const Conflict& c : conflicts())
+    EXPECT_TRUE(pairs.insert({c.feature.name, c.with.name}).second)
+        << c.feature.name << " and " << c.with.name;
+}
+
+}  // namespace
+}  // namespace chromeball::capabilities_test
