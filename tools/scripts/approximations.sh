@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Measures the table "Cheaper answers" of tools/RESULTS.md: three scenes of make_demo (open, interior,
+# Measures the table "Cheaper answers" of docs/measured/results.md: three scenes of make_demo (open, interior,
 # metals), three probes, and the ways of rendering that leave something out. The first argument is the
 # folder for the reports (default out/approximations); other arguments go to `chromeball compare`.
 # Grace Cathedral is read from probes/debevec in $CHROMEBALL_DATA (default ../shared/data), and skipped

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the table of approximations.sh for RESULTS.md: python3 approximations_table.py FOLDER"""
+"""Prints the table of approximations.sh for docs/measured/results.md: python3 approximations_table.py FOLDER"""
 import json
 import pathlib
 import re

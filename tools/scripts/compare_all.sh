@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the comparisons of tools/RESULTS.md: every strategy, two scenes, four probes. The first
+# Runs the comparisons of docs/measured/results.md: every strategy, two scenes, four probes. The first
 # argument is the folder for the reports (default out/compare); other arguments go to
 # `chromeball compare`. Galileo's Tomb and Grace Cathedral are read from probes/debevec in
 # $CHROMEBALL_DATA (default ../shared/data), and skipped if absent. A run that was stopped continues.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the tables of RESULTS.md from the reports of compare_all.sh: python3 compare_table.py FOLDER"""
+"""Prints the tables of docs/measured/results.md from the reports of compare_all.sh: python3 compare_table.py FOLDER"""
 import json
 import pathlib
 import sys

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes docs/reproduction.md and its pictures: what the HDRI book's chapter on image-based lighting,
+# Makes docs/measured/reproduction.md and its pictures: what the HDRI book's chapter on image-based lighting,
 # Madsen and Laursen (2007) and Madsen et al. (2003) show, beside what this program computes. Takes
 # some minutes on two cores. Probes that are not in $CHROMEBALL_DATA are left out, with a note.
 # --out FOLDER writes elsewhere.

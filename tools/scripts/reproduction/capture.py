@@ -63,7 +63,7 @@ def closed_loop(run):
         + table(["photographs", "mean error, %", "largest, %"], rows)
         + f"\n\nThe reflectivity of the ball in a white room is measured as {found}; it is {CHROME[0]}, {CHROME[1]}, "
         f"{CHROME[2]}.",
-        "[From camera to probe](capture.md) has the whole way, from bracketed photographs through response, "
+        "[From camera to probe](../capture.md) has the whole way, from bracketed photographs through response, "
         "reflectivity and sun to the composite, with the error of each step.")]
 
 

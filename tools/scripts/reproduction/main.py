@@ -31,9 +31,9 @@ SECTIONS = [("Lights in place of a probe", [lights.rows, shadows.rows]),
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--out", type=pathlib.Path, help="a folder, in place of docs/ and scenes/gallery/")
+    options.add_argument("--out", type=pathlib.Path, help="a folder, in place of docs/measured/ and scenes/gallery/")
     out = options.parse_args().out
-    docs = out or ROOT / "docs"
+    docs = out or ROOT / "docs" / "measured"
     pictures = out or ROOT / "scenes" / "gallery" / "reproduction"
     for folder in (docs, pictures):
         folder.mkdir(parents=True, exist_ok=True)
@@ -45,7 +45,7 @@ def main():
             print(f"{time.monotonic() - start:5.0f} s  {title}", flush=True)
             sections.append((title, [row for rows in parts for row in rows(run)]))
     text = page(sections, sorted(run.missing), time.monotonic() - start,
-                "." if out else "../scenes/gallery/reproduction")
+                "." if out else "../../scenes/gallery/reproduction")
     (docs / "reproduction.md").write_text(text)
     print(f"{time.monotonic() - start:5.0f} s  {docs / 'reproduction.md'}")
 

@@ -68,7 +68,7 @@ def composite(run):
         "their difference; for shadows it prefers the ratio, for reflections the difference.",
         ["chromeball render scenes/terrace.toml --aov l_obj,l_noobj,difference,alpha,reflectance -o out/terrace.exr"],
         "Between the composites of the two formulas, the relMSE is "
-        f"{disagreement['relmse']:.2g}. [Measurements](../tools/RESULTS.md) have the errors of both where probe, "
+        f"{disagreement['relmse']:.2g}. [Measurements](results.md) have the errors of both where probe, "
         "reflectance or gloss are wrong.",
         "The ratio does not depend on the exposure of the probe; the difference keeps reflections on dark surfaces.",
         pictures)]

@@ -53,7 +53,7 @@ def sums(run):
         f"{COLUMNS * ROWS} elements from one pass; the sum against a render under the probe:\n\n"
         + table(["probe", "relMSE", "bias", "FLIP"], rows),
         "The subject is a still life instead of a face. The mirror ball shows the cells of the lat-long map, and small "
-        "suns are spread over a whole cell: most of the difference ([light stage](light-stage.md) has it by "
+        "suns are spread over a whole cell: most of the difference ([light stage](../light-stage.md) has it by "
         "number of directions). On diffuse subjects it is a few percent.", pictures)
 
 
