@@ -167,8 +167,11 @@ Scene checkerboard(bool filtered) {
   Material glow = lambert(Rgb(0));
   glow.emission = Rgb(1);
   glow.emissiveTexture.texture = 0;
-  addQuad(scene, addMaterial(scene, glow), {-400, 0, 400}, {800, 0, 0}, {0, 0, -800});
-  scene.meshes.edit(0).uvs = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}};
+  Mesh floor;
+  floor.positions = {{-400, 0, 400}, {400, 0, 400}, {400, 0, -400}, {-400, 0, -400}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  floor.uvs = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}};
+  addMesh(scene, addMaterial(scene, glow), std::move(floor));
   return scene;
 }
 
