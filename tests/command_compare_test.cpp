@@ -141,7 +141,7 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError({"--reference-strategy", "importance+regularize"}, "biased");
   expectInputError({"--strategies", "importance+blur"}, "is not a mode");
   expectInputError({"--strategies", "importance+"}, "is not a mode");
-  expectInputError({"--strategies", "median-cut+guide"}, "are guided");
+  expectInputError({"--strategies", "median-cut+guide"}, "guides renders with");
   expectInputError({"--reference-samples", "3"}, "--reference-samples");
   Image sunny = constantProbe({32, 16}, Rgb(0.1f));
   sunny.setRgb(9, 4, Rgb(1e4f));
@@ -226,7 +226,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                                 {"animation-time", {"1"}},
                                                 {"variant", {"Red"}},
                                                 {"shutter", {"0.5"}},
-                                                {"shutter-steps", {"4"}},
+                                                {"shutter-steps", {"4", "--shutter", "0.5"}},
                                                 {"seed", {"7"}},
                                                 {"threads", {"1"}}};
   const std::map<std::string, std::string> defaults = {
