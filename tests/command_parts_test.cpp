@@ -261,7 +261,7 @@ TEST(SlowParts, RefuseWhatIsNoPart) {
   for (const char* text : {"0,0,0,4", "0,0,4", "-1,0,4,4", "0,0,4,4,4", "a,b,c,d"})
     refuse({"--crop", text}, "crop");
   refuse({"--crop", "40,0,9,4"}, "not within the image");
-  refuse({"--resume"}, "needs --checkpoint");
+  refuse({"--resume"}, "needs a checkpoint; see --checkpoint");
   refuse({"--checkpoint", parts.out / "c.png"}, "must end in .exr");
   refuse({"--checkpoint", o}, "overwrite");
   refuse({"--checkpoint", parts.out / "./o.exr"}, "overwrite");
