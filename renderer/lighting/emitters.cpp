@@ -45,6 +45,15 @@ double meanEmission(const Scene& scene, const Material& m) {
   return mean * meanAlpha(scene, m);
 }
 
+// The end of a shadow ray from `origin` towards a point of the surface that faces it: off the
+// surface like the origins of rays, but farther if the ray is long. Its rounding errors grow with
+// its length, and not with the surface's coordinates, which are 0 in a coordinate plane.
+vec3 endOfRay(const Surface& surface, const vec3& origin) {
+  const vec3 extent = surface.position - origin;
+  const float offset = rayOffset(extent, extent, extent, surface.geometricNormal);
+  return surface.position + std::max(surface.rayOffset, offset) * surface.geometricNormal;
+}
+
 }  // namespace
 
 std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
@@ -122,12 +131,12 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   if (isBlack(radiance) || !(cosine > 0)) return;
   const float density = pdf(instance.material, distance, cosine) * areaRatio(surface, instance);
   if (!(density > 0)) return;
-  out.push_back(
-      {.wi = wi,
-       .irradiance = radiance / density,
-       .pdf = density,
-       .distance = distance,
-       .end = {emitter.instance, emitter.triangle, emitter.barycentric, surface.rayOrigin(-wi)}});
+  out.push_back({.wi = wi,
+                 .irradiance = radiance / density,
+                 .pdf = density,
+                 .distance = distance,
+                 .end = {emitter.instance, emitter.triangle, emitter.barycentric,
+                         endOfRay(surface, point.position)}});
 }
 
 float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
