@@ -104,11 +104,11 @@ TEST(Lamps, LightEqualSurfacesWhereverTheirPlaneIs) {
       for (const float distance : {1.0f, 300.0f}) {
         vec3 along(0), u(0), v(0);
         along[axis] = 1, u[(axis + 1) % 3] = 20 * distance, v[(axis + 2) % 3] = 20 * distance;
-        Lamp lamp = lampOf(
-            "type = 'disc'\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\nradius = 1\nradiance = 3");
-        lamp.position = glm::dvec3(place * along);
-        lamp.direction = along;
-        lamp.radius = distance;
+        const Lamp lamp = lampOf(fmt::format(
+            "type = 'disc'\nposition = [{}, {}, {}]\ndirection = [{}, {}, {}]\nradius = {}\n"
+            "radiance = 3",
+            place * along.x, place * along.y, place * along.z, along.x, along.y, along.z,
+            distance));
         Scene scene;
         const vec3 middle = (place + distance) * along;
         addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), middle - 0.5f * (u + v), v, u);
