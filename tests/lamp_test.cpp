@@ -96,6 +96,32 @@ TEST(Lamps, DiscIrradianceMatchesTheClosedForm) {
   }
 }
 
+// A lamp whose coordinates are 0 or small across its plane; shadow rays have the rounding errors of
+// their length.
+TEST(Lamps, LightEqualSurfacesWhereverTheirPlaneIs) {
+  for (const int axis : {0, 1, 2})
+    for (const float place : {0.0f, 0.01f, 1.0f})
+      for (const float distance : {1.0f, 300.0f}) {
+        vec3 along(0), u(0), v(0);
+        along[axis] = 1, u[(axis + 1) % 3] = 20 * distance, v[(axis + 2) % 3] = 20 * distance;
+        const Lamp lamp = lampOf(fmt::format(
+            "type = 'disc'\nposition = [{}, {}, {}]\ndirection = [{}, {}, {}]\nradius = {}\n"
+            "radiance = 3",
+            place * along.x, place * along.y, place * along.z, along.x, along.y, along.z,
+            distance));
+        Scene scene;
+        const vec3 middle = (place + distance) * along;
+        addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), middle - 0.5f * (u + v), v, u);
+        addLamp(scene, lamp, glm::dvec3(0));
+        const Camera camera = Camera::lookAt(middle - 0.5f * distance * along, middle, u, 0.01f);
+        RenderSettings settings = smallRender(2, 2, 1024, 1);
+        settings.mis = Mis::Off;
+        const Rgb seen = meanColor(
+            renderScene(scene, camera, Probe(Image(2, 1, 3)), "importance", settings).film.mean());
+        EXPECT_NEAR(seen.x / (0.5 * 3 * 0.5), 1, 0.02) << axis << ' ' << place << ' ' << distance;
+      }
+}
+
 TEST(Lamps, DiscsHaveTheirExactAreaAndPower) {
   const Lamp lamp = lampOf(
       "type = 'disc'\nname = 'window'\nposition = [5, 6, 7]\ndirection = [1, 2, -2]\n"

@@ -130,6 +130,23 @@ TEST(SharedPlaces, ALampUnderAFrostedSheetGivesNoInvalidSample) {
   EXPECT_NEAR(meanColor(result.film.mean()).x, 0.9f, 0.1f);
 }
 
+// In a coordinate plane, where coordinates are 0 but those of a node that was turned into it are
+// rounding errors.
+TEST(SharedPlaces, ALampInACoordinatePlaneIsFlushWithARoundedWall) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lampOf(Rgb(1))), {-1, 0, -1}, {2, 0, 0}, {0, 0, 2});
+  Material wall = lambert(Rgb(0));
+  wall.doubleSided = true;
+  addQuad(scene, addMaterial(scene, wall), {-1.5f, -4e-7f, -1.5f}, {3, 0, 0}, {0, 4e-7f, 3});
+  const Camera below = Camera::lookAt({0, -0.9f, 0}, {0, 0, 0}, {0, 0, 1}, 0.1f);
+  EXPECT_NEAR(render(scene, below, Mis::Balance), 1, 0.01f);
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-1e-3f, -1, -1e-3f}, {0, 0, 2e-3f},
+          {2e-3f, 0, 0});
+  const Camera above = Camera::lookAt({0.3f, -0.5f, 0}, {0, -1, 0}, {0, 0, 1}, 1e-3f);
+  for (const Mis mis : {Mis::Balance, Mis::Power, Mis::Off})
+    EXPECT_NEAR(render(scene, above, mis), kFormFactor, 0.012f) << int(mis);
+}
+
 // Triangles of a lamp that touch at edges, walls that cross it, and what is before or behind it do
 // not share its place, at any scale.
 TEST(SharedPlaces, NeighboursDoNotShareAPlace) {

@@ -64,6 +64,8 @@ Surface PathTracer::surfaceOf(const PathState& state, const Hit& hit) const {
   const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
   Surface surface = surfaceAt(world_.scene, world_.scene.instances[hit.instance], hit.triangle,
                               hit.barycentric, -state.ray.direction, crossSection, state.ray.time);
+  if (sharesPlace(hit)) [[unlikely]]
+    surface.rayOffset = offsetAtPlace(world_.scene, surface, hit);
   if (state.place) [[unlikely]]
     surface.rayOffset = std::max(surface.rayOffset, state.place.rayOffset);
   return surface;

@@ -8,6 +8,7 @@
 
 #include "integrate/pass_through.h"
 #include "integrate/path.h"
+#include "scene/plane_offset.h"
 
 namespace chromeball {
 namespace {
@@ -134,6 +135,11 @@ std::optional<Hit> PathTracer::metAt(PathState& state, const Hit& hit, PathConte
   return met;
 }
 
+float offsetAtPlace(const Scene& scene, const Surface& surface, const Hit& hit) {
+  return planeOffset(scene, scene.instances[hit.instance], hit.triangle, surface.geometricNormal,
+                     surface.time);
+}
+
 Rgb transmittanceAtPlace(const World& world, const Media& media, const Ray& ray, const Hit& emitter,
                          uint32_t key, RayMask mask) {
   const Scene& scene = world.scene;
@@ -144,7 +150,8 @@ Rgb transmittanceAtPlace(const World& world, const Media& media, const Ray& ray,
     return surfaceAt(scene, scene.instances[hit.instance], hit.triangle, hit.barycentric,
                      -ray.direction, 0, ray.time);
   };
-  const Surface surface = surfaceOf(emitter);
+  Surface surface = surfaceOf(emitter);
+  surface.rayOffset = offsetAtPlace(scene, surface, emitter);
   world.accel.forEachCoincident(ray, emitter, surface, key, mask,
                                 [&](const Hit& other) { found.add(other); });
   const auto isEmitter = [&](const Hit& hit) { return orderOf(hit) == orderOf(emitter); };

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "scene/surface.h"
 #include "trace/ray.h"
 
 namespace chromeball {
@@ -31,6 +32,10 @@ struct Place {
     if (at < 0 || at >= count) count = 0;
   }
 };
+
+// Surface::rayOffset of a triangle that shares its place (World::sharedPlaces), so that what is
+// meant to lie in its plane counts as there.
+float offsetAtPlace(const Scene& scene, const Surface& surface, const Hit& hit);
 
 struct World;
 class Media;

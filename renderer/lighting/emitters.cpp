@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "math/warp.h"
+#include "scene/plane_offset.h"
 #include "scene/surface.h"
 #include "shading/bsdf.h"
 
@@ -43,6 +44,15 @@ double meanEmission(const Scene& scene, const Material& m) {
   const double mean = m.emissiveTexture ? meanOfTexels(scene, m.emissiveTexture, emitted)
                                         : double(luminance(m.emission));
   return mean * meanAlpha(scene, m);
+}
+
+// The end of a shadow ray from `origin` towards a point of the surface that faces it: off what lies
+// in its plane, and farther if the ray is long. The rounding errors of the ray grow with its
+// length, and not with the surface's coordinates, which are 0 in a coordinate plane.
+vec3 endOfRay(const Surface& surface, float planeOffset, const vec3& origin) {
+  const vec3 extent = surface.position - origin;
+  const float offset = rayOffset(extent, extent, extent, surface.geometricNormal);
+  return surface.position + std::max(planeOffset, offset) * surface.geometricNormal;
 }
 
 }  // namespace
@@ -122,12 +132,14 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   if (isBlack(radiance) || !(cosine > 0)) return;
   const float density = pdf(instance.material, distance, cosine) * areaRatio(surface, instance);
   if (!(density > 0)) return;
-  out.push_back(
-      {.wi = wi,
-       .irradiance = radiance / density,
-       .pdf = density,
-       .distance = distance,
-       .end = {emitter.instance, emitter.triangle, emitter.barycentric, surface.rayOrigin(-wi)}});
+  const float offset =
+      planeOffset(scene_, instance, emitter.triangle, surface.geometricNormal, point.time);
+  out.push_back({.wi = wi,
+                 .irradiance = radiance / density,
+                 .pdf = density,
+                 .distance = distance,
+                 .end = {emitter.instance, emitter.triangle, emitter.barycentric,
+                         endOfRay(surface, offset, point.position)}});
 }
 
 float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
