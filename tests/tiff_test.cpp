@@ -303,6 +303,24 @@ TEST_F(Tiff, ZeroIsWhiteOfAnyBits) {
   }
 }
 
+// Further samples of unstated meaning, which OpenImageIO calls green, blue or alpha.
+TEST_F(Tiff, GreyStaysGreyBesideOtherSamples) {
+  constexpr uint16_t kExtraSamples = 338;
+  using Names = std::vector<std::string>;
+  const auto grey = [&](uint16_t samples, const std::vector<uint32_t>& extra) {
+    return read({{2, 1, texels(2, 1, samples), 1, samples, 8, 1, 1, {{kExtraSamples, 3, extra}}}});
+  };
+  const ImageFile two = grey(2, {0}), four = grey(4, {0, 1, 0}), three = grey(3, {0, 0});
+  EXPECT_EQ(two.channels, (Names{"Y", "channel1"}));
+  EXPECT_EQ(four.channels, (Names{"Y", "channel1", "A", "channel3"}));
+  for (const ImageFile* file : {&two, &four})
+    EXPECT_EQ(findColor(*file)->rgb(1, 0), Rgb(file->image.at(1, 0)[0]));
+  EXPECT_EQ(three.channels, (Names{"R", "G", "B"}));
+  ASSERT_EQ(three.messages.size(), 1u);
+  EXPECT_NE(three.messages[0].text.find("says that it is grey"), std::string::npos);
+  EXPECT_TRUE(two.messages.empty() && four.messages.empty());
+}
+
 // No file of 5 kB holds 400 MB, however it is compressed; nothing is decoded to find this out.
 TEST_F(Tiff, FilesTooShortForTheirTexelsAreRefused) {
   constexpr uint16_t kNone = 1, kLzw = 5, kJpeg = 7, kAdobeDeflate = 8, kPackBits = 32773,

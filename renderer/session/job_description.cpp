@@ -147,10 +147,9 @@ std::string renderIdentity(const RenderDescription& job, const LoadedScene& load
 std::string lightIdentity(const RenderDescription& job, const LoadedScene& loaded) {
   Json identity = describeContents(job, loaded);
   for (const char* name : kOfImage) identity.erase(name);
-  if (std::ranges::none_of(loaded.scene.instances, &Instance::moves)) {
+  if (std::ranges::none_of(loaded.scene.instances, &Instance::moves))
     for (const char* name : {"animation", "animation-time"}) identity.erase(name);
-    identity["lamps"] = hashOf(loaded.scene.lights);  // which may move
-  }
+  identity["lamps"] = hashOf(loaded.scene.lights);  // which may move
   return jsonText(identity);
 }
 

@@ -193,6 +193,11 @@ void readTiffColors(std::span<const uint8_t> bytes, const fs::path& path, ImageF
   const TiffBlock tiff(bytes);
   const std::span<const uint8_t> profile = tiff.bytes(tiff.firstDirectory(), kProfileTag);
   file.primaries = tiffPrimaries(bytes);
+  if (statesGrey(bytes) && file.channels == std::vector<std::string>{"R", "G", "B"})
+    file.messages.push_back({Message::Kind::Warning,
+                             fmt::format("{}: says that it is grey, but has three samples; they "
+                                         "are read as red, green and blue",
+                                         path.string())});
   if (!file.integers) return warnOfProfile(profile, "linear Rec. 709", path, file.messages);
   warnOfColors(profile, bytes, path, file.messages);
   if (hasTransferTable(bytes))

@@ -36,6 +36,15 @@ std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file) {
   return space;
 }
 
+bool statesGrey(std::span<const uint8_t> file) {
+  constexpr uint16_t kPhotometricInterpretation = 262;
+  const TiffBlock tiff(file);
+  const std::vector<uint64_t> stated =
+      tiff.integers(tiff.firstDirectory(), kPhotometricInterpretation);
+  constexpr uint64_t kLargestOfGrey = 1;  // 0 if 0 is white
+  return !stated.empty() && stated[0] <= kLargestOfGrey;
+}
+
 bool hasTransferTable(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);
   return tiff.has(tiff.firstDirectory(), kTransferFunction);

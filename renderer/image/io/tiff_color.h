@@ -14,6 +14,9 @@ namespace chromeball {
 // Throws std::runtime_error if they are not two and six rational numbers.
 std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file);
 
+// Whether PhotometricInterpretation says that it is grey, whatever the number of its samples.
+bool statesGrey(std::span<const uint8_t> file);
+
 // Whether it has a table of the light of its integers (TransferFunction), which is not applied.
 bool hasTransferTable(std::span<const uint8_t> file);
 
