@@ -108,6 +108,17 @@ TEST_F(CommandIntegrators, CacheIrradiance) {
   Strings turned = cached;
   turned.insert(turned.end(), {"--orbit", "20"});
   render(turned);  // another view of the same light
+  Strings layers = cached;
+  layers.insert(layers.end(), {"--aov", "albedo,ao"});
+  render(layers);
+  for (const char* height : {"2", "3"}) {
+    const std::string file = folder_ / (std::string("camera") + height + ".toml");
+    std::ofstream(file) << "[camera]\nposition = [3, " << height
+                        << ", 4]\nlook_at = [0, 0, 0]\nfov = 40\n";
+    Strings placed = cached;
+    placed.insert(placed.end(), {"--camera-file", file});
+    render(placed);
+  }
   Strings frames = with(cached);
   frames.insert(frames.end(), {"--orbit", "40", "--frames", "1:2", "-o", folder_ / "f#.exr"});
   EXPECT_EQ(runCommand(frames).status, 0);

@@ -116,6 +116,28 @@ TEST(CommandLights, SpheresAndTheTableAgree) {
   EXPECT_NEAR(max / tableMax, 1, 1e-3);
 }
 
+// Options that have no effect are said.
+TEST(CommandLights, ASeedOfNoStochasticMethodIsSaid) {
+  const TemporaryFolder folder;
+  const std::string probe = folder / "studio.exr";
+  writeImage(probe, studioProbe({64, 32}));
+  constexpr const char* kSaid = "--seed: has no effect";
+  const auto lights = [&](const std::string& method) {
+    return run({"lights", probe, "--method", method, "--count", "2", "-o", folder / "a.json",
+                "--seed", "1"})
+        .error;
+  };
+  const auto table = [&](const std::string& methods) {
+    return run({"lights-error", probe, "--methods", methods, "--counts", "2", "--normals", "20",
+                "--seed", "1"})
+        .error;
+  };
+  EXPECT_NE(lights("median-cut").find(kSaid), std::string::npos);
+  EXPECT_EQ(lights("lightgen").find(kSaid), std::string::npos);
+  EXPECT_NE(table("median-cut,variance-cut").find(kSaid), std::string::npos);
+  EXPECT_EQ(table("median-cut,lightgen").find(kSaid), std::string::npos);
+}
+
 TEST(CommandLights, AnAngleGivesARadiance) {
   const TemporaryFolder folder;
   const std::string probe = folder / "studio.exr", out = folder / "a.json";

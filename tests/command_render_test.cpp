@@ -218,6 +218,18 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
 }
 
 // Also under a noise limit, where the remaining time is an extrapolation.
+// A scene file of others may name an output so that a terminal would obey it.
+TEST(CommandRender, NamesOfOutputsArePrintedPlainly) {
+  const RenderScene scene;
+  const std::string file = scene.folder() + "/scene.toml";
+  std::ofstream(file) << "model = \"model.gltf\"\n[output]\n"
+                         "file = \"a\\u001b]0;title\\u0007\\nb.exr\"\n";
+  const std::string out =
+      scene.renderScene(file, {"--probe", scene.constant, "--size", "4x3", "--samples", "1"}).out;
+  EXPECT_TRUE(out.ends_with("/a b.exr\n")) << out;
+  EXPECT_EQ(std::ranges::count_if(out, [](char c) { return c >= 0 && c < ' '; }), 1);
+}
+
 TEST(SlowCommandRender, ProgressSaysSamplesNoiseAndTimeLeft) {
   const RenderScene scene;
   const CommandResult result =

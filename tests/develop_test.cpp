@@ -286,6 +286,16 @@ TEST(Develop, GlareIsAMixtureOfGaussians) {
   }
 }
 
+// Of a field of view that is next to nothing, which a file may state: no blur wider than the
+// widest.
+TEST(Develop, GlareOfATinyFieldOfViewIsBounded) {
+  for (const double pixelsPerDegree : {1e5, 1e9, 1e300, std::numeric_limits<double>::infinity()}) {
+    const auto mixture = spencerGlare(pixelsPerDegree);
+    EXPECT_LT(mixture.size(), 100u);
+    for (const auto& [weight, sigma] : mixture) EXPECT_LE(sigma, kMaxSigma * (1 + 1e-9));
+  }
+}
+
 TEST(Develop, InvalidPixelsAreCountedAndDoNotSpread) {
   Image image = filled(40, 30, 1);
   image.at(3, 4)[1] = std::numeric_limits<float>::quiet_NaN();

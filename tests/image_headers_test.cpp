@@ -20,6 +20,7 @@
 #include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
 #include "run_command.h"
+#include "tiff_file.h"
 
 namespace chromeball::image_headers_test {
 namespace {
@@ -292,6 +293,47 @@ TEST(ImageHeaders, AllReadersTurnAlike) {
     EXPECT_EQ(readImage(saved(folder / "b.png", withExif(seed("a.png"), named))).texels,
               oriented(readImage(saved(folder / "b.png", seed("a.png"))), orientation).texels);
   }
+}
+
+// Width over height is what the resolution of the height is over that of the width.
+TEST(ImageHeaders, PixelsThatAreNotSquareAreSaid) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& file) {
+    std::string text;
+    for (const Message& message : readImageFile(saved(folder / "a", file)).messages) {
+      EXPECT_EQ(message.kind, Message::Kind::Warning);
+      text += message.text;
+    }
+    return text;
+  };
+  const std::string name = "pixels are not square, ", twice = name + "2 times",
+                    half = name + "0.5 times";
+  const auto expectSaid = [&](const std::string& file, const std::string& part) {
+    if (part.empty())
+      EXPECT_EQ(said(file), "");
+    else
+      EXPECT_NE(said(file).find(part), std::string::npos) << said(file);
+  };
+  constexpr size_t kDensityAt = 14;  // of the seed, in its JFIF header
+  const std::string jpeg = seed("a.jpg");
+  for (const auto& [x, y, part] : {std::tuple(100u, 200u, twice),
+                                   {200u, 100u, half},
+                                   {300u, 300u, ""},
+                                   {11811u, 11812u, ""},
+                                   {0u, 5u, ""},
+                                   {5u, 0u, ""}}) {
+    const std::array<uint8_t, 3> texel = {200, 100, 50};
+    expectSaid(png(texel, chunk("pHYs", {x, y})), part);
+    expectSaid(std::string(jpeg).replace(kDensityAt, 4, bigEndian(x, 2) + bigEndian(y, 2)), part);
+    expectSaid(
+        TiffWriter::file({{1, 1, "abc", 2, 3, 8, 1, 1, {{282, 5, {x, 1}}, {283, 5, {y, 1}}}}}),
+        part);
+  }
+  // On its side.
+  expectSaid(
+      TiffWriter::file(
+          {{1, 1, "abc", 2, 3, 8, 1, 1, {{274, 3, {6}}, {282, 5, {2, 1}}, {283, 5, {1, 1}}}}}),
+      twice);
 }
 
 // A TIFF or BigTIFF of directories alone: the first has a pointer of this type to the second, which

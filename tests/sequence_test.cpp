@@ -351,6 +351,22 @@ TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.exr", 3), "a.exr");
 }
 
+// The light of models that move is another one in each frame.
+TEST(Sequence, EachFrameMayHaveItsCache) {
+  const Moving model;
+  const TemporaryFolder out;
+  const auto cached = [&](const Words& more, const std::string& cache) {
+    Words all{"--irradiance-cache", "0.5", "--cache", out / cache};
+    all.insert(all.end(), more.begin(), more.end());
+    return words(model.scene(), all, out / "frame.#.exr");
+  };
+  run(cached({"--frames", "0:1"}, "light.#.cache"));
+  for (const char* name : {"light.0.cache", "light.1.cache"})
+    EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+  run(cached({}, "rest.cache"));
+  expectError(cached({"--animation-time", "1"}, "rest.cache"), "`animation-time` was not given");
+}
+
 TEST(Sequence, RefusesWhatItCannotRender) {
   const Moving model;
   const TemporaryFolder out;

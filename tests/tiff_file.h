@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// Type 3: numbers of 16 bits; 4: of 32.
+// Type 3: numbers of 16 bits; 4: of 32; 5: pairs of 32, numerator and denominator; 7: bytes.
 struct TiffEntry {
   uint16_t tag, type;
   std::vector<uint32_t> values;
@@ -65,11 +65,12 @@ class TiffWriter {
     std::string directory = number(entries.size(), 2);
     for (const TiffEntry& entry : entries) {
       std::string values;
-      for (const uint32_t value : entry.values) values += number(value, entry.type == 3 ? 2 : 4);
+      const int bytes = entry.type == 7 ? 1 : entry.type == 3 ? 2 : 4;
+      for (const uint32_t value : entry.values) values += number(value, bytes);
+      const size_t count = entry.values.size() / (entry.type == 5 ? 2 : 1);
       if (values.size() > 4) values = number(appended(values), 4);
       values.resize(4);
-      directory +=
-          number(entry.tag, 2) + number(entry.type, 2) + number(entry.values.size(), 4) + values;
+      directory += number(entry.tag, 2) + number(entry.type, 2) + number(count, 4) + values;
     }
     const size_t at = appended(directory + number(0, 4));
     const size_t strip =

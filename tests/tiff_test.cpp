@@ -170,22 +170,96 @@ TEST_F(Tiff, TexelsThatCannotBeDecodedAreRefused) {
   }
 }
 
-// zlib's bound on what it makes of a strip is none on what others may.
-TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
-  const TiffImage plain = rgb();
-  TiffImage deflated = plain;
-  deflated.compression = 8;
-  deflated.texels = "\x78\x01";
-  uint32_t a = 1, b = 0;  // Adler-32, RFC 1950
-  for (size_t i = 0; i < plain.texels.size(); ++i) {
-    const char texel = plain.texels[i];
-    const bool isLast = i + 1 == plain.texels.size();
-    deflated.texels += std::string({char(isLast), 1, 0, char(0xfe), char(0xff), texel});  // stored
-    a = (a + uint8_t(texel)) % 65521;
+// RFC 1950, of stored blocks of one byte each.
+std::string deflatedOf(const std::string& bytes) {
+  std::string file = "\x78\x01";
+  uint32_t a = 1, b = 0;  // Adler-32
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    const bool isLast = i + 1 == bytes.size();
+    file += std::string({char(isLast), 1, 0, char(0xfe), char(0xff), bytes[i]});
+    a = (a + uint8_t(bytes[i])) % 65521;
     b = (a + b) % 65521;
   }
-  for (const uint32_t byte : {b >> 8, b, a >> 8, a}) deflated.texels += char(byte);
-  EXPECT_EQ(read({deflated}).image.texels, read({plain}).image.texels);
+  for (const uint32_t byte : {b >> 8, b, a >> 8, a}) file += char(byte);
+  return file;
+}
+
+// zlib's bound on what it makes of a strip is none on what others may.
+TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
+  TiffImage deflated = rgb();
+  deflated.compression = 8;
+  deflated.texels = deflatedOf(deflated.texels);
+  EXPECT_EQ(read({deflated}).image.texels, read({rgb()}).image.texels);
+}
+
+// libtiff stops before the checksum.
+TEST_F(Tiff, DamagedDeflateIsRefused) {
+  const std::string whole = deflatedOf(rgb().texels);
+  const auto deflated = [&](const std::string& texels, uint16_t compression) {
+    TiffImage image = rgb();
+    image.compression = compression;
+    image.texels = texels;
+    return image;
+  };
+  constexpr size_t kChecksum = 4, kStored = 6;  // bytes, of each texel too
+  for (const uint16_t compression : {8, 32946}) {
+    for (const size_t fromEnd :
+         {size_t(1), kChecksum, kChecksum + 1, kChecksum + 5 * kStored + 1}) {
+      std::string damaged = whole;
+      damaged[damaged.size() - fromEnd] ^= 4;
+      refuse({deflated(damaged, compression)}, "block 1 of its texels is damaged");
+      refuse({thumbnail(), deflated(damaged, compression)}, "block 1 of its texels is damaged");
+    }
+    // Flushed and never ended: without a checksum, not damaged.
+    std::string flushed = whole.substr(0, whole.size() - kChecksum);
+    flushed[flushed.size() - kStored] = 0;  // not the last block
+    for (const std::string& texels : {whole + "more", flushed})
+      EXPECT_EQ(read({deflated(texels, compression)}).image.texels, read({rgb()}).image.texels);
+  }
+}
+
+// TIFF 6.0, section 20: rational numbers.
+TEST_F(Tiff, PrimariesAreConverted) {
+  constexpr uint16_t kRational = 5, kWhitePoint = 318, kPrimaries = 319;
+  const auto entry = [](uint16_t tag, const std::vector<uint32_t>& numbers) {
+    TiffEntry result{tag, kRational, {}};
+    for (const uint32_t number : numbers)
+      for (const uint32_t part : {number, 10000u}) result.values.push_back(part);
+    return result;
+  };
+  const TiffEntry p3 = entry(kPrimaries, {6800, 3200, 2650, 6900, 1500, 600}),
+                  rec709 = entry(kPrimaries, {6400, 3300, 3000, 6000, 1500, 600}),
+                  d65 = entry(kWhitePoint, {3127, 3290}), d50 = entry(kWhitePoint, {3457, 3585});
+  const ImageFile plain = read({rgb()}), wide = read({rgb({p3, d65})});
+  EXPECT_FALSE(plain.primaries);
+  const Chromaticities expected{{0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
+  EXPECT_EQ(wide.primaries, expected);
+  ASSERT_EQ(wide.messages.size(), 1u);
+  EXPECT_NE(wide.messages[0].text.find("converted to Rec. 709"), std::string::npos);
+  const Rgb stored = findColor(plain)->rgb(1, 1), found = findColor(wide)->rgb(1, 1);
+  const Rgb converted(*toRec709(expected) * glm::dvec3(stored));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], converted[c], 1e-6f);
+  EXPECT_EQ(read({rgb({p3})}).primaries, expected) << "the white that it leaves out";
+  EXPECT_EQ(read({rgb({d50})}).primaries->white, glm::dvec2(0.3457, 0.3585));
+  const ImageFile same = read({rgb({rec709, d65})});
+  EXPECT_TRUE(same.messages.empty());
+  EXPECT_EQ(findColor(same)->texels, findColor(plain)->texels);
+  EXPECT_EQ(read({thumbnail(), rgb({p3})}).primaries, expected) << "those of the picture";
+  refuse({rgb({entry(kPrimaries, {6800, 3200})})}, "six rational numbers");
+  refuse({rgb({{kWhitePoint, 4, {1, 1}}})}, "two and six rational numbers");
+  refuse({rgb({entry(kPrimaries, {0, 0, 0, 0, 0, 0})})}, "degenerate");
+}
+
+TEST_F(Tiff, ColoursThatAreNotAppliedAreNamed) {
+  constexpr uint16_t kTransferFunction = 301, kProfile = 34675;
+  const TiffEntry profile{kProfile, 7, std::vector<uint32_t>(40, 'x')};
+  const TiffImage floats{1, 1, std::string(12, '\0'), 2, 3, 32, 1, 3, {profile}};
+  const ImageFile light = read({floats});
+  ASSERT_EQ(light.messages.size(), 1u);
+  EXPECT_NE(light.messages[0].text.find("read as linear Rec. 709"), std::string::npos);
+  const ImageFile table = read({rgb({{kTransferFunction, 3, std::vector<uint32_t>(256, 9)}})});
+  ASSERT_EQ(table.messages.size(), 1u);
+  EXPECT_NE(table.messages[0].text.find("TransferFunction"), std::string::npos);
 }
 
 // libtiff's conversion tints it: white of L*a*b* is (1, 1, 0.83).
@@ -227,6 +301,24 @@ TEST_F(Tiff, ZeroIsWhiteOfAnyBits) {
         same = read({{1, 1, dark + dark, 1, 2, bits, 1, 1, unassociated}}).image.texels;
     for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(clear[i], same[i], 1e-6) << bits;
   }
+}
+
+// Further samples of unstated meaning, which OpenImageIO calls green, blue or alpha.
+TEST_F(Tiff, GreyStaysGreyBesideOtherSamples) {
+  constexpr uint16_t kExtraSamples = 338;
+  using Names = std::vector<std::string>;
+  const auto grey = [&](uint16_t samples, const std::vector<uint32_t>& extra) {
+    return read({{2, 1, texels(2, 1, samples), 1, samples, 8, 1, 1, {{kExtraSamples, 3, extra}}}});
+  };
+  const ImageFile two = grey(2, {0}), four = grey(4, {0, 1, 0}), three = grey(3, {0, 0});
+  EXPECT_EQ(two.channels, (Names{"Y", "channel1"}));
+  EXPECT_EQ(four.channels, (Names{"Y", "channel1", "A", "channel3"}));
+  for (const ImageFile* file : {&two, &four})
+    EXPECT_EQ(findColor(*file)->rgb(1, 0), Rgb(file->image.at(1, 0)[0]));
+  EXPECT_EQ(three.channels, (Names{"R", "G", "B"}));
+  ASSERT_EQ(three.messages.size(), 1u);
+  EXPECT_NE(three.messages[0].text.find("says that it is grey"), std::string::npos);
+  EXPECT_TRUE(two.messages.empty() && four.messages.empty());
 }
 
 // No file of 5 kB holds 400 MB, however it is compressed; nothing is decoded to find this out.

@@ -47,6 +47,8 @@ void nameFiles(Settings& settings, int number) {
   for (const char* name : {"stats", "checkpoint"})
     if (const auto path = settings.getIfGiven<std::string>(name))
       settings.set(name, named(name, *path), settings.location(name));
+  if (const auto path = settings.getIfGiven<std::string>("cache"))  // frames may share one
+    settings.set("cache", withNumber(*path, number), settings.location("cache"));
 }
 
 void check(const Settings& all, const Settings& given) {

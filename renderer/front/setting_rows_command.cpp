@@ -185,7 +185,7 @@ std::vector<Setting> commandRows() {
        .type = Name,
        .absent = "none",
        .help = "Keeps the records of --irradiance-cache for later views of the same scene: uses "
-               "those of the file and writes it with those added.",
+               "those of the file and writes it with those added. With --frames it may have a #.",
        .effect = Effect::Run,
        .renderOnly = true},
       {.option = "checkpoint",

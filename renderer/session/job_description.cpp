@@ -23,11 +23,13 @@ using Json = nlohmann::ordered_json;
 // Contents of files are compared instead.
 constexpr std::array kPaths = {"scene", "probe", "camera-file", "files"};
 constexpr std::array kLimits = {"noise-limit", "time-limit"};
-constexpr std::array kOfImage = {"camera",   "cameraPosition", "cameraFov",     "lensRadius",
-                                 "focus",    "distortion",     "worldToCamera", "worldToNDC",
-                                 "size",     "crop",           "shard",         "orbit",
-                                 "seed",     "clamp",          "transparent",   "denoise",
-                                 "adaptive", "ao-distance",    "bent"};
+constexpr std::array kOfImage = {"camera",       "cameraPosition", "cameraFov",     "lensRadius",
+                                 "focus",        "distortion",     "worldToCamera", "worldToNDC",
+                                 "size",         "crop",           "shard",         "orbit",
+                                 "seed",         "clamp",          "transparent",   "denoise",
+                                 "adaptive",     "ao-distance",    "bent",          "aov",
+                                 "scene-camera", "lens",           "optics",        "scene-camera",
+                                 "lens",         "optics"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
 // For row vectors: each row is the transformed unit vector of an axis, the last row the transformed
@@ -78,14 +80,16 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
 
-// The description, with contents of files instead of their names, and without limits.
-Json describeContents(const LoadedScene& loaded) {
+// The description, with contents of files instead of their names, and without limits. `apart`: a
+// file whose contents do not count.
+Json describeContents(const LoadedScene& loaded, const std::optional<std::string>& apart = {}) {
   const RenderDescription& job = loaded.description;
   Json identity = describeJob(loaded);
   for (const char* name : kPaths) identity.erase(name);
   for (const char* name : kLimits) identity.erase(name);
   if (!job.path.empty()) identity["contents of scene"] = fingerprint(job.path);
   for (const std::string& file : loaded.files) {
+    if (file == apart) continue;
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
   }
@@ -148,12 +152,11 @@ std::string renderIdentity(const LoadedScene& loaded) {
 }
 
 std::string lightIdentity(const LoadedScene& loaded) {
-  Json identity = describeContents(loaded);
+  Json identity = describeContents(loaded, loaded.description.camera.file);
   for (const char* name : kOfImage) identity.erase(name);
-  if (std::ranges::none_of(loaded.scene.instances, &Instance::moves)) {
+  if (std::ranges::none_of(loaded.scene.instances, &Instance::moves))
     for (const char* name : {"animation", "animation-time"}) identity.erase(name);
-    identity["lamps"] = hashOf(loaded.scene.lights);  // which may move
-  }
+  identity["lamps"] = hashOf(loaded.scene.lights);  // which may move
   return jsonText(identity);
 }
 

@@ -30,7 +30,8 @@ constexpr double kMaxAngle = 10;  // degrees; more is no longer a light from one
 
 struct LightsArguments {
   LightsProbe probe;
-  std::string method, output, format, preview, sphere, maxError, polygons, units, seed = "0";
+  std::string method, output, format, preview, sphere, maxError, polygons, units;
+  std::optional<std::string> seed;
   std::optional<int> suggest;  // so many polygons
   std::optional<int> normals;  // of the sphere
   std::optional<double> angle;
@@ -75,9 +76,15 @@ void checkPictures(const LightingMethod& method, const LightsArguments& argument
   checkDistinct({arguments.output, arguments.preview, arguments.sphere}, {arguments.probe.file});
 }
 
+void warnOfUnits(const LightsArguments& arguments, LightFormat format) {
+  if (!arguments.units.empty() && format != LightFormat::Gltf)
+    warn(fmt::format("--light-units: has no effect on {}, which holds {}", arguments.output,
+                     format == LightFormat::OpenGl ? "radiance" : "irradiance in W/m^2"));
+}
+
 // Of what is asked for, or was found, and is not in the file where other programs look for it.
 void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, LightFormat format) {
-  const bool isGltf = format == LightFormat::Gltf, isJson = format == LightFormat::Json;
+  const bool isGltf = format == LightFormat::Gltf;
   constexpr const char* kUnread = "is only in `extras`, which other programs do not read";
   if (made.ambient && (isGltf || format == LightFormat::Csv))
     warn(fmt::format("{}: the fitted ambient light {}; a .json holds it", arguments.output,
@@ -87,9 +94,6 @@ void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, Ligh
   if (hasAngle && (isGltf || format == LightFormat::OpenGl))
     warn(fmt::format("{}: the lights' angular diameter {}; a .json holds it", arguments.output,
                      isGltf ? kUnread : "is not in a header for OpenGL"));
-  if (!arguments.units.empty() && !isGltf)
-    warn(fmt::format("--light-units: has no effect on {}, which holds {}", arguments.output,
-                     isJson || format == LightFormat::Csv ? "irradiance in W/m^2" : "radiance"));
   constexpr size_t kOpenGlLights = 8;
   if (format == LightFormat::OpenGl && made.lights.size() > kOpenGlLights)
     warn(fmt::format("{}: {} lights; OpenGL is sure to have {}", arguments.output,
@@ -136,7 +140,8 @@ void runPolygonsOf(const LightsArguments& arguments) {
       {"--count", request.count.has_value()},       {"--recursion", request.levels.has_value()},
       {"--max-error", !arguments.maxError.empty()}, {"--ambient", request.ambient},
       {"--angle", arguments.angle.has_value()},     {"--regions", arguments.regions},
-      {"--sphere", !arguments.sphere.empty()},      {"--normals", arguments.normals.has_value()}};
+      {"--sphere", !arguments.sphere.empty()},      {"--normals", arguments.normals.has_value()},
+      {"--seed", arguments.seed.has_value()}};
   for (const auto& [option, isGiven] : others)
     if (isGiven) throwInput("{}: is for the lights of a --method, not for polygons", option);
   const LightFormat format = arguments.suggest
@@ -153,6 +158,7 @@ void runPolygonsOf(const LightsArguments& arguments) {
                .format = format,
                .units = unitsOf(arguments),
                .rotation = arguments.rotation});
+  warnOfUnits(arguments, format);
 }
 
 void run(LightsArguments arguments) {
@@ -168,11 +174,13 @@ void run(LightsArguments arguments) {
     throwInput("--angle: should be above 0 and at most {} degrees", kMaxAngle);
   const int subdivisions = subdivisionsFor(arguments.normals.value_or(20480));
   arguments.probe.checkMask();
-  request.seed = parseSeed(arguments.seed);
+  if (arguments.seed) request.seed = parseSeed(*arguments.seed);
   const LightUnits units = unitsOf(arguments);
   const LightFormat format = lightFormat(arguments.output, arguments.format, "--format");
   checkReplaceable(arguments.output);
   checkPictures(method, arguments);
+  if (arguments.seed && !method.lights.isStochastic)
+    warn(fmt::format("--seed: has no effect: {} is not stochastic", method.name));
 
   const Image latLong = arguments.probe.load();
   std::optional<BusyLine> busy("making lights");
@@ -188,6 +196,7 @@ void run(LightsArguments arguments) {
                .lights = turned(lights, arguments.rotation),
                .units = units},
               format);
+  warnOfUnits(arguments, format);
   warnOfLosses(arguments, made, format);
   if (!arguments.preview.empty())
     print(writeImage(arguments.preview,

@@ -27,7 +27,7 @@ struct LightsErrorArguments {
   std::vector<std::string> methods;
   std::vector<int> counts, levels;
   int normals = 20480;
-  std::string seed = "0";
+  std::optional<std::string> seed;
 };
 
 struct Row {
@@ -80,7 +80,7 @@ std::vector<LightRequest> requestsOf(const LightsErrorArguments& arguments) {
     throwInput("--counts: the numbers of lights are missing; give either --counts or --recursion");
   if (!arguments.counts.empty() && !arguments.levels.empty())
     throwInput("--recursion: excludes --counts; give one");
-  const uint64_t seed = parseSeed(arguments.seed);
+  const uint64_t seed = arguments.seed ? parseSeed(*arguments.seed) : 0;
   std::vector<LightRequest> requests;
   for (const int count : arguments.counts) requests.push_back({.count = count, .seed = seed});
   for (const int levels : arguments.levels) requests.push_back({.seed = seed, .levels = levels});
@@ -101,7 +101,11 @@ void run(LightsErrorArguments arguments) {
   removeRepeats(arguments.counts);
   removeRepeats(arguments.levels);
   const std::vector<LightRequest> requests = requestsOf(arguments);
-  for (const std::string& method : arguments.methods) lightMethod(method, "--methods");
+  const auto isStochastic = [](const std::string& method) {
+    return lightMethod(method, "--methods").lights.isStochastic;
+  };
+  if (std::ranges::count_if(arguments.methods, isStochastic) == 0 && arguments.seed)
+    warn("--seed: has no effect: none of the methods is stochastic");
   for (const std::string& method : arguments.methods)
     for (const LightRequest& request : requests) checkLightCount(method, request);
   if (!arguments.csv.empty()) checkOutputFile(arguments.csv, {".csv"});

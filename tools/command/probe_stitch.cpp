@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "busy_line.h"
 #include "front/arguments.h"
 #include "front/tile_file.h"
@@ -42,7 +43,7 @@ void refine(std::vector<TileEntry>& entries, std::vector<Tile>& tiles) {
     entries[i].pose = tiles[i].pose.angles();
     const Rotation::Angles& pose = entries[i].pose;
     fmt::print("{}  yaw {:.4f}, pitch {:.4f}, roll {:.4f}: turned by {:.4f} degrees\n",
-               entries[i].file, pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
+               printable(entries[i].file), pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
   }
   fmt::print("overlaps differ by {:.3g}% before and {:.3g}% after, RMS of the log radiance\n",
              100 * refinement.before, 100 * refinement.after);
@@ -52,7 +53,7 @@ std::vector<double> gainsOf(const ProbeStitchArguments& arguments, const std::ve
   if (arguments.sameExposure) return std::vector<double>(tiles.size(), 1.0);
   const std::vector<double> gains = tileGains(tiles);
   for (size_t i = 0; i < tiles.size(); ++i)
-    fmt::print("{}  gain {:.4f}\n", tiles[i].name, gains[i]);
+    fmt::print("{}  gain {:.4f}\n", printable(tiles[i].name), gains[i]);
   return gains;
 }
 

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "base/printable.h"
 #include "base/stopwatch.h"
 #include "commands.h"
 #include "front/plan_render.h"
@@ -65,7 +66,8 @@ void printOutcome(const RenderDescription& job, const JobResult& result, bool qu
   if (!quiet)
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
-               inWords(result.denoised), fmt::join(job.output.files, ", "));
+               inWords(result.denoised),
+               printable(fmt::format("{}", fmt::join(job.output.files, ", "))));
 }
 
 void writeImages(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,

@@ -80,7 +80,7 @@ complete -c chromeball -n '__fish_seen_subcommand_from render' -l probe-sequence
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l write-every -r -d 'Writes the image so far again and again, with so many seconds between. (default: at the end)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l preview -d 'Serves a page on this machine that shows the image while it grows. 0 or no number: any free port. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l display -r -d 'Sends the image while it grows to the image viewer tev, at 127.0.0.1:14158 if no address is given. (default: none)'
-complete -c chromeball -n '__fish_seen_subcommand_from render' -l cache -r -d 'Keeps the records of --irradiance-cache for later views of the same scene: uses those of the file and writes it with those added. (default: none)'
+complete -c chromeball -n '__fish_seen_subcommand_from render' -l cache -r -d 'Keeps the records of --irradiance-cache for later views of the same scene: uses those of the file and writes it with those added. With --frames it may have a #. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l checkpoint -r -d 'Keeps what a render needs to go on after it was stopped or killed; also at its end, for more samples. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l checkpoint-every -r -d 'Time between checkpoints. (default: 300)'
 complete -c chromeball -n '__fish_seen_subcommand_from render' -l resume -d 'Continues from the checkpoint, or starts where there is none'

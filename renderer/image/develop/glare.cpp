@@ -52,9 +52,10 @@ std::vector<WeightedGaussian> spencerGlare(double pixelsPerDegree) {
     mixture.push_back({weight, sigma * pixelsPerDegree});
     mixture.front().weight -= weight;
   };
-  if (const double core = kCore / std::numbers::sqrt2; core >= narrowest) add(kWeights[0], core);
+  if (const double core = kCore / std::numbers::sqrt2; core >= narrowest && core <= widest)
+    add(kWeights[0], core);
   // s = 1 / (2 sigma^2) by equal steps of its logarithm; a Gaussian has the integral pi / s.
-  for (double sigma = widest; sigma >= narrowest; sigma /= kRatio) {
+  for (double sigma = widest; sigma > 0 && sigma >= narrowest; sigma /= kRatio) {
     const double s = 1 / (2 * sigma * sigma), step = 2 * std::log(kRatio);
     const double density = kWeights[1] * kFactors[1] * gaussianDensity(3, s) +
                            kWeights[2] * kFactors[2] * gaussianDensity(2, s);

@@ -22,7 +22,7 @@ class OpenedImage : public ModuleImage {
       throw std::runtime_error("deep and volume images are not supported");
     header_ = {.width = spec.width,
                .height = spec.height,
-               .channels = spec.channelnames,
+               .channels = channelNames(spec),
                .integerBits = spec.format.is_floating_point() ? 0 : int(8 * spec.format.basesize()),
                .alphaChannel = spec.alpha_channel,
                .unassociatedAlpha =
@@ -60,6 +60,20 @@ class OpenedImage : public ModuleImage {
     const bool isTurned = header_.integerBits == 8;
     for (size_t i = 0; i < spec.image_pixels() * channels; ++i)
       if ((i % channels == 0) != isTurned) texels[i] = 1 - texels[i];
+  }
+
+  // Of grey the library names further samples, which the file does not, after colours. Three
+  // without alpha are colour whose writer states grey, as some do of floats.
+  static std::vector<std::string> channelNames(const OIIO::ImageSpec& spec) {
+    std::vector<std::string> names = spec.channelnames;
+    const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", -1);
+    if (photometric < 0 || photometric > 1 || (spec.nchannels == 3 && spec.alpha_channel < 0))
+      return names;
+    for (int c = 0; c < spec.nchannels; ++c)
+      names[size_t(c)] = c == 0                    ? "Y"
+                         : c == spec.alpha_channel ? "A"
+                                                   : "channel" + std::to_string(c);
+    return names;
   }
 
   // TIFF 6.0, PhotometricInterpretation: 0 is white.

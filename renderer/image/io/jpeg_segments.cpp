@@ -14,6 +14,7 @@ enum JpegMarker : uint8_t {
   kSoi = 0xd8,
   kEoi = 0xd9,
   kSos = 0xda,
+  kApp0 = 0xe0,  // JFIF
   kApp1 = 0xe1,  // EXIF, XMP
   kApp2 = 0xe2   // an ICC profile
 };
@@ -60,6 +61,10 @@ std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted
 
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
   return segmentOf(file, kApp1, kExifName);
+}
+
+std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file) {
+  return segmentOf(file, kApp0, std::string_view("JFIF\0", 5));
 }
 
 std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file) {

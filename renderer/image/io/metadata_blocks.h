@@ -18,6 +18,9 @@ std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
 // The ICC profile, or its first part, which describes it. Empty if there is none.
 std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file);
 
+// A JPEG's JFIF header, after its name (JFIF 1.02); empty if there is none.
+std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file);
+
 // The data of the first chunk of this type, such as "gAMA"; empty if there is none.
 std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_view type);
 

@@ -16,10 +16,13 @@
 #include "image/io/imageio_module.h"
 #include "image/io/metadata_blocks.h"
 #include "image/io/pfm.h"
+#include "image/io/pixel_aspect.h"
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/sample_reader.h"
 #include "image/io/tiff_block.h"
+#include "image/io/tiff_color.h"
+#include "image/io/tiff_deflate.h"
 #include "image/io/tiff_picture.h"
 #include "image/io/unreadable.h"
 #include "image/orientation.h"
@@ -39,6 +42,14 @@ ImageFormat formatOf(const fs::path& path) {
   return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
 }
 
+void warnOfPixels(double aspectRatio, const fs::path& path, Messages& messages) {
+  if (aspectRatio == 1) return;
+  messages.push_back({Message::Kind::Warning,
+                      fmt::format("{}: its pixels are not square, {:.4g} times as wide as high; "
+                                  "they are taken as square",
+                                  path.string(), aspectRatio)});
+}
+
 ImageFile readExr(const fs::path& path) {
   ExrInput input(path, kMaxImageFloats);
   ImageFile file;
@@ -48,12 +59,7 @@ ImageFile readExr(const fs::path& path) {
   file.part = input.part();
   file.primaries = input.primaries();
   if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
-  if (input.pixelAspectRatio() != 1)
-    file.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: its pixels are not square, {:.4g} times as wide as high; they are taken "
-                     "as square",
-                     path.string(), input.pixelAspectRatio())});
+  warnOfPixels(input.pixelAspectRatio(), path, file.messages);
   checkImageMemory(path, input.width(), input.height(), int64_t(input.channels().size()));
   file.image = Image(input.width(), input.height(), int(input.channels().size()));
   input.read(0, input.height(), file.image.texels.data());
@@ -112,23 +118,24 @@ ImageFile readHdr(const fs::path& path) {
 }
 
 // Warns of a profile (ISO 15076-1) unless its description says sRGB, in ASCII or UTF-16. Of a PNG
-// the name is enough, since the profile itself is compressed.
-void warnOfProfile(std::span<const uint8_t> profile, const fs::path& path, Messages& messages) {
+// the name is enough, since the profile itself is compressed. `space`: what colours are taken as.
+void warnOfProfile(std::span<const uint8_t> profile, const char* space, const fs::path& path,
+                   Messages& messages) {
   using namespace std::string_view_literals;
   const std::string_view text(reinterpret_cast<const char*>(profile.data()), profile.size());
   if (text.empty() || text.find("sRGB") != text.npos || text.find("s\0R\0G\0B"sv) != text.npos)
     return;
   messages.push_back({Message::Kind::Warning,
                       fmt::format("{}: has a colour profile that is not applied; its colours are "
-                                  "read as sRGB",
-                                  path.string())});
+                                  "read as {}",
+                                  path.string(), space)});
 }
 
 // Warns too of colours that the file's EXIF states, where no profile tells which they are. A PNG
 // has chunks for that.
 void warnOfColors(std::span<const uint8_t> profile, std::span<const uint8_t> file,
                   const fs::path& path, Messages& messages) {
-  warnOfProfile(profile, path, messages);
+  warnOfProfile(profile, "sRGB", path, messages);
   if (profile.empty() && exifStatesOtherColors(file))
     messages.push_back({Message::Kind::Warning,
                         fmt::format("{}: its EXIF states other colours than those of sRGB, such as "
@@ -165,6 +172,7 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   file.integers = true;
   file.bits = layout.bits;
   file.image = Image(layout.width, layout.height, layout.channels);
+  warnOfPixels(pixelAspectRatio(bytes), path, file.messages);
   const DecodeSample decode = sampleDecoder(format, bytes, integers, file);
   if (integers != IntegerTexels::Linear)
     warnOfColors(unreadProfile(format, bytes),
@@ -177,6 +185,26 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   if (layout.hasAlpha()) associate(file.image, layout.channels - 1);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
+}
+
+// Of light; `file` has its kind of numbers.
+void readTiffColors(std::span<const uint8_t> bytes, const fs::path& path, ImageFile& file) {
+  constexpr uint16_t kProfileTag = 34675;
+  const TiffBlock tiff(bytes);
+  const std::span<const uint8_t> profile = tiff.bytes(tiff.firstDirectory(), kProfileTag);
+  file.primaries = tiffPrimaries(bytes);
+  if (statesGrey(bytes) && file.channels == std::vector<std::string>{"R", "G", "B"})
+    file.messages.push_back({Message::Kind::Warning,
+                             fmt::format("{}: says that it is grey, but has three samples; they "
+                                         "are read as red, green and blue",
+                                         path.string())});
+  if (!file.integers) return warnOfProfile(profile, "linear Rec. 709", path, file.messages);
+  warnOfColors(profile, bytes, path, file.messages);
+  if (hasTransferTable(bytes))
+    file.messages.push_back(
+        {Message::Kind::Warning, fmt::format("{}: has a TransferFunction that is not applied; its "
+                                             "texels are read as sRGB",
+                                             path.string())});
 }
 
 // The file with its picture as the first image, which is the one that the module reads.
@@ -200,17 +228,15 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   file.channels = header.channels;
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
-  if (file.integers && integers != IntegerTexels::Linear) {
-    constexpr uint16_t kProfileTag = 34675;
-    const TiffBlock tiff(bytes);
-    warnOfColors(tiff.bytes(tiff.firstDirectory(), kProfileTag), bytes, path, file.messages);
-  }
+  warnOfPixels(pixelAspectRatio(bytes), path, file.messages);
+  if (!file.integers || integers != IntegerTexels::Linear) readTiffColors(bytes, path, file);
   // A strip may be the whole image, which the module decodes in memory of its own; grey becomes
   // RGB.
   constexpr double kCopies = 4;
   checkImageMemory(path, header.width, header.height,
                    std::max<int64_t>(int64_t(header.channels.size()), 3), sizeof(float), kCopies);
   file.image = Image(header.width, header.height, int(header.channels.size()));
+  checkDeflate(bytes);
   image->read(file.image.texels.data());
   if (file.integers && integers == IntegerTexels::Srgb)
     for (size_t i = 0; i < file.image.texels.size(); ++i)

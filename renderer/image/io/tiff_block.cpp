@@ -78,6 +78,19 @@ std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
   return positiveOrNone(double(number(at, integerBytes(type))));
 }
 
+std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const {
+  constexpr uint64_t kBytes = 8;
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  if (!entry || number(*entry + 2, 2) != kRational) return {};
+  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / kBytes);
+  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
+  const uint64_t at = kBytes * count <= offsetBytes() ? field : number(field, offsetBytes());
+  std::vector<double> values;
+  for (uint64_t i = 0; i < count; ++i)
+    values.push_back(double(number(at + i * kBytes, 4)) / double(number(at + i * kBytes + 4, 4)));
+  return values;
+}
+
 std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) const {
   const std::optional<uint64_t> entry = entryOf(directory, tag);
   const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;

@@ -25,6 +25,9 @@ class TiffBlock {
   // The first value of the entry with this tag, if it is above 0 and finite.
   std::optional<double> find(uint64_t directory, uint16_t tag) const;
 
+  // All values of an entry of rational numbers; empty if there is none. Of 0 / 0 they are NaN.
+  std::vector<double> rationals(uint64_t directory, uint16_t tag) const;
+
   // All values of an entry of unsigned integers, such as offsets; empty if there is none.
   std::vector<uint64_t> integers(uint64_t directory, uint16_t tag) const;
 
