@@ -480,7 +480,7 @@ TEST(SlowCommandRender, ErrorsAreOneLine) {
                    "EXT_nonsense");
   expectInputError({scene.model, "--probe", scene.gradient}, "model.gltf", "--output");
   expectOptionError({"--strategy", "importence"}, "`importance`");
-  expectOptionError({"--show-lights"}, "the strategy `importance` has no lights");
+  expectOptionError({"--show-lights"}, "the strategy has no lights");
   expectOptionError({"--show-lights", "--strategy", "kollig-keller-strata"}, "median-cut:64");
   expectOptionError({"--aov", "albdo"}, "`albedo`");
   expectOptionError({"--mis", "powr"}, "`power`");
