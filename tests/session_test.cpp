@@ -8,8 +8,13 @@
 #include <functional>
 
 #include "base/error.h"
+#include "image/io/write_image.h"
+#include "lighting/strategy.h"
 #include "probe/synth.h"
+#include "run_command.h"
 #include "scene/builder/scene_builder.h"
+#include "scene/gltf/model_cache.h"
+#include "session/job_description.h"
 #include "session/run_job.h"
 #include "test_scene.h"
 
@@ -52,6 +57,12 @@ RenderDescription stageDescription(const Stage& stage, uint32_t samples = 16) {
   d.size = ImageSize{48, 32};
   d.settings.samples = samples;
   return d;
+}
+
+Image sunnyMap() {
+  Image map = constantProbe({128, 64}, Rgb(0.2f));
+  for (int x = 30; x < 33; ++x) map.setRgb(x, 20, Rgb(500));
+  return map;
 }
 
 std::vector<float> freshRender(const RenderDescription& description) {
@@ -135,8 +146,42 @@ TEST(Session, UpdateRedoesWhatDiffers) {
                       d.probe.map = std::make_shared<const Image>(constantProbe({16, 8}, Rgb(2)));
                     }),
              0, 1, 1));
+  EXPECT_TRUE(isOnly(change("suns",
+                            [&] {
+                              d.probe.map = std::make_shared<const Image>(sunnyMap());
+                              d.lighting.strategy.name = "suns";
+                            }),
+                     0, 1, 1));
+  EXPECT_TRUE(isOnly(change("angle of suns", [&] { d.lighting.sunAngle = 20; }), 0, 0, 1));
+  EXPECT_TRUE(isOnly(change("own strategy",
+                            [&] {
+                              d.lighting.strategy.name = "uniform";
+                              d.lighting.make = [](const Probe& probe) {
+                                return makeStrategy("importance", probe, Mis::Power, "test");
+                              };
+                            }),
+                     0, 0, 1));
+  EXPECT_TRUE(isOnly(change("a built-in one of its name", [&] { d.lighting.make = {}; }), 0, 0, 1));
+  EXPECT_TRUE(isOnly(change("groups", [&] { d.settings.lightGroups = true; }), 0, 0, 1));
   EXPECT_TRUE(change("moved", [&] { d.scene = stage.scene(0.5f); }).loadedScene);
   EXPECT_TRUE(change("material", [&] { d.scene = stage.scene(0.5f, Rgb(0.1f)); }).loadedScene);
+}
+
+// From a map in memory to a file and back: the files that were read are named in identities.
+TEST(Session, AProbesFileIsAmongTheFilesThatWereRead) {
+  const TemporaryFolder folder;
+  writeImage(folder / "sky.exr", sunnyMap());
+  RenderDescription map = stageDescription(Stage()), file = map;
+  file.probe.map.reset();
+  file.probe.file = folder / "sky.exr";
+  ModelCache cache;
+  LoadedScene loaded = loadScene(map);
+  EXPECT_TRUE(loaded.files.empty());
+  loadFrame(file, loaded, cache);
+  EXPECT_EQ(loaded.files, std::vector<std::string>{folder / "sky.exr"});
+  EXPECT_EQ(renderIdentity(loaded), renderIdentity(loadScene(file)));
+  loadFrame(map, loaded, cache);
+  EXPECT_TRUE(loaded.files.empty());
 }
 
 TEST(Session, AMovedNodeKeepsTheStructuresOfMeshes) {

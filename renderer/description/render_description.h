@@ -121,7 +121,7 @@ struct RenderDescription {
   LightingDescription lighting;
   std::optional<CompositeDescription> composite;
 
-  RenderSettings settings;        // of the integrator; the size is final after loadScene()
+  RenderSettings settings;        // of the integrator; the size is that of LoadedScene::description
   std::optional<ImageSize> size;  // nullopt: determined by the model's camera
   SingleSided singleSided = SingleSided::Camera;
   bool straightGlassShadows = false;  // passShadowsStraight()

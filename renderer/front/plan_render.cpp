@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "base/error.h"
 #include "composite/layers.h"
 #include "description/capabilities.h"
 #include "front/arguments.h"
 #include "front/develop_text.h"
+#include "front/override_settings.h"
 #include "front/plan_composite.h"
-#include "front/scene_file_camera.h"
 #include "front/setting_table.h"
 
 namespace chromeball {
@@ -53,93 +52,6 @@ SingleSided singleSidedNamed(const std::string& name) {
 
 NamedSetting named(const Settings& settings, std::string_view name) {
   return {settings.get<std::string>(name), settings.location(name)};
-}
-
-// Applies the settings that are stored per model.
-void applyToModels(const Settings& over, SceneFile& file) {
-  const Settings& all = file.settings;
-  for (ModelEntry& model : file.models) {
-    GltfChoice& choice = model.choice;
-    for (const char* name : {"model.time", "model.animation"})
-      if (over.has(name)) {
-        if (!choice.animation) choice.animation.emplace();
-        choice.animation->ifAny =
-            (all.has("frames") || !file.probeTurns.empty()) && !over.has("model.animation");
-        if (choice.animation->location.empty() || name == std::string_view("model.animation"))
-          choice.animation->location = over.location(name);
-      }
-    if (const auto time = over.getIfGiven<double>("model.time")) choice.animation->seconds = *time;
-    if (const auto name = over.getIfGiven<std::string>("model.animation"))
-      choice.animation->name = *name;
-    if (const auto variant = over.getIfGiven<std::string>("model.variant"))
-      choice.variant = {*variant, over.location("model.variant")};
-    choice.lightUnits = parseLightUnits(named(all, "lighting.light_units"));
-    if (all.get<bool>("allow-external")) choice.external = ExternalFiles::Allow;
-  }
-}
-
-// Before the first key and after the last one constant.
-std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
-  const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
-                                      [](double t, const auto& key) { return t < key.seconds; });
-  if (after == keys.begin()) return keys.front().rotation;
-  if (after == keys.end()) return keys.back().rotation;
-  const ProbeTurn &from = *(after - 1), &to = *after;
-  const double elapsed = seconds - from.seconds, duration = to.seconds - from.seconds;
-  if (from.rotation.size() == 1 && to.rotation.size() == 1) {
-    const double degrees = from.rotation.front();
-    return {degrees + (to.rotation.front() - degrees) * elapsed / duration};
-  }
-  return between(parseRotation(from.rotation, "rotation_keys"),
-                 parseRotation(to.rotation, "rotation_keys"), elapsed / duration)
-      .numbers();
-}
-
-void mergeCamera(SceneFile& file, const Settings& over) {
-  const auto path = over.getIfGiven<std::string>("camera.file");
-  if (over.has("camera.name")) {
-    if (path)
-      throwInput("{}: excludes {}; give one", over.location("camera.file"),
-                 over.location("camera.name"));
-    if (file.settings.has("camera.file")) file.optics.reset();
-    file.settings.erase("camera.file");
-    file.camera.reset();
-  }
-  if (path) {
-    file.settings.erase("camera.name");
-    readCameraFile(*path, file);
-  }
-}
-
-// Overrides the settings of the scene file by `over`.
-void merge(SceneFile& file, const Settings& over) {
-  mergeCamera(file, over);
-  const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
-  const auto isGiven = [&](std::string_view name) { return over.has(name); };
-  if (std::any_of(std::begin(limits), std::end(limits), isGiven))  // the limits are one decision
-    for (const std::string_view name : limits) file.settings.erase(name);
-  if (over.has("probe.scale")) file.plateScale.reset();
-  file.settings.merge(over);
-  applyToModels(over, file);
-  if (!file.probeTurns.empty() && !over.has("probe.rotation"))
-    file.settings.set(
-        "probe.rotation",
-        rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
-}
-
-// --shadow-catcher NODE,...: a composite without a plate.
-void applyShadowCatcher(SceneFile& file) {
-  const auto nodes = file.settings.getIfGiven<std::string>("shadow-catcher");
-  if (!nodes) return;
-  const std::string location = file.settings.location("shadow-catcher");
-  if (file.composite)
-    throwInput("{}: the scene file has [composite]; give it mode = \"shadow-catcher\"", location);
-  file.settings.set("composite.mode", std::string("shadow-catcher"), location);
-  file.composite.emplace().location = location;
-  std::istringstream names(*nodes);
-  for (std::string name; std::getline(names, name, ',');)
-    file.composite->localScene.push_back({name, location});
-  if (file.composite->localScene.empty()) throwInput("{}: names no node", location);
 }
 
 // The layers of plain renders; those of composites are in CompositeDescription.
@@ -309,8 +221,7 @@ OutputDescription plannedOutput(const Settings& s) {
 }  // namespace
 
 RenderDescription planJob(SceneFile scene, const Settings& over) {
-  merge(scene, over);
-  applyShadowCatcher(scene);
+  overrideSettings(scene, over);
   RenderDescription job;
   const Settings& s = scene.settings;
   for (const Setting& setting : settingTable())

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// To add a setting, add a row (setting_rows_*.cpp) and read it where it takes effect. A
-// Compound also needs a reader (scene_file*.cpp).
+// To add a setting, add a row (setting_rows_*.cpp) and a member of RenderDescription that planJob()
+// sets. A Compound also needs a reader (scene_file*.cpp).
 const std::vector<Setting>& settingTable();
 
 // A section of the scene file, in the order of the reference page; the section with the empty name

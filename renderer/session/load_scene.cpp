@@ -72,7 +72,20 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
   }
 }
 
-// The probe of the job's frame, if it has turned or is another file.
+// In the list of files that were read.
+void replaceFile(const std::optional<std::string>& earlier, const std::optional<std::string>& file,
+                 std::vector<std::string>& files) {
+  const auto at = earlier ? std::ranges::find(files, *earlier) : files.end();
+  if (at == files.end()) {
+    if (file) files.push_back(*file);
+  } else if (file) {
+    *at = *file;
+  } else {
+    files.erase(at);
+  }
+}
+
+// The probe, if it has turned or is another one.
 void replaceProbe(const ProbeDescription& earlier, LoadedScene& loaded, FrameChange& change) {
   const RenderDescription& job = loaded.description;
   const ProbeDescription& probe = job.probe;
@@ -80,8 +93,7 @@ void replaceProbe(const ProbeDescription& earlier, LoadedScene& loaded, FrameCha
                        probe.mapping != earlier.mapping || probe.scale != earlier.scale;
   if (!isOther && loaded.probe.rotation() == probe.rotation) return;
   if (isOther) {
-    if (probe.file) std::ranges::replace(loaded.files, loaded.probeFile, *probe.file);
-    loaded.probeFile = probe.file.value_or("");
+    replaceFile(earlier.file, probe.file, loaded.files);
     loaded.loadedProbe = loadProbeOf(job, loaded.scene);
     loaded.probe = probeOf(job, loaded.loadedProbe);
   } else {
@@ -146,10 +158,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      std::move(room),
                      models.origin,
                      std::move(sources),
-                     job.lighting.sunAngle,
-                     job.lighting.showLights,
                      std::move(files)};
-  result.probeFile = job.probe.file.value_or("");
   result.modelWarnings = std::move(models.warnings);
   result.description = std::move(job);
   if (result.description.composite) {

@@ -28,11 +28,8 @@ struct LoadedScene {
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::optional<ProbeSources> sources;       // polygons of the probe
-  std::optional<double> sunAngle;            // StrategyOptions::sunAngle
-  bool showLights;                           // StrategyOptions::showLights
   std::vector<std::string> files;            // all that were read; no output may replace one
   Messages messages;                       // of the job's settings, of the models and of the probe
-  std::string probeFile;                   // of these files; empty: none
   std::vector<std::string> modelWarnings;  // of their files and their motion
 
   // For composites; otherwise empty.

@@ -79,7 +79,7 @@ std::unique_ptr<LightSource> withSources(std::unique_ptr<LightSource> lighting,
   if (loaded.surroundings)
     lighting = std::make_unique<FiniteSurroundings>(
         std::move(lighting), loaded.probe, *loaded.surroundings, loaded.room.get(),
-        loaded.showLights || (sources && sources->areSeen()));
+        loaded.description.lighting.showLights || (sources && sources->areSeen()));
   return lighting;
 }
 
@@ -165,8 +165,9 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
 
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe) {
+  const LightingDescription& light = loaded.description.lighting;
   const Probe& sampled = sampledProbe(loaded);
-  return withSources(makeStrategy(strategy.name, sampled, {mis, loaded.sunAngle, loaded.showLights},
+  return withSources(makeStrategy(strategy.name, sampled, {mis, light.sunAngle, light.showLights},
                                   strategy.location),
                      loaded, splitsProbe);
 }
@@ -185,7 +186,7 @@ std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrato
   if (!usesEnvironment(integrator)) return nullptr;
   const bool splitsSuns = resolveStrategy(strategy) == "suns";
   return std::make_unique<EnvironmentLight>(loaded.probe, loaded.scene, splitsSuns,
-                                            loaded.sunAngle);
+                                            loaded.description.lighting.sunAngle);
 }
 
 }  // namespace chromeball

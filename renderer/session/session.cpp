@@ -53,9 +53,14 @@ bool has(const std::array<const char*, N>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-std::set<std::string> differences(const RenderDescription& a, const RenderDescription& b) {
-  const nlohmann::ordered_json was = describe(a), is = describe(b);
+// What is in memory differs if it is another object: hashes of a large scene would take as long as
+// a frame.
+std::set<std::string> differences(RenderDescription a, RenderDescription b) {
   std::set<std::string> names;
+  if (a.scene != b.scene) names.insert("scene-in-memory");
+  if (a.probe.map != b.probe.map) names.insert("probe-in-memory");
+  for (RenderDescription* d : {&a, &b}) d->scene.reset(), d->probe.map.reset();
+  const nlohmann::ordered_json was = describe(a), is = describe(b);
   for (const auto* one : {&was, &is})
     for (const auto& [name, ignored] : one->items())
       if (was.value(name, nlohmann::ordered_json()) != is.value(name, nlohmann::ordered_json()))
@@ -165,7 +170,10 @@ void Session::Implementation::run() {
     }
   } catch (...) {
     error_ = std::current_exception();
-    if (!isReady_) loaded_.reset();  // it may be half of one description and half of another
+    if (!isReady_) {  // it may be half of one description and half of another
+      prepared_ = {};
+      loaded_.reset();
+    }
   }
   isRunning_ = false;
 }
@@ -207,7 +215,8 @@ void Session::Implementation::changeWhatDiffers() {
   const FrameChange change = loadFrame(description_, *loaded_, models_);
   if (change.geometry) return load();
   work_.loadedProbe = change.lighting;
-  if (!change.lighting && !differs(kOfLighting) && !description_.lighting.make) return;
+  const bool hasOwnStrategy = given_->lighting.make || description_.lighting.make;
+  if (!change.lighting && !differs(kOfLighting) && !hasOwnStrategy) return;
   work_.preparedLighting = true;
   prepared_.lighting = makeLighting(*loaded_);
   prepared_.environment = makeEnvironment(description_.settings.integrator,

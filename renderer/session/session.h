@@ -46,7 +46,8 @@ class Session {
   double fraction() const;  // of the render's work that is done; NaN if unknown
   // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered.
   const SessionImage& wait();
-  // What there is, also while it renders; not denoised. nullopt before the first samples.
+  // What there is, also while it renders; not denoised. nullopt before the first samples, and for a
+  // reference of two passes. A session takes the memory of the film twice.
   std::optional<SessionImage> snapshot();
   // Notes and warnings of the files and the description; after wait().
   Messages messages() const;

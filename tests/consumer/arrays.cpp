@@ -25,7 +25,7 @@ std::shared_ptr<const Scene> tetrahedron() {
   return scene;
 }
 
-// Lat-long, 2 x 1: the left half of the environment is bright, the right half dim.
+// Lat-long: the left half of the environment is bright, the right half dim.
 std::shared_ptr<const Image> sky() {
   auto map = std::make_shared<Image>(64, 32, 3);
   for (int y = 0; y < map->height; ++y)
