@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "description/describe.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <bit>
 #include <climits>
 #include <cmath>
