@@ -5,9 +5,9 @@
 
 #include "base/parallel.h"
 #include "film/allocation.h"
-#include "integrate/render.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
+#include "render/render.h"
 #include "small_scenes.h"
 
 namespace chromeball::adaptive_test {

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/mis.h"
 #include "lighting/area/region_areas.h"
 #include "lighting/constellation/median_cut.h"
 #include "probe/irradiance.h"
@@ -14,6 +13,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
+#include "transport/mis.h"
 
 namespace chromeball::area_lights_test {
 namespace {

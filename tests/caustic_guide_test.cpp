@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guided bounces towards caustics: their density, the photons that they are learned from, unbiased
 // renders with less variance.
-#include "integrate/guiding/caustic_guide.h"
+#include "guiding/caustic_guide.h"
 
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
 #include "composite/render_composite.h"
-#include "integrate/guide_gain.h"
-#include "integrate/trace_photons.h"
 #include "lighting/combined_light.h"
 #include "lighting/polygon_lights.h"
 #include "lighting/split_probe.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
+#include "render/guide_training.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
 #include "test_probes.h"
+#include "transport/trace_photons.h"
 
 namespace chromeball::caustic_guide_test {
 namespace {

@@ -11,9 +11,9 @@
 #include "denoise/regression.h"
 #include "denoise/selection.h"
 #include "denoise/vector8.h"
-#include "integrate/render.h"
 #include "math/sampler.h"
 #include "measure/image_error.h"
+#include "render/render.h"
 #include "small_scenes.h"
 
 namespace chromeball::denoise_test {

@@ -3,8 +3,8 @@
 // what they miss elsewhere.
 #include <gtest/gtest.h>
 
+#include "approximate/environment_map.h"
 #include "base/parallel.h"
-#include "integrate/environment_map.h"
 #include "math/frame.h"
 #include "probe/sky.h"
 #include "probe/sun_extraction.h"

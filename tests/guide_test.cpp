@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "composite/render_composite.h"
-#include "integrate/guiding/light_guide.h"
+#include "guiding/light_guide.h"
 #include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
 #include "lighting/polygon_lights.h"

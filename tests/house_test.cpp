@@ -45,37 +45,37 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
       "lighting/fit", "lighting/area"}},
     {"film", {"base", "math", "image"}},
     {"denoise", {"base", "image", "film"}},
-    {"integrate/guiding", {"base", "math"}},
-    {"integrate/irradiance_cache", {"base", "math"}},
-    {"integrate",
-     {"base", "math", "probe", "scene", "trace", "shading", "lighting", "film", "integrate/guiding",
-      "integrate/irradiance_cache"}},
+    {"guiding", {"base", "math"}},
+    {"transport", {"base", "math", "scene", "trace", "shading", "lighting", "film", "guiding"}},
+    {"approximate",
+     {"base", "math", "probe", "scene", "trace", "shading", "lighting", "film", "transport"}},
+    {"render", {"base", "scene", "film", "transport", "approximate"}},
     {"composite",
-     {"base", "math", "image", "image/io", "scene", "trace", "film", "integrate", "denoise",
-      "scene/builder"}},
+     {"base", "math", "image", "image/io", "scene", "trace", "film", "transport", "approximate",
+      "render", "denoise", "scene/builder"}},
     {"relight",
-     {"base", "math", "image", "image/io", "probe", "lighting", "film", "integrate", "bake",
-      "scene/gltf"}},
-    {"bake", {"base", "math", "image", "image/io", "scene", "film", "integrate"}},
+     {"base", "math", "image", "image/io", "probe", "lighting", "film", "transport", "render",
+      "bake", "scene/gltf"}},
+    {"bake", {"base", "math", "image", "image/io", "scene", "film", "transport", "approximate"}},
     {"measure", {"base", "image"}},
     {"description",
      {"base", "math", "image", "image/develop", "probe", "scene", "scene/gltf", "lighting", "film",
-      "integrate", "composite"}},
+      "render", "composite"}},
     {"front",
      {"base", "math", "image", "image/io", "image/develop", "probe", "scene", "scene/gltf",
-      "scene/solve", "lighting", "integrate", "composite", "description"}},
+      "scene/solve", "lighting", "render", "composite", "description"}},
     {"animation", {"base", "scene"}},
     {"session",
      {"base", "image/io", "image/develop", "probe", "scene", "scene/builder", "scene/gltf", "trace",
-      "lighting", "film", "integrate", "integrate/irradiance_cache", "composite", "denoise",
-      "relight", "description", "animation"}},
-    {"parts", {"base", "image/io", "integrate", "session"}},
+      "lighting", "film", "transport", "approximate", "render", "composite", "denoise", "relight",
+      "description", "animation"}},
+    {"parts", {"base", "image/io", "render", "session"}},
     {"api",
      {"base", "math", "image", "image/io", "probe", "scene", "scene/builder", "lighting", "measure",
       "description", "front", "session"}},
     {"study",
-     {"base", "image", "image/io", "probe", "scene", "lighting", "integrate", "measure",
-      "description", "session"}},
+     {"base", "image", "image/io", "probe", "scene", "lighting", "render", "measure", "description",
+      "session"}},
     {"study/report",
      {"base", "image", "image/io", "probe", "lighting", "measure", "session", "study"}},
 };
@@ -150,8 +150,8 @@ TEST(House, IncludeCheckFindsViolations) {
   EXPECT_EQ(count("renderer/math/warp.h", "#include \"vec.h\"\n"), 1u);
   EXPECT_EQ(count("renderer/attic/a.h", "#include \"math/vec.h\"\n"), 1u);
   EXPECT_EQ(count("renderer/lighting/a.cpp", "#include \"trace/tracer.h\"\n"), 1u);
-  EXPECT_EQ(count("renderer/integrate/a.cpp", "#include \"measure/error.h\"\n"), 1u);
-  EXPECT_EQ(count("renderer/integrate/a.cpp", "#include \"trace/tracer.h\"\n"), 0u);
+  EXPECT_EQ(count("renderer/transport/a.cpp", "#include \"measure/error.h\"\n"), 1u);
+  EXPECT_EQ(count("renderer/transport/a.cpp", "#include \"trace/tracer.h\"\n"), 0u);
   EXPECT_EQ(count("renderer/trace/a.cpp", "#include <embree3/rtcore.h>\n"), 0u);
   EXPECT_EQ(count("renderer/shading/a.cpp", "#include <embree4/rtcore.h>\n"), 1u);
   EXPECT_EQ(count("tests/a.cpp", "#include <OpenImageIO/imageio.h>\n"), 1u);

@@ -3,11 +3,11 @@
 // against path tracing, and its records.
 #include <gtest/gtest.h>
 
+#include "approximate/cached_integrator.h"
+#include "approximate/gather_irradiance.h"
 #include "base/error.h"
 #include "base/memory_archive.h"
 #include "base/parallel.h"
-#include "integrate/fill_cache.h"
-#include "integrate/gather_irradiance.h"
 #include "probe/synth.h"
 #include "scene/thin_wall.h"
 #include "small_scenes.h"
@@ -36,7 +36,8 @@ struct Traced {
   IrradianceCache fill(float error, const Camera& camera, const RenderSettings& settings) const {
     IrradianceCache cache(error);
     fillCache(
-        cache, tracer, camera, settings, [](double) {}, kNever);
+        cache, tracer, camera, {settings.width, settings.height}, settings.seed, [](double) {},
+        kNever);
     return cache;
   }
 };

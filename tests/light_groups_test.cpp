@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light groups: layers by source, which add up to the picture, and `image relight`.
-#include "integrate/light_groups.h"
+#include "transport/light_groups.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/memory_archive.h"
-#include "integrate/sample_sequence.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
 #include "parts/merge.h"
+#include "render/pixel_renderer.h"
 #include "run_command.h"
 #include "session/finish.h"
 #include "small_scenes.h"

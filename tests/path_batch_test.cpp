@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paths that are traced together find what they find one at a time.
-#include "integrate/path_batch.h"
+#include "transport/integrator.h"
 
 #include <gtest/gtest.h>
 
-#include "integrate/trace_photons.h"
 #include "paths.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"
+#include "transport/trace_photons.h"
 
 namespace chromeball::path_batch_test {
 namespace {

@@ -11,7 +11,6 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "integrate/mis.h"
 #include "lighting/combined_light.h"
 #include "lighting/importance.h"
 #include "math/icosphere.h"
@@ -25,6 +24,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
+#include "transport/mis.h"
 
 namespace chromeball::polygon_lights_test {
 namespace {

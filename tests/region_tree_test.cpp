@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The regions of the guides.
-#include "integrate/guiding/region_tree.h"
+#include "guiding/region_tree.h"
 
 #include <gtest/gtest.h>
 

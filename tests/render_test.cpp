@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders with known exact results, and independence of the number of threads.
-#include "integrate/render.h"
+#include "render/render.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/memory_archive.h"
-#include "integrate/render_state.h"
+#include "render/render_state.h"
 #include "small_scenes.h"
 
 namespace chromeball::resume_test {

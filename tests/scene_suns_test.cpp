@@ -10,7 +10,6 @@
 #include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
-#include "integrate/mis.h"
 #include "measure/statistics.h"
 #include "probe/sky.h"
 #include "run_command.h"
@@ -19,6 +18,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
+#include "transport/mis.h"
 
 namespace chromeball::scene_suns_test {
 namespace {

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "front/plan_render.h"
 #include "front/settings_page.h"
-#include "integrate/render.h"
+#include "render/render.h"
 #include "run_command.h"
 
 namespace chromeball::settings_test {

@@ -2,7 +2,6 @@
 // `suns`: pdfs, radiance, and the penumbras of its discs.
 #include <gtest/gtest.h>
 
-#include "integrate/mis.h"
 #include "lighting/suns.h"
 #include "probe/irradiance.h"
 #include "probe/sky.h"
@@ -10,6 +9,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
+#include "transport/mis.h"
 
 namespace chromeball::suns_test {
 namespace {

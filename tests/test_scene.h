@@ -3,8 +3,8 @@
 #pragma once
 
 #include "all_tables.h"
-#include "integrate/render.h"
 #include "math/warp.h"
+#include "render/render.h"
 
 namespace chromeball {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/point_light.h"
 
-#include "integrate/occlusion.h"
+#include "approximate/occlusion.h"
 #include "math/warp.h"
 
 namespace chromeball {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bake/bake_points.h"
-#include "integrate/path.h"
+#include "transport/path.h"
 
 namespace chromeball {
 

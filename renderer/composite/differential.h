@@ -6,7 +6,7 @@
 #include "composite/differential_film.h"
 #include "composite/worlds.h"
 #include "image/image.h"
-#include "integrate/integrator.h"
+#include "transport/integrator.h"
 
 namespace chromeball {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/reflectance.h"
 
-#include "integrate/first_surface.h"
+#include "transport/first_surface.h"
 
 namespace chromeball {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "composite/objects.h"
-#include "integrate/render.h"
+#include "render/render.h"
 #include "scene/projection.h"
 
 namespace chromeball {

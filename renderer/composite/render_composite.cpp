@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/surface_layers.h"
+#include "approximate/surface_layers.h"
 
 namespace chromeball {
 namespace {
@@ -61,8 +61,8 @@ RenderResult renderPicture(const Integrator& picture, const PathTracer& tracer,
   const World& world = tracer.world();
   if (!settings.wantsSurfaceLayers())
     return render(picture, world, camera, settings, progress, stop, training, control);
-  return render(SurfaceLayers(picture, tracer, settings), world, camera, settings, progress, stop,
-                training, control);
+  return render(SurfaceLayers(picture, tracer, settings.aovs, settings.occlusion), world, camera,
+                settings, progress, stop, training, control);
 }
 
 // Each pass gets half of the time, and half of the squared noise.

@@ -4,7 +4,7 @@
 
 #include "composite/differential.h"
 #include "composite/modes.h"
-#include "integrate/render.h"
+#include "render/render.h"
 
 namespace chromeball {
 

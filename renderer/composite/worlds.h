@@ -3,7 +3,7 @@
 #pragma once
 
 #include "composite/objects.h"
-#include "integrate/path.h"
+#include "transport/path.h"
 
 namespace chromeball {
 

@@ -15,8 +15,8 @@
 #include "base/json_text.h"
 #include "description/scene_hash.h"
 #include "film/aov.h"
-#include "integrate/integrator_kind.h"
 #include "lighting/strategy.h"
+#include "render/integrator_kind.h"
 
 namespace chromeball {
 namespace {

@@ -14,9 +14,9 @@
 #include "description/scene_entries.h"
 #include "image/develop/develop.h"
 #include "image/tonemap.h"
-#include "integrate/render_settings.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
+#include "render/render_settings.h"
 #include "scene/scene.h"
 
 namespace chromeball {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/layers.h"
 #include "front/setting_rows.h"
-#include "integrate/render.h"
+#include "render/render.h"
 
 namespace chromeball {
 namespace {

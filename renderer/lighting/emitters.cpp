@@ -146,7 +146,7 @@ float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
                          const Instance& instance) const {
   const vec3 to = surface.position - point.position;
   const float distance = glm::length(to);
-  if (distance == 0) return 0;  // of surfaces at one place (integrate/place.h), as sample()
+  if (distance == 0) return 0;  // of surfaces at one place (transport/place.h), as sample()
   constexpr float kGrazing = 1e-12f;
   const float cosine = -glm::dot(surface.geometricNormal, to) / distance;
   return pdf(instance.material, distance, std::max(cosine, kGrazing)) *

@@ -94,7 +94,7 @@ class LightSource {
   virtual bool takesOneSample() const { return sampleMany({}, {}); }
 
   // Whether a guide may choose a direction in place of the samples that are no deltas
-  // (integrate/guide_training.h).
+  // (render/guide_training.h).
   virtual bool canBeGuided() const { return takesOneSample(); }
 
   // One direction that light comes from, drawn from two numbers, whatever the point: for paths that
@@ -113,7 +113,7 @@ class LightSource {
   // False for an approximation, whose error does not converge to 0 with the number of samples.
   virtual bool unbiased() const { return true; }
 
-  // The names of the parts of the light that light groups tell apart (integrate/light_groups.h).
+  // The names of the parts of the light that light groups tell apart (transport/light_groups.h).
   // Surfaces in the scene have none: their groups are those of their nodes.
   virtual std::vector<std::string> groups() const { return {"probe"}; }
   // Adds the radiance of escaped(), or of background(), to that of each group: one element of

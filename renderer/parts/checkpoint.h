@@ -11,8 +11,8 @@
 #include "base/file_lock.h"
 #include "base/message.h"
 #include "base/stopwatch.h"
-#include "integrate/render_state.h"
 #include "parts/render_part.h"
+#include "render/render_state.h"
 #include "session/run_job.h"
 #include "session/viewer.h"
 

@@ -2,7 +2,7 @@
 // Paths that look for light of every direction at once.
 #pragma once
 
-#include "integrate/path.h"
+#include "transport/path.h"
 
 namespace chromeball {
 

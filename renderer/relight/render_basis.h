@@ -5,10 +5,10 @@
 #include <atomic>
 
 #include "base/progress.h"
-#include "integrate/light_groups.h"
-#include "integrate/render.h"
 #include "lighting/uniform.h"
 #include "relight/light_stage.h"
+#include "render/render.h"
+#include "transport/light_groups.h"
 
 namespace chromeball {
 

@@ -6,8 +6,8 @@
 #include "bake/bake_points.h"
 #include "base/progress.h"
 #include "film/invalid.h"
-#include "integrate/world.h"
 #include "relight/light_basis.h"
+#include "transport/world.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "integrate/irradiance_cache/irradiance_cache.h"
+#include "approximate/irradiance_cache.h"
 #include "session/load_scene.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "denoise/denoise.h"
 #include "image/io/write_image.h"
-#include "integrate/render.h"
+#include "render/render.h"
 
 namespace chromeball {
 

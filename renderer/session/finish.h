@@ -11,7 +11,7 @@
 #include "composite/compose.h"
 #include "composite/render_composite.h"
 #include "image/io/write_image.h"
-#include "integrate/render.h"
+#include "render/render.h"
 #include "session/denoised_image.h"
 #include "session/image_noise.h"
 

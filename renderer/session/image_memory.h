@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/memory_budget.h"
-#include "integrate/render.h"
+#include "render/render.h"
 
 namespace chromeball {
 

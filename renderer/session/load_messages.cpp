@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/file.h"
-#include "integrate/guide_training.h"
+#include "render/guide_training.h"
 #include "session/memory_estimate.h"
 
 namespace chromeball {

@@ -5,11 +5,11 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "integrate/light_groups.h"
 #include "session/cache_file.h"
 #include "session/memory_estimate.h"
 #include "session/run_composite.h"
 #include "session/scene_lighting.h"
+#include "transport/light_groups.h"
 
 namespace chromeball {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <atomic>
 
+#include "approximate/environment_map.h"
 #include "description/render_description.h"
-#include "integrate/environment_light.h"
-#include "integrate/world.h"
 #include "session/finish.h"
 #include "session/load_scene.h"
+#include "transport/world.h"
 
 namespace chromeball {
 
@@ -40,7 +40,7 @@ struct JobResult : FinishedImage {
 
 // Renders until the job's limit of samples, time or noise is reached, or `stop` is set. In the
 // latter case render.interrupted is true, and the image contains the samples so far. `control`
-// (integrate/render_state.h) may be null; not for composites of two passes.
+// (render/render_state.h) may be null; not for composites of two passes.
 JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
                     const Progress& progress, const std::atomic<bool>& stop,
                     RenderControl* control = nullptr);

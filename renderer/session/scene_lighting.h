@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "approximate/environment_map.h"
 #include "description/render_description.h"
-#include "integrate/environment_light.h"
 #include "lighting/polygon_lights.h"
 #include "lighting/strategy.h"
 #include "probe/load.h"

@@ -16,7 +16,7 @@ namespace chromeball {
 // Those tables that the materials need, and no others: none for Lambertian materials. Copies share
 // the tables, each of which takes up to 0.3 s of one core. Must outlive the BSDFs.
 struct BsdfTables {
-  // `widened`: smooth materials may become rough (integrate/regularization.h).
+  // `widened`: smooth materials may become rough (transport/regularization.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
   // Makes those that are missing.
   void complete(std::span<const Material> materials, bool widened = false);

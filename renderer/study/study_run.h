@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 
-#include "integrate/render.h"
+#include "render/render.h"
 #include "session/load_scene.h"
 #include "study/render_store.h"
 #include "study/row.h"

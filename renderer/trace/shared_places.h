@@ -13,7 +13,7 @@ namespace chromeball {
 
 // The triangles of a scene, emitting or not, that coincide with an emitting one over some area, and
 // those emitting ones. Which of the surfaces at such a place a ray hits is arbitrary, so that paths
-// and light samples must ask what a path meets there (integrate/place.h). A few others may be
+// and light samples must ask what a path meets there (transport/place.h). A few others may be
 // among them.
 class SharedPlaces {
  public:

@@ -8,10 +8,10 @@
 
 #include "fuzz.h"
 #include "image/io/exr_state.h"
-#include "integrate/render_state.h"
 #include "lighting/methods.h"
 #include "parts/merge.h"
 #include "probe/synth.h"
+#include "render/render_state.h"
 #include "session/finish.h"
 
 namespace chromeball {

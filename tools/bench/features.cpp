@@ -8,11 +8,11 @@
 #include <memory>
 #include <utility>
 
-#include "integrate/mis.h"
 #include "lighting/importance.h"
 #include "math/frame.h"
 #include "math/warp.h"
 #include "scene.h"
+#include "transport/mis.h"
 
 namespace chromeball {
 namespace {

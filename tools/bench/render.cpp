@@ -3,7 +3,7 @@
 // rays replayed by Embree alone. CHROMEBALL_PROBE replaces the default probe, a studio.
 #include <benchmark/benchmark.h>
 
-#include "integrate/render.h"
+#include "render/render.h"
 #include "scene.h"
 
 BENCHMARK_MAIN();

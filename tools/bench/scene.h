@@ -10,10 +10,10 @@
 #include <memory>
 
 #include "demo/still_life.h"
-#include "integrate/path_batch.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
+#include "transport/integrator.h"
 
 namespace chromeball {
 

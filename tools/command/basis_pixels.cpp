@@ -8,12 +8,12 @@
 #include "base/stopwatch.h"
 #include "basis_job.h"
 #include "image/io/output_file.h"
-#include "integrate/tile_grid.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "relight/render_basis.h"
 #include "relight/stage_file.h"
+#include "render/tile_grid.h"
 #include "session/memory_estimate.h"
 #include "thread_limit.h"
 

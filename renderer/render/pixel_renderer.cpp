@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/pixel_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "transport/integrator.h"
+#include "transport/regularization.h"
+
+namespace chromeball {
+namespace {
+
+constexpr uint64_t kLargestTable = 4096;  // samples of a half that share one randomisation
+constexpr uint64_t kAdaptive = 4;         // samples of a pixel relative to the mean; some have more
+
+}  // namespace
+
+SampleSequence::SampleSequence(const RenderSettings& settings) : shard_(settings.shard) {
+  const uint64_t spread = settings.adaptive ? kAdaptive : 1,
+                 half = (uint64_t(settings.samplesOfAll()) + 1) / 2;
+  tableSize_ = uint32_t(std::bit_ceil(std::min(spread * half, kLargestTable)));
+}
+
+PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, const Camera& camera,
+                             const RenderSettings& settings, RenderResult& result)
+    : integrator_(integrator),
+      world_(world),
+      settings_(settings),
+      window_(settings.window()),
+      cameraRays_(camera, float(settings.width) / float(settings.height)),
+      drawsTimes_(camera.motion || world.scene.moves),
+      sequence_(settings),
+      table_(sequence_.tableSize(),
+             dimension::tabulated(std::min(settings.maxDepth, dimension::kTabulatedVertices) + 1),
+             settings.seed),
+      result_(result) {
+  if (camera.motion) moving_.emplace(camera, float(settings.width) / float(settings.height));
+}
+
+PixelWorker PixelRenderer::makeWorker() const {
+  return {{.sampler = PixelSampler(table_, settings_.seed),
+           .clamp = Clamp(settings_.clamp),
+           .layers = std::vector<Rgb>(integrator_.layers().size())},
+          {}};
+}
+
+double PixelRenderer::fractionOfHits() const {
+  constexpr int kPoints = 32;
+  int hits = 0;
+  for (int i = 0; i < kPoints * kPoints; ++i) {
+    const vec2 point((float(i % kPoints) + 0.5f) / kPoints, (float(i / kPoints) + 0.5f) / kPoints);
+    const float u = (float(window_.x) + point.x * float(window_.width)) / float(settings_.width);
+    const float v = (float(window_.y) + point.y * float(window_.height)) / float(settings_.height);
+    Ray ray;
+    cameraRays_.ray(u, v, ray.origin, ray.direction);
+    Hit hit;
+    hits += world_.accel.intersect(ray, uint32_t(i), hit, integrator_.visible());
+  }
+  return double(hits) / (kPoints * kPoints);
+}
+
+void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
+                           const Beam& beam) const {
+  const float u = (float(window_.x + x) + 0.5f) / float(settings_.width);
+  const float v = (float(window_.y + y) + 0.5f) / float(settings_.height);
+  const Beam own = cameraRays_.beamAt(beam, u, v);
+  for (int half = 0; half < Film::kHalves; ++half)
+    sequence_.forRuns(
+        half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
+          worker.context.sampler.startPixel(uint32_t(window_.x + x), uint32_t(window_.y + y),
+                                            Film::kHalves * run.table + uint64_t(half), run.first,
+                                            run.stride);
+          result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, own));
+        });
+}
+
+// Generates and traces the camera rays of consecutive samples.
+void PixelRenderer::traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
+                                    std::span<CameraSample> cameras) const {
+  std::array<Ray, PathBatch::kMaxPaths> rays;
+  std::array<uint32_t, PathBatch::kMaxPaths> keys;
+  std::array<std::optional<Hit>, PathBatch::kMaxPaths> hits;
+  const size_t count = cameras.size();
+  for (size_t i = 0; i < count; ++i) {
+    sampler.startSample(firstSample + uint32_t(i));
+    const vec2 offset = sampler.get2(dimension::kPixel);
+    const float u = (float(cameras[i].x) + offset.x) / float(settings_.width);
+    const float v = (float(cameras[i].y) + offset.y) / float(settings_.height);
+    Ray& ray = rays[i];
+    if (drawsTimes_) ray.time = sampler.time();
+    const auto aim = [&](const CameraRays& camera) {
+      if (camera.hasLens())
+        camera.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
+      else
+        camera.ray(u, v, ray.origin, ray.direction);
+    };
+    moving_ ? aim(moving_->at(ray.time)) : aim(cameraRays_);
+    keys[i] = sampler.sampleKey();
+  }
+  world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
+                         Accel::Coherence::High, std::span(hits).first(count),
+                         integrator_.visible());
+  for (size_t i = 0; i < count; ++i) {
+    cameras[i].ray = rays[i];
+    cameras[i].hit = hits[i];
+  }
+}
+
+// Takes the first samples of the sampler's pixel.
+SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block,
+                                      const Beam& beam) const {
+  const uint32_t samples = block.run.count;
+  SampleSums sums;
+  std::array<CameraSample, PathBatch::kMaxPaths> cameras;
+  std::array<FirstHit, PathBatch::kMaxPaths> firsts;
+  const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
+  for (uint32_t i = 0; i < samples; i += PathBatch::kMaxPaths) {
+    const size_t count = std::min<size_t>(samples - i, PathBatch::kMaxPaths);
+    for (size_t k = 0; k < count; ++k) {
+      firsts[k] = {};
+      cameras[k] = {.x = window_.x + block.x,
+                    .y = window_.y + block.y,
+                    .half = block.half,
+                    .ray = {},
+                    .hit = {},
+                    .beam = beam,
+                    .widening = wideningOf(block, i + uint32_t(k)),
+                    .first = wantsFirst ? &firsts[k] : nullptr};
+    }
+    const auto taken = std::span(cameras).first(count);
+    traceCameraRays(worker.context.sampler, i, taken);
+    renderBatch(worker, block, taken, i, sums);
+  }
+  return sums;
+}
+
+float PixelRenderer::wideningOf(const Block& block, uint32_t index) const {
+  if (!settings_.regularize) return 0;
+  const uint64_t sample = Film::kHalves * (block.run.table * table_.size() + block.run.first +
+                                           index * block.run.stride) +
+                          uint64_t(block.half);
+  return regularizationWidth(
+      uint32_t(std::min<uint64_t>(sample, std::numeric_limits<uint32_t>::max())));
+}
+
+void PixelRenderer::renderBatch(PixelWorker& worker, const Block& block,
+                                std::span<const CameraSample> cameras, uint32_t firstSample,
+                                SampleSums& sums) const {
+  std::array<Sample, PathBatch::kMaxPaths> samples;
+  std::vector<Rgb>& layers = worker.context.layers;
+  const bool hasLayers = !layers.empty();  // of one sample at a time
+  if (!hasLayers) integrator_.sampleMany(cameras, firstSample, worker.context, samples);
+  for (size_t k = 0; k < cameras.size(); ++k) {
+    if (hasLayers) {
+      std::fill(layers.begin(), layers.end(), Rgb(0));
+      worker.context.sampler.startSample(firstSample + uint32_t(k));
+      samples[k] = integrator_.sample(cameras[k], worker.context);
+    }
+    add(worker, block, cameras[k], samples[k], sums);
+  }
+}
+
+void PixelRenderer::add(PixelWorker& worker, const Block& block, const CameraSample& camera,
+                        const Sample& sample, SampleSums& sums) const {
+  const int x = block.x, y = block.y, half = block.half;
+  if (sample.defect) {
+    worker.invalid.add(*sample.defect, camera.x, camera.y);
+    result_.aovs.add(x, y, *sample.defect);
+  } else {
+    sums.add(sample.radiance);
+    if (!result_.layers.empty()) result_.layers.add(x, y, half, worker.context.layers);
+  }
+  if (camera.first) {
+    camera.first->depth = raysAt(camera.ray.time).depth(camera.ray.direction, camera.first->depth);
+    if (!result_.aovs.empty()) result_.aovs.add(x, y, *camera.first);
+    if (!result_.features.empty() && !sample.defect)
+      result_.features.add(x, y, half, *camera.first, sample.radiance);
+  }
+}
+
+}  // namespace chromeball

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes samples of single pixels.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "film/film.h"
+#include "render/render.h"
+#include "render/render_settings.h"
+#include "scene/moving_camera.h"
+#include "transport/integrator.h"
+
+namespace chromeball {
+
+// Which points of the Sobol sequence the samples of a pixel are.
+
+// How many of a pixel's first `samples` samples belong to the half (Film).
+constexpr uint32_t samplesOf(int half, uint32_t samples) {
+  return samples / 2 + (half == 0 ? samples % 2 : 0);
+}
+
+// Each half of a pixel's samples is a sequence with its own randomisation. Where it is longer than
+// the table, the table is used again with another one.
+//
+// The samples of a shard (shard.h) are points of the whole render's sequence.
+class SampleSequence {
+ public:
+  explicit SampleSequence(const RenderSettings& settings);
+
+  uint32_t tableSize() const { return tableSize_; }
+
+  // Points of the table with randomisation number `table`.
+  struct Run {
+    uint64_t table;
+    uint32_t first, count, stride;
+  };
+
+  // Calls visit(run) for those of a half's samples [begin, end) that are this shard's, in order.
+  // The interval must not hold repeated samples and others.
+  template <class Visit>
+  void forRuns(int half, uint32_t begin, uint32_t end, const Visit& visit) const {
+    const uint64_t repeated = samplesOf(half, shard_.repeated);
+    uint64_t at = begin, last = end, stride = 1;
+    if (shard_.isConsecutive) {
+      at += shard_.first() / 2, last += shard_.first() / 2;
+    } else if (end > repeated) {
+      stride = shard_.count;
+      at += (shard_.index + stride - (begin - repeated) % stride) % stride;
+    }
+    while (at < last) {
+      const uint64_t index = at % tableSize_;
+      const uint64_t length = std::min(tableSize_ - index, last - at);
+      const uint64_t count = (length + stride - 1) / stride;
+      visit(Run{at / tableSize_, uint32_t(index), uint32_t(count), uint32_t(stride)});
+      at += count * stride;
+    }
+  }
+
+ private:
+  Shard shard_;
+  uint32_t tableSize_;
+};
+
+// The state of a thread that renders pixels.
+struct PixelWorker {
+  PathContext context;
+  InvalidSamples invalid;
+};
+
+class PixelRenderer {
+ public:
+  // All arguments must outlive this.
+  PixelRenderer(const Integrator& integrator, const World& world, const Camera& camera,
+                const RenderSettings& settings, RenderResult& result);
+
+  PixelWorker makeWorker() const;
+
+  // Adds those of samples [from, to) of a pixel of the film that are the shard's to the result.
+  // Thread-safe for different pixels.
+  void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
+              const Beam& beam) const;
+
+  // Of the camera rays through a grid of points, those that hit something.
+  double fractionOfHits() const;
+
+ private:
+  // Samples of a half of a pixel that share a randomisation of the table; x and y are of the film.
+  struct Block {
+    int x, y, half;
+    SampleSequence::Run run;
+  };
+
+  CameraRays raysAt(float time) const { return moving_ ? moving_->at(time) : cameraRays_; }
+  void traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
+                       std::span<CameraSample> cameras) const;
+  SampleSums renderBlock(PixelWorker& worker, const Block& block, const Beam& beam) const;
+  void renderBatch(PixelWorker& worker, const Block& block, std::span<const CameraSample> cameras,
+                   uint32_t firstSample, SampleSums& sums) const;
+  void add(PixelWorker& worker, const Block& block, const CameraSample& camera,
+           const Sample& sample, SampleSums& sums) const;
+  float wideningOf(const Block& block, uint32_t index) const;
+
+  const Integrator& integrator_;
+  const World& world_;
+  const RenderSettings& settings_;
+  const Crop window_;
+  CameraRays cameraRays_;
+  std::optional<MovingCamera> moving_;  // camera
+  const bool drawsTimes_;               // something moves while the shutter is open
+  SampleSequence sequence_;
+  SobolTable table_;
+  RenderResult& result_;
+};
+
+}  // namespace chromeball

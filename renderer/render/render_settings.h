@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Image size, sampling limits and path settings of a render.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "approximate/occlusion.h"
+#include "film/aov.h"
+#include "render/integrator_kind.h"
+#include "render/shard.h"
+#include "transport/path_settings.h"
+
+namespace chromeball {
+
+// Of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
+// `On` guides light samples wherever that reduces their variance, and bounces always.
+enum class Guiding { Off, On, Auto };
+
+// The part of an image that a render takes, in pixels.
+struct Crop {
+  int x, y, width, height;
+};
+
+// The largest that a user may give.
+inline constexpr uint32_t kMaxSamples = 2'000'000'000;
+inline constexpr int kMaxDepth = 1'000'000;
+
+// Names of layers that are by source of light.
+inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
+
+inline bool isOfLight(std::string_view layer) {
+  return layer == kLightGroups || layer == kShadowMattes;
+}
+
+struct RenderSettings {
+  int width = 800, height = 600;  // of the whole image
+  std::optional<Crop> crop;
+  Shard shard;
+  // Per pixel, those that a shard repeats included; >= 1; the maximum where a limit below is set.
+  uint32_t samples = 256;
+  std::optional<double> timeLimit;   // seconds
+  std::optional<double> noiseLimit;  // fraction (film/noise.h)
+  // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/allocation.h).
+  bool adaptive = true;
+  Guiding guiding = Guiding::Auto;  // as it was asked for
+  int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
+  int maxTransmissionDepth = kDefaultTransmissionDepth;
+  int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;  // as in PathSettings
+  IntegratorKind integrator = IntegratorKind::Path;
+  Occlusion occlusion;
+  std::optional<float> cacheError;  // of irradiance_cache/; nullopt: light is not cached
+  Mis mis = Mis::Balance;
+  uint64_t seed = 0;
+  bool hideProbe = false;      // from the camera
+  std::optional<float> clamp;  // largest value of a channel of a sample; nullopt: no limit
+  std::vector<Aov> aovs;
+  bool lightGroups = false, shadowMattes = false;  // layers by source (light_groups.h)
+  bool regularize = false;  // biased: see regularization.h; the World needs tables for it
+  bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
+
+  // Per pixel, of all shards together.
+  uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
+  // Whether the image is put together from several renders (parts/merge.h).
+  bool isPart() const { return crop || shard.samplesOfAll > 0; }
+  bool denoisesAtEnd() const { return denoise && !isPart(); }  // a part: when it is merged
+  Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
+
+  // The integrator ambient-occlusion is environment mapping with both kinds of occlusion.
+  Occlusion usedOcclusion() const {
+    Occlusion used = occlusion;
+    if (integrator == IntegratorKind::AmbientOcclusion) used.ambient = used.reflection = true;
+    return used;
+  }
+  bool wantsGroups() const { return lightGroups || shadowMattes; }
+  bool wantsAov(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
+  bool wantsSurfaceLayers() const {
+    return wantsAov(Aov::AmbientOcclusion) || wantsAov(Aov::BentNormal) ||
+           wantsAov(Aov::Irradiance);
+  }
+  bool wantsFeatures() const { return denoise || wantsAov(Aov::Denoise); }
+  PathSettings path() const {
+    return {.mis = mis,
+            .maxDepth = integrator == IntegratorKind::Direct ? std::min(maxDepth, 1) : maxDepth,
+            .maxTransmissionDepth = maxTransmissionDepth,
+            .maxDiffuseDepth = maxDiffuseDepth,
+            .maxSpecularDepth = maxSpecularDepth,
+            .hideProbe = hideProbe};
+  }
+  // Guided bounces have no kind: with limits of depth by kind, nothing is guided.
+  Guiding usedGuiding() const { return path().limitsKinds() ? Guiding::Off : guiding; }
+};
+
+}  // namespace chromeball

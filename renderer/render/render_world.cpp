@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which integrator renders the settings.
+#include <algorithm>
+#include <cassert>
+
+#include "approximate/cached_integrator.h"
+#include "approximate/environment_map.h"
+#include "approximate/surface_layers.h"
+#include "base/stopwatch.h"
+#include "render/render.h"
+#include "transport/light_groups.h"
+
+namespace chromeball {
+namespace {
+
+constexpr double kFillShare = 0.3;  // of the progress
+
+// An estimate of the light beyond the limits of depth would lack that of the records.
+PathSettings withoutDepthCut(PathSettings settings) {
+  settings.estimateDepthCut = false;
+  return settings;
+}
+
+// The settings after `seconds` of the time limit.
+RenderSettings after(double seconds, RenderSettings settings) {
+  constexpr double kLeast = 1e-3;
+  if (settings.timeLimit) settings.timeLimit = std::max(*settings.timeLimit - seconds, kLeast);
+  return settings;
+}
+
+}  // namespace
+
+RenderResult render(const World& world, const Camera& camera, const LightSource& lighting,
+                    const RenderSettings& settings, const Progress& progress,
+                    const std::atomic<bool>& stop, RenderControl* control, const RenderAids& aids) {
+  const auto withLayers = [&](const Integrator& picture, GuideTraining* training,
+                              const RenderSettings& limits, const Progress& rest) {
+    if (!settings.wantsSurfaceLayers())
+      return render(picture, world, camera, limits, rest, stop, training, control);
+    const PathTracer tracer(world, lighting, settings.path());
+    return render(SurfaceLayers(picture, tracer, settings.aovs, settings.occlusion), world, camera,
+                  limits, rest, stop, training, control);
+  };
+  // Without bounces there is nothing to approximate.
+  if (usesEnvironment(settings.integrator) && settings.maxDepth > 0) {
+    assert(aids.environment);
+    return withLayers(EnvironmentMapIntegrator(world, lighting, *aids.environment, settings.path(),
+                                               settings.usedOcclusion()),
+                      nullptr, settings, progress);
+  }
+  if (settings.cacheError && settings.path().maxDepth > 1) {  // else no surface lights another
+    IrradianceCache own(*settings.cacheError);
+    IrradianceCache& cache = aids.cache ? *aids.cache : own;
+    const PathSettings paths = withoutDepthCut(settings.path());
+    const Stopwatch watch;
+    fillCache(
+        cache, PathTracer(world, lighting, paths), camera, {settings.width, settings.height},
+        settings.seed, [&](double fraction) { progress(kFillShare * fraction); }, stop);
+    GuideTraining training(world, lighting, settings);
+    const PathTracer tracer(world, lighting, training.guided(paths));
+    return withLayers(CachedIntegrator(tracer, cache), &training, after(watch.seconds(), settings),
+                      [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+  }
+  if (settings.wantsGroups()) {
+    const LightGroups groups(world, lighting);
+    GuideTraining training(world, lighting, settings);
+    const PathTracer tracer(world, lighting, training.guided(settings.path()));
+    return withLayers(GroupIntegrator(tracer, groups), &training, settings, progress);
+  }
+  GuideTraining training(world, lighting, settings);
+  return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
+                    &training, settings, progress);
+}
+
+}  // namespace chromeball

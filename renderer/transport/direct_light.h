@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Next-event estimation: direct light at one vertex of a path.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "lighting/strategy.h"
+#include "scene/surface.h"
+#include "transport/context.h"
+#include "transport/guided_bsdf.h"
+#include "transport/media.h"
+#include "transport/path_settings.h"
+#include "transport/place.h"
+#include "transport/world.h"
+
+namespace chromeball {
+
+// The path vertex at which direct light is estimated.
+struct Vertex {
+  const LightPoint& point;
+  const Surface& surface;
+  const GuidedBsdf& bsdf;
+  const Media& media;            // on the viewer's side
+  const GuideRegion* region;     // of the guide; null: light samples are not guided here
+  Rgb throughput{1};             // weight of its light at the camera, for light groups
+  const Place* place = nullptr;  // of the path
+};
+
+// Light from the probe at a vertex, for paths that are traced together (integrator.h).
+struct DeferredLight {
+  DirectionSample sample{};  // input: the strategy's light sample; pdf 0: none
+  bool hasShadowRay = false;
+  Ray shadowRay{};       // output
+  Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
+  LightRecord record{};  // likewise; only if the context wants records
+
+  // Set if the guide chose the direction; complete() then calculates the radiance.
+  const GuideRegion* region = nullptr;
+  float treePdf = 0;
+  LightPoint point{};  // the vertex
+  BsdfValue bsdf{};
+  Rgb throughput{0};
+};
+
+// Radiance scattered towards the viewer, estimated by light samples with their MIS weights against
+// BSDF samples.
+class DirectLight {
+ public:
+  // `world` and `lighting` must outlive this.
+  DirectLight(const World& world, const LightSource& lighting, const PathSettings& settings)
+      : world_(world),
+        lighting_(lighting),
+        settings_(settings),
+        takesOneSample_(lighting.takesOneSample()) {}
+
+  // From the probe, with the strategy's samples; broad lobes only.
+  Rgb probe(const Vertex& vertex, PathContext& context) const;
+  // The same, up to the shadow ray, for a given sample of the strategy.
+  void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+             PathContext& context) const;
+  // The second part of defer() where light.region is set. `found`: what
+  // LightSource::escaped() returns for light.point and the direction of the shadow ray.
+  void complete(const LightSource::Escaped& found, DeferredLight& light,
+                const PathContext& context) const;
+  // From one of World::sources, which lights narrow lobes too.
+  Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
+
+ private:
+  // A light sample, and the strategy's pdf of its direction.
+  struct LightSample {
+    DirectionSample direction;
+    float strategyPdf;
+  };
+  // Whether a sample of the guide takes the place of the strategy's, except its delta samples.
+  static bool guideChooses(const Vertex& vertex, const PathContext& context);
+  // With the pdf of the mixture.
+  static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
+  static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
+                             const LightSource::Escaped& found);
+  Rgb weighted(const DirectionSample& light, const BsdfValue& bsdf) const;
+  void addToGroups(std::optional<size_t> source, const Vertex& vertex, const DirectionSample& light,
+                   const Rgb& scattered, PathContext& context) const;
+  static LightRecord record(const LightPoint& point, const LightSample& light,
+                            const BsdfValue& bsdf);
+
+  // Transmittance of a shadow ray from the vertex: occluders, and absorption in media. `end`: where
+  // the ray ends, if in the scene.
+  Rgb transmittance(const Vertex& vertex, const Ray& ray, PathContext& context,
+                    const LightEnd& end = {}) const;
+  Rgb visibility(const Ray& ray, const Media& media, PathContext& context,
+                 const LightEnd& end) const;
+  Rgb visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t key,
+                 const LightEnd& end) const;
+  // Transmittance of the other surfaces at the vertex's place in a direction, and the media behind
+  // them.
+  Rgb crossPlace(Place place, const vec3& direction, float time, Media& media) const;
+  // False for an instance that is not in this part of the scene.
+  bool exists(const LightEnd& end, RayMask mask) const {
+    return end.instance == LightEnd::kNone || world_.accel.mask(end.instance) & mask;
+  }
+
+  const World& world_;
+  const LightSource& lighting_;
+  PathSettings settings_;
+  bool takesOneSample_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// PathTracer: what a ray finds that hits nothing.
+#include "transport/light_groups.h"
+#include "transport/mis.h"
+#include "transport/path.h"
+
+namespace chromeball {
+
+Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) const {
+  const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
+  if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
+  const Rgb distant = distantRadiance(state, context);
+  if (state.lobes == Lobes::Narrow) {
+    if (context.groups) [[unlikely]]
+      context.groups->addBackground(lighting_, {}, origin, direction, state.throughput);
+    return state.throughput * lighting_.background(origin, direction) + distant;
+  }
+  return weighted(state, lighting_.escaped(state.from, direction), context) + distant;
+}
+
+// From World::sources, which light narrow lobes too: only the camera and delta lobes, which light
+// samples cannot serve, see background().
+Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) const {
+  const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
+  Rgb sum(0);
+  for (const size_t i : world_.sources.distant) {
+    const LightSource& source = *world_.sources.all[i];
+    if (state.isDelta) {
+      sum += state.throughput * source.background(origin, direction);
+      if (context.groups) [[unlikely]]
+        context.groups->addBackground(source, i, origin, direction, state.throughput);
+      continue;
+    }
+    const LightSource::Escaped found = source.escaped(state.from, direction);
+    if (isBlack(found.radiance)) continue;
+    const Rgb weight = state.throughput * bsdfSampleWeight(settings_.mis, state.pdf, found.pdf);
+    sum += weight * found.radiance;
+    if (context.groups) [[unlikely]]
+      context.groups->addEscaped(source, i, state.from, direction, weight);
+  }
+  return sum;
+}
+
+Rgb PathTracer::weighted(const PathState& state, const LightSource::Escaped& escaped,
+                         PathContext& context) const {
+  const Rgb found = state.throughput * escaped.radiance;
+  const vec3& direction = state.ray.direction;
+  const float lightPdf = state.region ? state.region->pdf(escaped.pdf, direction) : escaped.pdf;
+  const float weight = state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, lightPdf);
+  if (context.groups) [[unlikely]]
+    context.groups->addEscaped(lighting_, {}, state.from, direction, state.throughput * weight);
+  if (state.isDelta) return found;
+  if (context.records) {
+    const float integrand = luminance(found) / luminance(state.throughputBefore) * state.pdf;
+    context.addRecord({state.from.position, state.from.normal, direction, integrand,
+                       lightPdf + state.pdf, escaped.pdf, state.pdf});
+  }
+  return found * weight;
+}
+
+void PathTracer::addEscaped(PathState& state, const LightSource::Escaped& escaped,
+                            PathContext& context) const {
+  state.radiance += weighted(state, escaped, context) + distantRadiance(state, context);
+}
+
+}  // namespace chromeball

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/first_surface.h"
+
+namespace chromeball {
+
+Bsdf FirstSurface::bsdf(const PathTracer& tracer, const PathState& state) const {
+  const World& world = tracer.world();
+  const vec3 wo = -state.ray.direction;
+  if (!surface.material->extended)
+    return Bsdf(material, surface, wo, world.bsdfTables, tracer.mirrorAlpha());
+  return Bsdf(material, extendedMaterialAt(world.scene, instance, surface),
+              state.media.refractiveIndex(surface, state.throughput), surface, wo, world.bsdfTables,
+              tracer.mirrorAlpha());
+}
+
+std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& state,
+                                         const std::optional<Hit>& hit, PathContext& context) {
+  const auto visible = tracer.skipHiddenBacks(state, hit, context);
+  if (!visible) return {};
+  const Scene& scene = tracer.world().scene;
+  const Instance& instance = scene.instances[visible->instance];
+  state.length += visible->distance;
+  const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
+  FirstSurface found(scene, instance,
+                     surfaceAt(scene, instance, visible->triangle, visible->barycentric,
+                               -state.ray.direction, crossSection, state.ray.time));
+  if (state.first) {
+    FirstHit& first = *state.first;
+    first.hit = true;
+    first.depth = state.length;
+    first.albedo = first.seen = found.material.baseColor;
+    first.normal = found.surface.normal;
+    first.material = instance.material, first.node = instance.node;
+  }
+  return found;
+}
+
+std::optional<FirstSurface> firstReflector(const PathTracer& tracer, PathState& state,
+                                           const std::optional<Hit>& hit, PathContext& context,
+                                           Rgb& radiance) {
+  context.sampler.startVertex(0);
+  const auto first = firstSurface(tracer, state, hit, context);
+  if (!first) {
+    tracer.vertex(state, std::nullopt, context);
+    radiance += state.radiance;
+    return {};
+  }
+  const Material& material = *first->surface.material;
+  if (material.emits()) radiance += tracer.foundEmission(state, first->surface, first->instance);
+  if (material.unlit) return {};
+  return first;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first surface of a camera path, for integrators that treat it in their own way.
+#pragma once
+
+#include "transport/path.h"
+
+namespace chromeball {
+
+struct FirstSurface {
+  const Instance& instance;
+  Surface surface;
+  MaterialPoint material;
+
+  FirstSurface(const Scene& scene, const Instance& hit, const Surface& point)
+      : instance(hit), surface(point), material(materialAt(scene, surface)) {}
+
+  Bsdf bsdf(const PathTracer& tracer, const PathState& state) const;
+};
+
+// The visible surface that the camera path `state` meets first, `hit` being the closest hit of its
+// ray; also fills state.length and state.first. Nullopt if there is none: vertex() then adds the
+// background.
+std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& state,
+                                         const std::optional<Hit>& hit, PathContext& context);
+
+// The same for integrators that treat only reflected light in their own way: adds what the path
+// sees without reflection to `radiance`, background or emission; nullopt if nothing is reflected.
+std::optional<FirstSurface> firstReflector(const PathTracer& tracer, PathState& state,
+                                           const std::optional<Hit>& hit, PathContext& context,
+                                           Rgb& radiance);
+
+}  // namespace chromeball

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/integrator.h"
+
+#include <cassert>
+
+namespace chromeball {
+
+void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
+                                PathContext& context, std::span<Sample> samples) const {
+  thread_local PathBatch batch;
+  batch.clear();
+  for (const CameraSample& camera : cameras) batch.add(camera.path(), camera.hit);
+  batch.trace(tracer_, firstSample, context);
+  for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
+}
+
+struct PathBatch::Task {
+  const PathTracer& tracer;
+  uint32_t firstSample;
+  PathContext& context;
+
+  const LightSource& lighting() const { return tracer.lighting(); }
+  const Scene& scene() const { return tracer.world().scene; }
+  const Accel& accel() const { return tracer.world().accel; }
+  RayMask visible() const { return tracer.settings().visible; }
+};
+
+void PathBatch::add(const PathState& start, const std::optional<Hit>& hit) {
+  assert(count_ < kMaxPaths);
+  paths_[count_] = start;
+  hits_[count_] = hit;
+  ++count_;
+}
+
+void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContext& context) {
+  Task task{tracer, firstSample, context};
+  context.counts.camera += count_;
+  active_.size = 0;
+  for (size_t i = 0; i < count_; ++i) active_.add(uint32_t(i));
+  while (active_.size) {
+    endEscaped(task);
+    drawLightSamples(task);
+    shade(task);
+    completeGuided(task);
+    traceShadowRays(task);
+    traceNextRays(task);
+  }
+  for (size_t i = 0; i < count_; ++i) {
+    context.depthCut.addFound(paths_[i].radiance);
+    context.addRecord(paths_[i].guided, paths_[i].radiance);
+  }
+}
+
+// The sampler's next numbers are those of the path's next vertex.
+void PathBatch::select(uint32_t path, Task& task) {
+  task.context.sampler.startSample(task.firstSample + path);
+  task.context.sampler.startVertex(paths_[path].depth);
+}
+
+void PathBatch::endEscaped(Task& task) {
+  Indices& escaped = shaded_;  // not in use yet
+  escapes_.size = escaped.size = 0;
+  size_t remaining = 0;
+  for (const uint32_t i : active_.all()) {
+    PathState& path = paths_[i];
+    if (hits_[i]) {
+      active_.items[remaining++] = i;
+    } else if (path.lobes == Lobes::Narrow) {
+      task.tracer.vertex(path, std::nullopt, task.context);
+    } else {
+      escaped.add(i);
+      escapes_.add({&path.from, path.ray.direction});
+    }
+  }
+  active_.size = remaining;
+  task.lighting().escapedMany(escapes_.all(), escaped_);
+  for (size_t k = 0; k < escaped.size; ++k)
+    task.tracer.addEscaped(paths_[escaped.items[k]], escaped_[k], task.context);
+}
+
+void PathBatch::drawLightSamples(Task& task) {
+  numbers_.size = 0;
+  for (const uint32_t i : active_.all()) {
+    const Hit& hit = *hits_[i];
+    prefetchTriangle(task.scene(), task.scene().instances[hit.instance], hit.triangle);
+    select(i, task);
+    const PixelSampler& sampler = task.context.sampler;
+    numbers_.add({sampler.bits(dimension::kLight), sampler.bits(dimension::kLight + 1)});
+  }
+  const bool drawn =
+      task.lighting().sampleMany(numbers_.all(), std::span(samples_).first(numbers_.size));
+  for (size_t k = 0; k < active_.size; ++k) {
+    const uint32_t i = active_.items[k];
+    const Hit& hit = *hits_[i];
+    prefetchVertices(task.scene(), task.scene().instances[hit.instance], hit.triangle);
+    lights_[i].hasShadowRay = false;
+    lights_[i].region = nullptr;
+    lights_[i].sample = samples_[k];
+    paths_[i].deferred = drawn ? &lights_[i] : nullptr;
+  }
+}
+
+void PathBatch::shade(Task& task) {
+  shaded_ = active_;
+  active_.size = 0;
+  for (const uint32_t i : shaded_.all()) {
+    select(i, task);
+    task.tracer.estimateDepthCut(paths_[i], hits_[i], task.context);
+    if (task.tracer.vertex(paths_[i], hits_[i], task.context)) active_.add(i);
+  }
+}
+
+void PathBatch::completeGuided(Task& task) {
+  const LightGuide* guide = task.tracer.settings().guide;
+  if (!guide || guide->empty()) return;
+  Indices guided;
+  escapes_.size = 0;
+  for (const uint32_t i : shaded_.all())
+    if (lights_[i].region) {
+      guided.add(i);
+      escapes_.add({&lights_[i].point, lights_[i].shadowRay.direction});
+    }
+  task.lighting().escapedMany(escapes_.all(), escaped_);
+  for (size_t k = 0; k < guided.size; ++k)
+    task.tracer.direct().complete(escaped_[k], lights_[guided.items[k]], task.context);
+}
+
+void PathBatch::traceShadowRays(Task& task) {
+  Indices lit;
+  rays_.size = 0;
+  for (const uint32_t i : shaded_.all())
+    if (lights_[i].hasShadowRay) {
+      rays_.add(lights_[i].shadowRay);
+      lit.add(i);
+      if (task.context.log) task.context.log->rays.push_back({lights_[i].shadowRay, true});
+    }
+  task.context.counts.shadow += rays_.size;
+  task.accel().transmittance(rays_.all(), std::span(transmittances_).first(rays_.size),
+                             task.visible());
+  for (size_t k = 0; k < lit.size; ++k)
+    if (!isBlack(transmittances_[k])) {
+      const DeferredLight& light = lights_[lit.items[k]];
+      paths_[lit.items[k]].radiance += light.radiance * transmittances_[k];
+      if (task.context.records) task.context.addRecord(light.record, transmittances_[k]);
+    }
+}
+
+void PathBatch::traceNextRays(Task& task) {
+  Indices& traced = shaded_;  // not in use any more
+  traced.size = rays_.size = keys_.size = 0;
+  for (const uint32_t i : active_.all()) {
+    select(i, task);
+    paths_[i].guided.startRest(paths_[i].radiance);
+    if (paths_[i].place) [[unlikely]] {
+      hits_[i] = task.tracer.nextHit(paths_[i], task.context);
+      continue;
+    }
+    traced.add(i);
+    rays_.add(paths_[i].ray);
+    keys_.add(task.context.sampler.sampleKey());
+    if (task.context.log) task.context.log->rays.push_back({paths_[i].ray, false});
+  }
+  task.accel().intersect(rays_.all(), keys_.all(), Accel::Coherence::None,
+                         std::span(found_).first(rays_.size), task.visible());
+  for (size_t k = 0; k < traced.size; ++k) hits_[traced.items[k]] = found_[k];
+}
+
+}  // namespace chromeball

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrators estimate the radiance that arrives along camera rays.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "film/invalid.h"
+#include "film/layer_film.h"
+#include "transport/path.h"
+
+namespace chromeball {
+
+// A camera ray through pixel (x, y) and its closest hit. `half`: of the pixel's samples (Film).
+struct CameraSample {
+  int x, y, half;
+  Ray ray;
+  std::optional<Hit> hit;
+  Beam beam{};                // the ray's footprint, for texture filtering
+  float widening = 0;         // as in PathState
+  FirstHit* first = nullptr;  // output; null: not wanted
+
+  PathState path() const {
+    return {.ray = ray, .widening = widening, .beam = beam, .first = first};
+  }
+};
+
+// A sample of a pixel. A defect excludes it from the mean.
+struct Sample {
+  Rgb radiance{0};
+  std::optional<Defect> defect;
+
+  Sample() = default;
+  Sample(const Rgb& found) : radiance(found), defect(defectOf(found, false)) {}
+  Sample(const Rgb& found, std::optional<Defect> cause) : radiance(found), defect(cause) {}
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  // One sample of a pixel. Writes context.layers: one value per layer of layers(), initially 0.
+  // Called concurrently, with one context per thread.
+  virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
+
+  // The same for several samples of a pixel: cameras[i] is sample firstSample + i of the sampler's
+  // pixel. Only for integrators without layers.
+  virtual void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
+                          PathContext& context, std::span<Sample> samples) const {
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      context.sampler.startSample(firstSample + uint32_t(i));
+      samples[i] = sample(cameras[i], context);
+    }
+  }
+
+  // How the film accumulates each layer (RenderResult::layers).
+  virtual std::vector<Accumulation> layers() const { return {}; }
+
+  // The names of the layers, if they are light groups.
+  virtual std::vector<std::string> groups() const { return {}; }
+
+  // The instances visible to camera rays.
+  virtual RayMask visible() const { return kAllInstances; }
+};
+
+// Path tracing of all instances.
+class PathIntegrator : public Integrator {
+ public:
+  explicit PathIntegrator(const PathTracer& tracer) : tracer_(tracer) {}
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
+  }
+
+  void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
+                  std::span<Sample> samples) const override;
+
+ private:
+  PathTracer tracer_;
+};
+
+// Paths of one pixel that are traced together, a vertex of each at a time: their rays form packets,
+// and their reads from the probe's tables and the meshes overlap.
+
+// The estimates are those of PathTracer::radiance(). Used again for the next paths, since clearing
+// its arrays would take a noticeable part of the time.
+class PathBatch {
+ public:
+  static constexpr size_t kMaxPaths = LightSource::kMaxMany;
+
+  // Adds a path from a camera ray and its hit.
+  void add(const PathState& start, const std::optional<Hit>& hit);
+
+  // Traces all paths; path i is sample firstSample + i of the sampler's pixel.
+  void trace(const PathTracer& tracer, uint32_t firstSample, PathContext& context);
+
+  // The results, in the order of add().
+  const Rgb& radiance(size_t i) const { return paths_[i].radiance; }
+
+  void clear() { count_ = 0; }
+
+ private:
+  template <class T>
+  struct List {
+    std::array<T, kMaxPaths> items;
+    size_t size = 0;
+
+    void add(const T& item) { items[size++] = item; }
+    std::span<T> all() { return std::span(items).first(size); }
+  };
+  using Indices = List<uint32_t>;  // of paths
+
+  struct Task;
+  void select(uint32_t path, Task& task);
+  void endEscaped(Task& task);
+  void drawLightSamples(Task& task);
+  void shade(Task& task);
+  void completeGuided(Task& task);
+  void traceShadowRays(Task& task);
+  void traceNextRays(Task& task);
+
+  size_t count_ = 0;
+  std::array<PathState, kMaxPaths> paths_;
+  std::array<std::optional<Hit>, kMaxPaths> hits_;
+  std::array<DeferredLight, kMaxPaths> lights_;
+  Indices active_, shaded_;
+
+  // Arguments and results of the functions that take several rays.
+  List<Ray> rays_;
+  List<uint32_t> keys_;
+  List<LightSource::Escape> escapes_;
+  List<glm::uvec2> numbers_;
+  std::array<LightSource::Escaped, kMaxPaths> escaped_;
+  std::array<DirectionSample, kMaxPaths> samples_;
+  std::array<std::optional<Hit>, kMaxPaths> found_;
+  std::array<Rgb, kMaxPaths> transmittances_;
+};
+
+}  // namespace chromeball

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/light_groups.h"
+
+#include <algorithm>
+
+namespace chromeball {
+namespace {
+
+// An EXR channel, with its layer's prefix, a number and ".R", has 255 bytes at most.
+std::string shortened(const std::string& name) {
+  constexpr size_t kMaxBytes = 200;
+  size_t end = std::min(name.size(), kMaxBytes);
+  while (end < name.size() && (uint8_t(name[end]) & 0xC0) == 0x80) --end;  // whole UTF-8 characters
+  return name.substr(0, end);
+}
+
+}  // namespace
+
+LightGroups::LightGroups(const World& world, const LightSource& lighting)
+    : scene_(world.scene), ofNode_(world.scene.nodeNames.size(), -1) {
+  const Scene& scene = world.scene;
+  const auto addSource = [&](const LightSource& source) {
+    for (const std::string& name : source.groups()) add(name);
+    ends_.push_back(names_.size());
+  };
+  addSource(lighting);
+  for (const auto& source : world.sources.all) addSource(*source);
+  for (const Instance& instance : scene.instances) {
+    const Material& material = scene.materials[size_t(instance.material)];
+    if (!material.emits()) continue;
+    int& group = material.unlit ? unlit_ : ofNode_[size_t(instance.node)];
+    if (group < 0) group = add(material.unlit ? "unlit" : scene.nodeNames[size_t(instance.node)]);
+  }
+}
+
+int LightGroups::add(const std::string& name) {
+  std::string base = name.empty() ? "light" : shortened(name);
+  for (char& c : base)
+    if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
+  std::string unique = base;
+  for (int& count = taken_[base]; ++count > 1;) {
+    unique = base + "_" + std::to_string(count);
+    if (taken_.try_emplace(unique, 1).second) break;
+  }
+  names_.push_back(unique);
+  return int(names_.size()) - 1;
+}
+
+template <class Split>
+void GroupSums::add(std::optional<size_t> source, const Rgb& throughput, const Split& split) {
+  const auto [first, last] = groups_.rangeOf(source);
+  scratch_.assign(last - first, Rgb(0));
+  split(std::span(scratch_));
+  for (size_t i = 0; i < scratch_.size(); ++i) sums_[first + i] += throughput * scratch_[i];
+}
+
+void GroupSums::addEscaped(const LightSource& light, std::optional<size_t> source,
+                           const LightPoint& point, const vec3& wi, const Rgb& throughput) {
+  if (isDirected(source)) return directions_->push_back({wi, throughput});
+  add(source, throughput,
+      [&](std::span<Rgb> radiances) { light.splitEscaped(point, wi, radiances); });
+}
+
+void GroupSums::addBackground(const LightSource& light, std::optional<size_t> source,
+                              const vec3& origin, const vec3& wi, const Rgb& throughput) {
+  if (isDirected(source)) return directions_->push_back({wi, throughput});
+  add(source, throughput,
+      [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });
+}
+
+Sample GroupIntegrator::sample(const CameraSample& camera, PathContext& context) const {
+  GroupSums sums(groups_, context.layers, context.lightRadiances);
+  context.groups = &sums;
+  const Rgb whole = tracer_.radiance(camera.path(), camera.hit, context);
+  context.groups = nullptr;
+  const Rgb kept = context.clamp(whole);
+  if (kept != whole && isFinite(whole)) {
+    const float scale = maxComponent(absolute(kept)) / maxComponent(absolute(whole));
+    for (Rgb& radiance : context.layers) radiance *= scale;
+  }
+  return kept;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/media.h"
+
+namespace chromeball {
+namespace {
+
+// KHR_materials_dispersion: the index rises from red to blue by (ior - 1) / Abbe number, where
+// dispersion = 20 / Abbe number.
+Rgb indexByChannel(const Material& m) {
+  const float half = (m.ior - 1) * 0.025f * m.extended->dispersion;
+  return glm::max(Rgb(m.ior - half, m.ior, m.ior + half), Rgb(1));
+}
+
+// The index of the only nonzero channel; -1 unless exactly one channel is nonzero.
+int onlyChannel(const Rgb& c) {
+  if (int(c.x != 0) + int(c.y != 0) + int(c.z != 0) != 1) return -1;
+  return c.x != 0 ? 0 : c.y != 0 ? 1 : 2;
+}
+
+}  // namespace
+
+int Media::find(const Material* body) const {
+  int i = count_ - 1;
+  while (i >= 0 && bodies_[size_t(i)] != body) --i;
+  return i;
+}
+
+RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) const {
+  const Material& m = *s.material;
+  Rgb own = indexByChannel(m);
+  if (const int c = onlyChannel(throughput); c >= 0) own = Rgb(own[c]);
+  const bool isFull = count_ == int(bodies_.size());
+  if (s.frontFace) {
+    if (isFull) return {Rgb(1), m.ior};  // not tracked: no refraction
+    const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
+    return {own / outer, m.ior};
+  }
+  const int location = find(&m);
+  // Still inside a body that was entered later, or not tracked on entry: no refraction.
+  if (location >= 0 ? location < count_ - 1 : isFull) return {Rgb(1), m.ior};
+  const float outer = location > 0 ? bodies_[size_t(location - 1)]->ior : 1;
+  return {outer / own, m.ior};
+}
+
+Media& Media::follow(const Surface& s, const vec3& wi) {
+  const auto& extended = s.material->extended;
+  if (!extended || extended->thinWalled || glm::dot(s.geometricNormal, wi) >= 0) return *this;
+  if (s.frontFace) {
+    if (count_ < int(bodies_.size())) bodies_[size_t(count_++)] = s.material;
+  } else if (const int location = find(s.material); location >= 0) {
+    for (int i = location; i + 1 < count_; ++i) bodies_[size_t(i)] = bodies_[size_t(i + 1)];
+    --count_;
+  }
+  return *this;
+}
+
+}  // namespace chromeball

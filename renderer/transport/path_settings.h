@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Depth limits, MIS and visibility settings of paths.
+#pragma once
+
+#include <climits>
+
+#include "guiding/caustic_guide.h"
+#include "guiding/light_guide.h"
+#include "lighting/strategy.h"
+#include "trace/ray.h"
+
+namespace chromeball {
+
+// Enough for paths through several glass vessels in a row.
+inline constexpr int kDefaultTransmissionDepth = 64;
+
+struct PathSettings {
+  Mis mis = Mis::Balance;
+  int maxDepth = 8;  // 0: emission seen by the camera; 1: direct light; ...
+  int maxTransmissionDepth =
+      kDefaultTransmissionDepth;  // bounces in solid glass; not counted in maxDepth
+  // Limits of the bounces in which a diffuse or a specular lobe chose the direction; transmission
+  // in and on bodies of glass is neither.
+  int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;
+  bool hideProbe = false;        // from the camera
+  bool estimateDepthCut = true;  // estimate the light beyond the depth limits
+  // For strategies that can be guided (LightSource::canBeGuided()); null: none.
+  const LightGuide* guide = nullptr;
+  const CausticGuide* caustics = nullptr;  // likewise, for bounces
+  RayMask visible = kAllInstances;         // all rays of the paths ignore other instances
+  // If it differs from `visible`, shadow rays are traced with both masks, and
+  // PathContext::shadowsDiffer is set if their transmittances differ.
+  RayMask compared = visible;
+
+  bool limitsKinds() const { return maxDiffuseDepth < INT_MAX || maxSpecularDepth < INT_MAX; }
+};
+
+}  // namespace chromeball
